@@ -1,0 +1,34 @@
+# The few helper functions of this build.
+
+# Compiler settings that every target of our own code uses (generated code does not).
+add_library(lapis_warnings INTERFACE)
+target_compile_options(lapis_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
+
+# lapis_library(<name> SOURCES <file>... [HEADERS <file>...] [LINK <target>...] [PRIVATE_LINK <target>...])
+# A static library of our own code. HEADERS are also compiled alone (header verification).
+function(lapis_library name)
+  cmake_parse_arguments(A "" "" "SOURCES;HEADERS;LINK;PRIVATE_LINK" ${ARGN})
+  add_library(${name} STATIC ${A_SOURCES})
+  target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/components
+                                FILES ${A_HEADERS})
+  set_target_properties(${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON LINKER_LANGUAGE CXX)
+  target_link_libraries(${name} PUBLIC ${A_LINK} PRIVATE ${A_PRIVATE_LINK} lapis_warnings)
+endfunction()
+
+# lapis_executable(<target> OUTPUT <file name> SOURCES <file>... [LINK <target>...])
+function(lapis_executable name)
+  cmake_parse_arguments(A "" "OUTPUT" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  set_target_properties(${name} PROPERTIES OUTPUT_NAME ${A_OUTPUT})
+  target_link_libraries(${name} PRIVATE ${A_LINK} lapis_warnings)
+endfunction()
+
+# lapis_unit_test(<name> SOURCES <file>... [LINK <target>...])
+# A GoogleTest executable of the unit tier: no DDS, no shared data needed to pass.
+function(lapis_unit_test name)
+  cmake_parse_arguments(A "" "" "SOURCES;LINK" ${ARGN})
+  add_executable(${name} ${A_SOURCES})
+  target_link_libraries(${name} PRIVATE ${A_LINK} GTest::gtest GTest::gmock GTest::gtest_main lapis_warnings)
+  add_test(NAME unit.${name} COMMAND ${name})
+  set_tests_properties(unit.${name} PROPERTIES LABELS unit TIMEOUT 120)
+endfunction()

@@ -1,0 +1,12 @@
+#include "common/geometry/pinhole_camera.hpp"
+
+#include <cmath>
+
+namespace lapis::geometry {
+
+bool is_valid(const PinholeCamera& camera) {
+  return camera.width > 0 && camera.height > 0 && std::isfinite(camera.fx) && std::isfinite(camera.fy) &&
+         std::isfinite(camera.cx) && std::isfinite(camera.cy) && camera.fx > 0.0 && camera.fy > 0.0;
+}
+
+}  // namespace lapis::geometry

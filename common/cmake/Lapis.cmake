@@ -1,5 +1,8 @@
 # The few helper functions of this build.
 
+# The root of the repository: include root of everything; components/ is the second one.
+get_filename_component(LAPIS_SOURCE_DIR "${CMAKE_CURRENT_LIST_DIR}/../.." ABSOLUTE)
+
 # Compiler settings that every target of our own code uses (generated code does not).
 add_library(lapis_warnings INTERFACE)
 target_compile_options(lapis_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
@@ -9,8 +12,13 @@ target_compile_options(lapis_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshado
 function(lapis_library name)
   cmake_parse_arguments(A "" "" "SOURCES;HEADERS;LINK;PRIVATE_LINK" ${ARGN})
   add_library(${name} STATIC ${A_SOURCES})
-  target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${CMAKE_SOURCE_DIR} ${CMAKE_SOURCE_DIR}/components
-                                FILES ${A_HEADERS})
+  set(base ${LAPIS_SOURCE_DIR})
+  string(FIND ${CMAKE_CURRENT_SOURCE_DIR}/ ${LAPIS_SOURCE_DIR}/components/ position)
+  if(position EQUAL 0)
+    set(base ${LAPIS_SOURCE_DIR}/components)
+  endif()
+  target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${base} FILES ${A_HEADERS})
+  target_include_directories(${name} PUBLIC ${LAPIS_SOURCE_DIR} ${LAPIS_SOURCE_DIR}/components)
   set_target_properties(${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON LINKER_LANGUAGE CXX)
   target_link_libraries(${name} PUBLIC ${A_LINK} PRIVATE ${A_PRIVATE_LINK} lapis_warnings)
 endfunction()

@@ -1,0 +1,74 @@
+#include "common/config/schema.hpp"
+
+#include <charconv>
+#include <cmath>
+#include <sstream>
+
+namespace lapis::config {
+namespace {
+
+std::string number_text(double value) {
+  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return {text, end};
+}
+
+std::string quoted(const std::string& text) {
+  std::string out = "\"";
+  for (const char c : text) {
+    if (c == '"' || c == '\\') out += '\\';
+    out += c;
+  }
+  return out + '"';
+}
+
+struct ValueText {
+  std::string operator()(const bool* v) const { return *v ? "true" : "false"; }
+  std::string operator()(const int* v) const { return std::to_string(*v); }
+  std::string operator()(const std::int64_t* v) const { return std::to_string(*v); }
+  std::string operator()(const double* v) const { return number_text(*v); }
+  std::string operator()(const std::string* v) const { return quoted(*v); }
+  std::string operator()(const Words* v) const {
+    std::string out = "[";
+    for (const auto& word : *v) out += (out.size() > 1 ? ", " : "") + quoted(word);
+    return out + "]";
+  }
+};
+
+}  // namespace
+
+std::string Bound::text() const {
+  if (!words.empty()) {
+    std::string out;
+    for (const auto& word : words) out += (out.empty() ? "" : " | ") + word;
+    return out;
+  }
+  if (std::isinf(lowest) && std::isinf(highest)) return "";
+  if (std::isinf(highest)) return "at least " + number_text(lowest);
+  return number_text(lowest) + " to " + number_text(highest);
+}
+
+Bound in_range(double lowest, double highest) { return {lowest, highest, {}}; }
+Bound at_least(double lowest) { return {lowest, std::numeric_limits<double>::infinity(), {}}; }
+Bound anything() { return {}; }
+Bound one_of(std::initializer_list<std::string> words) {
+  Bound bound;
+  bound.words = words;
+  return bound;
+}
+
+std::string to_text(const Entry& entry) { return std::visit(ValueText{}, entry.value); }
+
+std::string to_markdown(const Schema& schema) {
+  std::ostringstream out;
+  out << "| key | default | allowed | meaning |\n| --- | --- | --- | --- |\n";
+  for (const auto& entry : schema.entries()) {
+    std::string allowed = entry.bound.text();
+    for (std::size_t at = 0; (at = allowed.find('|', at)) != std::string::npos; at += 2) allowed.insert(at, "\\");
+    out << "| `" << entry.path << "` | `" << to_text(entry) << "` | " << allowed << " | " << entry.meaning << " |\n";
+  }
+  return out.str();
+}
+
+}  // namespace lapis::config

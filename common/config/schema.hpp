@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <initializer_list>
+#include <limits>
+#include <string>
+#include <variant>
+#include <vector>
+
+namespace lapis::config {
+
+/// What a value may be: a closed interval for numbers, a list of words for text, or anything.
+struct Bound {
+  double lowest = -std::numeric_limits<double>::infinity();
+  double highest = std::numeric_limits<double>::infinity();
+  std::vector<std::string> words;
+
+  /// "0.1 to 20", "a | b", or empty when everything is allowed.
+  std::string text() const;
+};
+
+Bound in_range(double lowest, double highest);
+Bound at_least(double lowest);
+Bound one_of(std::initializer_list<std::string> words);
+Bound anything();
+
+using Words = std::vector<std::string>;
+
+/// One configuration value: where it is, what it may be, what it means.
+struct Entry {
+  std::string path;  ///< "slam.tracker.max_depth_m"
+  std::variant<bool*, int*, std::int64_t*, double*, std::string*, Words*> value;
+  Bound bound;
+  std::string meaning;
+};
+
+/// Collects the entries of configuration structs. A struct takes part by a free function in its own namespace,
+///
+///   template <class Field> void describe(Field& field, TrackerConfig& c) {
+///     field("max_depth_m", c.max_depth_m, config::in_range(0.1, 20.0), "measurements beyond this are ignored");
+///   }
+///
+/// which alone drives loading, validation, printing and the README table. The structs must outlive the schema.
+class Schema {
+ public:
+  template <class Value>
+  void operator()(const std::string& name, Value& value, Bound bound, std::string meaning) {
+    entries_.push_back({prefix_ + name, &value, std::move(bound), std::move(meaning)});
+  }
+
+  /// A nested struct.
+  template <class Struct>
+  void operator()(const std::string& name, Struct& nested) {
+    const std::string outer = prefix_;
+    prefix_ += name + ".";
+    describe(*this, nested);
+    prefix_ = outer;
+  }
+
+  const std::vector<Entry>& entries() const { return entries_; }
+
+ private:
+  std::string prefix_;
+  std::vector<Entry> entries_;
+};
+
+/// The entry's current value as YAML text.
+std::string to_text(const Entry& entry);
+/// A README table: key, default, allowed, meaning.
+std::string to_markdown(const Schema& schema);
+
+}  // namespace lapis::config

@@ -1,0 +1,175 @@
+#include "common/config/yaml.hpp"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <set>
+#include <sstream>
+
+namespace lapis::config {
+namespace {
+
+[[noreturn]] void fail(const std::string& source, const std::string& path, const std::string& problem) {
+  throw Error(source + ": " + (path.empty() ? "" : path + ": ") + problem);
+}
+
+std::string place(const std::string& source, const YAML::Node& node) {
+  return node.Mark().is_null() ? source : source + ":" + std::to_string(node.Mark().line + 1);
+}
+
+/// Checks and stores one scalar or list; visited with the pointer to the target.
+struct Store {
+  const Entry& entry;
+  const YAML::Node& node;
+  const std::string& source;
+
+  void operator()(bool* target) const { *target = scalar<bool>("true or false"); }
+  void operator()(int* target) const { *target = bounded<int>("a whole number"); }
+  void operator()(std::int64_t* target) const { *target = bounded<std::int64_t>("a whole number"); }
+  void operator()(double* target) const { *target = bounded<double>("a number"); }
+  void operator()(std::string* target) const { *target = word(node); }
+  void operator()(Words* target) const {
+    if (!node.IsSequence()) reject("a list such as [a, b] is needed");
+    Words words;
+    for (const auto& item : node) words.push_back(word(item));
+    *target = std::move(words);
+  }
+
+ private:
+  [[noreturn]] void reject(const std::string& problem) const { fail(place(source, node), entry.path, problem); }
+
+  std::string shown() const { return node.IsScalar() ? "'" + node.Scalar() + "'" : "this value"; }
+
+  template <class T>
+  T scalar(const std::string& wanted) const {
+    T value{};
+    if (!node.IsScalar() || !YAML::convert<T>::decode(node, value)) reject(shown() + " is not " + wanted);
+    return value;
+  }
+
+  template <class T>
+  T bounded(const std::string& wanted) const {
+    const T value = scalar<T>(wanted);
+    const auto number = static_cast<double>(value);
+    if (std::isnan(number) || number < entry.bound.lowest || number > entry.bound.highest) {
+      reject(shown() + " is out of range, allowed is " + entry.bound.text());
+    }
+    return value;
+  }
+
+  std::string word(const YAML::Node& item) const {
+    if (!item.IsScalar()) reject("text is needed");
+    const auto& words = entry.bound.words;
+    if (!words.empty() && std::find(words.begin(), words.end(), item.Scalar()) == words.end()) {
+      reject("'" + item.Scalar() + "' is not one of " + entry.bound.text());
+    }
+    return item.Scalar();
+  }
+};
+
+bool is_section(const Schema& schema, const std::string& path) {
+  const std::string prefix = path + ".";
+  return std::any_of(schema.entries().begin(), schema.entries().end(),
+                     [&](const Entry& entry) { return entry.path.compare(0, prefix.size(), prefix) == 0; });
+}
+
+const Entry* find(const Schema& schema, const std::string& path) {
+  const auto& entries = schema.entries();
+  const auto it = std::find_if(entries.begin(), entries.end(), [&](const Entry& e) { return e.path == path; });
+  return it == entries.end() ? nullptr : &*it;
+}
+
+/// The known key that looks most like a mistyped one: the longest common prefix wins.
+std::string nearest_key(const Schema& schema, const std::string& path) {
+  std::string best;
+  std::size_t best_length = 0;
+  for (const auto& entry : schema.entries()) {
+    const auto [a, b] = std::mismatch(path.begin(), path.end(), entry.path.begin(), entry.path.end());
+    const auto length = static_cast<std::size_t>(a - path.begin());
+    if (length > best_length) {
+      best_length = length;
+      best = entry.path;
+    }
+  }
+  return best.empty() ? "" : " (did you mean '" + best + "'?)";
+}
+
+void apply_node(const Schema& schema, const YAML::Node& node, const std::string& path, const std::string& source) {
+  if (const Entry* entry = find(schema, path)) {
+    std::visit(Store{*entry, node, source}, entry->value);
+    return;
+  }
+  if (!path.empty() && !is_section(schema, path)) {
+    fail(place(source, node), path, "unknown key" + nearest_key(schema, path) + "; --print-config lists all keys");
+  }
+  if (node.IsNull()) return;
+  if (!node.IsMap()) fail(place(source, node), path, "a section with keys is needed");
+  std::set<std::string> seen;
+  for (const auto& item : node) {
+    const std::string key = item.first.Scalar();
+    const std::string full = path.empty() ? key : path + "." + key;
+    if (!seen.insert(key).second) fail(place(source, item.first), full, "key appears twice");
+    apply_node(schema, item.second, full, source);
+  }
+}
+
+YAML::Node parse(const std::string& text, const std::string& source) {
+  try {
+    return YAML::Load(text);
+  } catch (const YAML::Exception& error) {
+    const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
+    throw Error(source + line + ": not valid YAML: " + error.msg);
+  }
+}
+
+}  // namespace
+
+void apply_text(const Schema& schema, const std::string& text, const std::string& source) {
+  apply_node(schema, parse(text, source), "", source);
+}
+
+void apply_file(const Schema& schema, const std::string& file) {
+  std::ifstream in(file);
+  if (!in) throw Error(file + ": cannot be read; give --config the path of an existing YAML file");
+  std::ostringstream text;
+  text << in.rdbuf();
+  apply_text(schema, text.str(), file);
+}
+
+void apply_override(const Schema& schema, const std::string& assignment) {
+  const std::string source = "--set " + assignment;
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) throw Error(source + ": write it as path=value");
+  const std::string path = assignment.substr(0, equals);
+  const Entry* entry = find(schema, path);
+  if (entry == nullptr) {
+    fail(source, path, "unknown key" + nearest_key(schema, path) + "; --print-config lists all keys");
+  }
+  const std::string value = assignment.substr(equals + 1);
+  const bool is_text = std::holds_alternative<std::string*>(entry->value);
+  const YAML::Node node = is_text ? YAML::Node(value) : parse(value, source);
+  std::visit(Store{*entry, node, source}, entry->value);
+}
+
+std::string to_yaml(const Schema& schema) {
+  std::ostringstream out;
+  std::vector<std::string> open;  // sections that the previous entry was in
+  for (const auto& entry : schema.entries()) {
+    std::vector<std::string> parts;
+    std::istringstream path(entry.path);
+    for (std::string part; std::getline(path, part, '.');) parts.push_back(part);
+    std::size_t depth = 0;
+    while (depth < open.size() && depth + 1 < parts.size() && open[depth] == parts[depth]) ++depth;
+    for (; depth + 1 < parts.size(); ++depth) out << std::string(2 * depth, ' ') << parts[depth] << ":\n";
+    open.assign(parts.begin(), parts.end() - 1);
+    const std::string indent(2 * (parts.size() - 1), ' ');
+    const std::string allowed = entry.bound.text();
+    out << indent << "# " << entry.meaning << (allowed.empty() ? "" : " [" + allowed + "]") << '\n';
+    out << indent << parts.back() << ": " << to_text(entry) << '\n';
+  }
+  return out.str();
+}
+
+}  // namespace lapis::config

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "common/config/schema.hpp"
+
+namespace lapis::config {
+
+/// A configuration that cannot be used; the message names the source, the full path, the value and the bound.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Reads a YAML file into the structs behind `schema`. Keys that the file leaves out keep their value.
+/// Throws Error when the file cannot be read, holds an unknown or repeated key, or a value of wrong type or range.
+void apply_file(const Schema& schema, const std::string& file);
+/// The same for YAML text; `source` names it in messages.
+void apply_text(const Schema& schema, const std::string& text, const std::string& source);
+/// Applies one "path=value" as given to --set.
+void apply_override(const Schema& schema, const std::string& assignment);
+/// The whole configuration as a YAML file with a comment per key; reading it back changes nothing.
+std::string to_yaml(const Schema& schema);
+
+}  // namespace lapis::config

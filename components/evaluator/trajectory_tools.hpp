@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <iosfwd>
+
+namespace lapis::evaluator {
+
+/// Adds `ate`: absolute trajectory error of one TUM file against another.
+void add_ate_tool(CLI::App& app, std::ostream& out);
+/// Adds `rpe`: relative pose error of one TUM file against another.
+void add_rpe_tool(CLI::App& app, std::ostream& out);
+
+}  // namespace lapis::evaluator

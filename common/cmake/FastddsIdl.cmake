@@ -28,6 +28,7 @@ target_link_libraries(lapis_fastdds INTERFACE ${LAPIS_FASTDDS_LIBRARIES})
 
 set(LAPIS_FASTDDSGEN_SCRIPT ${CMAKE_CURRENT_LIST_DIR}/run_fastddsgen.cmake)
 set(LAPIS_TYPE_DESCRIPTIONS ${CMAKE_SOURCE_DIR}/idl/type_descriptions.py)
+set(LAPIS_IDL_PARSER ${CMAKE_SOURCE_DIR}/idl/idl_parser.py)
 set(LAPIS_IDL_INCLUDE_DIR ${CMAKE_BINARY_DIR}/idl/include)
 
 # fastdds_idl_library(<package> IDL <file> [DEPENDS <package>...])
@@ -65,9 +66,9 @@ function(fastdds_idl_library package)
   set(header ${LAPIS_IDL_INCLUDE_DIR}/idl/${package}.hpp)
   add_custom_command(
     OUTPUT ${header}
-    COMMAND ${Python3_EXECUTABLE} ${LAPIS_TYPE_DESCRIPTIONS} header ${idl}
+    COMMAND ${Python3_EXECUTABLE} -B ${LAPIS_TYPE_DESCRIPTIONS} header ${idl}
             --type-header ${package}PubSubTypes${LAPIS_IDL_HEADER_SUFFIX} --output ${header}
-    DEPENDS ${idl_files} ${LAPIS_TYPE_DESCRIPTIONS}
+    DEPENDS ${idl_files} ${LAPIS_TYPE_DESCRIPTIONS} ${LAPIS_IDL_PARSER}
     COMMENT "type support ${package}" VERBATIM)
 
   set(sources ${generated})

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace lapis::idl {
+
+/// A message type known to this build, for code that meets types by name (recording, probing).
+struct TypeEntry {
+  std::string_view ros_name;      ///< "sensor_msgs/msg/Image"
+  std::string_view dds_name;      ///< "sensor_msgs::msg::dds_::Image_"
+  std::string_view hash;          ///< "RIHS01_..."
+  std::string_view ros2msg_text;  ///< schema with all dependencies, as rosbag2 writes it (encoding `ros2msg`)
+};
+
+/// All types, sorted by ROS name.
+std::span<const TypeEntry> type_table();
+
+/// The type of that ROS name; nullptr when it is not known.
+const TypeEntry* find(std::string_view ros_name);
+
+}  // namespace lapis::idl

@@ -1,0 +1,128 @@
+#include "sensor_replay/core/image_file.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+#include <optional>
+#include <vector>
+
+namespace lapis::sensor_replay {
+namespace {
+
+constexpr std::uint16_t kNoDepth = 0;
+constexpr int kMaxDepthValue = 65535;  // also "none" in some recordings
+
+using Decoded = std::variant<cv::Mat, ImageFault>;
+
+// libjpeg fills the rest of a truncated file with grey and calls it a success: a whole file has an end-of-image marker
+// near its end (some cameras append a few bytes).
+bool is_truncated_jpeg(const std::vector<std::uint8_t>& bytes) {
+  if (bytes.size() < 4 || bytes[0] != 0xFF || bytes[1] != 0xD8) return false;
+  constexpr std::size_t kMaxTail = 64;
+  const std::size_t stop = bytes.size() > kMaxTail ? bytes.size() - kMaxTail : 2;
+  for (std::size_t i = bytes.size() - 1; i > stop; --i) {
+    if (bytes[i - 1] == 0xFF && bytes[i] == 0xD9) return false;
+  }
+  return true;
+}
+
+std::optional<std::vector<std::uint8_t>> read_bytes(const std::filesystem::path& file) {
+  if (!std::filesystem::is_regular_file(file)) return std::nullopt;
+  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  if (!stream) return std::nullopt;
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(stream.tellg()));
+  stream.seekg(0);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
+  return bytes;
+}
+
+Decoded decode(const std::filesystem::path& file) {
+  const auto bytes = read_bytes(file);
+  if (!bytes) return ImageFault::kMissing;
+  if (bytes->empty() || is_truncated_jpeg(*bytes)) return ImageFault::kUndecodable;
+  try {
+    cv::Mat image = cv::imdecode(*bytes, cv::IMREAD_UNCHANGED);
+    if (image.empty()) return ImageFault::kUndecodable;
+    return image;
+  } catch (const cv::Exception&) {  // for example a header that promises 2^31 pixels
+    return ImageFault::kUndecodable;
+  }
+}
+
+Decoded decode(const std::filesystem::path& file, ImageSize size) {
+  Decoded decoded = decode(file);
+  if (const auto* image = std::get_if<cv::Mat>(&decoded); image && ImageSize{image->cols, image->rows} != size) {
+    return ImageFault::kWrongSize;
+  }
+  return decoded;
+}
+
+// Millimetres of every possible depth pixel.
+std::vector<std::uint16_t> millimetre_table(double depth_scale) {
+  std::vector<std::uint16_t> table(kMaxDepthValue + 1, kNoDepth);
+  for (int raw = 1; raw < kMaxDepthValue; ++raw) {
+    const double millimetres = std::round(raw * 1000.0 / depth_scale);
+    if (millimetres < kMaxDepthValue) table[static_cast<std::size_t>(raw)] = static_cast<std::uint16_t>(millimetres);
+  }
+  return table;
+}
+
+}  // namespace
+
+std::string to_string(ImageFault fault) {
+  switch (fault) {
+    case ImageFault::kNotListed: return "no image at this time";
+    case ImageFault::kMissing: return "file missing";
+    case ImageFault::kUndecodable: return "truncated or not an image";
+    case ImageFault::kWrongSize: return "wrong size";
+    case ImageFault::kWrongPixelType: return "wrong number of channels or bits";
+  }
+  return "unknown";
+}
+
+std::variant<geometry::ColorImage, ImageFault> read_color(const std::filesystem::path& file, ImageSize size) {
+  const Decoded decoded = decode(file, size);
+  if (const auto* fault = std::get_if<ImageFault>(&decoded)) return *fault;
+  const cv::Mat& bgr = std::get<cv::Mat>(decoded);
+  if (bgr.type() != CV_8UC3) return ImageFault::kWrongPixelType;
+  static_assert(sizeof(geometry::Rgb8) == 3);
+  geometry::ColorImage color(bgr.cols, bgr.rows);
+  cv::Mat rgb(bgr.rows, bgr.cols, CV_8UC3, color.pixels.data());
+  cv::mixChannels({bgr}, {rgb}, {0, 2, 1, 1, 2, 0});
+  return color;
+}
+
+std::variant<DepthMillimetres, ImageFault> read_depth(const std::filesystem::path& file, ImageSize size,
+                                                      double depth_scale) {
+  const Decoded decoded = decode(file, size);
+  if (const auto* fault = std::get_if<ImageFault>(&decoded)) return *fault;
+  const cv::Mat& raw = std::get<cv::Mat>(decoded);
+  if (raw.type() != CV_16UC1) return ImageFault::kWrongPixelType;
+  const std::vector<std::uint16_t> table = millimetre_table(depth_scale);
+  DepthMillimetres depth(raw.cols, raw.rows);
+  std::transform(raw.begin<std::uint16_t>(), raw.end<std::uint16_t>(), depth.pixels.begin(),
+                 [&](std::uint16_t value) { return table[value]; });
+  return depth;
+}
+
+std::variant<geometry::LabelImage, ImageFault> read_label(const std::filesystem::path& file, ImageSize size) {
+  const Decoded decoded = decode(file, size);
+  if (const auto* fault = std::get_if<ImageFault>(&decoded)) return *fault;
+  const cv::Mat& ids = std::get<cv::Mat>(decoded);
+  if (ids.type() != CV_8UC1 && ids.type() != CV_16UC1) return ImageFault::kWrongPixelType;
+  geometry::LabelImage label(ids.cols, ids.rows);
+  cv::Mat target(ids.rows, ids.cols, CV_16UC1, label.pixels.data());
+  ids.convertTo(target, CV_16U);
+  return label;
+}
+
+std::variant<ImageSize, ImageFault> read_size(const std::filesystem::path& file) {
+  const Decoded decoded = decode(file);
+  if (const auto* fault = std::get_if<ImageFault>(&decoded)) return *fault;
+  const cv::Mat& image = std::get<cv::Mat>(decoded);
+  return ImageSize{image.cols, image.rows};
+}
+
+}  // namespace lapis::sensor_replay

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "common/mapping/voxel_index.hpp"
+
+namespace lapis::mapping {
+
+/// One vote in fixed point. Every contribution is a whole number of these 1/256 votes, so sums are exact in any order.
+inline constexpr std::uint32_t kOneVote = 256;
+
+/// A vote for `label` (0 = unlabelled) in one voxel of a block.
+struct HitVote {
+  std::uint16_t offset = 0;  ///< offset_in_block
+  std::uint16_t label = 0;
+  std::uint32_t weight = kOneVote;  ///< [1/256 vote]
+  bool operator==(const HitVote&) const = default;
+};
+
+/// What one frame says about one block. A voxel is in `passes` (weight kOneVote) or in the hits, never in both.
+struct BlockVotes {
+  BlockIndex block;
+  std::array<std::uint64_t, kBlockVoxels / 64> passes{};  ///< bit offset%64 of word offset/64
+  std::uint32_t hits_begin = 0;                           ///< range in FrameVotes::hits, sorted by offset
+  std::uint32_t hits_end = 0;
+  bool operator==(const BlockVotes&) const = default;
+};
+
+/// What one frame says about the map: at most one pass or one hit per voxel. Sorted by block.
+struct FrameVotes {
+  std::vector<BlockVotes> blocks;
+  std::vector<HitVote> hits;
+
+  std::size_t hit_count() const { return hits.size(); }
+  std::size_t pass_count() const {
+    std::size_t count = 0;
+    for (const BlockVotes& votes : blocks)
+      for (const std::uint64_t word : votes.passes) count += static_cast<std::size_t>(std::popcount(word));
+    return count;
+  }
+  bool operator==(const FrameVotes&) const = default;
+};
+
+}  // namespace lapis::mapping

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "common/geometry/se3.hpp"
+#include "common/mapping/compact_frame.hpp"
+#include "common/mapping/frame_votes.hpp"
+
+namespace lapis::mapping {
+
+struct IntegrationConfig {
+  double min_range_m = 0.2;      ///< measurements nearer than this say nothing, in [0, 5]
+  double max_range_m = 5.0;      ///< Euclidean; returns beyond carve free space up to here, in [0.5, 20]
+  double min_height_m = -100.0;  ///< voxels whose centre is lower (z of the map frame) get no votes
+  double max_height_m = 100.0;   ///< voxels whose centre is higher get no votes; above min_height_m
+  /// A voxel is passed only if the ray leaves it at least this far before the measured surface, in [0, 3] voxels.
+  double end_margin_voxels = 0.0;
+  /// Depth noise: standard deviation of depth z is this times z^2 [1/m]; passes also keep two standard deviations away
+  /// from the surface, in [0, 0.05].
+  double depth_noise_per_m = 0.0013;
+};
+
+/// Throws std::runtime_error naming the value that is out of range.
+void validate(const IntegrationConfig& config);
+
+/// Largest ratio of range to resolution that compute_votes accepts; bounds its scratch memory to 125 MB.
+inline constexpr double kMaxRangeInVoxels = 500.0;
+
+/// What a frame, seen from a pose, says about the map. Each voxel gets at most one vote:
+/// - a hit where a sampled pixel's point within range falls into it; its class is the majority of the voxel's labelled
+///   pixels (never an average; ties go to the smaller id; unlabelled only when no pixel is labelled);
+/// - otherwise a pass when a ray goes through it. There is one ray per voxel that is seen (to a measured point in it, the
+///   middle one in scan order), traversed exactly [Amanatides & Woo 1987]. Returns beyond max_range_m end rays there
+///   without a hit. Pixels without depth say nothing.
+/// Deterministic: the same frame, pose, configuration and resolution give the same votes.
+/// Throws std::runtime_error when max_range_m / resolution_m exceeds kMaxRangeInVoxels.
+FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_camera, const IntegrationConfig& config,
+                         double resolution_m);
+
+}  // namespace lapis::mapping

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace lapis::mapping {
+
+/// One zstd frame that records its content size. Same input and library, same bytes.
+std::vector<std::uint8_t> zstd_compress(std::span<const std::uint8_t> bytes, int level);
+
+/// Nothing when the input is damaged, has no content size, or would unpack to more than `max_bytes`.
+std::optional<std::vector<std::uint8_t>> zstd_decompress(std::span<const std::uint8_t> bytes, std::size_t max_bytes);
+
+}  // namespace lapis::mapping

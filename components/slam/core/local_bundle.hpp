@@ -1,0 +1,24 @@
+#pragma once
+
+#include <vector>
+
+#include "slam/core/bundle_adjuster.hpp"
+#include "slam/core/config.hpp"
+#include "slam/core/map.hpp"
+
+namespace lapis::slam {
+
+/// Relative pose of two key-frames as their surfaces give it.
+struct SurfaceLink {
+  KeyframeId from = 0;
+  KeyframeId to = 0;
+  geometry::Pose T_from_to = geometry::Pose::Identity();
+  geometry::Matrix6d information = geometry::Matrix6d::Zero();
+};
+
+/// Adjusts the newest key-frame, its covisible ones and their landmarks; key-frames outside the window that see the
+/// same landmarks are fixed, and the oldest of the window when there are none. Observations that fit badly afterwards
+/// are removed. False when nothing was changed.
+bool adjust_local_map(const SlamConfig& config, const std::vector<SurfaceLink>& links, Map& map);
+
+}  // namespace lapis::slam

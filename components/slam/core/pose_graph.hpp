@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/se3.hpp"
+#include "common/time/time.hpp"
+#include "slam/core/config.hpp"
+
+namespace lapis::slam {
+
+/// Key-frame in the pose graph.
+struct PoseGraphNode {
+  std::uint64_t id = 0;
+  time::Time stamp;
+  geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< camera optical frame
+};
+
+enum class EdgeType : std::uint8_t { kOdometry, kCovisibility, kLoopClosure, kWheelOdometry };
+
+/// Measured relative pose. The information belongs to the tangent (translation, rotation) of a right perturbation:
+/// T_from_to * exp(xi), xi in the frame of `to`; [1/m^2, 1/rad^2], symmetric positive definite.
+struct PoseGraphEdge {
+  std::uint64_t from = 0;
+  std::uint64_t to = 0;
+  EdgeType type = EdgeType::kOdometry;
+  geometry::Pose T_from_to = geometry::Pose::Identity();
+  geometry::Matrix6d information = geometry::Matrix6d::Identity();
+};
+
+struct PoseGraphSnapshot {
+  std::uint64_t version = 0;
+  std::vector<PoseGraphNode> nodes;
+  std::vector<PoseGraphEdge> edges;
+};
+
+/// Nearest symmetric matrix whose eigenvalues lie within the configured bounds.
+geometry::Matrix6d bound_information(const PoseGraphConfig& config, const geometry::Matrix6d& information);
+
+}  // namespace lapis::slam

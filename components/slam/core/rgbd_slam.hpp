@@ -1,0 +1,59 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "common/geometry/se3.hpp"
+#include "common/time/time.hpp"
+#include "slam/core/config.hpp"
+#include "slam/core/frame.hpp"
+#include "slam/core/pose_graph.hpp"
+
+namespace lapis::slam {
+
+/// kDeadReckoning is for odometry without images; this version never reports it.
+enum class TrackingState : std::uint8_t { kInitializing, kTracking, kDeadReckoning, kLost };
+
+/// What one frame gave. Poses are those of the camera's optical frame.
+struct TrackingResult {
+  TrackingState state = TrackingState::kInitializing;
+  std::string reason;              ///< why there is no pose; empty when tracking
+  bool is_keyframe = false;
+  std::uint64_t keyframe_id = 0;   ///< reference key-frame; the frame itself when is_keyframe
+  std::uint64_t graph_version = 0;
+  geometry::Pose T_map_keyframe = geometry::Pose::Identity();     ///< valid only when tracking
+  geometry::Pose T_keyframe_camera = geometry::Pose::Identity();  ///< valid only when tracking; never corrected later
+  /// Covariance of T_keyframe_camera, right perturbation (translation, rotation); zero for a key-frame itself.
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+  /// Covariance of T_map_keyframe * T_keyframe_camera: `covariance` on top of the edges back to the first key-frame.
+  geometry::Matrix6d map_covariance = geometry::Matrix6d::Zero();
+  std::uint32_t features = 0;
+  std::uint32_t matches = 0;
+  std::uint32_t inliers = 0;
+  double rms_px = 0.0;             ///< reprojection error of the inliers
+};
+
+/// RGB-D key-frame odometry: features and surfaces aligned with a local map, local bundle adjustment, pose graph.
+/// Deterministic: the same frames give the same bits.
+class RgbdSlam {
+ public:
+  /// `T_map_first_camera`: pose given to the first key-frame.
+  RgbdSlam(const SlamConfig& config, const geometry::Pose& T_map_first_camera);
+  ~RgbdSlam();
+
+  /// Tracks one frame; frames come in the order of their stamps. Bad frames give a result with a reason.
+  TrackingResult process(const RgbdFrame& frame);
+
+  PoseGraphSnapshot pose_graph() const;
+  /// Grows with every new key-frame and every change of a key-frame's pose.
+  std::uint64_t graph_version() const;
+  std::size_t landmark_count() const;
+
+ private:
+  class Implementation;
+  std::unique_ptr<Implementation> implementation_;
+};
+
+}  // namespace lapis::slam

@@ -36,7 +36,13 @@ _INCLUDE = re.compile(r'#\s*include\s+"([^"]+)"\s*$')
 _GUARD = re.compile(r"#\s*(ifndef|define)\s+([A-Z_][A-Z0-9_]*)\s*$")
 _FIELD_NAME = re.compile(r"[a-z](?:_?[a-z0-9])*$")
 _STRUCT_NAME = re.compile(r"[A-Z][A-Za-z0-9]*$")
+_INTEGER = re.compile(r"(?:-?(?:0|[1-9]\d*)|0[xX][0-9a-fA-F]+)$")
 _CONSTANT_NAME = re.compile(r"[A-Z](?:_?[A-Z0-9])*$")
+
+
+def _integer_range(type_name: str) -> range:
+    bits = 8 if type_name == "octet" else int(type_name.lstrip("uint"))
+    return range(-2 ** (bits - 1), 2 ** (bits - 1)) if type_name.startswith("int") else range(2 ** bits)
 
 
 class IdlError(Exception):
@@ -143,7 +149,8 @@ class _Parser:
         self.library = library
         self.path = path
         self.comments_after: dict[int, str] = {}
-        self.last_line = text.count("\n") + 1
+        self.last_line = max(1, len(text.splitlines()))
+        self.included: set[str] = set()     # packages whose types may be named here
         self.tokens = self._tokenize(text)
         self.position = 0
 
@@ -158,21 +165,25 @@ class _Parser:
         tokens: list[_Token] = []
         comments: list[str] = []
         position, line, last_code_line = 0, 1, 0
+        line_is_blank = True
         while position < len(text):
             match = _TOKEN.match(text, position)
             if not match:
                 self.fail(f"unexpected {text[position]!r}", line)
             kind, token = match.lastgroup, match.group()
             if kind == "newline":
-                if text[position - 1:position] == "\n" or not text[:position].strip():
+                if line_is_blank:
                     comments = []       # a blank line ends a comment block
-            elif kind == "line_comment":
+                line_is_blank = True
+            elif kind != "space":
+                line_is_blank = False
+            if kind == "line_comment":
                 comment = token[2:].strip()
                 if line == last_code_line:
                     self.comments_after[line] = comment
                 else:
                     comments.append(comment)
-            elif kind not in ("space", "block_comment"):
+            elif kind not in ("space", "newline", "block_comment"):
                 tokens.append(_Token(kind, token, line, tuple(comments)))
                 comments, last_code_line = [], line
             line += token.count("\n")
@@ -217,7 +228,9 @@ class _Parser:
         guard = self._take_guard()
         while self.peek() and self.peek().kind == "directive" and _INCLUDE.match(self.peek().text):
             token = self.next("#include")
-            self.library.include(_INCLUDE.match(token.text).group(1), self.path, token.line)
+            name = _INCLUDE.match(token.text).group(1)
+            self.library.include(name, self.path, token.line)
+            self.included.add(pathlib.Path(name).stem)
         self._package()
         if guard:
             token = self.next("#endif")
@@ -242,6 +255,7 @@ class _Parser:
         if token.text != self.path.stem:
             self.fail(f"package {token.text!r} must live in {token.text}.idl", token.line)
         self.package = token.text
+        self.included.add(self.package)
         self.take("{")
         while not self.at("}"):
             self.take("module")
@@ -268,7 +282,10 @@ class _Parser:
                 name = self.take_kind("name").text
                 if not name.endswith("_Constants"):
                     self.fail(f"constants of struct X live in module X_Constants, found {name!r}", line)
-                pending[name.removesuffix("_Constants")] = self._constants()
+                owner = name.removesuffix("_Constants")
+                if owner in pending:
+                    self.fail(f"constants of {owner} are declared twice", line)
+                pending[owner] = self._constants()
                 pending_comments = token.comments
             elif token.text == "struct":
                 self._struct(token, pending, pending_comments)
@@ -317,7 +334,7 @@ class _Parser:
         elif type_name in ("float", "double"):
             good = token.kind == "number"
         else:
-            good = token.kind == "number" and re.fullmatch(r"-?\d+|0[xX][0-9a-fA-F]+", token.text)
+            good = _INTEGER.match(token.text) and int(token.text, 0) in _integer_range(type_name)
         if not good:
             self.fail(f"{token.text!r} is not a value of type {type_name}", token.line)
         return token.text
@@ -400,6 +417,6 @@ class _Parser:
         if len(parts) == 1:
             parts = [self.package, self.section, *parts]
         name = "/".join(parts)
-        if len(parts) != 3 or name not in self.library.structs:
+        if len(parts) != 3 or parts[0] not in self.included or name not in self.library.structs:
             self.fail(f"unknown type {'::'.join(parts)!r}: declare or #include it first", token.line)
         return name

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
+#include <system_error>
 #include <vector>
 
 namespace lapis::sensor_replay {
@@ -29,12 +30,13 @@ bool is_truncated_jpeg(const std::vector<std::uint8_t>& bytes) {
 }
 
 std::optional<std::vector<std::uint8_t>> read_bytes(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) return std::nullopt;
-  std::ifstream stream(file, std::ios::binary | std::ios::ate);
+  std::error_code error;
+  const auto size = std::filesystem::file_size(file, error);  // an error for folders, too
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) return std::nullopt;
+  std::vector<std::uint8_t> bytes(size);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
   if (!stream) return std::nullopt;
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(stream.tellg()));
-  stream.seekg(0);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes.size()));
   return bytes;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 
 namespace lapis::sensor_replay {
 namespace {
@@ -122,7 +123,8 @@ std::optional<geometry::Pose> TumDataset::ground_truth(std::size_t index) const 
 std::vector<ImageProblem> TumDataset::missing_images() const {
   std::vector<ImageProblem> missing;
   const auto check = [&](ImagePart part, const fs::path& file) {
-    if (!fs::is_regular_file(config_.folder / file)) missing.push_back({part, ImageFault::kMissing, file});
+    std::error_code error;  // "permission denied" counts as missing, too
+    if (!fs::is_regular_file(config_.folder / file, error)) missing.push_back({part, ImageFault::kMissing, file});
   };
   for (std::size_t i = 0; i < size(); ++i) {
     check(ImagePart::kColor, frames_[i].color.file);

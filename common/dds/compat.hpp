@@ -1,0 +1,106 @@
+#pragma once
+
+// The one place that knows which Fast DDS this is built against: 2.9 (Debian 12) or 3.1 (Debian 13).
+
+#include <fastdds/dds/core/condition/GuardCondition.hpp>
+#include <fastdds/dds/core/condition/WaitSet.hpp>
+#include <fastdds/dds/domain/DomainParticipant.hpp>
+#include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/publisher/DataWriter.hpp>
+#include <fastdds/dds/publisher/DataWriterListener.hpp>
+#include <fastdds/dds/publisher/Publisher.hpp>
+#include <fastdds/dds/subscriber/DataReader.hpp>
+#include <fastdds/dds/subscriber/DataReaderListener.hpp>
+#include <fastdds/dds/subscriber/SampleInfo.hpp>
+#include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TypeSupport.hpp>
+#if __has_include(<fastdds/config.hpp>)
+#define LAPIS_FASTDDS_3 1
+#include <fastdds/rtps/common/WriteParams.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.hpp>
+#include <fastdds/utils/IPLocator.hpp>
+#else
+#include <fastdds/rtps/common/WriteParams.h>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
+#include <fastrtps/utils/IPLocator.h>
+#endif
+
+namespace lapis::dds::compat {
+
+namespace fdds = eprosima::fastdds::dds;
+
+#ifdef LAPIS_FASTDDS_3
+
+namespace rtps = eprosima::fastdds::rtps;
+using DdsDuration = fdds::Duration_t;
+inline DdsDuration infinite() { return fdds::c_TimeInfinite; }
+inline bool ok(fdds::ReturnCode_t code) { return code == fdds::RETCODE_OK; }
+inline fdds::ReturnCode_t write(fdds::DataWriter& writer, const void* sample, rtps::WriteParams& params) {
+  return writer.write(sample, params);
+}
+template <class WriterQos>
+void set_timings(WriterQos& qos, DdsDuration heartbeat_period, DdsDuration response_delay) {
+  qos.reliable_writer_qos().times.heartbeat_period = heartbeat_period;
+  qos.reliable_writer_qos().times.nack_response_delay = response_delay;
+}
+template <class ReaderQos>
+void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
+  qos.reliable_reader_qos().times.heartbeat_response_delay = response_delay;
+}
+inline void announce_no_type_information(fdds::TypeSupport&) {}
+inline void announce_no_type_information(fdds::DomainParticipantQos& qos) {
+  qos.properties().properties().emplace_back("fastdds.type_propagation", "disabled");
+}
+
+#else
+
+namespace rtps = eprosima::fastrtps::rtps;
+using DdsDuration = eprosima::fastrtps::Duration_t;
+inline DdsDuration infinite() { return eprosima::fastrtps::c_TimeInfinite; }
+inline bool ok(const eprosima::fastrtps::types::ReturnCode_t& code) {
+  return code == eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
+}
+inline bool ok(bool done) { return done; }
+inline bool write(fdds::DataWriter& writer, const void* sample, rtps::WriteParams& params) {
+  return writer.write(const_cast<void*>(sample), params);  // 2.9 takes void*, but only reads
+}
+template <class WriterQos>
+void set_timings(WriterQos& qos, DdsDuration heartbeat_period, DdsDuration response_delay) {
+  qos.reliable_writer_qos().times.heartbeatPeriod = heartbeat_period;
+  qos.reliable_writer_qos().times.nackResponseDelay = response_delay;
+}
+template <class ReaderQos>
+void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
+  qos.reliable_reader_qos().times.heartbeatResponseDelay = response_delay;
+}
+inline void announce_no_type_information(fdds::TypeSupport& type) {
+  type->auto_fill_type_object(false);
+  type->auto_fill_type_information(false);
+}
+inline void announce_no_type_information(fdds::DomainParticipantQos&) {}
+
+#endif
+
+using eprosima::fastdds::rtps::SharedMemTransportDescriptor;
+using eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+#ifdef LAPIS_FASTDDS_3
+using eprosima::fastdds::rtps::IPLocator;
+#else
+using eprosima::fastrtps::rtps::IPLocator;
+#endif
+
+#ifdef LAPIS_FASTDDS_3
+inline fdds::InstanceHandle_t no_instance() { return fdds::HANDLE_NIL; }
+#else
+inline fdds::InstanceHandle_t no_instance() { return fdds::InstanceHandle_t(); }
+#endif
+
+inline DdsDuration duration(std::int64_t nanoseconds) {
+  return DdsDuration(static_cast<std::int32_t>(nanoseconds / 1'000'000'000),
+                     static_cast<std::uint32_t>(nanoseconds % 1'000'000'000));
+}
+
+}  // namespace lapis::dds::compat

@@ -1,0 +1,55 @@
+#include "common/dds/discovery.hpp"
+
+#include <charconv>
+#include <cstdlib>
+#include <sstream>
+#include <stdexcept>
+
+namespace lapis::dds {
+namespace {
+
+int parse_domain(const std::string& text) {
+  int domain = -1;
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), domain);
+  if (result.ec != std::errc() || result.ptr != text.data() + text.size() || domain < 0 || domain > 232) {
+    throw std::runtime_error("ROS_DOMAIN_ID='" + text + "' is not a number from 0 to 232");
+  }
+  return domain;
+}
+
+std::vector<std::string> split_peers(const std::string& text) {
+  std::vector<std::string> peers;
+  std::istringstream in(text);
+  for (std::string peer; std::getline(in, peer, ';');) {
+    if (!peer.empty()) peers.push_back(peer);
+  }
+  return peers;
+}
+
+DiscoveryRange parse_range(const std::string& text) {
+  if (text.empty() || text == "SUBNET" || text == "SYSTEM_DEFAULT") return DiscoveryRange::kSubnet;
+  if (text == "OFF") return DiscoveryRange::kOff;
+  return DiscoveryRange::kLocalhost;
+}
+
+}  // namespace
+
+std::optional<std::string> process_environment(const std::string& name) {
+  const char* value = std::getenv(name.c_str());  // NOLINT(concurrency-mt-unsafe): read before threads start
+  return value == nullptr ? std::nullopt : std::optional<std::string>(value);
+}
+
+DiscoverySettings discovery_from_environment(const Environment& environment) {
+  DiscoverySettings settings;
+  const std::string domain = environment("ROS_DOMAIN_ID").value_or("");
+  if (!domain.empty()) settings.domain = parse_domain(domain);
+  if (environment("ROS_LOCALHOST_ONLY").value_or("0") == "1") {
+    settings.range = DiscoveryRange::kLocalhost;
+    return settings;
+  }
+  settings.range = parse_range(environment("ROS_AUTOMATIC_DISCOVERY_RANGE").value_or(""));
+  settings.static_peers = split_peers(environment("ROS_STATIC_PEERS").value_or(""));
+  return settings;
+}
+
+}  // namespace lapis::dds

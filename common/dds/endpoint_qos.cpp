@@ -1,0 +1,49 @@
+#include "common/dds/endpoint_qos.hpp"
+
+namespace lapis::dds {
+namespace {
+
+using namespace compat::fdds;  // NOLINT(google-build-using-namespace): policy names only
+
+// What readers and writers have in common.
+template <class EndpointQos>
+void apply_common(const Qos& wanted, const std::string& type_hash, EndpointQos& qos) {
+  qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
+  qos.reliability().max_blocking_time = compat::duration(100'000'000);
+  qos.durability().kind = wanted.latched ? TRANSIENT_LOCAL_DURABILITY_QOS : VOLATILE_DURABILITY_QOS;
+  qos.history().kind = KEEP_LAST_HISTORY_QOS;
+  qos.history().depth = wanted.depth;
+  // Keyed: no limit on keys, one sample each. The default limit of ten instances leaves a reader matched and silent.
+  qos.resource_limits().max_instances = wanted.keyed ? 0 : 1;
+  qos.resource_limits().max_samples = wanted.keyed ? 0 : 5000;
+  qos.resource_limits().max_samples_per_instance = wanted.keyed ? 1 : 5000;
+  qos.ownership().kind = SHARED_OWNERSHIP_QOS;
+  qos.liveliness().kind = AUTOMATIC_LIVELINESS_QOS;
+  qos.deadline().period = compat::infinite();
+  qos.lifespan().duration = compat::infinite();
+  qos.data_sharing().off();
+  qos.endpoint().history_memory_policy = compat::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  const std::string user_data = "typehash=" + type_hash + ";";
+  qos.user_data().setValue(std::vector<unsigned char>(user_data.begin(), user_data.end()));
+}
+
+}  // namespace
+
+DataWriterQos writer_qos(const Qos& wanted, const std::string& type_hash) {
+  DataWriterQos qos;
+  apply_common(wanted, type_hash, qos);
+  qos.publish_mode().kind = SYNCHRONOUS_PUBLISH_MODE;
+  qos.representation().m_value = {XCDR_DATA_REPRESENTATION};
+  // Fast DDS repeats a lost last datagram only with the next heartbeat; its default of 3 s freezes lock-step.
+  compat::set_timings(qos, compat::duration(wanted.urgent ? kUrgentHeartbeatNs : kHeartbeatNs), compat::duration(0));
+  return qos;
+}
+
+DataReaderQos reader_qos(const Qos& wanted, const std::string& type_hash) {
+  DataReaderQos qos;
+  apply_common(wanted, type_hash, qos);
+  compat::set_reader_timings(qos, compat::duration(0));
+  return qos;
+}
+
+}  // namespace lapis::dds

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <functional>
+#include <vector>
+
+#include "common/dds/subscription.hpp"
+
+namespace lapis::dds {
+
+/// Runs all handlers and timers of a component, one at a time, on the thread that calls spin(); DDS threads only
+/// wake it. After each batch of handlers the cycle function is called, where the component does its work.
+class Executor {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  Executor();
+
+  /// The source must outlive the executor's last spin().
+  void add(Source& source);
+  /// Calls `action` every `period` of wall time, for book-keeping only.
+  void every(Clock::duration period, std::function<void()> action);
+  void set_cycle(std::function<void()> cycle) { cycle_ = std::move(cycle); }
+
+  /// Handles events until stop().
+  void spin();
+  /// Handles what is there, waiting at most `timeout` for the first event; for clients and tests.
+  void spin_once(Clock::duration timeout);
+  /// Ends spin(); any thread.
+  void stop();
+  /// Makes spin() run a cycle soon; any thread.
+  void wake();
+  bool is_stopping() const { return stopping_; }
+
+ private:
+  struct Timer {
+    Clock::duration period;
+    Clock::time_point due;
+    std::function<void()> action;
+  };
+  Clock::duration until_next_timer(Clock::duration longest) const;
+  bool run_due_timers();
+
+  compat::fdds::WaitSet wait_set_;
+  compat::fdds::GuardCondition guard_;
+  std::vector<Source*> sources_;
+  std::vector<Timer> timers_;
+  std::function<void()> cycle_;
+  std::atomic<bool> stopping_{false};
+};
+
+}  // namespace lapis::dds

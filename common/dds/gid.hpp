@@ -1,0 +1,21 @@
+#pragma once
+
+#include <array>
+#include <compare>
+#include <cstdint>
+
+#include "common/dds/compat.hpp"
+
+namespace lapis::dds {
+
+/// Globally unique id of a participant, reader or writer: 12 bytes of prefix, 4 bytes of entity id, as ROS 2 shows it.
+using Gid = std::array<std::uint8_t, 16>;
+
+inline Gid to_gid(const compat::rtps::GUID_t& guid) {
+  Gid gid{};
+  for (std::size_t i = 0; i < 12; ++i) gid[i] = guid.guidPrefix.value[i];
+  for (std::size_t i = 0; i < 4; ++i) gid[12 + i] = guid.entityId.value[i];
+  return gid;
+}
+
+}  // namespace lapis::dds

@@ -1,0 +1,148 @@
+#include "common/dds/participant.hpp"
+
+#include <netinet/in.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "common/dds/endpoint_qos.hpp"
+#include "idl/rmw_dds_common.hpp"
+
+namespace lapis::dds {
+namespace {
+
+using compat::IPLocator;
+using compat::rtps::Locator_t;
+
+constexpr std::uint32_t kSharedMemorySegmentBytes = 16u << 20;  // ten times the largest image
+constexpr std::uint32_t kPeersPerHost = 32;                     // as rmw_fastrtps asks of LOCALHOST peers
+
+Locator_t peer_locator(const std::string& address) {
+  Locator_t locator;
+  if (!IPLocator::setIPv4(locator, address)) {
+    throw std::runtime_error("ROS_STATIC_PEERS: '" + address + "' is not an IPv4 address");
+  }
+  return locator;
+}
+
+void apply_transport(const ParticipantOptions& options, compat::fdds::DomainParticipantQos& qos) {
+  auto udp = std::make_shared<compat::UDPv4TransportDescriptor>();
+  udp->sendBufferSize = udp->receiveBufferSize = static_cast<std::uint32_t>(options.socket_buffer_bytes);
+  udp->maxInitialPeersRange = kPeersPerHost;
+  if (options.discovery.range == DiscoveryRange::kLocalhost) udp->interfaceWhiteList.emplace_back("127.0.0.1");
+  qos.transport().use_builtin_transports = false;
+  qos.transport().user_transports.push_back(udp);
+  if (options.transport == Transport::kSharedMemory) {
+    auto shared = std::make_shared<compat::SharedMemTransportDescriptor>();
+    shared->segment_size(kSharedMemorySegmentBytes);
+    qos.transport().user_transports.push_back(shared);
+  }
+}
+
+// Mirrors what Jazzy's rmw_fastrtps does for the same environment (ros2-interop 3.1).
+void apply_discovery(const DiscoverySettings& discovery, compat::fdds::DomainParticipantQos& qos) {
+  auto& builtin = qos.wire_protocol().builtin;
+  builtin.readerHistoryMemoryPolicy = compat::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  builtin.writerHistoryMemoryPolicy = compat::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
+  builtin.discovery_config.leaseDuration = compat::duration(3'000'000'000);
+  builtin.discovery_config.leaseDuration_announcementperiod = compat::duration(1'000'000'000);
+  if (discovery.range != DiscoveryRange::kSubnet) {
+    // A unicast locator keeps Fast DDS from adding the default multicast one.
+    builtin.metatrafficUnicastLocatorList.push_back(Locator_t());
+  } else if (!discovery.static_peers.empty()) {
+    // Naming peers replaces the default multicast peer, so it is named, too.
+    Locator_t multicast = peer_locator("239.255.0.1");
+    multicast.port = 7400u + 250u * static_cast<std::uint32_t>(discovery.domain);
+    builtin.initialPeersList.push_back(multicast);
+  }
+  if (discovery.range == DiscoveryRange::kLocalhost) builtin.initialPeersList.push_back(peer_locator("127.0.0.1"));
+  if (discovery.range != DiscoveryRange::kOff) {
+    for (const auto& peer : discovery.static_peers) builtin.initialPeersList.push_back(peer_locator(peer));
+  }
+}
+
+rmw_dds_common::msg::Gid to_message(const Gid& gid) {
+  rmw_dds_common::msg::Gid message;
+  message.data(gid);
+  return message;
+}
+
+}  // namespace
+
+Participant::Participant(const ParticipantOptions& options) : options_(options) {
+  compat::fdds::DomainParticipantQos qos;
+  qos.name("/");  // the enclave, as rmw_fastrtps names its participants
+  const std::string enclave = "enclave=/;";
+  qos.user_data().setValue(std::vector<unsigned char>(enclave.begin(), enclave.end()));
+  apply_transport(options, qos);
+  apply_discovery(options.discovery, qos);
+  compat::announce_no_type_information(qos);
+  auto* factory = compat::fdds::DomainParticipantFactory::get_instance();
+  participant_ = factory->create_participant(static_cast<std::uint32_t>(options.discovery.domain), qos);
+  if (participant_ == nullptr) {
+    throw std::runtime_error("DDS participant could not be created in domain " +
+                             std::to_string(options.discovery.domain) + "; see the Fast DDS message above");
+  }
+  publisher_ = participant_->create_publisher(compat::fdds::PUBLISHER_QOS_DEFAULT);
+  subscriber_ = participant_->create_subscriber(compat::fdds::SUBSCRIBER_QOS_DEFAULT);
+  using Info = rmw_dds_common::msg::ParticipantEntitiesInfo;
+  using Support = idl::TypeSupport<Info>;
+  auto& graph_topic = topic("ros_discovery_info", Support::kDdsName,
+                            compat::fdds::TypeSupport(new Support::PubSubType()));  // TypeSupport takes ownership
+  graph_writer_ = publisher_->create_datawriter(&graph_topic, writer_qos(kLatched, Support::kHash));
+  if (graph_writer_ == nullptr) throw std::runtime_error("DDS writer of ros_discovery_info could not be created");
+}
+
+Participant::~Participant() {
+  participant_->delete_contained_entities();
+  compat::fdds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+}
+
+compat::fdds::Topic& Participant::topic(const std::string& dds_name, const std::string& type_name,
+                                        compat::fdds::TypeSupport type) {
+  if (auto* known = participant_->lookup_topicdescription(dds_name)) {
+    if (known->get_type_name() != type_name) {
+      throw std::runtime_error("topic " + dds_name + " is already in use with type " + known->get_type_name());
+    }
+    return *static_cast<compat::fdds::Topic*>(known);
+  }
+  compat::announce_no_type_information(type);
+  type.register_type(participant_, type_name);
+  auto* topic = participant_->create_topic(dds_name, type_name, compat::fdds::TOPIC_QOS_DEFAULT);
+  if (topic == nullptr) throw std::runtime_error("DDS topic " + dds_name + " could not be created");
+  return *topic;
+}
+
+Gid Participant::gid() const { return to_gid(participant_->guid()); }
+
+void Participant::announce_graph() {
+  rmw_dds_common::msg::NodeEntitiesInfo node;
+  node.node_namespace("/" + options_.name_space);
+  node.node_name(options_.node_name);
+  for (const auto& reader : readers_) node.reader_gid_seq().push_back(to_message(reader));
+  for (const auto& writer : writers_) node.writer_gid_seq().push_back(to_message(writer));
+  rmw_dds_common::msg::ParticipantEntitiesInfo info;
+  info.gid(to_message(gid()));
+  info.node_entities_info_seq().push_back(node);
+  compat::rtps::WriteParams params;
+  compat::write(*graph_writer_, &info, params);
+}
+
+int effective_socket_buffer_bytes(int wanted) {
+  const int socket = ::socket(AF_INET, SOCK_DGRAM, 0);
+  if (socket < 0) return 0;
+  int smallest = wanted;
+  for (const int option : {SO_RCVBUF, SO_SNDBUF}) {
+    int granted = 0;
+    socklen_t size = sizeof granted;
+    setsockopt(socket, SOL_SOCKET, option, &wanted, sizeof wanted);
+    getsockopt(socket, SOL_SOCKET, option, &granted, &size);
+    smallest = std::min(smallest, granted / 2);  // Linux reports twice what it grants, for its own book-keeping
+  }
+  ::close(socket);
+  return smallest;
+}
+
+}  // namespace lapis::dds

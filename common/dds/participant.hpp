@@ -1,0 +1,61 @@
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/dds/compat.hpp"
+#include "common/dds/discovery.hpp"
+#include "common/dds/gid.hpp"
+
+namespace lapis::dds {
+
+enum class Transport { kUdp, kSharedMemory };
+
+struct ParticipantOptions {
+  std::string node_name;   ///< "slam"; with the namespace the node's ROS name
+  std::string name_space;  ///< "robot1" or empty
+  DiscoverySettings discovery;
+  Transport transport = Transport::kUdp;
+  int socket_buffer_bytes = 4 << 20;
+};
+
+/// One DDS participant, which is also one ROS 2 node: its endpoints appear in `ros2 node info`.
+/// Publishers and subscriptions hold a reference to it and must be destroyed before it.
+class Participant {
+ public:
+  /// Throws std::runtime_error that names the domain when DDS refuses.
+  explicit Participant(const ParticipantOptions& options);
+  ~Participant();
+  Participant(const Participant&) = delete;
+  Participant& operator=(const Participant&) = delete;
+
+  compat::fdds::Publisher& publisher() { return *publisher_; }
+  compat::fdds::Subscriber& subscriber() { return *subscriber_; }
+  /// The topic of a DDS name, created at first use. Throws when the name is in use with another type.
+  compat::fdds::Topic& topic(const std::string& dds_name, const std::string& type_name, compat::fdds::TypeSupport type);
+
+  Gid gid() const;
+  const std::string& name_space() const { return options_.name_space; }
+  const std::string& node_name() const { return options_.node_name; }
+
+  /// Endpoints report themselves, so that the ROS 2 graph can list them.
+  void add_reader(const Gid& gid) { readers_.push_back(gid); }
+  void add_writer(const Gid& gid) { writers_.push_back(gid); }
+  /// Publishes the node's endpoints on `ros_discovery_info`; call when all have been created.
+  void announce_graph();
+
+ private:
+  ParticipantOptions options_;
+  compat::fdds::DomainParticipant* participant_ = nullptr;
+  compat::fdds::Publisher* publisher_ = nullptr;
+  compat::fdds::Subscriber* subscriber_ = nullptr;
+  compat::fdds::DataWriter* graph_writer_ = nullptr;
+  std::vector<Gid> readers_;
+  std::vector<Gid> writers_;
+};
+
+/// Size that the kernel really gives to a UDP socket that asks for `wanted` bytes (it caps silently).
+int effective_socket_buffer_bytes(int wanted);
+
+}  // namespace lapis::dds

@@ -1,0 +1,27 @@
+#pragma once
+
+#include "common/dds/topic.hpp"
+#include "common/dds/writer.hpp"
+#include "idl/type_support.hpp"
+
+namespace lapis::dds {
+
+/// Publishes messages of one topic of the table.
+template <class Message>
+class Publisher : public Writer {
+ public:
+  Publisher(Participant& participant, const Topic<Message>& topic)
+      : Writer(participant, lapis::dds::dds_name(topic, participant.name_space()), Support::kDdsName,
+               compat::fdds::TypeSupport(new typename Support::PubSubType()),  // TypeSupport takes ownership
+               Support::kHash, topic.qos) {}
+
+  /// False (and counted) when DDS refused the sample.
+  bool publish(const Message& message) { return write(&message); }
+  /// Ends the key of `message` on a keyed topic.
+  bool end_key(const Message& message) { return unregister(&message); }
+
+ private:
+  using Support = idl::TypeSupport<Message>;
+};
+
+}  // namespace lapis::dds

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+
+namespace lapis::dds {
+
+/// What a topic needs of DDS. Everything is RELIABLE and KEEP_LAST (design section 5).
+struct Qos {
+  int depth = 10;
+  bool latched = false;  ///< TRANSIENT_LOCAL: a late joiner gets the last samples
+  bool keyed = false;    ///< one history per key, any number of keys
+  bool urgent = false;   ///< heartbeat period 20 ms instead of 100 ms: frames, /clock, /sim/*
+
+  bool operator==(const Qos&) const = default;
+};
+
+inline constexpr Qos kSensor{.depth = 5, .urgent = true};
+inline constexpr Qos kState{.depth = 10};
+inline constexpr Qos kFrameState{.depth = 10, .urgent = true};  ///< one sample per camera frame
+inline constexpr Qos kLatched{.depth = 1, .latched = true};
+inline constexpr Qos kCommand{.depth = 1};
+inline constexpr Qos kTransform{.depth = 100};
+inline constexpr Qos kLockstep{.depth = 100, .urgent = true};
+inline constexpr Qos kKeyedTiles{.depth = 1, .latched = true, .keyed = true};
+inline constexpr Qos kService{.depth = 10};
+
+inline constexpr std::int64_t kUrgentHeartbeatNs = 20'000'000;
+inline constexpr std::int64_t kHeartbeatNs = 100'000'000;
+
+}  // namespace lapis::dds

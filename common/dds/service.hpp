@@ -1,0 +1,153 @@
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <utility>
+
+#include "common/dds/subscription.hpp"
+#include "common/dds/writer.hpp"
+
+namespace lapis::dds {
+
+// Requests and replies are topics; a reply names its request by the related sample identity (ros2-interop 5.1).
+
+/// Identity of a request: the client's reply reader (or, when it does not tell, its request writer) and a number.
+struct RequestId {
+  compat::rtps::SampleIdentity identity;
+  Gid client{};
+};
+
+/// Serves one service; requests are handled on the executor's thread.
+template <class Service>
+class ServiceServer : public Source {
+  using Request = typename idl::ServiceSupport<Service>::Request;
+  using Response = typename idl::ServiceSupport<Service>::Response;
+
+ public:
+  using Handler = std::function<Response(const Request&)>;
+
+  ServiceServer(Participant& participant, const ServiceTopic<Service>& service, Handler handler)
+      : Source(participant, request_dds_name(in_namespace(service.name, participant.name_space())),
+               idl::TypeSupport<Request>::kDdsName,
+               compat::fdds::TypeSupport(new typename idl::TypeSupport<Request>::PubSubType()),
+               idl::TypeSupport<Request>::kHash, kService),
+        reply_(participant, reply_dds_name(in_namespace(service.name, participant.name_space())),
+               idl::TypeSupport<Response>::kDdsName,
+               compat::fdds::TypeSupport(new typename idl::TypeSupport<Response>::PubSubType()),
+               idl::TypeSupport<Response>::kHash, kService),
+        handler_(std::move(handler)) {}
+
+  std::size_t dispatch() override {
+    std::size_t count = 0;
+    compat::fdds::SampleInfo info;
+    for (auto taken = take(&request_, info); taken != Taken::kNothing; taken = take(&request_, info)) {
+      if (taken == Taken::kSample) pending_.push_back({request_id(info), handler_(request_)});
+      ++count;
+    }
+    send_replies();
+    return count;
+  }
+
+ private:
+  struct Pending {
+    RequestId id;
+    Response response;
+    int patience = 20;  // dispatches that the client's reader may still take to match
+  };
+
+  static RequestId request_id(const compat::fdds::SampleInfo& info) {
+    RequestId id;
+    id.identity = info.sample_identity;
+    const auto& related = info.related_sample_identity.writer_guid();
+    if (related != compat::rtps::GUID_t::unknown()) id.identity.writer_guid(related);
+    id.client = to_gid(id.identity.writer_guid());
+    return id;
+  }
+
+  // A VOLATILE writer loses a reply whose reader it has not matched yet; such replies wait for the match.
+  void send_replies() {
+    std::erase_if(pending_, [this](Pending& pending) {
+      const bool names_reader = (pending.id.client[15] & 0x04) != 0;  // entity kind of readers
+      if (names_reader && !reply_.is_matched(pending.id.client) && --pending.patience > 0) return false;
+      compat::rtps::WriteParams params;
+      params.related_sample_identity(pending.id.identity);
+      reply_.write(&pending.response, params);
+      return true;
+    });
+  }
+
+  Writer reply_;
+  Handler handler_;
+  Request request_;
+  std::vector<Pending> pending_;
+};
+
+/// Calls one service.
+template <class Service>
+class ServiceClient : public Source {
+  using Request = typename idl::ServiceSupport<Service>::Request;
+  using Response = typename idl::ServiceSupport<Service>::Response;
+
+ public:
+  ServiceClient(Participant& participant, const ServiceTopic<Service>& service)
+      : Source(participant, reply_dds_name(in_namespace(service.name, participant.name_space())),
+               idl::TypeSupport<Response>::kDdsName,
+               compat::fdds::TypeSupport(new typename idl::TypeSupport<Response>::PubSubType()),
+               idl::TypeSupport<Response>::kHash, kService),
+        request_(participant, request_dds_name(in_namespace(service.name, participant.name_space())),
+                 idl::TypeSupport<Request>::kDdsName,
+                 compat::fdds::TypeSupport(new typename idl::TypeSupport<Request>::PubSubType()),
+                 idl::TypeSupport<Request>::kHash, kService) {}
+
+  /// True when a server's reader and writer are matched.
+  bool is_ready() const { return matched() > 0 && request_.matched() > 0; }
+
+  /// Sends a request; returns the number that its reply will carry, or nothing when DDS refused it.
+  std::optional<std::uint64_t> call(const Request& request) {
+    compat::rtps::WriteParams params;
+    compat::rtps::SampleIdentity reply_to;
+    reply_to.writer_guid(reader_guid());
+    params.related_sample_identity(reply_to);
+    if (!request_.write(&request, params)) return std::nullopt;
+    return request_.written();
+  }
+
+  /// The reply to a call, once it has come; each can be taken once.
+  std::optional<Response> take_reply(std::uint64_t number) {
+    const auto it = replies_.find(number);
+    if (it == replies_.end()) return std::nullopt;
+    Response response = std::move(it->second);
+    replies_.erase(it);
+    return response;
+  }
+
+  std::size_t dispatch() override {
+    std::size_t count = 0;
+    compat::fdds::SampleInfo info;
+    for (auto taken = take(&response_, info); taken != Taken::kNothing; taken = take(&response_, info)) {
+      const Gid client = to_gid(info.related_sample_identity.writer_guid());
+      const bool is_mine = client == gid() || client == request_.gid();  // all clients receive all replies
+      if (taken == Taken::kSample && is_mine) {
+        replies_[info.related_sample_identity.sequence_number().to64long()] = response_;
+      }
+      ++count;
+    }
+    return count;
+  }
+
+ private:
+  compat::rtps::GUID_t reader_guid() const {
+    compat::rtps::GUID_t guid;
+    const Gid mine = gid();
+    for (std::size_t i = 0; i < 12; ++i) guid.guidPrefix.value[i] = mine[i];
+    for (std::size_t i = 0; i < 4; ++i) guid.entityId.value[i] = mine[12 + i];
+    return guid;
+  }
+
+  Writer request_;
+  Response response_;
+  std::map<std::uint64_t, Response> replies_;
+};
+
+}  // namespace lapis::dds

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <functional>
+#include <utility>
+
+#include "common/dds/reader.hpp"
+#include "common/dds/topic.hpp"
+#include "idl/type_support.hpp"
+
+namespace lapis::dds {
+
+/// A reader that hands what it takes to a handler; the executor drives it.
+class Source : public Reader {
+ public:
+  using Reader::Reader;
+  /// Takes everything that is there and calls the handler for each sample; returns the number of samples.
+  virtual std::size_t dispatch() = 0;
+};
+
+/// Messages of one topic of the table. The handler runs on the executor's thread and may move the message away.
+template <class Message>
+class Subscription : public Source {
+ public:
+  using Handler = std::function<void(Message&)>;
+
+  Subscription(Participant& participant, const Topic<Message>& topic, Handler handler)
+      : Source(participant, lapis::dds::dds_name(topic, participant.name_space()), Support::kDdsName,
+               compat::fdds::TypeSupport(new typename Support::PubSubType()),  // TypeSupport takes ownership
+               Support::kHash, topic.qos),
+        handler_(std::move(handler)) {}
+
+  std::size_t dispatch() override {
+    std::size_t count = 0;
+    compat::fdds::SampleInfo info;
+    for (auto taken = take(&message_, info); taken != Taken::kNothing; taken = take(&message_, info)) {
+      if (taken == Taken::kSample) handler_(message_);
+      ++count;
+    }
+    return count;
+  }
+
+ private:
+  using Support = idl::TypeSupport<Message>;
+  Handler handler_;
+  Message message_;
+};
+
+}  // namespace lapis::dds

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string>
+
+#include "common/dds/names.hpp"
+#include "common/dds/qos.hpp"
+
+namespace lapis::dds {
+
+/// A row of the topic table (common/topics.hpp): the one place that joins a name, a type and a QoS.
+template <class Message>
+struct Topic {
+  using Type = Message;
+  const char* name;         ///< ROS name ("/slam/odometry") or, for keyed topics, a plain DDS name without leading slash
+  Qos qos;
+  bool is_global = false;   ///< true: never prefixed by --namespace (/tf, /clock, ...)
+};
+
+/// A service: request and reply topics derive from its name.
+template <class Service>
+struct ServiceTopic {
+  using Type = Service;
+  const char* name;
+};
+
+template <class Message>
+std::string dds_name(const Topic<Message>& topic, const std::string& name_space) {
+  return topic_dds_name(topic.is_global ? topic.name : in_namespace(topic.name, name_space));
+}
+
+}  // namespace lapis::dds

@@ -1,0 +1,73 @@
+#include "common/dds/writer.hpp"
+
+#include <stdexcept>
+
+#include "common/dds/endpoint_qos.hpp"
+
+namespace lapis::dds {
+
+Writer::Writer(Participant& participant, const std::string& dds_name, const std::string& type_name,
+               compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos)
+    : participant_(participant), dds_name_(dds_name) {
+  auto& topic = participant.topic(dds_name, type_name, std::move(type));
+  const auto mask = compat::fdds::StatusMask::publication_matched() << compat::fdds::StatusMask::offered_incompatible_qos();
+  writer_ = participant.publisher().create_datawriter(&topic, writer_qos(qos, type_hash), this, mask);
+  if (writer_ == nullptr) throw std::runtime_error("DDS writer of " + dds_name + " could not be created");
+  gid_ = to_gid(writer_->guid());
+  participant.add_writer(gid_);
+}
+
+Writer::~Writer() { participant_.publisher().delete_datawriter(writer_); }
+
+bool Writer::write(const void* sample, compat::rtps::WriteParams& params) {
+  if (!compat::ok(compat::write(*writer_, sample, params))) {
+    ++failed_;
+    return false;
+  }
+  written_ = params.sample_identity().sequence_number().to64long();
+  return true;
+}
+
+bool Writer::write(const void* sample) {
+  compat::rtps::WriteParams params;
+  return write(sample, params);
+}
+
+bool Writer::unregister(const void* sample) {
+  // 2.9 takes void*, but only reads the key.
+  if (!compat::ok(writer_->unregister_instance(const_cast<void*>(sample), compat::no_instance()))) {
+    ++failed_;
+    return false;
+  }
+  ++written_;
+  return true;
+}
+
+std::size_t Writer::matched() const {
+  const std::lock_guard lock(mutex_);
+  return readers_.size();
+}
+
+bool Writer::is_matched(const Gid& reader) const {
+  const std::lock_guard lock(mutex_);
+  return readers_.contains(reader);
+}
+
+void Writer::on_publication_matched(compat::fdds::DataWriter* /*writer*/,
+                                    const compat::fdds::PublicationMatchedStatus& status) {
+  const Gid reader = to_gid(compat::rtps::iHandle2GUID(status.last_subscription_handle));
+  const std::lock_guard lock(mutex_);
+  if (status.current_count_change > 0) {
+    readers_.insert(reader);
+    ++total_matches_;
+  } else {
+    readers_.erase(reader);
+  }
+}
+
+void Writer::on_offered_incompatible_qos(compat::fdds::DataWriter* /*writer*/,
+                                         const compat::fdds::OfferedIncompatibleQosStatus& /*status*/) {
+  ++incompatible_;
+}
+
+}  // namespace lapis::dds

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <mutex>
+#include <set>
+#include <string>
+
+#include "common/dds/participant.hpp"
+#include "common/dds/qos.hpp"
+
+namespace lapis::dds {
+
+/// The untyped half of a publisher: the DDS writer, who is matched with it and how many samples it wrote.
+class Writer : private compat::fdds::DataWriterListener {
+ public:
+  Writer(Participant& participant, const std::string& dds_name, const std::string& type_name,
+         compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos);
+  ~Writer() override;
+  Writer(const Writer&) = delete;
+  Writer& operator=(const Writer&) = delete;
+
+  /// Writes one sample; a refusal by DDS is counted and returned.
+  bool write(const void* sample, compat::rtps::WriteParams& params);
+  bool write(const void* sample);
+  /// Ends a key without leaving a sample behind (never dispose: design section 5).
+  bool unregister(const void* sample);
+
+  /// RTPS sequence number of the last sample: the number of samples written since the start.
+  std::uint64_t written() const { return written_; }
+  std::uint64_t failed() const { return failed_; }
+  const std::string& dds_name() const { return dds_name_; }
+  Gid gid() const { return gid_; }
+  /// Number of matched readers.
+  std::size_t matched() const;
+  bool is_matched(const Gid& reader) const;
+  /// Number of readers that have ever matched; a change tells that a new reader has come.
+  std::uint64_t total_matches() const { return total_matches_; }
+  /// Readers refused because of an incompatible QoS.
+  std::uint64_t incompatible() const { return incompatible_; }
+
+ private:
+  void on_publication_matched(compat::fdds::DataWriter* writer,
+                              const compat::fdds::PublicationMatchedStatus& status) override;
+  void on_offered_incompatible_qos(compat::fdds::DataWriter* writer,
+                                   const compat::fdds::OfferedIncompatibleQosStatus& status) override;
+
+  Participant& participant_;
+  std::string dds_name_;
+  compat::fdds::DataWriter* writer_ = nullptr;
+  Gid gid_{};
+  std::uint64_t written_ = 0;
+  std::uint64_t failed_ = 0;
+  std::atomic<std::uint64_t> total_matches_{0};
+  std::atomic<std::uint64_t> incompatible_{0};
+  mutable std::mutex mutex_;  // guards readers_, which DDS threads change
+  std::set<Gid> readers_;
+};
+
+}  // namespace lapis::dds

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <spdlog/spdlog.h>
+
+#include <string>
+
+namespace lapis::logging {
+
+/// Sends the process's log to standard error, one line each: time, level, component, text.
+/// `level` is one of debug, info, warn, error; throws std::runtime_error for another word.
+void set_up(const std::string& component, const std::string& level);
+
+}  // namespace lapis::logging

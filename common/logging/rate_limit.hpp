@@ -1,0 +1,39 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+
+namespace lapis::logging {
+
+/// Lets a repeated message through once per period and counts the ones held back. One thread.
+class RateLimit {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  explicit RateLimit(Clock::duration period = std::chrono::seconds(5)) : period_(period) {}
+
+  /// Nothing when the message of this key was let through less than a period ago; otherwise how many were held back.
+  std::optional<std::uint64_t> pass(const std::string& key, Clock::time_point now = Clock::now()) {
+    auto [it, is_new] = seen_.try_emplace(key, Seen{now, 0});
+    if (!is_new && now - it->second.last < period_) {
+      ++it->second.held_back;
+      return std::nullopt;
+    }
+    const std::uint64_t held_back = it->second.held_back;
+    it->second = {now, 0};
+    return held_back;
+  }
+
+ private:
+  struct Seen {
+    Clock::time_point last;
+    std::uint64_t held_back = 0;
+  };
+  Clock::duration period_;
+  std::map<std::string, Seen> seen_;
+};
+
+}  // namespace lapis::logging

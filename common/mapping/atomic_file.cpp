@@ -1,0 +1,101 @@
+#include "common/mapping/atomic_file.hpp"
+
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace lapis::mapping {
+namespace {
+
+/// Open file descriptor that closes itself.
+class Descriptor {
+ public:
+  explicit Descriptor(int value) : value_(value) {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() { close(); }
+  bool is_open() const { return value_ >= 0; }
+  int get() const { return value_; }
+  /// Some file systems report a full disk only here.
+  bool close() {
+    const int result = value_ >= 0 ? ::close(value_) : 0;
+    value_ = -1;
+    return result == 0;
+  }
+
+ private:
+  int value_;
+};
+
+std::string reason(const std::string& path, const char* what) {
+  return path + ": " + what + ": " + std::strerror(errno);
+}
+
+bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes = bytes.subspan(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
+std::optional<std::string> write_part(const std::string& part, std::span<const std::uint8_t> bytes) {
+  Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
+  if (!file.is_open()) return reason(part, "cannot be created");
+  if (!write_all(file.get(), bytes)) return reason(part, "cannot be written");
+  if (::fsync(file.get()) != 0) return reason(part, "cannot be flushed");
+  if (!file.close()) return reason(part, "cannot be closed");
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> replace_file(const std::string& path, std::span<const std::uint8_t> bytes) {
+  const std::string part = path + ".part";
+  std::optional<std::string> error = write_part(part, bytes);
+  if (!error && ::rename(part.c_str(), path.c_str()) != 0) error = reason(path, "cannot be replaced");
+  if (error) {
+    ::unlink(part.c_str());
+    return error;
+  }
+  // Makes the new name itself survive a power cut; a file system that cannot do it has still replaced the file.
+  const std::string folder = std::filesystem::path(path).parent_path().string();
+  const Descriptor directory(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
+  if (directory.is_open()) ::fsync(directory.get());
+  return std::nullopt;
+}
+
+std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std::string& error) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  struct stat info {};
+  if (!file.is_open() || ::fstat(file.get(), &info) != 0) {
+    error = reason(path, "cannot be opened");
+    return std::nullopt;
+  }
+  if (!S_ISREG(info.st_mode)) {
+    error = path + ": is not a file";
+    return std::nullopt;
+  }
+  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(info.st_size));
+  std::size_t size = 0;
+  while (size < bytes.size()) {
+    const ssize_t got = ::read(file.get(), bytes.data() + size, bytes.size() - size);
+    if (got < 0 && errno == EINTR) continue;
+    if (got < 0) {
+      error = reason(path, "cannot be read");
+      return std::nullopt;
+    }
+    if (got == 0) break;
+    size += static_cast<std::size_t>(got);
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+}  // namespace lapis::mapping

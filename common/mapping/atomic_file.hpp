@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+namespace lapis::mapping {
+
+/// Replaces a file as a whole: the bytes go to "<path>.part" in the same folder, are flushed to the disk, and take the
+/// old file's name only then. At any failure (no space, no permission, no folder) the old file is untouched, the part
+/// file is removed, and the reason, which names the file, is returned. Nothing is returned on success.
+[[nodiscard]] std::optional<std::string> replace_file(const std::string& path, std::span<const std::uint8_t> bytes);
+
+/// Content of a file; nothing, with a reason that names the file, when it cannot be read.
+std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std::string& error);
+
+}  // namespace lapis::mapping

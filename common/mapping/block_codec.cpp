@@ -1,0 +1,102 @@
+#include "common/mapping/block_codec.hpp"
+
+#include <limits>
+
+#include "common/mapping/frame_votes.hpp"
+
+namespace lapis::mapping {
+namespace {
+
+constexpr std::uint64_t kEmpty = 0, kUniform = 1, kVoxels = 2, kWholeVotes = 4;
+
+bool has_only_whole_votes(const VoxelBlock& block) {
+  VoxelCounts counts;
+  for (int offset = 0; offset < kBlockVoxels; ++offset) {
+    block.read(offset, counts);
+    std::uint32_t parts = counts.passes;
+    for (const ClassCount& hit : counts.hits) parts |= hit.count;
+    if (parts % kOneVote != 0) return false;
+  }
+  return true;
+}
+
+void write_voxels(const VoxelBlock& block, std::uint32_t unit, ByteWriter& out) {
+  VoxelCounts counts;
+  for (int offset = 0; offset < kBlockVoxels;) {
+    if (!block.has_hits(offset)) {
+      int end = offset + 1;
+      while (end < kBlockVoxels && block.passes(end) == block.passes(offset) && !block.has_hits(end)) ++end;
+      out.varint(static_cast<std::uint64_t>(end - offset) << 1);
+      out.varint(block.passes(offset) / unit);
+      offset = end;
+      continue;
+    }
+    block.read(offset++, counts);
+    out.varint(counts.hits.size() << 1 | 1u);
+    out.varint(counts.passes / unit);
+    for (const ClassCount& hit : counts.hits) {
+      out.varint(hit.label);
+      out.varint(hit.count / unit);
+    }
+  }
+}
+
+std::uint32_t read_count(ByteReader& in, std::uint32_t unit) {
+  const std::uint64_t value = in.varint();
+  if (value > std::numeric_limits<std::uint32_t>::max() / unit) in.fail();
+  return static_cast<std::uint32_t>(value) * unit;
+}
+
+void read_hits(ByteReader& in, std::uint64_t classes, std::uint32_t unit, int offset, VoxelBlock& block) {
+  if (classes == 0) in.fail();
+  std::int32_t previous = -1;
+  for (std::uint64_t i = 0; i < classes && in.is_good(); ++i) {
+    const std::uint64_t label = in.varint();
+    const std::uint32_t count = read_count(in, unit);
+    if (label > 0xffff || static_cast<std::int32_t>(label) <= previous || count == 0) return in.fail();
+    previous = static_cast<std::int32_t>(label);
+    block.add_hit(offset, static_cast<std::uint16_t>(label), count);
+  }
+}
+
+void read_voxels(ByteReader& in, std::uint32_t unit, VoxelBlock& block) {
+  for (int offset = 0; offset < kBlockVoxels && in.is_good();) {
+    const std::uint64_t head = in.varint();
+    const std::uint32_t passes = read_count(in, unit);
+    if (head & 1u) {
+      block.add_pass(offset, passes);
+      read_hits(in, head >> 1, unit, offset++, block);
+      continue;
+    }
+    const std::uint64_t run = head >> 1;
+    if (run == 0 || run > static_cast<std::uint64_t>(kBlockVoxels - offset)) return in.fail();
+    for (const int end = offset + static_cast<int>(run); offset < end; ++offset) block.add_pass(offset, passes);
+  }
+}
+
+}  // namespace
+
+void write_block(const VoxelBlock* block, ByteWriter& out) {
+  if (block == nullptr || block->is_empty()) return out.varint(kEmpty);
+  if (block->is_uniform()) return out.varint(static_cast<std::uint64_t>(block->passes(0)) << 2 | kUniform);
+  const bool is_whole = has_only_whole_votes(*block);
+  out.varint(kVoxels | (is_whole ? kWholeVotes : 0));
+  write_voxels(*block, is_whole ? kOneVote : 1, out);
+}
+
+VoxelBlock read_block(ByteReader& in) {
+  VoxelBlock block;
+  const std::uint64_t word = in.varint();
+  if ((word & 3u) == kUniform) {
+    const std::uint64_t passes = word >> 2;
+    if (passes == 0 || passes > std::numeric_limits<std::uint32_t>::max()) in.fail();
+    for (int offset = 0; offset < kBlockVoxels; ++offset) block.add_pass(offset, static_cast<std::uint32_t>(passes));
+  } else if (word == kVoxels || word == (kVoxels | kWholeVotes)) {
+    read_voxels(in, word & kWholeVotes ? kOneVote : 1, block);
+  } else if (word != kEmpty) {
+    in.fail();
+  }
+  return block;
+}
+
+}  // namespace lapis::mapping

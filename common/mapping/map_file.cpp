@@ -1,0 +1,198 @@
+#include "common/mapping/map_file.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string_view>
+
+#include "common/mapping/atomic_file.hpp"
+#include "common/mapping/block_codec.hpp"
+#include "common/mapping/byte_stream.hpp"
+#include "common/mapping/crc32.hpp"
+#include "common/mapping/zstd_codec.hpp"
+
+namespace lapis::mapping {
+namespace {
+
+constexpr std::string_view kMagic = "LAPISMAP";
+constexpr std::uint32_t kFormatVersion = 1;
+constexpr int kCompressionLevel = 3;
+constexpr std::size_t kMaxContentBytes = std::size_t{8} << 30;
+
+void write_sensor_model(const SensorModel& model, ByteWriter& out) {
+  for (const double value : {model.hit_gain, model.pass_gain, model.label_accuracy, model.prior_occupied,
+                             model.occupancy_limit, model.share_limit})
+    out.f64(value);
+  out.u32(static_cast<std::uint32_t>(model.class_count));
+  out.u8(model.use_paper_increments ? 1 : 0);
+  out.varint(model.class_priors.size());
+  for (const double prior : model.class_priors) out.f64(prior);
+}
+
+SensorModel read_sensor_model(ByteReader& in) {
+  SensorModel model;
+  for (double* value : {&model.hit_gain, &model.pass_gain, &model.label_accuracy, &model.prior_occupied,
+                        &model.occupancy_limit, &model.share_limit})
+    *value = in.f64();
+  model.class_count = static_cast<int>(std::min<std::uint32_t>(in.u32(), 65536u));
+  model.use_paper_increments = in.u8() != 0;
+  const std::uint64_t priors = in.varint();
+  if (priors > in.remaining() / sizeof(double)) in.fail();
+  for (std::uint64_t i = 0; i < priors && in.is_good(); ++i) model.class_priors.push_back(in.f64());
+  return model;
+}
+
+void write_labels(const LabelList& labels, ByteWriter& out) {
+  out.varint(labels.size());
+  for (const Label& label : labels.labels()) {
+    out.varint(label.id);
+    out.text(label.name);
+    out.u8(label.color.r);
+    out.u8(label.color.g);
+    out.u8(label.color.b);
+  }
+}
+
+std::vector<Label> read_labels(ByteReader& in) {
+  std::vector<Label> labels;
+  const std::uint64_t count = in.varint();
+  for (std::uint64_t i = 0; i < count && in.is_good(); ++i) {
+    Label label;
+    const std::uint64_t id = in.varint();
+    if (id > 0xffff) in.fail();
+    label.id = static_cast<std::uint16_t>(id);
+    label.name = in.text();
+    label.color.r = in.u8();
+    label.color.g = in.u8();
+    label.color.b = in.u8();
+    labels.push_back(std::move(label));
+  }
+  return labels;
+}
+
+std::vector<std::uint8_t> encode_content(const MapFile& file) {
+  ByteWriter out;
+  out.f64(file.map.resolution_m());
+  write_sensor_model(file.sensor_model, out);
+  write_labels(file.labels, out);
+  out.varint(file.provenance.size());
+  for (const auto& [key, value] : file.provenance) {
+    out.text(key);
+    out.text(value);
+  }
+  const std::vector<BlockIndex> blocks = file.map.sorted_blocks();
+  out.varint(blocks.size());
+  for (const BlockIndex& index : blocks) {
+    out.i32(index.x);
+    out.i32(index.y);
+    out.i32(index.z);
+    write_block(file.map.find(index), out);
+  }
+  return out.take();
+}
+
+void read_blocks(ByteReader& in, VoxelMap& map) {
+  const std::uint64_t count = in.varint();
+  std::optional<BlockIndex> previous;
+  for (std::uint64_t i = 0; i < count && in.is_good(); ++i) {
+    BlockIndex index;
+    index.x = in.i32();
+    index.y = in.i32();
+    index.z = in.i32();
+    VoxelBlock block = read_block(in);
+    if (block.is_empty() || (previous && !(*previous < index))) in.fail();
+    if (in.is_good()) map.set_block(index, std::move(block));
+    previous = index;
+  }
+}
+
+/// Throws std::runtime_error for values out of range (the constructors' own checks).
+std::optional<MapFile> decode_content(std::span<const std::uint8_t> content) {
+  ByteReader in(content);
+  MapFile file{VoxelMap(in.f64()), {}, {}, {}};
+  file.sensor_model = read_sensor_model(in);
+  std::vector<Label> labels = read_labels(in);
+  const std::uint64_t notes = in.varint();
+  for (std::uint64_t i = 0; i < notes && in.is_good(); ++i) {
+    std::string key = in.text();
+    file.provenance[std::move(key)] = in.text();
+  }
+  read_blocks(in, file.map);
+  if (!in.is_good() || in.remaining() > 0) return std::nullopt;
+  file.labels = LabelList(std::move(labels));
+  static_cast<void>(BeliefReader(file.sensor_model));  // refuses a model that nobody could read the counts with
+  return file;
+}
+
+/// The payload after the header was checked; nothing with a reason otherwise.
+std::optional<std::span<const std::uint8_t>> check_header(std::span<const std::uint8_t> bytes, std::string& error) {
+  ByteReader in(bytes);
+  const auto magic = in.raw(kMagic.size());
+  if (!in.is_good() || !std::equal(magic.begin(), magic.end(), kMagic.begin())) {
+    error = "is not a Lapis map";
+    return std::nullopt;
+  }
+  const std::uint32_t version = in.u32();
+  if (in.is_good() && version != kFormatVersion) {
+    error = "has format version " + std::to_string(version) + ", this program reads 1";
+    return std::nullopt;
+  }
+  const std::uint32_t crc = in.u32();
+  const std::size_t covered = in.remaining();
+  const std::uint64_t size = in.u64();
+  if (!in.is_good() || in.remaining() != size) {
+    error = "is truncated or has bytes after its end";
+    return std::nullopt;
+  }
+  if (crc32(bytes.last(covered)) != crc) {
+    error = "is damaged: the checksum differs";
+    return std::nullopt;
+  }
+  return in.raw(size);
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_map(const MapFile& file) {
+  ByteWriter checked;
+  const std::vector<std::uint8_t> payload = zstd_compress(encode_content(file), kCompressionLevel);
+  checked.u64(payload.size());
+  checked.raw(payload);
+  ByteWriter out;
+  for (const char c : kMagic) out.u8(static_cast<std::uint8_t>(c));
+  out.u32(kFormatVersion);
+  out.u32(crc32(checked.bytes()));
+  out.raw(checked.bytes());
+  return out.take();
+}
+
+std::optional<MapFile> decode_map(std::span<const std::uint8_t> bytes, std::string& error) {
+  const auto payload = check_header(bytes, error);
+  if (!payload) return std::nullopt;
+  const auto content = zstd_decompress(*payload, kMaxContentBytes);
+  if (!content) {
+    error = "is damaged: the content cannot be unpacked";
+    return std::nullopt;
+  }
+  try {
+    auto file = decode_content(*content);
+    if (!file) error = "is damaged: the content is malformed";
+    return file;
+  } catch (const std::runtime_error& reason) {
+    error = std::string("has a value out of range: ") + reason.what();
+    return std::nullopt;
+  }
+}
+
+std::optional<std::string> save_map(const std::string& path, const MapFile& file) {
+  return replace_file(path, encode_map(file));
+}
+
+std::optional<MapFile> load_map(const std::string& path, std::string& error) {
+  const auto bytes = read_file(path, error);
+  if (!bytes) return std::nullopt;
+  auto file = decode_map(*bytes, error);
+  if (!file) error = path + ": " + error;
+  return file;
+}
+
+}  // namespace lapis::mapping

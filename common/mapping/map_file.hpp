@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "common/mapping/label_list.hpp"
+#include "common/mapping/sensor_model.hpp"
+#include "common/mapping/voxel_map.hpp"
+
+namespace lapis::mapping {
+
+/// Everything in a map.lapis file: the counts, and what is needed to read them as probabilities, names and colours.
+struct MapFile {
+  VoxelMap map;
+  SensorModel sensor_model;
+  LabelList labels;
+  std::map<std::string, std::string> provenance;  ///< free notes: source, frames, graph version, ...
+};
+
+/// Bytes of a map file. Layout (little-endian): "LAPISMAP", format version (u32), CRC-32 of everything after it (u32),
+/// size of the payload (u64), payload: one zstd frame of resolution, sensor model, labels, provenance, number of blocks,
+/// blocks (index, block_codec.hpp) in canonical order. Equal content gives equal bytes.
+std::vector<std::uint8_t> encode_map(const MapFile& file);
+
+/// Inverse of encode_map; nothing, with the reason in `error`, for anything that is not a whole and undamaged file.
+std::optional<MapFile> decode_map(std::span<const std::uint8_t> bytes, std::string& error);
+
+/// Writes beside and renames (atomic_file.hpp): returns the reason of a failure, which names the file.
+[[nodiscard]] std::optional<std::string> save_map(const std::string& path, const MapFile& file);
+
+/// Nothing, with a reason that names the file, when it cannot be read or is damaged.
+std::optional<MapFile> load_map(const std::string& path, std::string& error);
+
+}  // namespace lapis::mapping

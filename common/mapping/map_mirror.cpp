@@ -1,0 +1,78 @@
+#include "common/mapping/map_mirror.hpp"
+
+#include <algorithm>
+
+namespace lapis::mapping {
+
+bool MapMirror::enter_epoch(std::int64_t epoch) {
+  if (epoch_ && epoch < *epoch_) return false;
+  if (!epoch_ || epoch > *epoch_) {
+    epoch_ = epoch;
+    versions_.clear();
+    pending_.clear();
+    checksum_ = 0;
+  }
+  return true;
+}
+
+TileResult MapMirror::apply_tile(std::int64_t epoch, const TileIndex& index, std::uint64_t version,
+                                 std::span<const std::uint8_t> bytes) {
+  if (epoch_ && epoch < *epoch_) return TileResult::kOutdated;
+  auto tile = decode_tile(bytes, index);
+  if (!tile) return TileResult::kDamaged;
+  enter_epoch(epoch);
+  const auto [known, is_new] = versions_.try_emplace(index, version);
+  if (!is_new) {
+    if (known->second >= version) return TileResult::kOutdated;
+    checksum_ -= tile_hash(index, known->second);
+    known->second = version;
+  }
+  checksum_ += tile_hash(index, version);
+  pending_.insert_or_assign(index, PendingTile{tile->blocks_per_edge, std::move(tile->blocks)});
+  serve_if_complete();
+  return TileResult::kAccepted;
+}
+
+void MapMirror::apply_state(const MapState& state) {
+  if (!enter_epoch(state.epoch)) return;
+  if (newest_ && newest_->epoch == state.epoch && newest_->version >= state.version) return;
+  newest_ = state;
+  serve_if_complete();
+}
+
+void MapMirror::serve_if_complete() {
+  if (!newest_ || newest_->epoch != *epoch_ || is_consistent()) return;
+  if (newest_->tiles != versions_.size() || newest_->checksum != checksum_) return;
+  if (!(newest_->resolution_m >= kMinResolution_m && newest_->resolution_m <= kMaxResolution_m)) return;
+  if (!served_ || served_->epoch != newest_->epoch) replace_map(newest_->resolution_m);
+  for (auto& [index, tile] : pending_) {
+    for (const BlockIndex& block : blocks_of(index, tile.blocks_per_edge)) {
+      if (map_->find(block)) changed_.push_back(block);
+      map_->erase_block(block);
+    }
+    for (auto& [block_index, block] : tile.blocks) {
+      changed_.push_back(block_index);
+      map_->set_block(block_index, std::move(block));
+    }
+  }
+  pending_.clear();
+  served_ = newest_;
+}
+
+void MapMirror::replace_map(double resolution_m) {
+  if (map_) {
+    const std::vector<BlockIndex> old = map_->sorted_blocks();
+    changed_.insert(changed_.end(), old.begin(), old.end());
+  }
+  map_.emplace(resolution_m);
+}
+
+std::vector<BlockIndex> MapMirror::take_changed_blocks() {
+  std::vector<BlockIndex> changed = std::move(changed_);
+  changed_.clear();
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  return changed;
+}
+
+}  // namespace lapis::mapping

@@ -1,0 +1,125 @@
+#include "common/messages/camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace lapis::messages {
+namespace {
+
+using sensor_msgs::msg::Image;
+
+constexpr std::uint32_t kLargestSide = 16384;  // keeps sizes far from overflow
+
+/// Why an image's layout cannot be read; empty when it can.
+std::string layout_problem(const Image& image, std::size_t bytes_per_pixel) {
+  if (image.width() == 0 || image.height() == 0) return "image is empty";
+  if (image.width() > kLargestSide || image.height() > kLargestSide) return "image is larger than 16384 pixels";
+  if (image.step() < image.width() * bytes_per_pixel) return "image rows are shorter than their width";
+  if (image.data().size() != static_cast<std::size_t>(image.step()) * image.height()) {
+    return "image has " + std::to_string(image.data().size()) + " bytes, " + std::to_string(image.step()) + " x " +
+           std::to_string(image.height()) + " announced";
+  }
+  if (image.is_bigendian() != 0 && bytes_per_pixel > 1) return "image is big-endian";
+  return "";
+}
+
+template <class Pixel>
+Pixel read(const std::uint8_t* bytes) {
+  Pixel value;
+  std::memcpy(&value, bytes, sizeof value);
+  return value;
+}
+
+/// Applies `convert(pointer to the pixel's bytes)` to every pixel.
+template <class Out, class Convert>
+geometry::Image<Out> map_pixels(const Image& image, std::size_t bytes_per_pixel, Convert convert) {
+  geometry::Image<Out> out(static_cast<int>(image.width()), static_cast<int>(image.height()));
+  Out* target = out.pixels.data();
+  for (std::size_t row = 0; row < image.height(); ++row) {
+    const std::uint8_t* bytes = image.data().data() + row * image.step();
+    for (std::size_t column = 0; column < image.width(); ++column, bytes += bytes_per_pixel) *target++ = convert(bytes);
+  }
+  return out;
+}
+
+std::uint8_t luminance(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
+  // 16-bit fixed point of 0.299, 0.587, 0.114, rounded.
+  return static_cast<std::uint8_t>((19595u * r + 38470u * g + 7471u * b + 32768u) >> 16);
+}
+
+}  // namespace
+
+Converted<geometry::PinholeCamera> from_message(const sensor_msgs::msg::CameraInfo& message) {
+  using Result = Converted<geometry::PinholeCamera>;
+  geometry::PinholeCamera camera;
+  if (message.width() > kLargestSide || message.height() > kLargestSide) return Result::refused("camera info too large");
+  camera.width = static_cast<int>(message.width());
+  camera.height = static_cast<int>(message.height());
+  camera.fx = message.k()[0];
+  camera.fy = message.k()[4];
+  camera.cx = message.k()[2];
+  camera.cy = message.k()[5];
+  if (!is_valid(camera)) return Result::refused("camera info has no valid size and focal length");
+  const auto& d = message.d();
+  if (std::any_of(d.begin(), d.end(), [](double v) { return v != 0.0; })) {
+    return Result::refused("camera info has distortion; rectify the images first");
+  }
+  return camera;
+}
+
+Converted<geometry::GrayImage> to_gray(const Image& message) {
+  using Result = Converted<geometry::GrayImage>;
+  const std::string& encoding = message.encoding();
+  const bool is_rgb = encoding == "rgb8";
+  if (!is_rgb && encoding != "bgr8" && encoding != "mono8") {
+    return Result::refused("colour encoding '" + encoding + "' is not rgb8, bgr8 or mono8");
+  }
+  const std::size_t bytes = encoding == "mono8" ? 1 : 3;
+  if (const auto problem = layout_problem(message, bytes); !problem.empty()) return Result::refused("colour " + problem);
+  if (bytes == 1) return map_pixels<std::uint8_t>(message, 1, [](const std::uint8_t* p) { return *p; });
+  if (is_rgb) return map_pixels<std::uint8_t>(message, 3, [](const auto* p) { return luminance(p[0], p[1], p[2]); });
+  return map_pixels<std::uint8_t>(message, 3, [](const auto* p) { return luminance(p[2], p[1], p[0]); });
+}
+
+Converted<geometry::DepthImage> to_depth(const Image& message) {
+  using Result = Converted<geometry::DepthImage>;
+  const std::string& encoding = message.encoding();
+  if (encoding != "16UC1" && encoding != "mono16" && encoding != "32FC1") {
+    return Result::refused("depth encoding '" + encoding + "' is not 16UC1 or 32FC1");
+  }
+  const std::size_t bytes = encoding == "32FC1" ? 4 : 2;
+  if (const auto problem = layout_problem(message, bytes); !problem.empty()) return Result::refused("depth " + problem);
+  if (bytes == 4) {
+    return map_pixels<float>(message, 4, [](const std::uint8_t* p) {
+      const auto metres = read<float>(p);
+      return std::isfinite(metres) && metres > 0.0f ? metres : 0.0f;
+    });
+  }
+  return map_pixels<float>(message, 2, [](const std::uint8_t* p) {
+    const auto millimetres = read<std::uint16_t>(p);
+    return millimetres == 65535 ? 0.0f : static_cast<float>(millimetres) * 0.001f;
+  });
+}
+
+Converted<geometry::LabelImage> to_labels(const Image& message) {
+  using Result = Converted<geometry::LabelImage>;
+  const std::string& encoding = message.encoding();
+  const bool is_wide = encoding == "mono16" || encoding == "16UC1";
+  if (!is_wide && encoding != "mono8" && encoding != "8UC1") {
+    return Result::refused("label encoding '" + encoding + "' is not mono8 or mono16");
+  }
+  const std::size_t bytes = is_wide ? 2 : 1;
+  if (const auto problem = layout_problem(message, bytes); !problem.empty()) return Result::refused("label " + problem);
+  if (!is_wide) {
+    return map_pixels<std::uint16_t>(
+        message, 1, [](const std::uint8_t* p) { return static_cast<std::uint16_t>(*p == 255 ? 0 : *p); });
+  }
+  return map_pixels<std::uint16_t>(message, 2, [](const std::uint8_t* p) {
+    const auto id = read<std::uint16_t>(p);
+    return static_cast<std::uint16_t>(id == 65535 ? 0 : id);
+  });
+}
+
+}  // namespace lapis::messages

@@ -1,0 +1,87 @@
+#include "common/messages/geometry.hpp"
+
+#include <cmath>
+
+namespace lapis::messages {
+namespace {
+
+template <class Vector, class Quaternion>
+Converted<geometry::Pose> checked_pose(const Vector& p, const Quaternion& q) {
+  const Eigen::Vector3d translation(p.x(), p.y(), p.z());
+  const Eigen::Quaterniond rotation(q.w(), q.x(), q.y(), q.z());
+  if (!translation.allFinite() || !rotation.coeffs().allFinite()) {
+    return Converted<geometry::Pose>::refused("pose has numbers that are not finite");
+  }
+  if (std::abs(rotation.norm() - 1.0) > 1e-3) return Converted<geometry::Pose>::refused("quaternion is not a unit one");
+  return geometry::make_pose(translation, rotation);
+}
+
+template <class Vector>
+void set_vector(const Eigen::Vector3d& from, Vector& to) {
+  to.x(from.x());
+  to.y(from.y());
+  to.z(from.z());
+}
+
+void set_rotation(const geometry::Pose& T, geometry_msgs::msg::Quaternion& to) {
+  const Eigen::Quaterniond q = geometry::unit_quaternion(T);
+  to.x(q.x());
+  to.y(q.y());
+  to.z(q.z());
+  to.w(q.w());
+}
+
+}  // namespace
+
+geometry_msgs::msg::Pose to_message(const geometry::Pose& T) {
+  geometry_msgs::msg::Pose message;
+  set_vector(T.translation(), message.position());
+  set_rotation(T, message.orientation());
+  return message;
+}
+
+geometry_msgs::msg::Transform to_transform(const geometry::Pose& T) {
+  geometry_msgs::msg::Transform message;
+  set_vector(T.translation(), message.translation());
+  set_rotation(T, message.rotation());
+  return message;
+}
+
+Converted<geometry::Pose> from_message(const geometry_msgs::msg::Pose& message) {
+  return checked_pose(message.position(), message.orientation());
+}
+
+Converted<geometry::Pose> from_message(const geometry_msgs::msg::Transform& message) {
+  return checked_pose(message.translation(), message.rotation());
+}
+
+std::array<double, 36> to_row_major(const geometry::Matrix6d& covariance) {
+  std::array<double, 36> out{};
+  for (int row = 0; row < 6; ++row) {
+    for (int column = 0; column < 6; ++column) out[static_cast<std::size_t>(6 * row + column)] = covariance(row, column);
+  }
+  return out;
+}
+
+void StaticTransforms::add(const tf2_msgs::msg::TFMessage& message) {
+  for (const auto& transform : message.transforms()) {
+    if (const auto T = from_message(transform.transform())) {
+      links_[transform.child_frame_id()] = {transform.header().frame_id(), *T};
+    }
+  }
+}
+
+std::optional<geometry::Pose> StaticTransforms::find(const std::string& parent, const std::string& child) const {
+  geometry::Pose T = geometry::Pose::Identity();
+  std::string frame = child;
+  for (std::size_t steps = 0; steps <= links_.size(); ++steps) {  // bounded: garbage may announce a ring
+    if (frame == parent) return T;
+    const auto it = links_.find(frame);
+    if (it == links_.end()) return std::nullopt;
+    T = it->second.T_parent_child * T;
+    frame = it->second.parent;
+  }
+  return std::nullopt;
+}
+
+}  // namespace lapis::messages

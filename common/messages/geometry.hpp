@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/geometry/se3.hpp"
+#include "common/messages/converted.hpp"
+#include "idl/geometry_msgs.hpp"
+#include "idl/tf2_msgs.hpp"
+
+namespace lapis::messages {
+
+geometry_msgs::msg::Pose to_message(const geometry::Pose& T);
+geometry_msgs::msg::Transform to_transform(const geometry::Pose& T);
+
+/// Refuses non-finite numbers and quaternions whose norm is off 1 by more than 1e-3 (all zero means "unknown").
+Converted<geometry::Pose> from_message(const geometry_msgs::msg::Pose& message);
+Converted<geometry::Pose> from_message(const geometry_msgs::msg::Transform& message);
+
+/// 6x6 row-major covariance of ROS: order (x, y, z, rotation about x, y, z), which is our tangent order.
+std::array<double, 36> to_row_major(const geometry::Matrix6d& covariance);
+
+/// Static transforms by child frame, as /tf_static has announced them so far (several writers add up).
+class StaticTransforms {
+ public:
+  void add(const tf2_msgs::msg::TFMessage& message);
+  /// T_parent_child along the chain of announced transforms; nothing until it is complete.
+  std::optional<geometry::Pose> find(const std::string& parent, const std::string& child) const;
+
+ private:
+  struct Link {
+    std::string parent;
+    geometry::Pose T_parent_child;
+  };
+  std::map<std::string, Link> links_;
+};
+
+}  // namespace lapis::messages

@@ -1,0 +1,100 @@
+#include "common/runtime/context.hpp"
+
+#include <sys/resource.h>
+
+#include "common/runtime/lockstep_participant.hpp"
+#include "common/messages/time.hpp"
+
+namespace lapis::runtime {
+namespace {
+
+diagnostic_msgs::msg::KeyValue key_value(const std::string& key, const std::string& value) {
+  diagnostic_msgs::msg::KeyValue pair;
+  pair.key(key);
+  pair.value(value);
+  return pair;
+}
+
+double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
+
+}  // namespace
+
+Context::Context(const ContextOptions& options)
+    : options_(options),
+      clock_(options.use_sim_time ? time::Clock::Kind::kSimulated : time::Clock::Kind::kSystem),
+      participant_(options.participant) {
+  diagnostics_ = std::make_unique<dds::Publisher<diagnostic_msgs::msg::DiagnosticArray>>(participant_,
+                                                                                          topics::kDiagnostics);
+  if (options.use_sim_time) {
+    clock_source_ = std::make_unique<dds::Subscription<rosgraph_msgs::msg::Clock>>(
+        participant_, topics::kClock, [this](auto& message) { clock_.announce(messages::from_message(message.clock())); });
+    executor_.add(*clock_source_);
+  }
+  lockstep_ = std::make_unique<LockstepParticipant>(*this);
+  executor_.set_cycle([this] { lockstep_->after_handlers(); });
+  every(1.0, [this] { publish_diagnostics(); });
+}
+
+Context::~Context() = default;
+
+void Context::every(double period_s, std::function<void()> action) {
+  const auto period = std::chrono::duration_cast<dds::Executor::Clock::duration>(std::chrono::duration<double>(period_s));
+  executor_.every(period, std::move(action));
+}
+
+std::string Context::frame(const std::string& id) const {
+  const std::string& name_space = participant_.name_space();
+  return name_space.empty() ? id : name_space + "/" + id;
+}
+
+void Context::finish() { executor_.stop(); }
+
+void Context::fail(const std::string& reason) {
+  spdlog::error("{}", reason);
+  status_.set(Status::Level::kError, reason);
+  publish_diagnostics();
+  exit_status_ = 1;
+  executor_.stop();
+}
+
+void Context::run() {
+  participant_.announce_graph();
+  spdlog::info("ready");
+  executor_.spin();
+  publish_diagnostics();
+}
+
+void Context::run_cycle(const Cycle& cycle) {
+  if (cycle_) cycle_(cycle);
+  if (status_.take_change()) publish_diagnostics();
+}
+
+void Context::publish_diagnostics() {
+  diagnostic_msgs::msg::DiagnosticStatus entry;
+  entry.level(static_cast<std::uint8_t>(status_.level()));
+  entry.name(frame(options_.name));
+  entry.message(status_.message());
+  entry.hardware_id(options_.name);
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  entry.values().push_back(key_value("cpu_s", std::to_string(seconds(usage.ru_utime) + seconds(usage.ru_stime))));
+  entry.values().push_back(key_value("peak_rss_mb", std::to_string(usage.ru_maxrss / 1024)));
+  for (const auto& [key, value] : status_.values()) entry.values().push_back(key_value(key, value));
+  for (const auto& [key, value] : status_.counters()) entry.values().push_back(key_value(key, std::to_string(value)));
+  for (const auto& writer : writers_) {
+    if (writer->failed() > 0) {
+      entry.values().push_back(key_value("refused writes " + writer->dds_name(), std::to_string(writer->failed())));
+    }
+  }
+  for (const auto& source : sources_) {
+    if (source->missed() > 0) {
+      entry.values().push_back(key_value("missed samples " + source->dds_name(), std::to_string(source->missed())));
+    }
+  }
+  diagnostic_msgs::msg::DiagnosticArray array;
+  array.header().stamp(messages::to_message(now()));
+  array.status().push_back(entry);
+  diagnostics_->publish(array);
+}
+
+}  // namespace lapis::runtime

@@ -1,0 +1,111 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "common/dds/executor.hpp"
+#include "common/dds/publisher.hpp"
+#include "common/dds/service.hpp"
+#include "common/dds/subscription.hpp"
+#include "common/logging/logging.hpp"
+#include "common/logging/rate_limit.hpp"
+#include "common/runtime/status.hpp"
+#include "common/time/clock.hpp"
+#include "common/topics.hpp"
+
+namespace lapis::runtime {
+
+class LockstepParticipant;
+
+/// One turn of a component's work. Handlers only store what came; the work is done in the cycle.
+struct Cycle {
+  /// Lock-step: every input of this tick is here, what is missing was not published. Otherwise more may come.
+  bool inputs_complete = false;
+  /// Lock-step: no input follows; finish what is pending.
+  bool is_final = false;
+};
+
+struct ContextOptions {
+  std::string name;
+  dds::ParticipantOptions participant;
+  bool use_sim_time = false;
+};
+
+/// What the runtime gives to a component: its endpoints, its clock, its status. All on the component's one thread.
+class Context {
+ public:
+  explicit Context(const ContextOptions& options);
+  ~Context();
+  Context(const Context&) = delete;
+  Context& operator=(const Context&) = delete;
+
+  template <class Message>
+  dds::Publisher<Message>& advertise(const dds::Topic<Message>& topic) {
+    auto publisher = std::make_unique<dds::Publisher<Message>>(participant_, topic);
+    auto& reference = *publisher;
+    writers_.push_back(std::move(publisher));
+    return reference;
+  }
+  template <class Message>
+  dds::Subscription<Message>& subscribe(const dds::Topic<Message>& topic,
+                                        typename dds::Subscription<Message>::Handler handler) {
+    auto subscription = std::make_unique<dds::Subscription<Message>>(participant_, topic, std::move(handler));
+    auto& reference = *subscription;
+    executor_.add(*subscription);
+    sources_.push_back(std::move(subscription));
+    return reference;
+  }
+  template <class Service>
+  void serve(const dds::ServiceTopic<Service>& service, typename dds::ServiceServer<Service>::Handler handler) {
+    auto server = std::make_unique<dds::ServiceServer<Service>>(participant_, service, std::move(handler));
+    executor_.add(*server);
+    services_.push_back(std::move(server));
+  }
+  /// Called after handlers ran, or in lock-step when a tick's inputs are complete.
+  void on_cycle(std::function<void(const Cycle&)> cycle) { cycle_ = std::move(cycle); }
+  /// Calls `action` every so many seconds of wall time.
+  void every(double period_s, std::function<void()> action);
+
+  Status& status() { return status_; }
+  logging::RateLimit& rate_limit() { return rate_limit_; }
+  time::Time now() const { return clock_.now(); }
+  const std::string& name() const { return options_.name; }
+  /// Frame id with the robot's namespace: "map" -> "robot1/map".
+  std::string frame(const std::string& id) const;
+  dds::Executor& executor() { return executor_; }
+  dds::Participant& participant() { return participant_; }
+  const std::vector<std::unique_ptr<dds::Writer>>& writers() const { return writers_; }
+  const std::vector<std::unique_ptr<dds::Source>>& sources() const { return sources_; }
+
+  /// Ends the process: with status 0 because the work is done, or 1 with the reason.
+  void finish();
+  void fail(const std::string& reason);
+  int exit_status() const { return exit_status_; }
+
+  /// Used by the runtime only: announces the endpoints, then handles events until the end.
+  void run();
+
+ private:
+  friend class LockstepParticipant;
+  void run_cycle(const Cycle& cycle);
+  void publish_diagnostics();
+
+  ContextOptions options_;
+  time::Clock clock_;
+  dds::Participant participant_;
+  dds::Executor executor_;
+  Status status_;
+  logging::RateLimit rate_limit_;
+  std::vector<std::unique_ptr<dds::Writer>> writers_;
+  std::vector<std::unique_ptr<dds::Source>> sources_;
+  std::vector<std::unique_ptr<dds::Source>> services_;
+  std::unique_ptr<dds::Publisher<diagnostic_msgs::msg::DiagnosticArray>> diagnostics_;
+  std::unique_ptr<dds::Subscription<rosgraph_msgs::msg::Clock>> clock_source_;
+  std::unique_ptr<LockstepParticipant> lockstep_;
+  std::function<void(const Cycle&)> cycle_;
+  int exit_status_ = 0;
+};
+
+}  // namespace lapis::runtime

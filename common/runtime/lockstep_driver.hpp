@@ -1,0 +1,81 @@
+#pragma once
+
+#include <chrono>
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/config/schema.hpp"
+#include "common/runtime/context.hpp"
+
+namespace lapis::runtime {
+
+struct LockstepConfig {
+  config::Words stages = {"slam", "semantic_mapper", "evaluator"};
+  double soft_timeout_s = 5.0;
+  double hard_timeout_s = 30.0;
+  std::string silent_participant = "abort";
+};
+
+template <class Field>
+void describe(Field& field, LockstepConfig& c) {
+  field("stages", c.stages, config::anything(), "participants in the order in which a tick passes through them");
+  field("soft_timeout_s", c.soft_timeout_s, config::in_range(0.1, 600.0),
+        "silence of a participant after which frame and tick are published again [s]");
+  field("hard_timeout_s", c.hard_timeout_s, config::in_range(0.1, 3600.0),
+        "silence after which silent_participant applies [s]");
+  field("silent_participant", c.silent_participant, config::one_of({"abort", "wait", "demote"}),
+        "end the run, wait for a restart (at most 60 s), or go on without it");
+}
+
+/// The clock's side of lock-step (design section 6). Its owner publishes frame and /clock, calls begin(), and publishes
+/// the next frame when the driver is idle again; in between the tick is released to one stage after another.
+class LockstepDriver {
+ public:
+  enum class State { kJoining, kIdle, kWaiting, kFailed };
+
+  /// `republish` publishes the last frame and /clock again.
+  LockstepDriver(Context& context, const LockstepConfig& config, std::function<void()> republish);
+
+  void begin(time::Time stamp, bool is_final);
+  State state() const { return state_; }
+  /// Why the state is kFailed: names the silent participants and the remedy.
+  const std::string& failure() const { return failure_; }
+  /// Longest time that a tick took so far [s].
+  double longest_tick_s() const { return longest_tick_s_; }
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Ack = lapis_msgs::msg::Ack;
+
+  void on_ack(const Ack& ack);
+  void check_time();
+  void publish_tick();
+  void release_stage();
+  void advance();
+  bool has_answered(const std::string& participant) const;
+  bool is_everybody_matched() const;
+  std::vector<std::string> silent() const;
+  void give_up_on(const std::vector<std::string>& participants, double silence_s);
+
+  Context& context_;
+  LockstepConfig config_;
+  std::function<void()> republish_;
+  dds::Publisher<lapis_msgs::msg::Tick> tick_;
+  dds::Subscription<Ack> acks_;
+  State state_ = State::kJoining;
+  std::string failure_;
+  std::map<std::string, Ack> last_ack_;           // by participant
+  std::map<std::string, Clock::time_point> heard_;  // last sign of life in this stage, by participant
+  std::uint64_t number_ = 0;
+  std::uint32_t stage_ = 0;
+  time::Time stamp_;
+  bool is_final_ = false;
+  Clock::time_point tick_began_;
+  Clock::time_point last_published_;
+  double longest_tick_s_ = 0.0;
+};
+
+}  // namespace lapis::runtime

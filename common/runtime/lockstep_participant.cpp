@@ -1,0 +1,136 @@
+#include "common/runtime/lockstep_participant.hpp"
+
+#include <algorithm>
+#include <ctime>
+
+#include "common/runtime/context.hpp"
+
+namespace lapis::runtime {
+namespace {
+
+using lapis_msgs::msg::Ack;
+
+// A participant that joins a run under way cannot get what was published before; it stops waiting for it after this.
+constexpr auto kJoiningPatience = std::chrono::seconds(1);
+
+double process_cpu_s() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+template <class Endpoints>
+auto find_topic(const Endpoints& endpoints, const std::string& dds_name) {
+  return std::find_if(endpoints.begin(), endpoints.end(),
+                      [&](const auto& endpoint) { return endpoint->dds_name() == dds_name; });
+}
+
+}  // namespace
+
+LockstepParticipant::LockstepParticipant(Context& context)
+    : context_(context),
+      ack_(context.participant(), topics::kAck),
+      ticks_(context.participant(), topics::kTick, [this](Tick& tick) { on_tick(tick); }) {
+  context.executor().add(ticks_);
+  context.every(1.0, [this] { say_busy(); });
+}
+
+void LockstepParticipant::after_handlers() {
+  if (pending_) {
+    answer_pending();
+  } else if (!is_active()) {
+    context_.run_cycle({});
+  }
+}
+
+bool LockstepParticipant::is_active() const { return run_ != dds::Gid{} && ticks_.is_matched(run_); }
+
+void LockstepParticipant::on_tick(const Tick& tick) {
+  const auto& due = tick.due();
+  if (std::find(due.begin(), due.end(), context_.name()) == due.end()) return;
+  const std::pair<std::uint64_t, std::uint32_t> number(tick.tick(), tick.stage());
+  if (tick.run_gid() != run_) {
+    run_ = tick.run_gid();
+    has_joined_ = false;
+    answered_.reset();
+  } else if (answered_ && number == *answered_) {
+    publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_DONE, "");  // the answer was lost
+    return;
+  } else if (answered_ && number < *answered_) {
+    return;
+  }
+  const bool is_repeated = pending_ && pending_->tick() == tick.tick() && pending_->stage() == tick.stage();
+  if (!is_repeated) pending_since_ = Clock::now();
+  pending_ = tick;
+  if (!has_joined_) publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_BUSY, "matching endpoints");
+}
+
+void LockstepParticipant::answer_pending() {
+  const Tick& tick = *pending_;
+  if (!has_joined_ && !are_endpoints_matched(tick)) return;
+  const bool is_first = !has_joined_ && tick.tick() > 0;
+  const bool gives_up = is_first && Clock::now() - pending_since_ > kJoiningPatience;
+  if (!are_inputs_received(tick) && !gives_up) return;
+  has_joined_ = true;
+  if (tick.tick() > 0) context_.run_cycle({.inputs_complete = true, .is_final = tick.is_final()});
+  publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_DONE, "");
+  answered_ = {tick.tick(), tick.stage()};
+  pending_.reset();
+}
+
+bool LockstepParticipant::are_endpoints_matched(const Tick& tick) const {
+  for (const auto& reader : tick.readers()) {
+    const auto writer = find_topic(context_.writers(), reader.topic());
+    if (writer != context_.writers().end() && !(*writer)->is_matched(reader.gid())) return false;
+  }
+  for (const auto& count : tick.counts()) {
+    const auto source = find_topic(context_.sources(), count.topic());
+    if (source != context_.sources().end() && !(*source)->is_matched(count.writer_gid())) return false;
+  }
+  return true;
+}
+
+bool LockstepParticipant::are_inputs_received(const Tick& tick) const {
+  for (const auto& count : tick.counts()) {
+    const auto source = find_topic(context_.sources(), count.topic());
+    if (source == context_.sources().end()) continue;
+    if ((*source)->received(count.writer_gid()) < count.count()) return false;
+  }
+  return true;
+}
+
+void LockstepParticipant::publish_ack(const Tick& tick, std::uint8_t status, const std::string& reason) {
+  Ack ack;
+  ack.run_gid(tick.run_gid());
+  ack.tick(tick.tick());
+  ack.stage(tick.stage());
+  ack.participant(context_.name());
+  ack.participant_gid(context_.participant().gid());
+  ack.status(status);
+  ack.reason(reason);
+  for (const auto& writer : context_.writers()) {
+    lapis_msgs::msg::TopicCount count;
+    count.topic(writer->dds_name());
+    count.writer_gid(writer->gid());
+    count.count(writer->written());
+    ack.counts().push_back(count);
+  }
+  for (const auto& source : context_.sources()) {
+    lapis_msgs::msg::TopicEndpoint reader;
+    reader.topic(source->dds_name());
+    reader.gid(source->gid());
+    ack.readers().push_back(reader);
+  }
+  const double cpu_s = process_cpu_s();
+  ack.cpu_ms(static_cast<float>(1e3 * (cpu_s - cpu_s_at_answer_)));
+  cpu_s_at_answer_ = cpu_s;
+  ack_.publish(ack);
+}
+
+void LockstepParticipant::say_busy() {
+  if (!pending_) return;
+  publish_ack(*pending_, lapis_msgs::msg::Ack_Constants::STATUS_BUSY,
+              has_joined_ ? "waiting for counted inputs" : "matching endpoints");
+}
+
+}  // namespace lapis::runtime

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <chrono>
+#include <optional>
+
+#include "common/dds/publisher.hpp"
+#include "common/dds/subscription.hpp"
+#include "common/topics.hpp"
+
+namespace lapis::runtime {
+
+class Context;
+
+/// A component's side of lock-step (design section 6): waits until the counted inputs of a tick have been received,
+/// lets the component work, and answers with the counts of its outputs. Outside lock-step it just passes cycles on.
+class LockstepParticipant {
+ public:
+  explicit LockstepParticipant(Context& context);
+
+  /// The executor's cycle: handlers have run.
+  void after_handlers();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  using Tick = lapis_msgs::msg::Tick;
+
+  void on_tick(const Tick& tick);
+  void answer_pending();
+  bool is_active() const;
+  bool are_endpoints_matched(const Tick& tick) const;
+  bool are_inputs_received(const Tick& tick) const;
+  void publish_ack(const Tick& tick, std::uint8_t status, const std::string& reason);
+  void say_busy();
+
+  Context& context_;
+  dds::Publisher<lapis_msgs::msg::Ack> ack_;
+  dds::Subscription<Tick> ticks_;
+  dds::Gid run_{};                   // the driver's tick writer; zero: not in lock-step
+  bool has_joined_ = false;          // endpoints of this run are matched
+  std::optional<Tick> pending_;      // received, not answered
+  Clock::time_point pending_since_;
+  std::optional<std::pair<std::uint64_t, std::uint32_t>> answered_;  // tick and stage
+  double cpu_s_at_answer_ = 0.0;
+};
+
+}  // namespace lapis::runtime

@@ -1,0 +1,179 @@
+#include "common/runtime/run_component.hpp"
+
+#include <pthread.h>
+
+#include <csignal>
+#include <iostream>
+#include <thread>
+
+#include "common/config/yaml.hpp"
+#include "common/dds/participant.hpp"
+#include "common/runtime/version.hpp"
+
+namespace lapis::runtime {
+namespace {
+
+constexpr int kAskedToStop = 0;
+constexpr int kFailedRunning = 1;
+constexpr int kBadSetup = 2;
+constexpr int kSmallSocketBuffer = 1 << 20;
+
+struct Arguments {
+  std::vector<std::string> config_files;
+  std::vector<std::string> overrides;
+  std::optional<int> domain;
+  std::string name_space;
+  std::string transport = "udp";
+  std::string log_level = "info";
+  bool use_sim_time = false;
+  bool print_config = false;
+  bool check_config = false;
+};
+
+void add_common_options(CLI::App& app, Arguments& arguments) {
+  app.add_option("--config", arguments.config_files, "YAML configuration; later files win (repeatable)");
+  app.add_option("--set", arguments.overrides, "set one value: path=value (repeatable)");
+  app.add_option("--domain", arguments.domain, "DDS domain; default: ROS_DOMAIN_ID or 0")->check(CLI::Range(0, 232));
+  app.add_option("--namespace", arguments.name_space, "robot name in front of topics and frames");
+  app.add_option("--transport", arguments.transport, "udp, or shm for hosts without ROS 2 processes")
+      ->check(CLI::IsMember({"udp", "shm"}));
+  app.add_option("--log-level", arguments.log_level, "debug, info, warn or error")
+      ->check(CLI::IsMember({"debug", "info", "warn", "error"}));
+  app.add_flag("--use-sim-time", arguments.use_sim_time, "take the time from /clock");
+  app.add_flag("--print-config", arguments.print_config, "print the configuration in effect and exit");
+  app.add_flag("--check-config", arguments.check_config, "check the configuration and exit");
+  app.set_version_flag("--version", std::string("lapis ") + kVersion);
+}
+
+ContextOptions context_options(const std::string& name, const Arguments& arguments, const DdsConfig& dds) {
+  ContextOptions options;
+  options.name = name;
+  options.use_sim_time = arguments.use_sim_time;
+  options.participant.node_name = name;
+  options.participant.name_space = arguments.name_space;
+  options.participant.discovery = dds::discovery_from_environment();
+  if (arguments.domain) options.participant.discovery.domain = *arguments.domain;
+  options.participant.transport =
+      arguments.transport == "shm" ? dds::Transport::kSharedMemory : dds::Transport::kUdp;
+  options.participant.socket_buffer_bytes = dds.socket_buffer_bytes;
+  return options;
+}
+
+void log_setup(const config::Schema& schema, const ContextOptions& options) {
+  for (const auto& entry : schema.entries()) spdlog::debug("{} = {}", entry.path, config::to_text(entry));
+  const int granted = dds::effective_socket_buffer_bytes(options.participant.socket_buffer_bytes);
+  spdlog::info("domain {}, socket buffers {} bytes", options.participant.discovery.domain, granted);
+  if (granted < kSmallSocketBuffer) {
+    spdlog::warn(
+        "socket buffers below 1 MiB make images late: install /etc/sysctl.d/60-lapis.conf "
+        "(launch_scripts/setup.sh --sysctl)");
+  }
+  if (options.participant.transport == dds::Transport::kSharedMemory) {
+    spdlog::warn("shared memory: no ROS 2 process may run on this host (docs/decisions)");
+  }
+}
+
+/// Receives SIGINT and SIGTERM in one thread and stops the executor. Every other thread has them blocked.
+class SignalWaiter {
+ public:
+  explicit SignalWaiter(dds::Executor& executor) {
+    thread_ = std::thread([this, &executor] {
+      int signal = 0;
+      sigwait(&set(), &signal);
+      if (signal != SIGUSR2) executor.stop();
+    });
+  }
+  ~SignalWaiter() {
+    pthread_kill(thread_.native_handle(), SIGUSR2);  // ends the wait when no signal came
+    thread_.join();
+  }
+  SignalWaiter(const SignalWaiter&) = delete;
+  SignalWaiter& operator=(const SignalWaiter&) = delete;
+
+  static void block() { pthread_sigmask(SIG_BLOCK, &set(), nullptr); }
+
+ private:
+  static const sigset_t& set() {
+    static const sigset_t signals = [] {
+      sigset_t s;
+      sigemptyset(&s);
+      for (const int signal : {SIGINT, SIGTERM, SIGUSR2}) sigaddset(&s, signal);
+      return s;
+    }();
+    return signals;
+  }
+  std::thread thread_;
+};
+
+int spin(const ComponentFactory& factory, Context& context, const std::function<void()>& finish) {
+  try {
+    {
+      const SignalWaiter waiter(context.executor());
+      context.run();
+    }
+    finish();
+    spdlog::info("stopped");
+    return context.exit_status();
+  } catch (const std::exception& error) {
+    spdlog::error("{} failed: {}", factory.name, error.what());
+    return kFailedRunning;
+  }
+}
+
+int set_up_and_spin(const ComponentFactory& factory, const config::Schema& schema, const Arguments& arguments,
+                    const DdsConfig& dds) {
+  SignalWaiter::block();  // before DDS starts its threads, which inherit the mask
+  std::unique_ptr<Context> context;
+  std::function<void()> finish;
+  try {
+    const ContextOptions options = context_options(factory.name, arguments, dds);
+    log_setup(schema, options);
+    context = std::make_unique<Context>(options);
+    finish = factory.create(*context);
+  } catch (const std::exception& error) {
+    spdlog::error("{}", error.what());
+    return kBadSetup;
+  }
+  return spin(factory, *context, finish);
+}
+
+}  // namespace
+
+int run(ComponentFactory factory, int argc, char** argv) {
+  CLI::App app(factory.summary, "lapis_" + factory.name);
+  Arguments arguments;
+  DdsConfig dds;
+  factory.schema("dds", dds);
+  add_common_options(app, arguments);
+  if (factory.add_options) factory.add_options(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kAskedToStop : kBadSetup;
+  }
+  try {
+    logging::set_up(factory.name, arguments.log_level);
+    dds::check_namespace(arguments.name_space);
+    for (const auto& file : arguments.config_files) config::apply_file(factory.schema, file);
+    for (const auto& assignment : arguments.overrides) config::apply_override(factory.schema, assignment);
+  } catch (const std::exception& error) {
+    std::cerr << "lapis_" << factory.name << ": " << error.what() << '\n';
+    return kBadSetup;
+  }
+  if (arguments.print_config) {
+    std::cout << config::to_yaml(factory.schema);
+    return kAskedToStop;
+  }
+  if (arguments.check_config) return kAskedToStop;
+  try {
+    if (factory.run_tool) {
+      if (const auto status = factory.run_tool()) return *status;
+    }
+  } catch (const std::exception& error) {
+    std::cerr << "lapis_" << factory.name << ": " << error.what() << '\n';
+    return kBadSetup;
+  }
+  return set_up_and_spin(factory, factory.schema, arguments, dds);
+}
+
+}  // namespace lapis::runtime

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <concepts>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "common/config/schema.hpp"
+#include "common/runtime/context.hpp"
+
+namespace lapis::runtime {
+
+/// What every process can set under `dds.`.
+struct DdsConfig {
+  int socket_buffer_bytes = 4 << 20;
+};
+
+template <class Field>
+void describe(Field& field, DdsConfig& c) {
+  field("socket_buffer_bytes", c.socket_buffer_bytes, config::in_range(65536, 1 << 30),
+        "size asked for each UDP socket's send and receive buffer [B]");
+}
+
+/// A component as run_component's implementation sees it.
+struct ComponentFactory {
+  std::string name;
+  std::string summary;
+  config::Schema schema;  ///< without `dds.`
+  /// Adds options and positionals of its own.
+  std::function<void(CLI::App&)> add_options;
+  /// A job that needs no DDS (such as --list): exit status, or nothing to go on.
+  std::function<std::optional<int>()> run_tool;
+  /// Builds the component; the returned functions own it: what to do at the end, once spinning stopped.
+  std::function<std::function<void()>(Context&)> create;
+};
+
+/// The whole ceremony, once: command line, configuration, DDS, signals, spinning, exit status
+/// (0 asked to stop, 1 failed while running, 2 bad set-up).
+int run(ComponentFactory factory, int argc, char** argv);
+
+/// `Component` has: `Config` (described for common/config), `kName`, `kSummary`, a constructor
+/// (const Config&, Context&), and, where needed, `static void add_options(CLI::App&, Config&)`,
+/// `static std::optional<int> run_tool(const Config&)` and `void finish()`, called when spinning has stopped.
+template <class Component>
+int run_component(int argc, char** argv) {
+  using Config = typename Component::Config;
+  Config config;
+  ComponentFactory factory;
+  factory.name = Component::kName;
+  factory.summary = Component::kSummary;
+  factory.schema(Component::kName, config);
+  if constexpr (requires { &Config::lockstep; }) factory.schema("lockstep", config.lockstep);
+  if constexpr (requires(CLI::App& app) { Component::add_options(app, config); }) {
+    factory.add_options = [&config](CLI::App& app) { Component::add_options(app, config); };
+  }
+  if constexpr (requires { Component::run_tool(config); }) {
+    factory.run_tool = [&config] { return Component::run_tool(config); };
+  }
+  factory.create = [&config](Context& context) -> std::function<void()> {
+    auto component = std::make_shared<Component>(config, context);
+    return [component] {
+      if constexpr (requires { component->finish(); }) component->finish();
+    };
+  };
+  return run(std::move(factory), argc, argv);
+}
+
+}  // namespace lapis::runtime

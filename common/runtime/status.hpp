@@ -1,0 +1,44 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <utility>
+
+namespace lapis::runtime {
+
+/// What a component says of itself on /diagnostics.
+class Status {
+ public:
+  enum class Level { kOk = 0, kWarn = 1, kError = 2 };
+
+  void set(Level level, const std::string& message) {
+    has_changed_ |= level != level_;
+    level_ = level;
+    message_ = message;
+  }
+  void value(const std::string& key, const std::string& text) { values_[key] = text; }
+  void value(const std::string& key, std::uint64_t number) { values_[key] = std::to_string(number); }
+  /// Adds to a counter, for example of dropped input; the key says what and why.
+  void count(const std::string& key, std::uint64_t more = 1) { counters_[key] += more; }
+  std::uint64_t counter(const std::string& key) const {
+    const auto it = counters_.find(key);
+    return it == counters_.end() ? 0 : it->second;
+  }
+
+  Level level() const { return level_; }
+  const std::string& message() const { return message_; }
+  const std::map<std::string, std::string>& values() const { return values_; }
+  const std::map<std::string, std::uint64_t>& counters() const { return counters_; }
+  /// True once after the level changed.
+  bool take_change() { return std::exchange(has_changed_, false); }
+
+ private:
+  Level level_ = Level::kOk;
+  std::string message_ = "running";
+  std::map<std::string, std::string> values_;
+  std::map<std::string, std::uint64_t> counters_;
+  bool has_changed_ = false;
+};
+
+}  // namespace lapis::runtime

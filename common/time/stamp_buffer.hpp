@@ -1,0 +1,80 @@
+#pragma once
+
+#include <algorithm>
+#include <deque>
+#include <iterator>
+#include <optional>
+#include <utility>
+
+#include "common/time/time.hpp"
+
+namespace lapis::time {
+
+/// Recent messages of one stream in the order of their stamps, so that streams can be joined by stamp. Joining depends
+/// on stamps only, never on the order of arrival between streams.
+template <class Message>
+class StampBuffer {
+ public:
+  explicit StampBuffer(std::size_t capacity = 8) : capacity_(capacity) {}
+
+  enum class Push { kStored, kDuplicate, kLate, kRestarted, kOverflow };
+  /// kDuplicate and kLate: not stored, the stamp is there or has been taken. kRestarted: the stamp lies more than a
+  /// second in the past, so the source began anew; what was held is gone. kOverflow: stored, and the oldest was dropped.
+  Push push(Time stamp, Message message) {
+    Push result = Push::kStored;
+    if (newest_ && *newest_ - stamp > kRestartGap) {
+      entries_.clear();
+      taken_.reset();
+      result = Push::kRestarted;
+    }
+    if (taken_ && stamp <= *taken_) return stamp == *taken_ ? Push::kDuplicate : Push::kLate;
+    auto at = entries_.end();
+    while (at != entries_.begin() && std::prev(at)->first > stamp) --at;
+    if (at != entries_.begin() && std::prev(at)->first == stamp) return Push::kDuplicate;
+    entries_.emplace(at, stamp, std::move(message));
+    newest_ = result == Push::kRestarted ? stamp : std::max(newest_.value_or(stamp), stamp);
+    if (entries_.size() > capacity_) {
+      entries_.pop_front();
+      if (result == Push::kStored) result = Push::kOverflow;
+    }
+    return result;
+  }
+
+  bool empty() const { return entries_.empty(); }
+  /// Oldest message; the buffer must not be empty.
+  std::pair<Time, Message>& front() { return entries_.front(); }
+  /// Forgets everything up to and including `stamp`.
+  void drop_until(Time stamp) {
+    while (!entries_.empty() && entries_.front().first <= stamp) entries_.pop_front();
+    taken_ = std::max(taken_.value_or(stamp), stamp);
+  }
+
+  enum class Match { kFound, kMissing, kWait };
+  /// Looks for the message nearest to `stamp` within `tolerance`. kWait: one that fits (better) may still come;
+  /// `is_complete` says that nothing more will.
+  Match match(Time stamp, Duration tolerance, bool is_complete, Message*& found) {
+    found = nullptr;
+    std::optional<Duration> best;
+    for (auto& [time, message] : entries_) {
+      const Duration distance = abs(time - stamp);
+      if (distance <= tolerance && (!best || distance < *best)) {
+        best = distance;
+        found = &message;
+      }
+    }
+    const bool is_exact = best && best->nanoseconds == 0;
+    const bool is_settled = is_exact || is_complete || (newest_ && *newest_ >= stamp);
+    if (!is_settled) return Match::kWait;
+    return found != nullptr ? Match::kFound : Match::kMissing;
+  }
+
+ private:
+  static constexpr Duration kRestartGap{1'000'000'000};
+
+  std::size_t capacity_;
+  std::deque<std::pair<Time, Message>> entries_;
+  std::optional<Time> newest_;
+  std::optional<Time> taken_;
+};
+
+}  // namespace lapis::time

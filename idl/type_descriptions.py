@@ -214,7 +214,8 @@ def package_xml(package: str, dependencies: list[str]) -> str:
 
 
 def package_cmake(package: str, files: list[str], dependencies: list[str]) -> str:
-    finds = "".join(f"find_package({d} REQUIRED)\n" for d in ["ament_cmake", "rosidl_default_generators", *dependencies])
+    needed = ["ament_cmake", "rosidl_default_generators", *dependencies]
+    finds = "".join(f"find_package({name} REQUIRED)\n" for name in needed)
     listing = "".join(f"  {f}\n" for f in files)
     return f"""# Made from idl/{package}/{package}.idl; do not edit.
 cmake_minimum_required(VERSION 3.8)
@@ -232,14 +233,15 @@ ament_package()
 def ros2_package(structs: list[Struct]) -> dict[str, str]:
     """The files of a rosidl package with these types: relative path -> text."""
     package = structs[0].package
-    dependencies = sorted({f.type.name.split("/")[0] for s in structs for f in s.fields if f.type.is_struct} - {package})
+    used = {f.type.name.split("/")[0] for s in structs for f in s.fields if f.type.is_struct}
+    dependencies = sorted(used - {package})
     files = {}
     for struct in structs:
         if struct.section != "msg":
             raise IdlError(struct.path, struct.line, "services are not written to ROS 2 packages yet")
         lines = [f"# Made from idl/{package}/{package}.idl; do not edit."]
         if any(f.is_key for f in struct.fields):
-            lines.append("# Keyed on DDS, so it lives on a topic that ROS 2 cannot subscribe to; for reading recordings.")
+            lines.append("# Keyed on DDS: it lives on a topic that ROS 2 cannot subscribe to. For reading recordings.")
         lines += ["", *msg_lines(struct, with_comments=True)]
         files[f"msg/{struct.name}.msg"] = "\n".join(lines) + "\n"
     messages = sorted(files)

@@ -9,10 +9,10 @@ find_package(fastcdr REQUIRED)
 find_package(fastdds 3 QUIET)
 if(fastdds_FOUND)
   set(LAPIS_FASTDDS_LIBRARIES fastdds fastcdr)
-  set(LAPIS_FASTDDSGEN_OPTIONS -default_extensibility final)   # the plain CDR of ROS 2; 2.x knows nothing else
+  # As 2.x always does: the plain CDR of ROS 2, and no announced type information.
+  set(LAPIS_FASTDDSGEN_OPTIONS -default_extensibility final -no-typeobjectsupport)
   set(LAPIS_IDL_HEADER_SUFFIX .hpp)
-  set(LAPIS_IDL_FILES .hpp PubSubTypes.hpp PubSubTypes.cxx CdrAux.hpp CdrAux.ipp
-                      TypeObjectSupport.hpp TypeObjectSupport.cxx)
+  set(LAPIS_IDL_FILES .hpp PubSubTypes.hpp PubSubTypes.cxx CdrAux.hpp CdrAux.ipp)
 else()
   find_package(fastrtps 2.9 REQUIRED)
   set(LAPIS_FASTDDS_LIBRARIES fastrtps fastcdr)
@@ -54,12 +54,15 @@ function(fastdds_idl_library package)
   list(JOIN LAPIS_FASTDDSGEN_OPTIONS "," options)
 
   set(out ${CMAKE_CURRENT_BINARY_DIR}/${package})
-  set(generated ${LAPIS_IDL_FILES})
-  list(TRANSFORM generated PREPEND ${out}/${package})
+  set(names ${LAPIS_IDL_FILES})
+  list(TRANSFORM names PREPEND ${package})
+  set(generated ${names})
+  list(TRANSFORM generated PREPEND ${out}/)
+  list(JOIN names "," names)
   add_custom_command(
     OUTPUT ${out}/${package}.stamp BYPRODUCTS ${generated}
     COMMAND ${CMAKE_COMMAND} -D GENERATOR=${FASTDDSGEN_EXECUTABLE} -D OPTIONS=${options} -D IDL=${idl}
-            -D INCLUDE_DIRS=${include_dirs} -D OUTPUT_DIR=${out} -P ${LAPIS_FASTDDSGEN_SCRIPT}
+            -D INCLUDE_DIRS=${include_dirs} -D OUTPUT_DIR=${out} -D NAMES=${names} -P ${LAPIS_FASTDDSGEN_SCRIPT}
     DEPENDS ${idl_files} ${LAPIS_FASTDDSGEN_SCRIPT}
     COMMENT "fastddsgen ${package}" VERBATIM)
 

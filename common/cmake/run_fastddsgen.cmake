@@ -1,5 +1,6 @@
 # One run of fastddsgen; called by FastddsIdl.cmake at build time:
-#   cmake -D GENERATOR=<program> -D OPTIONS=a,b -D IDL=<file> -D INCLUDE_DIRS=a,b -D OUTPUT_DIR=<dir> -P <this file>
+#   cmake -D GENERATOR=<program> -D OPTIONS=a,b -D IDL=<file> -D INCLUDE_DIRS=a,b -D OUTPUT_DIR=<dir> -D NAMES=a,b
+#         -P <this file>
 #
 # fastddsgen writes the code of every included IDL file beside the wanted one, and its preprocessed input to a name in
 # /tmp that parallel runs share. So each run has its own temporary folder, and only the package's own files leave it.
@@ -21,10 +22,8 @@ if(NOT status EQUAL 0 OR log MATCHES "error:")
 endif()
 
 # Files whose content stayed the same keep their time, so nothing is compiled twice.
-file(GLOB names RELATIVE ${scratch}/code
-     ${scratch}/code/${package}.* ${scratch}/code/${package}PubSubTypes.* ${scratch}/code/${package}CdrAux.*
-     ${scratch}/code/${package}TypeObjectSupport.*)
-foreach(name IN LISTS names)
+string(REPLACE "," ";" NAMES "${NAMES}")
+foreach(name IN LISTS NAMES)
   file(COPY_FILE ${scratch}/code/${name} ${OUTPUT_DIR}/${name} ONLY_IF_DIFFERENT)
 endforeach()
 file(REMOVE_RECURSE ${scratch})

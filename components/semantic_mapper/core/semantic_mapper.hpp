@@ -1,0 +1,138 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <set>
+#include <span>
+#include <unordered_map>
+#include <unordered_set>
+#include <vector>
+
+#include "common/geometry/se3.hpp"
+#include "common/mapping/compact_frame.hpp"
+#include "common/mapping/integration.hpp"
+#include "common/mapping/map_mirror.hpp"
+#include "common/mapping/sensor_model.hpp"
+#include "common/mapping/tile_codec.hpp"
+#include "common/mapping/voxel_map.hpp"
+#include "common/time/time.hpp"
+
+namespace lapis::semantic_mapper {
+
+struct MapperConfig {
+  double resolution_m = 0.25;                       ///< edge of a voxel, in [0.02, 0.5]
+  double tile_edge_m = mapping::kDefaultTileEdge_m; ///< least edge of a tile, in [0.1, 6.4]
+  mapping::IntegrationConfig integration;
+  /// A frame is moved when a point at its median depth is off by more than this, in [0, 10] voxels.
+  double re_anchor_threshold_voxels = 0.2;
+  bool re_anchor = true;  ///< false: frames stay where they were first put (the paper's frozen map)
+};
+
+/// A camera frame and where it was taken: T_map_camera = T_map_keyframe * T_keyframe_camera. The pose graph may move the
+/// first factor at any time; the second never changes.
+struct AnchoredFrame {
+  time::Time stamp;
+  std::uint64_t keyframe_id = 0;
+  geometry::Pose T_map_keyframe = geometry::Pose::Identity();
+  geometry::Pose T_keyframe_camera = geometry::Pose::Identity();
+  std::uint64_t graph_version = 0;  ///< of T_map_keyframe
+  mapping::CompactFrame frame;
+};
+
+struct KeyframePose {
+  std::uint64_t id = 0;
+  geometry::Pose T_map_keyframe = geometry::Pose::Identity();
+};
+
+/// A frame in the map.
+struct StoredFrame {
+  time::Time stamp;
+  std::uint64_t keyframe_id = 0;
+  geometry::Pose T_keyframe_camera = geometry::Pose::Identity();
+  geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< at which its votes are in the map now
+  mapping::CompactFrame frame;
+};
+
+struct TileUpdate {
+  mapping::TileIndex index;
+  std::uint64_t version = 0;
+  std::vector<std::uint8_t> bytes;  ///< tile_codec.hpp
+};
+
+enum class IntegrationStatus {
+  kIntegrated,
+  kInvalidPose,   ///< a pose is not finite or not rigid
+  kTooFarAway,    ///< a pose is more than 10 km from its origin
+  kMapIsFull      ///< 2^24 - 1 frames: one more could overflow a count
+};
+
+struct IntegrationReport {
+  IntegrationStatus status = IntegrationStatus::kIntegrated;
+  std::size_t hits = 0;    ///< voxels that got a hit
+  std::size_t passes = 0;  ///< voxels that got a pass
+};
+
+/// Semantic map that follows the pose graph. Every integrated frame is kept in compact form with the pose at which it is
+/// in the map; when the graph moves its key-frame, its votes are taken out at the old pose and put back at the new one.
+/// At any instant the map equals, bit for bit, one built from the stored frames at their recorded poses.
+class SemanticMapper {
+ public:
+  /// Throws std::runtime_error naming the value that is out of range.
+  explicit SemanticMapper(const MapperConfig& config);
+
+  /// Puts a frame into the map at its key-frame's newest known pose and stores it.
+  IntegrationReport integrate(AnchoredFrame frame);
+  /// Newest poses of the graph. Key-frames that are not listed keep theirs; older versions are ignored. Moves nothing yet.
+  void update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses);
+  /// Moves up to `max_frames` of the frames that are off by more than the threshold, oldest first; returns how many.
+  std::size_t re_anchor(std::size_t max_frames);
+  /// Moves every frame that is off at all: afterwards the map equals a build at the graph's poses. Returns how many.
+  std::size_t flush();
+  /// Frames that re_anchor has still to move.
+  std::size_t frames_off() const { return off_.size(); }
+
+  const mapping::VoxelMap& map() const { return map_; }
+  const std::vector<StoredFrame>& frames() const { return frames_; }
+  const MapperConfig& config() const { return config_; }
+  std::uint64_t graph_version() const { return graph_version_; }
+  /// Memory of the stored frames [bytes].
+  std::size_t frame_bytes() const { return frame_bytes_; }
+
+  bool has_changes() const { return !changed_tiles_.empty(); }
+  /// Makes a new version of what changed since the last call and returns its tiles in canonical order; without changes
+  /// the version stays and nothing is returned.
+  std::vector<TileUpdate> take_changed_tiles();
+  /// All tiles of the current version.
+  std::vector<TileUpdate> all_tiles() const;
+  /// Version that take_changed_tiles made last; its epoch is left to the caller.
+  mapping::MapState state() const;
+  std::uint64_t version() const { return version_; }
+  /// Tiles that could not be encoded within mapping::kMaxTileBytes, since the start.
+  std::size_t tiles_too_large() const { return tiles_too_large_; }
+
+ private:
+  void move_frame(std::size_t index, const geometry::Pose& T_map_camera);
+  void move_keyframe(std::uint64_t id, const geometry::Pose& T_map_keyframe);
+  geometry::Pose wanted_pose(const StoredFrame& frame) const;
+  double offset_voxels(const StoredFrame& frame, const geometry::Pose& T_map_camera) const;
+  void mark_changed(const mapping::FrameVotes& votes);
+
+  MapperConfig config_;
+  int blocks_per_tile_edge_;
+  mapping::VoxelMap map_;
+  std::vector<StoredFrame> frames_;  ///< in order of integration
+  std::size_t frame_bytes_ = 0;
+
+  std::uint64_t graph_version_ = 0;
+  std::unordered_map<std::uint64_t, geometry::Pose> keyframe_poses_;
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> frames_of_keyframe_;
+  std::set<std::size_t> off_;  ///< frames beyond the threshold
+
+  std::unordered_set<mapping::TileIndex, mapping::GridIndexHash> changed_tiles_;
+  std::unordered_map<mapping::TileIndex, std::uint64_t, mapping::GridIndexHash> tile_versions_;
+  std::uint64_t version_ = 0;
+  std::uint64_t checksum_ = 0;
+  std::size_t tiles_too_large_ = 0;
+};
+
+}  // namespace lapis::semantic_mapper

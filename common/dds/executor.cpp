@@ -15,6 +15,10 @@ void Executor::every(Clock::duration period, std::function<void()> action) {
   timers_.push_back({period, Clock::now() + period, std::move(action)});
 }
 
+void Executor::at(Clock::time_point due, std::function<void()> action) {
+  timers_.push_back({Clock::duration::zero(), due, std::move(action)});
+}
+
 void Executor::spin() {
   while (!stopping_) spin_once(std::chrono::seconds(1));
 }
@@ -44,15 +48,16 @@ Executor::Clock::duration Executor::until_next_timer(Clock::duration longest) co
 }
 
 bool Executor::run_due_timers() {
-  bool ran = false;
+  std::vector<std::function<void()>> due;  // actions may add timers
   const auto now = Clock::now();
-  for (auto& timer : timers_) {
-    if (timer.due > now) continue;
+  std::erase_if(timers_, [&](Timer& timer) {
+    if (timer.due > now) return false;
+    due.push_back(timer.action);
     timer.due = std::max(timer.due + timer.period, now);
-    timer.action();
-    ran = true;
-  }
-  return ran;
+    return timer.period == Clock::duration::zero();
+  });
+  for (const auto& action : due) action();
+  return !due.empty();
 }
 
 }  // namespace lapis::dds

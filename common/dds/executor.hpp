@@ -21,6 +21,8 @@ class Executor {
   void add(Source& source);
   /// Calls `action` every `period` of wall time, for book-keeping only.
   void every(Clock::duration period, std::function<void()> action);
+  /// Calls `action` once, at a point of wall time.
+  void at(Clock::time_point due, std::function<void()> action);
   void set_cycle(std::function<void()> cycle) { cycle_ = std::move(cycle); }
 
   /// Handles events until stop().
@@ -35,7 +37,7 @@ class Executor {
 
  private:
   struct Timer {
-    Clock::duration period;
+    Clock::duration period;  // zero: once
     Clock::time_point due;
     std::function<void()> action;
   };

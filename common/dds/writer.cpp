@@ -43,6 +43,10 @@ bool Writer::unregister(const void* sample) {
   return true;
 }
 
+bool Writer::wait_until_acknowledged(double timeout_s) {
+  return compat::ok(writer_->wait_for_acknowledgments(compat::duration(static_cast<std::int64_t>(timeout_s * 1e9))));
+}
+
 std::size_t Writer::matched() const {
   const std::lock_guard lock(mutex_);
   return readers_.size();

@@ -26,6 +26,10 @@ class Writer : private compat::fdds::DataWriterListener {
   /// Ends a key without leaving a sample behind (never dispose: design section 5).
   bool unregister(const void* sample);
 
+  /// Waits until every matched reader has acknowledged all samples; false when that takes longer. Only for the end of
+  /// a process: in a loop it costs whole heartbeat periods.
+  bool wait_until_acknowledged(double timeout_s);
+
   /// RTPS sequence number of the last sample: the number of samples written since the start.
   std::uint64_t written() const { return written_; }
   std::uint64_t failed() const { return failed_; }

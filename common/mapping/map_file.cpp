@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "common/mapping/atomic_file.hpp"
+#include "common/files/atomic_file.hpp"
 #include "common/mapping/block_codec.hpp"
 #include "common/mapping/byte_stream.hpp"
 #include "common/mapping/crc32.hpp"
@@ -184,11 +184,11 @@ std::optional<MapFile> decode_map(std::span<const std::uint8_t> bytes, std::stri
 }
 
 std::optional<std::string> save_map(const std::string& path, const MapFile& file) {
-  return replace_file(path, encode_map(file));
+  return files::replace_file(path, encode_map(file));
 }
 
 std::optional<MapFile> load_map(const std::string& path, std::string& error) {
-  const auto bytes = read_file(path, error);
+  const auto bytes = files::read_file(path, error);
   if (!bytes) return std::nullopt;
   auto file = decode_map(*bytes, error);
   if (!file) error = path + ": " + error;

@@ -125,12 +125,15 @@ bool bundle_residual(const NoiseConfig& noise, const geometry::PinholeCamera& ca
                      const BundleObservation& observation, const Pose& T_map_camera, const Eigen::Vector3d& p_map,
                      Eigen::Vector3d& residual, Eigen::Matrix<double, 3, 6>* by_pose, Eigen::Matrix3d* by_point) {
   const PointConstraint point{p_map, observation.pixel, observation.depth_m, observation.sigma_px};
-  const auto result = point_residual(noise, camera, point, T_map_camera);
+  const auto result = point_residual(noise, camera, point, T_map_camera.inverse());
   if (!result) return false;
   residual = result->value;
-  if (by_pose != nullptr) *by_pose = result->jacobian;
-  // p_camera = R' (p_map - t) and the pose's translation columns are d(residual)/d(p_camera) * (-I).
-  if (by_point != nullptr) *by_point = -result->jacobian.leftCols<3>() * T_map_camera.linear().transpose();
+  for (int row = 0; row < 3; ++row) {
+    const geometry::Vector6d& gradient = result->jacobian[static_cast<std::size_t>(row)];
+    if (by_pose != nullptr) by_pose->row(row) = gradient.transpose();
+    // p_camera = R' (p_map - t), and the pose's translation columns are d(residual)/d(p_camera) * (-I).
+    if (by_point != nullptr) by_point->row(row) = -gradient.head<3>().transpose() * T_map_camera.linear().transpose();
+  }
   return true;
 }
 

@@ -39,17 +39,17 @@ struct SurfaceConfig {
 struct TrackerConfig {
   int min_matches = 30;          ///< projection matches below which the next way of matching is tried [6, 500]
   int min_inliers = 15;          ///< fewer after the refinement is lost [6, 200]
-  int local_keyframes = 10;      ///< key-frames whose landmarks form the local map [1, 50]
+  int local_keyframes = 5;       ///< key-frames whose landmarks form the local map [1, 50]
   int recovery_keyframes = 5;    ///< newest key-frames tried by brute force when all else fails [1, 50]
   int ransac_iterations = 200;   ///< PnP [10, 10000]
   double ransac_error_px = 4.0;  ///< PnP inlier threshold [0.5, 20]
-  int refine_iterations = 8;     ///< Levenberg-Marquardt steps per round [1, 50]
+  int refine_iterations = 4;     ///< Levenberg-Marquardt steps per round [1, 50]
   double max_prediction_s = 0.5; ///< longest gap that the motion model bridges [0.01, 5]
 };
 
 /// A frame becomes a key-frame when any of the reasons holds and the last one is far enough back.
 struct KeyframeConfig {
-  double min_tracked_share = 0.5;   ///< of the reference key-frame's landmarks [0, 1]
+  double min_tracked_share = 0.25;  ///< of the reference key-frame's landmarks [0, 1]
   double max_translation_m = 0.40;  ///< from the reference key-frame [0.01, 5]
   double max_rotation_rad = 0.30;   ///< from the reference key-frame [0.01, 3]
   int min_frames = 3;               ///< between key-frames [1, 100]

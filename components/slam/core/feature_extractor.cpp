@@ -64,33 +64,27 @@ std::vector<Corner> detect_corners(const cv::Mat& image, int threshold) {
 
 }  // namespace
 
-std::vector<Corner> spread_corners(const std::vector<Corner>& corners, int width, int height, int count) {
+std::vector<Corner> spread_corners(std::vector<Corner> corners, int width, int height, int count) {
   if (count <= 0 || corners.empty()) return {};
+  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
+    return std::tuple(-a.score, a.y, a.x) < std::tuple(-b.score, b.y, b.x);
+  });
   const double cell = std::max(1.0, std::sqrt(static_cast<double>(width) * height / count));
-  const int columns = static_cast<int>(width / cell) + 1;
-  struct Ranked {
-    int cell, rank;
-    Corner corner;
-  };
-  std::vector<Ranked> ranked;
-  ranked.reserve(corners.size());
+  const auto columns = static_cast<std::size_t>(width / cell) + 1;
+  const auto rows = static_cast<std::size_t>(height / cell) + 1;
+  std::vector<std::size_t> taken(columns * rows, 0);
+  std::vector<std::vector<Corner>> ranks;  // the best of every cell, the second best, ...
   for (const Corner& corner : corners) {
-    ranked.push_back({static_cast<int>(corner.y / cell) * columns + static_cast<int>(corner.x / cell), 0, corner});
+    const std::size_t rank = taken[static_cast<std::size_t>(corner.y / cell) * columns +
+                                   static_cast<std::size_t>(corner.x / cell)]++;
+    if (rank == ranks.size()) ranks.emplace_back();
+    ranks[rank].push_back(corner);
   }
-  const auto key = [](const Corner& c) { return std::tuple(-c.score, c.y, c.x); };
-  std::sort(ranked.begin(), ranked.end(), [&](const Ranked& a, const Ranked& b) {
-    return std::pair(a.cell, key(a.corner)) < std::pair(b.cell, key(b.corner));
-  });
-  for (std::size_t i = 1; i < ranked.size(); ++i) {
-    if (ranked[i].cell == ranked[i - 1].cell) ranked[i].rank = ranked[i - 1].rank + 1;
-  }
-  std::sort(ranked.begin(), ranked.end(), [&](const Ranked& a, const Ranked& b) {
-    return std::pair(a.rank, key(a.corner)) < std::pair(b.rank, key(b.corner));
-  });
-  ranked.resize(std::min(ranked.size(), static_cast<std::size_t>(count)));
   std::vector<Corner> chosen;
-  chosen.reserve(ranked.size());
-  for (const Ranked& entry : ranked) chosen.push_back(entry.corner);
+  for (const std::vector<Corner>& rank : ranks) {
+    const std::size_t room = static_cast<std::size_t>(count) - chosen.size();
+    chosen.insert(chosen.end(), rank.begin(), rank.begin() + static_cast<std::ptrdiff_t>(std::min(room, rank.size())));
+  }
   return chosen;
 }
 

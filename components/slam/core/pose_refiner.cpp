@@ -27,11 +27,12 @@ double huber_cost(double squared) {
 }
 double huber_weight(double squared) { return squared <= kHuber * kHuber ? 1.0 : kHuber / std::sqrt(squared); }
 
-// d(point in camera) / d(xi) for T_reference_camera * exp(xi): exp(-xi) * p = p - rho - omega x p.
-Eigen::Matrix<double, 3, 6> point_jacobian(const Eigen::Vector3d& p_camera) {
-  Eigen::Matrix<double, 3, 6> J;
-  J << -Eigen::Matrix3d::Identity(), geometry::skew(p_camera);
-  return J;
+// Gradient by xi of a function of the point in the camera, from its gradient by the point, for
+// T_reference_camera * exp(xi): the point moves to exp(-xi) * p = p - rho - omega x p.
+Vector6d by_pose(const Eigen::Vector3d& by_point, const Eigen::Vector3d& p_camera) {
+  Vector6d gradient;
+  gradient << -by_point, by_point.cross(p_camera);
+  return gradient;
 }
 
 // Normal equations of one linearisation; points and surface apart, because their residual variances differ.
@@ -41,6 +42,17 @@ struct Term {
   double cost = 0.0;
   double squares = 0.0;  // weighted sum of squared whitened residuals
   int residuals = 0;
+
+  // Only the upper triangle of the Hessian is kept up to date.
+  void add(const Vector6d& row, double residual, double weight) {
+    for (int i = 0; i < 6; ++i) {
+      const double scaled = weight * row[i];
+      gradient[i] += scaled * residual;
+      for (int j = i; j < 6; ++j) hessian(i, j) += scaled * row[j];
+    }
+    squares += weight * residual * residual;
+  }
+  Matrix6d full_hessian() const { return hessian.selfadjointView<Eigen::Upper>(); }
 };
 
 struct Linearisation {
@@ -56,8 +68,9 @@ class Refinement {
 
   Linearisation linearise(const Pose& T, double gate_m) const {
     Linearisation result;
-    add_points(T, result);
-    if (problem_.depth != nullptr) add_surface(T, gate_m, result);
+    const Pose T_camera_reference = T.inverse();
+    add_points(T_camera_reference, result);
+    if (problem_.depth != nullptr) add_surface(T_camera_reference, gate_m, result);
     return result;
   }
 
@@ -66,7 +79,7 @@ class Refinement {
     double damping = 1e-4;
     Linearisation current = linearise(T, gate_m);
     for (int i = 0; i < config_.tracker.refine_iterations; ++i) {
-      Matrix6d H = current.points.hessian + current.surface.hessian;
+      Matrix6d H = (current.points.hessian + current.surface.hessian).selfadjointView<Eigen::Upper>();
       H.diagonal() += damping * H.diagonal() + Vector6d::Constant(1e-9);
       const Vector6d step = H.ldlt().solve(-(current.points.gradient + current.surface.gradient));
       if (!step.allFinite()) break;
@@ -86,8 +99,9 @@ class Refinement {
   }
 
   void classify(const Pose& T) {
+    const Pose T_camera_reference = T.inverse();
     for (std::size_t i = 0; i < is_inlier_.size(); ++i) {
-      const auto residual = point_residual(config_.noise, problem_.camera, problem_.points[i], T);
+      const auto residual = point_residual(config_.noise, problem_.camera, problem_.points[i], T_camera_reference);
       is_inlier_[i] = residual && residual->value.head<2>().squaredNorm() < kPixelGate &&
                       residual->value.z() * residual->value.z() < kDepthGate;
     }
@@ -96,37 +110,35 @@ class Refinement {
   Alignment summarise(const Pose& T) const;
 
  private:
-  void add_points(const Pose& T, Linearisation& result) const {
+  void add_points(const Pose& T_camera_reference, Linearisation& result) const {
+    Term& term = result.points;
     for (std::size_t i = 0; i < is_inlier_.size(); ++i) {
       if (!is_inlier_[i]) continue;
       const PointConstraint& point = problem_.points[i];
-      const auto residual = point_residual(config_.noise, problem_.camera, point, T);
+      const auto residual = point_residual(config_.noise, problem_.camera, point, T_camera_reference);
       if (!residual) continue;
       const double squared = residual->value.squaredNorm();
       const double weight = huber_weight(squared);
-      Term& term = result.points;
-      term.hessian.noalias() += weight * residual->jacobian.transpose() * residual->jacobian;
-      term.gradient.noalias() += weight * residual->jacobian.transpose() * residual->value;
+      for (int row = 0; row < 3; ++row) {
+        term.add(residual->jacobian[static_cast<std::size_t>(row)], residual->value[row], weight);
+      }
       term.cost += huber_cost(squared);
-      term.squares += weight * squared;
       term.residuals += point.depth_m > 0.0 ? 3 : 2;
     }
   }
 
-  void add_surface(const Pose& T, double gate_m, Linearisation& result) const {
+  void add_surface(const Pose& T_camera_reference, double gate_m, Linearisation& result) const {
     Term& term = result.surface;
     for (const SurfaceSample& sample : problem_.surface) {
-      const auto residual = surface_residual(config_.noise, problem_.camera, *problem_.depth, sample, T);
+      const auto residual =
+          surface_residual(config_.noise, problem_.camera, *problem_.depth, sample, T_camera_reference);
       if (!residual || std::abs(residual->distance_m) > gate_m) continue;
       const double information = 1.0 / (residual->sigma_m * residual->sigma_m);
       const double squared = residual->distance_m * residual->distance_m * information;
       const double weight = config_.surface.weight * huber_weight(squared);
+      term.add(residual->jacobian, residual->distance_m, weight * information);
       // What counts is the gain over the gate's cost, so that dropping a sample never pays.
-      const double gate_cost = huber_cost(gate_m * gate_m * information);
-      term.hessian.noalias() += weight * information * residual->jacobian * residual->jacobian.transpose();
-      term.gradient.noalias() += weight * information * residual->distance_m * residual->jacobian;
-      term.cost += config_.surface.weight * (huber_cost(squared) - gate_cost);
-      term.squares += weight * squared;
+      term.cost += config_.surface.weight * (huber_cost(squared) - huber_cost(gate_m * gate_m * information));
       result.surface_squares_m2 += residual->distance_m * residual->distance_m;
       ++term.residuals;
     }
@@ -141,7 +153,7 @@ class Refinement {
 Matrix6d scaled_information(const Term& term, double effective_residuals) {
   if (effective_residuals <= 6.0) return Matrix6d::Zero();
   const double variance = std::max(term.squares / (effective_residuals - 6.0), 1e-4);
-  return term.hessian / variance;
+  return term.full_hessian() / variance;
 }
 
 Alignment Refinement::summarise(const Pose& T) const {
@@ -167,42 +179,40 @@ Alignment Refinement::summarise(const Pose& T) const {
 }  // namespace
 
 std::optional<PointResidual> point_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
-                                            const PointConstraint& point, const Pose& T_reference_camera) {
-  const Eigen::Vector3d p =
-      T_reference_camera.linear().transpose() * (point.p_reference - T_reference_camera.translation());
+                                            const PointConstraint& point, const Pose& T_camera_reference) {
+  const Eigen::Vector3d p = T_camera_reference * point.p_reference;
   if (p.z() < noise.min_depth_m) return std::nullopt;
-  const double inverse_z = 1.0 / p.z();
-  Eigen::Matrix3d projection;  // d(u, v, z) / d(p)
-  projection << camera.fx * inverse_z, 0.0, -camera.fx * p.x() * inverse_z * inverse_z,  //
-      0.0, camera.fy * inverse_z, -camera.fy * p.y() * inverse_z * inverse_z,            //
-      0.0, 0.0, 1.0;
-  const Eigen::Vector2d pixel = camera.project(p);
-  const double depth_weight = point.depth_m > 0.0 ? 1.0 / depth_sigma(noise, point.depth_m) : 0.0;
-  const Eigen::Vector3d whitening(1.0 / point.sigma_px, 1.0 / point.sigma_px, depth_weight);
+  const double u_by_x = camera.fx / p.z();
+  const double v_by_y = camera.fy / p.z();
+  const double per_px = 1.0 / point.sigma_px;
+  const double per_m = point.depth_m > 0.0 ? 1.0 / depth_sigma(noise, point.depth_m) : 0.0;
   PointResidual residual;
-  residual.value = whitening.cwiseProduct(
-      Eigen::Vector3d(pixel.x() - point.pixel.x(), pixel.y() - point.pixel.y(), p.z() - point.depth_m));
-  residual.jacobian = whitening.asDiagonal() * projection * point_jacobian(p);
+  residual.value = {per_px * (u_by_x * p.x() + camera.cx - point.pixel.x()),
+                    per_px * (v_by_y * p.y() + camera.cy - point.pixel.y()), per_m * (p.z() - point.depth_m)};
+  residual.jacobian[0] = by_pose({per_px * u_by_x, 0.0, -per_px * u_by_x * p.x() / p.z()}, p);
+  residual.jacobian[1] = by_pose({0.0, per_px * v_by_y, -per_px * v_by_y * p.y() / p.z()}, p);
+  residual.jacobian[2] = by_pose({0.0, 0.0, per_m}, p);
   return residual;
 }
 
 std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
                                                 const geometry::DepthImage& depth, const SurfaceSample& sample,
-                                                const Pose& T_reference_camera) {
-  const Eigen::Matrix3d R_camera_reference = T_reference_camera.linear().transpose();
-  const Eigen::Vector3d p_sample = R_camera_reference * (sample.point - T_reference_camera.translation());
+                                                const Pose& T_camera_reference) {
+  const Eigen::Vector3d p_sample = T_camera_reference * sample.point;
   if (p_sample.z() < noise.min_depth_m) return std::nullopt;
-  const Eigen::Vector2d pixel = camera.project(p_sample);
-  const double depth_m = interpolate_depth(noise, depth, pixel);
-  if (depth_m <= 0.0) return std::nullopt;
-  const Eigen::Vector3d p = p_sample * (depth_m / p_sample.z());
-  const Eigen::Vector3d normal = R_camera_reference * sample.normal;
+  const int u = static_cast<int>(std::floor(camera.fx * p_sample.x() / p_sample.z() + camera.cx + 0.5));
+  const int v = static_cast<int>(std::floor(camera.fy * p_sample.y() / p_sample.z() + camera.cy + 0.5));
+  if (u < 0 || v < 0 || u >= depth.width || v >= depth.height) return std::nullopt;
+  const double depth_m = depth(u, v);
+  if (!is_depth(noise, depth_m)) return std::nullopt;
+  const Eigen::Vector3d p = camera.unproject(u, v, depth_m);
+  const Eigen::Vector3d normal = T_camera_reference.linear() * sample.normal;
   SurfaceResidual residual;
   residual.distance_m = normal.dot(p - p_sample);
   // A depth error moves the point along its ray (p / z); the plane distance sees the part along the normal.
   residual.sigma_m = depth_sigma(noise, depth_m) * std::max(0.2, std::abs(normal.dot(p)) / depth_m);
-  // n' R (p + rho + omega x p): the frame's point moves, the sample stays.
-  residual.jacobian << normal, p.cross(normal);
+  // Here the frame's point moves and the sample stays: the opposite sign of a point known in the reference.
+  residual.jacobian = -by_pose(normal, p);
   return residual;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 #include <span>
 #include <vector>
@@ -40,18 +41,19 @@ struct Alignment {
   double surface_rms_m = 0.0;   ///< plane distance of these
 };
 
-/// Whitened residual (u, v, depth) of a point and its Jacobian by a right perturbation of T_reference_camera. The
-/// depth row is zero without a measured depth. None when the point is not in front of the camera.
+/// Whitened residual (u, v, depth) of a point and its Jacobian by a right perturbation of T_reference_camera, which is
+/// given as its inverse. The depth row is zero without a measured depth. None when the point is not in front of the
+/// camera.
 struct PointResidual {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
-  Eigen::Matrix<double, 3, 6> jacobian = Eigen::Matrix<double, 3, 6>::Zero();
+  std::array<geometry::Vector6d, 3> jacobian{};  ///< a row each
 };
 std::optional<PointResidual> point_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
-                                            const PointConstraint& point, const geometry::Pose& T_reference_camera);
+                                            const PointConstraint& point, const geometry::Pose& T_camera_reference);
 
-/// Distance [m] of the surface seen by the frame from the plane of a sample, measured along the sample's normal, and
-/// its Jacobian by a right perturbation of T_reference_camera for a fixed pair of points (point-to-plane alignment
-/// with projective association, [Blais & Levine 1995; Chen & Medioni 1991]). None when the frame sees no surface there.
+/// Distance [m] from the plane of a sample to the point that the frame sees at the sample's pixel, and its Jacobian by
+/// a right perturbation of T_reference_camera for this pair of points (point-to-plane alignment [Chen 1991] with
+/// projective association [Blais 1995]). None when the frame has no depth there.
 struct SurfaceResidual {
   double distance_m = 0.0;
   double sigma_m = 1.0;  ///< of the distance, from the depth noise
@@ -59,7 +61,7 @@ struct SurfaceResidual {
 };
 std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
                                                 const geometry::DepthImage& depth, const SurfaceSample& sample,
-                                                const geometry::Pose& T_reference_camera);
+                                                const geometry::Pose& T_camera_reference);
 
 /// Robust maximum-likelihood pose from points and surfaces, starting at `T_reference_camera`.
 Alignment refine_pose(const SlamConfig& config, const AlignmentProblem& problem,

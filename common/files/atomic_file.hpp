@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace lapis::mapping {
+namespace lapis::files {
 
 /// Replaces a file as a whole: the bytes go to "<path>.part" in the same folder, are flushed to the disk, and take the
 /// old file's name only then. At any failure (no space, no permission, no folder) the old file is untouched, the part
@@ -16,4 +16,8 @@ namespace lapis::mapping {
 /// Content of a file; nothing, with a reason that names the file, when it cannot be read.
 std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std::string& error);
 
-}  // namespace lapis::mapping
+/// Makes sure that a folder exists and that files can be written into it; creates it when its parent exists. Throws
+/// std::runtime_error that names the folder and the configuration key it came from.
+void require_writable_folder(const std::string& folder, const std::string& key);
+
+}  // namespace lapis::files

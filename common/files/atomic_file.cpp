@@ -1,14 +1,15 @@
-#include "common/mapping/atomic_file.hpp"
+#include "common/files/atomic_file.hpp"
 
 #include <cerrno>
 #include <cstring>
 #include <filesystem>
+#include <stdexcept>
 
 #include <fcntl.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-namespace lapis::mapping {
+namespace lapis::files {
 namespace {
 
 /// Open file descriptor that closes itself.
@@ -98,4 +99,17 @@ std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std:
   return bytes;
 }
 
-}  // namespace lapis::mapping
+void require_writable_folder(const std::string& folder, const std::string& key) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error || !std::filesystem::is_directory(folder)) {
+    throw std::runtime_error(key + ": " + folder + " is not a folder and cannot be made one: " + error.message());
+  }
+  const std::vector<std::uint8_t> probe;
+  if (const auto problem = replace_file((std::filesystem::path(folder) / ".lapis_writable").string(), probe)) {
+    throw std::runtime_error(key + ": no file can be written into " + folder + " (" + *problem + ")");
+  }
+  std::filesystem::remove(std::filesystem::path(folder) / ".lapis_writable", error);
+}
+
+}  // namespace lapis::files

@@ -1,0 +1,153 @@
+#include "semantic_mapper/conversions.hpp"
+
+#include <cstring>
+
+#include "common/messages/camera.hpp"
+#include "common/messages/geometry.hpp"
+#include "common/messages/time.hpp"
+
+namespace lapis::semantic_mapper {
+namespace {
+
+sensor_msgs::msg::PointField point_field(const std::string& name, std::uint32_t offset, std::uint8_t datatype) {
+  sensor_msgs::msg::PointField field;
+  field.name(name);
+  field.offset(offset);
+  field.datatype(datatype);
+  field.count(1);
+  return field;
+}
+
+template <class Value>
+void put(std::uint8_t* bytes, std::size_t offset, Value value) {
+  std::memcpy(bytes + offset, &value, sizeof value);
+}
+
+// RViz reads the field "rgb" as a float whose bits are 0x00rrggbb.
+std::uint32_t packed(const geometry::Rgb8& color) {
+  return static_cast<std::uint32_t>(color.r) << 16 | static_cast<std::uint32_t>(color.g) << 8 | color.b;
+}
+
+}  // namespace
+
+messages::Converted<mapping::CompactFrame> to_core(const sensor_msgs::msg::Image& depth,
+                                                   const sensor_msgs::msg::Image* labels,
+                                                   const sensor_msgs::msg::CameraInfo& info,
+                                                   const mapping::CompactFrameConfig& config) {
+  using Result = messages::Converted<mapping::CompactFrame>;
+  const auto camera = messages::from_message(info);
+  if (!camera) return Result::refused(camera.reason);
+  const auto metres = messages::to_depth(depth);
+  if (!metres) return Result::refused(metres.reason);
+  std::optional<geometry::LabelImage> ids;
+  if (labels != nullptr) {
+    auto converted = messages::to_labels(*labels);
+    if (!converted) return Result::refused(converted.reason);
+    ids = std::move(*converted);
+  }
+  std::string error;
+  auto frame = mapping::CompactFrame::make(*camera, *metres, ids ? &*ids : nullptr, config, error);
+  if (!frame) return Result::refused(error);
+  return std::move(*frame);
+}
+
+messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& tracked, mapping::CompactFrame frame) {
+  using Result = messages::Converted<AnchoredFrame>;
+  const auto T_map_keyframe = messages::from_message(tracked.keyframe_pose());
+  if (!T_map_keyframe) return Result::refused("keyframe_pose: " + T_map_keyframe.reason);
+  const auto T_keyframe_camera = messages::from_message(tracked.pose_in_keyframe());
+  if (!T_keyframe_camera) return Result::refused("pose_in_keyframe: " + T_keyframe_camera.reason);
+  return AnchoredFrame{messages::from_message(tracked.header().stamp()),
+                       tracked.keyframe_id(),
+                       *T_map_keyframe,
+                       *T_keyframe_camera,
+                       tracked.graph_version(),
+                       std::move(frame)};
+}
+
+messages::Converted<mapping::LabelList> to_core(const vision_msgs::msg::LabelInfo& message) {
+  std::vector<std::pair<std::uint16_t, std::string>> names;
+  for (const auto& entry : message.class_map()) {
+    if (entry.class_id() != 0) names.emplace_back(entry.class_id(), entry.class_name());
+  }
+  try {
+    return mapping::LabelList::from_names(names);
+  } catch (const std::runtime_error& error) {
+    return messages::Converted<mapping::LabelList>::refused(error.what());
+  }
+}
+
+std::vector<KeyframePose> to_core(const lapis_msgs::msg::PoseGraph& graph) {
+  std::vector<KeyframePose> poses;
+  for (const auto& node : graph.nodes()) {
+    if (const auto T = messages::from_message(node.pose())) poses.push_back({node.id(), *T});
+  }
+  return poses;
+}
+
+lapis_msgs::msg::VoxelTile to_message(const TileUpdate& tile, std::int64_t epoch) {
+  lapis_msgs::msg::VoxelTile message;
+  message.x(tile.index.x);
+  message.y(tile.index.y);
+  message.z(tile.index.z);
+  message.epoch(epoch);
+  message.version(tile.version);
+  message.data(tile.bytes);
+  return message;
+}
+
+octomap_msgs::msg::Octomap to_message(const Octree& tree, double resolution_m, const std_msgs::msg::Header& header) {
+  octomap_msgs::msg::Octomap message;
+  message.header(header);
+  message.binary(false);
+  message.id("ColorOcTree");
+  message.resolution(resolution_m);
+  message.data().resize(tree.message.size());
+  if (!tree.message.empty()) std::memcpy(message.data().data(), tree.message.data(), tree.message.size());
+  return message;
+}
+
+sensor_msgs::msg::PointCloud2 to_message(std::span<const LabelledPoint> points, const std_msgs::msg::Header& header) {
+  constexpr std::uint32_t kStep = 24;
+  constexpr std::uint8_t kUint16 = 4;
+  constexpr std::uint8_t kFloat32 = 7;
+  sensor_msgs::msg::PointCloud2 message;
+  message.header(header);
+  message.height(1);
+  message.width(static_cast<std::uint32_t>(points.size()));
+  message.fields({point_field("x", 0, kFloat32), point_field("y", 4, kFloat32), point_field("z", 8, kFloat32),
+                  point_field("rgb", 12, kFloat32), point_field("label", 16, kUint16),
+                  point_field("probability", 20, kFloat32)});
+  message.is_bigendian(false);
+  message.point_step(kStep);
+  message.row_step(kStep * message.width());
+  message.is_dense(true);
+  message.data().resize(points.size() * kStep);
+  std::uint8_t* bytes = message.data().data();
+  for (const auto& point : points) {
+    put(bytes, 0, point.position.x());
+    put(bytes, 4, point.position.y());
+    put(bytes, 8, point.position.z());
+    put(bytes, 12, packed(point.color));
+    put(bytes, 16, point.label);
+    put(bytes, 20, point.probability);
+    bytes += kStep;
+  }
+  return message;
+}
+
+nav_msgs::msg::OccupancyGrid to_message(const OccupancyGrid& grid, const std_msgs::msg::Header& header) {
+  nav_msgs::msg::OccupancyGrid message;
+  message.header(header);
+  message.info().map_load_time(header.stamp());
+  message.info().resolution(static_cast<float>(grid.resolution_m));
+  message.info().width(static_cast<std::uint32_t>(grid.width));
+  message.info().height(static_cast<std::uint32_t>(grid.height));
+  message.info().origin().position().x(grid.origin_x_m);
+  message.info().origin().position().y(grid.origin_y_m);
+  message.info().origin().orientation().w(1.0);
+  message.data().assign(grid.cells.begin(), grid.cells.end());
+  return message;
+}
+
+}  // namespace lapis::semantic_mapper

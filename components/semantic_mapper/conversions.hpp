@@ -1,0 +1,37 @@
+#pragma once
+
+#include <span>
+#include <string>
+
+#include "common/mapping/label_list.hpp"
+#include "common/mapping/map_mirror.hpp"
+#include "common/messages/converted.hpp"
+#include "idl/lapis_msgs.hpp"
+#include "idl/nav_msgs.hpp"
+#include "idl/octomap_msgs.hpp"
+#include "idl/sensor_msgs.hpp"
+#include "idl/vision_msgs.hpp"
+#include "semantic_mapper/core/export.hpp"
+#include "semantic_mapper/core/semantic_mapper.hpp"
+
+namespace lapis::semantic_mapper {
+
+/// Depth and, where there are any, labels of one instant as the mapper keeps them; refused with a reason when they do
+/// not fit each other or the camera info.
+messages::Converted<mapping::CompactFrame> to_core(const sensor_msgs::msg::Image& depth,
+                                                   const sensor_msgs::msg::Image* labels,
+                                                   const sensor_msgs::msg::CameraInfo& info,
+                                                   const mapping::CompactFrameConfig& config);
+/// A tracked frame's anchor around its compact frame; refused when the poses are not valid.
+messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& tracked, mapping::CompactFrame frame);
+/// Refused when an id is 0 or occurs twice.
+messages::Converted<mapping::LabelList> to_core(const vision_msgs::msg::LabelInfo& message);
+/// Valid key-frame poses of a graph.
+std::vector<KeyframePose> to_core(const lapis_msgs::msg::PoseGraph& graph);
+
+lapis_msgs::msg::VoxelTile to_message(const TileUpdate& tile, std::int64_t epoch);
+octomap_msgs::msg::Octomap to_message(const Octree& tree, double resolution_m, const std_msgs::msg::Header& header);
+sensor_msgs::msg::PointCloud2 to_message(std::span<const LabelledPoint> points, const std_msgs::msg::Header& header);
+nav_msgs::msg::OccupancyGrid to_message(const OccupancyGrid& grid, const std_msgs::msg::Header& header);
+
+}  // namespace lapis::semantic_mapper

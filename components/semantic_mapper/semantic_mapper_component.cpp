@@ -1,0 +1,276 @@
+#include "semantic_mapper/semantic_mapper_component.hpp"
+
+#include <filesystem>
+
+#include "common/files/atomic_file.hpp"
+#include "common/mapping/map_file.hpp"
+#include "common/messages/time.hpp"
+
+namespace lapis::semantic_mapper {
+namespace {
+
+constexpr std::size_t kWaitingFrames = 30;  // images wait here for slam's pose: one second at 30 Hz
+
+double seconds_since(const std::optional<time::Time>& then, time::Time now) {
+  return then ? (now - *then).seconds() : std::numeric_limits<double>::infinity();
+}
+
+}  // namespace
+
+SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::Context& context)
+    : config_(config),
+      context_(context),
+      tiles_(context.advertise(topics::kVoxelTiles)),
+      map_state_(context.advertise(topics::kMapState)),
+      octomap_(context.advertise(topics::kOctomap)),
+      points_(context.advertise(topics::kMapPoints)),
+      grid_(context.advertise(topics::kOccupancyGrid)),
+      tracked_(kWaitingFrames),
+      depth_(kWaitingFrames),
+      labels_(kWaitingFrames),
+      info_(kWaitingFrames) {
+  if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "semantic_mapper.output_dir");
+  context.subscribe(topics::kTrackedFrame, [this](Tracked& m) { store(tracked_, m, "slam frame"); });
+  context.subscribe(topics::kDepth, [this](Image& m) { store(depth_, m, "depth"); });
+  context.subscribe(topics::kColorInfo, [this](Info& m) { store(info_, m, "camera info"); });
+  labels_source_ = &context.subscribe(topics::kLabels, [this](Image& m) { store(labels_, m, "labels"); });
+  context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
+  context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
+  context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
+  context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+}
+
+template <class Message>
+void SemanticMapperComponent::store(time::StampBuffer<Message>& buffer, Message& message, const char* stream) {
+  using Push = typename time::StampBuffer<Message>::Push;
+  const time::Time stamp = messages::from_message(message.header().stamp());
+  switch (buffer.push(stamp, std::move(message))) {
+    case Push::kStored: return;
+    case Push::kDuplicate: return context_.status().count(std::string(stream) + " dropped: stamp was there before");
+    case Push::kLate: return context_.status().count(std::string(stream) + " dropped: older than what was processed");
+    case Push::kOverflow: return context_.status().count(std::string(stream) + " dropped: its partners did not come");
+    case Push::kRestarted: return context_.status().count(std::string(stream) + ": stamps went back");
+  }
+}
+
+void SemanticMapperComponent::set_labels(const vision_msgs::msg::LabelInfo& message) {
+  auto labels = to_core(message);
+  if (!labels) {
+    context_.status().count("label lists refused: " + labels.reason);
+    spdlog::warn("label list refused: {}", labels.reason);
+    return;
+  }
+  label_list_ = std::move(*labels);
+  config_.frame.max_label = label_list_.max_id() > 0 ? label_list_.max_id() : 65535;
+}
+
+void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
+  while (next_frame(cycle)) {
+  }
+  if (mapper_ == nullptr) return;
+  if (graph_) follow_graph(*graph_);
+  graph_.reset();
+  if (cycle.is_final) {
+    mapper_->flush();
+  } else {
+    mapper_->re_anchor(static_cast<std::size_t>(config_.re_anchored_frames_per_cycle));
+  }
+  publish(cycle.is_final);
+}
+
+/// Joins and integrates the oldest tracked frame; false when its partners may still come.
+bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
+  if (tracked_.empty()) return false;
+  const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
+  auto& [stamp, tracked] = tracked_.front();
+  const time::Time now = stamp;
+  Image* depth = nullptr;
+  Image* labels = nullptr;
+  Info* info = nullptr;
+  const bool no_labels_come = cycle.inputs_complete || labels_source_->matched() == 0;
+  const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
+  const auto label_match = labels_.match(now, tolerance, no_labels_come, labels);
+  const auto info_match = info_.match(now, tolerance, cycle.inputs_complete, info);
+  if (depth_match == time::StampBuffer<Image>::Match::kWait || label_match == time::StampBuffer<Image>::Match::kWait ||
+      info_match == time::StampBuffer<Info>::Match::kWait) {
+    return false;
+  }
+  if (tracked.state() != lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING) {
+    drop("slam has no pose");
+  } else if (depth == nullptr) {
+    drop("no depth image for a tracked frame");
+  } else if (info == nullptr) {
+    drop("no camera info for a tracked frame");
+  } else {
+    integrate(tracked, *depth, labels, *info);
+  }
+  tracked_.drop_until(now);
+  depth_.drop_until(now - tolerance);
+  labels_.drop_until(now - tolerance);
+  info_.drop_until(now - tolerance);
+  return true;
+}
+
+void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& depth, const Image* labels,
+                                        const Info& info) {
+  const time::Time stamp = messages::from_message(tracked.header().stamp());
+  if (mapper_ == nullptr || tracked.session() != session_) start_new_map(tracked.session(), stamp);
+  const bool is_first = mapper_->frames().empty();
+  if (!is_first && (stamp - stamp_).seconds() < config_.frame_interval_s) return;
+  auto frame = to_core(depth, labels, info, config_.frame);
+  if (!frame) return drop(frame.reason);
+  const auto above_list = frame->labels_out_of_list();
+  if (above_list > 0) context_.status().count("pixels unlabelled: label not in the list", above_list);
+  auto anchored = to_core(tracked, std::move(*frame));
+  if (!anchored) return drop(anchored.reason);
+  const auto report = mapper_->integrate(std::move(*anchored));
+  switch (report.status) {
+    case IntegrationStatus::kIntegrated: break;
+    case IntegrationStatus::kInvalidPose: return drop("pose is not valid");
+    case IntegrationStatus::kTooFarAway: return drop("pose is more than 10 km from the map's origin");
+    case IntegrationStatus::kMapIsFull: return drop("map is full");
+  }
+  stamp_ = stamp;
+  ++frames_integrated_;
+  context_.status().value("frames", frames_integrated_);
+  context_.status().value("stored_frames_mb", std::to_string(mapper_->frame_bytes() >> 20));
+}
+
+void SemanticMapperComponent::drop(const std::string& reason) {
+  ++frames_dropped_;
+  context_.status().count("frames dropped: " + reason);
+  if (context_.rate_limit().pass(reason)) spdlog::warn("frame dropped: {}", reason);
+}
+
+void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time stamp) {
+  if (mapper_ != nullptr) spdlog::warn("slam began a new map; so does the mapper");
+  for (const auto& [x, y, z] : published_tiles_) {
+    lapis_msgs::msg::VoxelTile tile;
+    tile.x(x);
+    tile.y(y);
+    tile.z(z);
+    tiles_.end_key(tile);
+  }
+  published_tiles_.clear();
+  mapper_ = std::make_unique<SemanticMapper>(config_.map);
+  session_ = session;
+  epoch_ = std::max(stamp.nanoseconds, epoch_ + 1);
+  tiles_stamp_.reset();
+  views_stamp_.reset();
+  saved_stamp_ = stamp;
+}
+
+void SemanticMapperComponent::follow_graph(const Graph& graph) {
+  if (graph.session() == session_) mapper_->update_keyframe_poses(graph.version(), to_core(graph));
+}
+
+void SemanticMapperComponent::publish(bool is_final) {
+  if (is_final || seconds_since(tiles_stamp_, stamp_) >= config_.tile_period_s) publish_tiles();
+  publish_views(is_final || seconds_since(views_stamp_, stamp_) >= config_.view_period_s);
+  if (!config_.output_dir.empty() && seconds_since(saved_stamp_, stamp_) >= config_.save_period_s) {
+    saved_stamp_ = stamp_;
+    if (const auto problem = save()) {
+      context_.status().set(runtime::Status::Level::kError, *problem);
+      spdlog::error("{}; mapping goes on", *problem);
+    }
+  }
+}
+
+void SemanticMapperComponent::publish_tiles() {
+  tiles_stamp_ = stamp_;
+  if (!mapper_->has_changes()) return;
+  for (const auto& tile : mapper_->take_changed_tiles()) {
+    published_tiles_.emplace(tile.index.x, tile.index.y, tile.index.z);
+    tiles_.publish(to_message(tile, epoch_));
+  }
+  const auto state = mapper_->state();
+  lapis_msgs::msg::MapState message;
+  message.header(header());
+  message.epoch(epoch_);
+  message.version(state.version);
+  message.session(session_);
+  message.graph_version(mapper_->graph_version());
+  message.resolution_m(state.resolution_m);
+  message.tile_edge_m(config_.map.tile_edge_m);
+  message.tiles(state.tiles);
+  message.checksum(state.checksum);
+  message.frames_integrated(frames_integrated_);
+  message.frames_dropped(frames_dropped_);
+  map_state_.publish(message);
+}
+
+/// True when a view is due and read by anybody, or when a reader has come since the last look.
+bool SemanticMapperComponent::wants_view(const dds::Writer& writer, bool is_due) {
+  const bool has_new_reader = std::exchange(seen_matches_[&writer], writer.total_matches()) != writer.total_matches();
+  return writer.matched() > 0 && (is_due || has_new_reader);
+}
+
+void SemanticMapperComponent::publish_views(bool is_due) {
+  if (is_due) views_stamp_ = stamp_;
+  const bool wants_octomap = wants_view(octomap_, is_due);
+  const bool wants_points = wants_view(points_, is_due);
+  const bool wants_grid = wants_view(grid_, is_due);
+  if (!wants_octomap && !wants_points && !wants_grid) return;
+  const auto reader = belief_reader();
+  const auto& map = mapper_->map();
+  if (wants_octomap) {
+    octomap_.publish(to_message(encode_octree(map, reader, label_list_), map.resolution_m(), header()));
+  }
+  if (wants_points) points_.publish(to_message(occupied_points(map, reader, label_list_), header()));
+  if (wants_grid) grid_.publish(to_message(project_to_grid(map, reader, config_.grid), header()));
+}
+
+std_srvs::srv::Trigger_Response SemanticMapperComponent::save_on_request() {
+  std_srvs::srv::Trigger_Response response;
+  response.success(false);
+  if (config_.output_dir.empty()) {
+    response.message("semantic_mapper.output_dir is not set");
+  } else if (mapper_ == nullptr) {
+    response.message("there is no map yet");
+  } else if (const auto problem = save()) {
+    response.message(*problem);
+  } else {
+    response.success(true);
+    response.message("map saved in " + config_.output_dir);
+  }
+  return response;
+}
+
+std::optional<std::string> SemanticMapperComponent::save() {
+  mapper_->flush();
+  const auto reader = belief_reader();
+  const std::filesystem::path folder(config_.output_dir);
+  const mapping::MapFile file{mapper_->map(),
+                              reader.model(),
+                              label_list_,
+                              {{"frames", std::to_string(mapper_->frames().size())},
+                               {"graph_version", std::to_string(mapper_->graph_version())},
+                               {"session", std::to_string(session_)}}};
+  if (auto problem = mapping::save_map((folder / "map.lapis").string(), file)) return problem;
+  const auto tree = encode_octree(file.map, reader, label_list_);
+  if (auto problem = files::replace_file((folder / "map.ot").string(), tree.file)) return problem;
+  const auto ply = encode_ply(occupied_points(file.map, reader, label_list_));
+  return files::replace_file((folder / "map.ply").string(), ply);
+}
+
+void SemanticMapperComponent::finish() {
+  spdlog::info("{} frames integrated, {} dropped", frames_integrated_, frames_dropped_);
+  for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
+  if (config_.output_dir.empty() || mapper_ == nullptr) return;
+  if (const auto problem = save()) throw std::runtime_error(*problem);
+}
+
+mapping::BeliefReader SemanticMapperComponent::belief_reader() const {
+  auto model = config_.sensor_model;
+  if (label_list_.max_id() > 1) model.class_count = label_list_.max_id();
+  return mapping::BeliefReader(model);
+}
+
+std_msgs::msg::Header SemanticMapperComponent::header() const {
+  std_msgs::msg::Header h;
+  h.stamp(messages::to_message(stamp_));
+  h.frame_id(context_.frame("map"));
+  return h;
+}
+
+}  // namespace lapis::semantic_mapper

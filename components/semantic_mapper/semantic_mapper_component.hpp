@@ -1,0 +1,79 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+
+#include "common/runtime/context.hpp"
+#include "common/time/stamp_buffer.hpp"
+#include "semantic_mapper/conversions.hpp"
+#include "semantic_mapper/semantic_mapper_config.hpp"
+
+namespace lapis::semantic_mapper {
+
+/// Fuses depth and labels at the poses that slam tells, publishes the map and keeps it on disk.
+class SemanticMapperComponent {
+ public:
+  using Config = SemanticMapperComponentConfig;
+  static constexpr const char* kName = "semantic_mapper";
+  static constexpr const char* kSummary = "Semantic voxel map that follows the pose graph.";
+
+  SemanticMapperComponent(const Config& config, runtime::Context& context);
+  void finish();
+
+ private:
+  using Image = sensor_msgs::msg::Image;
+  using Info = sensor_msgs::msg::CameraInfo;
+  using Tracked = lapis_msgs::msg::TrackedFrame;
+  using Graph = lapis_msgs::msg::PoseGraph;
+
+  template <class Message>
+  void store(time::StampBuffer<Message>& buffer, Message& message, const char* stream);
+  void set_labels(const vision_msgs::msg::LabelInfo& message);
+  void work(const runtime::Cycle& cycle);
+  bool next_frame(const runtime::Cycle& cycle);
+  void integrate(const Tracked& tracked, const Image& depth, const Image* labels, const Info& info);
+  void follow_graph(const Graph& graph);
+  void drop(const std::string& reason);
+  void start_new_map(std::int64_t session, time::Time stamp);
+  void publish(bool is_final);
+  void publish_tiles();
+  void publish_views(bool is_due);
+  bool wants_view(const dds::Writer& writer, bool is_due);
+  std_srvs::srv::Trigger_Response save_on_request();
+  /// Nothing on success; otherwise what failed, naming the file.
+  std::optional<std::string> save();
+  mapping::BeliefReader belief_reader() const;
+  std_msgs::msg::Header header() const;
+
+  Config config_;
+  runtime::Context& context_;
+  dds::Publisher<lapis_msgs::msg::VoxelTile>& tiles_;
+  dds::Publisher<lapis_msgs::msg::MapState>& map_state_;
+  dds::Publisher<octomap_msgs::msg::Octomap>& octomap_;
+  dds::Publisher<sensor_msgs::msg::PointCloud2>& points_;
+  dds::Publisher<nav_msgs::msg::OccupancyGrid>& grid_;
+  dds::Subscription<Image>* labels_source_ = nullptr;
+
+  time::StampBuffer<Tracked> tracked_;
+  time::StampBuffer<Image> depth_;
+  time::StampBuffer<Image> labels_;
+  time::StampBuffer<Info> info_;
+  std::optional<Graph> graph_;  // newest, not yet followed
+  mapping::LabelList label_list_;
+
+  std::unique_ptr<SemanticMapper> mapper_;  // exists once slam tracks
+  std::int64_t session_ = 0;
+  std::int64_t epoch_ = 0;
+  time::Time stamp_;                            // of the newest integrated frame
+  std::optional<time::Time> tiles_stamp_;       // published last
+  std::optional<time::Time> views_stamp_;
+  std::optional<time::Time> saved_stamp_;
+  std::set<std::tuple<int, int, int>> published_tiles_;  // of this epoch
+  std::map<const dds::Writer*, std::uint64_t> seen_matches_;
+  std::uint64_t frames_integrated_ = 0;
+  std::uint64_t frames_dropped_ = 0;
+};
+
+}  // namespace lapis::semantic_mapper

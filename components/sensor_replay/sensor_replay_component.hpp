@@ -1,0 +1,66 @@
+#pragma once
+
+#include <chrono>
+#include <memory>
+#include <optional>
+
+#include "common/runtime/context.hpp"
+#include "common/runtime/lockstep_driver.hpp"
+#include "common/runtime/run_component.hpp"
+#include "sensor_replay/conversions.hpp"
+#include "sensor_replay/core/frame_prefetcher.hpp"
+#include "sensor_replay/core/tum_dataset.hpp"
+#include "sensor_replay/sensor_replay_config.hpp"
+
+namespace lapis::sensor_replay {
+
+/// Plays a recorded data set on the topics of a camera, in lock-step with its consumers or by the wall clock.
+class SensorReplayComponent {
+ public:
+  using Config = SensorReplayConfig;
+  static constexpr const char* kName = "sensor_replay";
+  static constexpr const char* kSummary = "Plays a TUM RGB-D data set on the camera topics.";
+
+  static void add_options(CLI::App& app, Config& config);
+  static std::optional<int> run_tool(const Config& config);
+
+  SensorReplayComponent(const Config& config, runtime::Context& context);
+  void finish();
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void publish_latched();
+  void work();
+  void play_by_wall_clock();
+  bool publish_next();
+  void publish(const FrameMessages& messages);
+  void count(const SkippedFrame& skipped);
+  void count(const ImageProblem& problem);
+  void report_progress(bool is_last);
+
+  const Config config_;
+  runtime::Context& context_;
+  TumDataset dataset_;
+  FrameRange range_;
+  FrameIds ids_;
+  FramePrefetcher frames_;
+  dds::Publisher<sensor_msgs::msg::Image>& color_;
+  dds::Publisher<sensor_msgs::msg::Image>& depth_;
+  dds::Publisher<sensor_msgs::msg::CameraInfo>& color_info_;
+  dds::Publisher<sensor_msgs::msg::CameraInfo>& depth_info_;
+  dds::Publisher<sensor_msgs::msg::Image>* labels_ = nullptr;
+  dds::Publisher<vision_msgs::msg::LabelInfo>* label_info_ = nullptr;
+  dds::Publisher<nav_msgs::msg::Odometry>* ground_truth_ = nullptr;
+  dds::Publisher<tf2_msgs::msg::TFMessage>& static_transforms_;
+  dds::Publisher<rosgraph_msgs::msg::Clock>& clock_;
+  std::unique_ptr<runtime::LockstepDriver> driver_;
+  std::optional<FrameMessages> last_;
+  time::Time stamp_;
+  std::size_t played_ = 0;
+  bool has_ended_ = false;
+  std::optional<Clock::time_point> began_;
+  Clock::time_point reported_;
+};
+
+}  // namespace lapis::sensor_replay

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <string>
+
+#include "common/runtime/lockstep_driver.hpp"
+
+namespace lapis::sensor_replay {
+
+struct SensorReplayConfig {
+  std::string dataset;
+  std::string class_list;
+  double rate = 0.0;
+  double start_s = 0.0;
+  double duration_s = 0.0;
+  int wait_for_readers = 0;
+  double max_stamp_difference_s = 0.02;
+  runtime::LockstepConfig lockstep;
+  bool list = false;  ///< command line only
+};
+
+template <class Field>
+void describe(Field& field, SensorReplayConfig& c) {
+  field("dataset", c.dataset, config::anything(), "folder in the layout of the TUM RGB-D benchmark, with camera.yaml");
+  field("class_list", c.class_list, config::anything(),
+        "CSV file class_id,class,... that names the labels; empty: classes.csv of the data set, if it has one");
+  field("rate", c.rate, config::in_range(0.0, 100.0), "speed relative to the recording; 0: lock-step, nothing is lost");
+  field("start_s", c.start_s, config::in_range(0.0, 1e6), "skip this much of the recording [s]");
+  field("duration_s", c.duration_s, config::in_range(0.0, 1e6), "play this much of it [s]; 0: all");
+  field("wait_for_readers", c.wait_for_readers, config::in_range(0, 100),
+        "with a rate: begin when the depth topic has this many readers");
+  field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 1.0),
+        "between colour, depth and ground truth [s]");
+}
+
+}  // namespace lapis::sensor_replay

@@ -1,0 +1,213 @@
+#include "slam/slam_component.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <sstream>
+
+#include "common/files/atomic_file.hpp"
+#include "common/messages/time.hpp"
+#include "slam/core/pose_graph_file.hpp"
+
+namespace lapis::slam {
+namespace {
+
+constexpr time::Duration kStatusPeriod{1'000'000'000};
+
+void write(const std::string& folder, const std::string& name, const std::string& text) {
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  if (const auto problem = files::replace_file((std::filesystem::path(folder) / name).string(), bytes)) {
+    throw std::runtime_error(*problem);
+  }
+}
+
+std::string trajectory_line(time::Time stamp, const geometry::Pose& T) {
+  const Eigen::Quaterniond q = geometry::unit_quaternion(T);
+  char line[300];
+  std::snprintf(line, sizeof line, "%s %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", time::to_string(stamp).c_str(),
+                T.translation().x(), T.translation().y(), T.translation().z(), q.x(), q.y(), q.z(), q.w());
+  return line;
+}
+
+}  // namespace
+
+SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
+    : config_(config),
+      context_(context),
+      ids_{context.frame("map"), context.frame("odom"), context.frame("base_link")},
+      odometry_(context.advertise(topics::kSlamOdometry)),
+      tracked_frame_(context.advertise(topics::kTrackedFrame)),
+      transforms_(context.advertise(topics::kTransforms)),
+      path_(context.advertise(topics::kKeyframePath)),
+      pose_graph_(context.advertise(topics::kPoseGraph)),
+      status_(context.advertise(topics::kSlamStatus)) {
+  if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "slam.output_dir");
+  context.subscribe(topics::kColor, [this](Image& m) { store(color_, m, "colour"); });
+  context.subscribe(topics::kDepth, [this](Image& m) { store(depth_, m, "depth"); });
+  context.subscribe(topics::kColorInfo, [this](Info& m) { store(info_, m, "camera info"); });
+  context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
+  context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+}
+
+template <class Message>
+void SlamComponent::store(time::StampBuffer<Message>& buffer, Message& message, const char* stream) {
+  using Push = typename time::StampBuffer<Message>::Push;
+  const time::Time stamp = messages::from_message(message.header().stamp());
+  switch (buffer.push(stamp, std::move(message))) {
+    case Push::kStored: return;
+    case Push::kDuplicate: return context_.status().count(std::string(stream) + " dropped: stamp was there before");
+    case Push::kLate: return context_.status().count(std::string(stream) + " dropped: older than what was processed");
+    case Push::kOverflow: return context_.status().count(std::string(stream) + " dropped: its partners did not come");
+    case Push::kRestarted:
+      spdlog::warn("{}: stamps went back, the source has started anew", stream);
+      if (static_cast<void*>(&buffer) == &color_) start_new_map();
+      return;
+  }
+}
+
+void SlamComponent::work(const runtime::Cycle& cycle) {
+  while (next_frame(cycle)) {
+  }
+  if (slam_ != nullptr) publish_graph(cycle.is_final);
+}
+
+/// Joins and processes the oldest colour image; false when its partners may still come.
+bool SlamComponent::next_frame(const runtime::Cycle& cycle) {
+  using Match = time::StampBuffer<Image>::Match;
+  if (color_.empty()) return false;
+  const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
+  auto& [stamp, color] = color_.front();
+  const time::Time now = stamp;
+  Image* depth = nullptr;
+  Info* info = nullptr;
+  const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
+  const auto info_match = info_.match(now, tolerance, cycle.inputs_complete, info);
+  if (depth_match == Match::kWait || info_match == time::StampBuffer<Info>::Match::kWait) return false;
+  if (depth == nullptr) {
+    drop("no depth image for a colour image");
+  } else if (info == nullptr) {
+    drop("no camera info for a colour image");
+  } else if (prepare(color)) {
+    track(color, *depth, *info, now);
+  } else if (!cycle.inputs_complete) {
+    return false;  // the mount may still come
+  }
+  color_.drop_until(now);
+  depth_.drop_until(now - tolerance);
+  info_.drop_until(now - tolerance);
+  return true;
+}
+
+/// Makes sure that the camera's mount is known.
+bool SlamComponent::prepare(const Image& color) {
+  if (slam_ != nullptr) return true;
+  frame_.optical_frame = color.header().frame_id();
+  const auto T_base_camera = static_transforms_.find(ids_.base, frame_.optical_frame);
+  if (!T_base_camera) {
+    const std::string problem = "no transform from " + ids_.base + " to " + frame_.optical_frame + " on /tf_static";
+    context_.status().set(runtime::Status::Level::kWarn, "waiting: " + problem);
+    if (context_.rate_limit().pass("mount")) spdlog::warn("waiting: {}", problem);
+    return false;
+  }
+  frame_.T_base_camera = *T_base_camera;
+  session_ = std::max(messages::from_message(color.header().stamp()).nanoseconds, session_ + 1);
+  frame_.session = session_;
+  slam_ = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera);
+  graph_version_ = 0;
+  return true;
+}
+
+void SlamComponent::track(const Image& color, const Image& depth, const Info& info, time::Time stamp) {
+  ++frames_total_;
+  const auto frame = to_core(color, depth, info, stamp);
+  if (!frame) {
+    drop(frame.reason);
+    return;
+  }
+  frame_.stamp = stamp;
+  const TrackingResult result = slam_->process(*frame);
+  if (result.state == TrackingState::kTracking) ++frames_tracked_;
+  publish(result);
+}
+
+void SlamComponent::drop(const std::string& reason) {
+  ++frames_dropped_;
+  context_.status().count("frames dropped: " + reason);
+  if (context_.rate_limit().pass(reason)) spdlog::warn("frame dropped: {}", reason);
+}
+
+void SlamComponent::start_new_map() {
+  slam_.reset();
+  last_pose_.reset();
+  graph_stamp_.reset();
+  reported_.reset();
+}
+
+void SlamComponent::publish(const TrackingResult& result) {
+  tracked_frame_.publish(to_tracked_frame(result, frame_, ids_));
+  if (result.state == TrackingState::kTracking) publish_odometry(result);
+  publish_status(result);
+}
+
+void SlamComponent::publish_odometry(const TrackingResult& result) {
+  auto message = to_odometry(result, frame_, ids_);
+  const geometry::Pose T_map_base =
+      result.T_map_keyframe * result.T_keyframe_camera * frame_.T_base_camera.inverse();
+  if (last_pose_ && frame_.stamp > last_pose_->first) {
+    set_twist(last_pose_->second.inverse() * T_map_base, frame_.stamp - last_pose_->first, message);
+  }
+  last_pose_.emplace(frame_.stamp, T_map_base);
+  odometry_.publish(message);
+  transforms_.publish(to_transforms(message, ids_));
+}
+
+void SlamComponent::publish_graph(bool is_final) {
+  if (slam_->graph_version() == graph_version_) return;
+  const bool is_due = !graph_stamp_ || (frame_.stamp - *graph_stamp_).seconds() >= config_.graph_period_s;
+  if (!is_due && !is_final) return;
+  const auto graph = slam_->pose_graph();
+  pose_graph_.publish(to_message(graph, frame_, ids_));
+  if (path_.matched() > 0 || is_final) path_.publish(to_path(graph, frame_, ids_));
+  graph_version_ = graph.version;
+  graph_stamp_ = frame_.stamp;
+}
+
+void SlamComponent::publish_status(const TrackingResult& result) {
+  const bool is_tracking = result.state == TrackingState::kTracking;
+  context_.status().set(is_tracking ? runtime::Status::Level::kOk : runtime::Status::Level::kWarn,
+                        is_tracking ? "tracking" : result.reason);
+  context_.status().value("frames", frames_total_);
+  context_.status().value("frames_tracked", frames_tracked_);
+  const bool has_changed = !reported_ || reported_->second != result.state;
+  if (has_changed && !is_tracking) spdlog::warn("tracking lost: {}", result.reason);
+  if (has_changed && is_tracking && reported_) spdlog::info("tracking again");
+  if (!has_changed && frame_.stamp - reported_->first < kStatusPeriod) return;
+  reported_.emplace(frame_.stamp, result.state);
+  lapis_msgs::msg::SlamStatus message;
+  message.header().stamp(messages::to_message(frame_.stamp));
+  message.header().frame_id(ids_.map);
+  message.state(static_cast<std::uint8_t>(result.state));
+  message.reason(result.reason);
+  message.session(session_);
+  message.inliers(result.inliers);
+  message.keyframes(static_cast<std::uint32_t>(slam_->pose_graph().nodes.size()));
+  message.landmarks(static_cast<std::uint32_t>(slam_->landmark_count()));
+  message.frames_total(frames_total_);
+  message.frames_tracked(frames_tracked_);
+  message.frames_dropped(frames_dropped_);
+  status_.publish(message);
+}
+
+void SlamComponent::finish() {
+  spdlog::info("{} of {} frames tracked, {} dropped", frames_tracked_, frames_total_, frames_dropped_);
+  for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
+  if (config_.output_dir.empty() || slam_ == nullptr) return;
+  const auto graph = slam_->pose_graph();
+  std::ostringstream g2o;
+  write_g2o(g2o, graph);
+  write(config_.output_dir, "pose_graph.g2o", g2o.str());
+  std::string keyframes = "# key-frames: camera optical frame in " + ids_.map + "; stamp tx ty tz qx qy qz qw\n";
+  for (const auto& node : graph.nodes) keyframes += trajectory_line(node.stamp, node.T_map_camera);
+  write(config_.output_dir, "keyframes.txt", keyframes);
+}
+
+}  // namespace lapis::slam

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "common/messages/geometry.hpp"
+#include "common/runtime/context.hpp"
+#include "common/time/stamp_buffer.hpp"
+#include "slam/conversions.hpp"
+#include "slam/core/rgbd_slam.hpp"
+#include "slam/slam_config.hpp"
+
+namespace lapis::slam {
+
+/// Tracks the camera and publishes its pose, the frames' anchors and the pose graph.
+class SlamComponent {
+ public:
+  using Config = SlamComponentConfig;
+  static constexpr const char* kName = "slam";
+  static constexpr const char* kSummary = "RGB-D SLAM: camera in, poses and pose graph out.";
+
+  SlamComponent(const Config& config, runtime::Context& context);
+  void finish();
+
+ private:
+  using Image = sensor_msgs::msg::Image;
+  using Info = sensor_msgs::msg::CameraInfo;
+
+  template <class Message>
+  void store(time::StampBuffer<Message>& buffer, Message& message, const char* stream);
+  void work(const runtime::Cycle& cycle);
+  bool next_frame(const runtime::Cycle& cycle);
+  bool prepare(const Image& color);
+  void track(const Image& color, const Image& depth, const Info& info, time::Time stamp);
+  void drop(const std::string& reason);
+  void start_new_map();
+  void publish(const TrackingResult& result);
+  void publish_odometry(const TrackingResult& result);
+  void publish_graph(bool is_final);
+  void publish_status(const TrackingResult& result);
+
+  const Config config_;
+  runtime::Context& context_;
+  FrameIds ids_;
+  dds::Publisher<nav_msgs::msg::Odometry>& odometry_;
+  dds::Publisher<lapis_msgs::msg::TrackedFrame>& tracked_frame_;
+  dds::Publisher<tf2_msgs::msg::TFMessage>& transforms_;
+  dds::Publisher<nav_msgs::msg::Path>& path_;
+  dds::Publisher<lapis_msgs::msg::PoseGraph>& pose_graph_;
+  dds::Publisher<lapis_msgs::msg::SlamStatus>& status_;
+
+  time::StampBuffer<Image> color_;
+  time::StampBuffer<Image> depth_;
+  time::StampBuffer<Info> info_;
+  messages::StaticTransforms static_transforms_;
+
+  std::unique_ptr<RgbdSlam> slam_;  // exists once the camera's mount is known
+  FrameContext frame_;              // of the newest frame
+  std::int64_t session_ = -1;
+  std::optional<std::pair<time::Time, geometry::Pose>> last_pose_;  // T_map_base
+  std::optional<time::Time> graph_stamp_;
+  std::uint64_t graph_version_ = 0;  // published last
+  std::optional<std::pair<time::Time, TrackingState>> reported_;
+  std::uint64_t frames_total_ = 0;
+  std::uint64_t frames_tracked_ = 0;
+  std::uint64_t frames_dropped_ = 0;
+};
+
+}  // namespace lapis::slam

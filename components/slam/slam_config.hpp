@@ -1,0 +1,110 @@
+#pragma once
+
+#include <string>
+
+#include "common/config/schema.hpp"
+#include "slam/core/config.hpp"
+
+namespace lapis::slam {
+
+/// What the process adds to the method's configuration.
+struct SlamComponentConfig {
+  SlamConfig method;
+  double max_stamp_difference_s = 0.016;
+  double graph_period_s = 0.5;
+  std::string output_dir;
+};
+
+template <class Field>
+void describe(Field& field, FeatureConfig& c) {
+  field("max_features", c.max_features, config::in_range(100, 5000), "features per frame, all levels together");
+  field("levels", c.levels, config::in_range(1, 12), "pyramid levels");
+  field("scale_factor", c.scale_factor, config::in_range(1.05, 2), "size ratio of neighbouring levels");
+  field("fast_threshold", c.fast_threshold, config::in_range(1, 100), "least FAST contrast, grey levels");
+}
+
+template <class Field>
+void describe(Field& field, NoiseConfig& c) {
+  field("pixel_sigma_px", c.pixel_sigma_px, config::in_range(0.1, 5), "corner position at the finest level");
+  field("depth_sigma_m", c.depth_sigma_m, config::in_range(1e-4, 0.1), "constant part of the depth noise");
+  field("depth_sigma_per_m", c.depth_sigma_per_m, config::in_range(0, 0.1),
+        "quadratic part: sigma = depth_sigma_m + depth_sigma_per_m * z^2 [1/m]");
+  field("max_depth_m", c.max_depth_m, config::in_range(0.5, 50), "measurements beyond this are ignored");
+  field("min_depth_m", c.min_depth_m, config::in_range(0.01, 5), "measurements nearer than this are ignored");
+}
+
+template <class Field>
+void describe(Field& field, MatcherConfig& c) {
+  field("search_radius_px", c.search_radius_px, config::in_range(2, 100),
+        "around a predicted pixel, at the finest level");
+  field("wide_search_radius_px", c.wide_search_radius_px, config::in_range(2, 300), "second try");
+  field("max_distance", c.max_distance, config::in_range(10, 128), "Hamming bits of 256");
+  field("max_ratio", c.max_ratio, config::in_range(0.3, 1), "best / second best distance");
+}
+
+template <class Field>
+void describe(Field& field, SurfaceConfig& c) {
+  field("enabled", c.enabled, config::anything(), "");
+  field("grid_step_px", c.grid_step_px, config::in_range(4, 64), "spacing of the samples of a key-frame");
+  field("keyframes", c.keyframes, config::in_range(1, 5), "newest key-frames whose samples are aligned");
+  field("max_distance_m", c.max_distance_m, config::in_range(0.01, 1),
+        "widest gate of a sample's plane distance in the first round");
+  field("weight", c.weight, config::in_range(0.001, 1),
+        "neighbouring samples err together: share of a sample that counts");
+}
+
+template <class Field>
+void describe(Field& field, TrackerConfig& c) {
+  field("min_matches", c.min_matches, config::in_range(6, 500),
+        "projection matches below which the next way of matching is tried");
+  field("min_inliers", c.min_inliers, config::in_range(6, 200), "fewer after the refinement is lost");
+  field("local_keyframes", c.local_keyframes, config::in_range(1, 50), "key-frames whose landmarks form the local map");
+  field("recovery_keyframes", c.recovery_keyframes, config::in_range(1, 50),
+        "newest key-frames tried by brute force when all else fails");
+  field("ransac_iterations", c.ransac_iterations, config::in_range(10, 10000), "PnP");
+  field("ransac_error_px", c.ransac_error_px, config::in_range(0.5, 20), "PnP inlier threshold");
+  field("refine_iterations", c.refine_iterations, config::in_range(1, 50), "Levenberg-Marquardt steps per round");
+  field("max_prediction_s", c.max_prediction_s, config::in_range(0.01, 5), "longest gap that the motion model bridges");
+}
+
+template <class Field>
+void describe(Field& field, KeyframeConfig& c) {
+  field("min_tracked_share", c.min_tracked_share, config::in_range(0, 1), "of the reference key-frame's landmarks");
+  field("max_translation_m", c.max_translation_m, config::in_range(0.01, 5), "from the reference key-frame");
+  field("max_rotation_rad", c.max_rotation_rad, config::in_range(0.01, 3), "from the reference key-frame");
+  field("min_frames", c.min_frames, config::in_range(1, 100), "between key-frames");
+}
+
+template <class Field>
+void describe(Field& field, BundleConfig& c) {
+  field("window", c.window, config::in_range(1, 30), "free key-frames");
+  field("max_fixed", c.max_fixed, config::in_range(1, 50), "fixed key-frames that also see the landmarks");
+  field("max_landmarks", c.max_landmarks, config::in_range(50, 20000), "newest kept");
+  field("max_iterations", c.max_iterations, config::in_range(1, 100), "Levenberg-Marquardt");
+}
+
+template <class Field>
+void describe(Field& field, PoseGraphConfig& c) {
+  field("min_information", c.min_information, config::in_range(1e-6, 1e6), "[1/m^2, 1/rad^2]");
+  field("max_information", c.max_information, config::in_range(1, 1e12), "[1/m^2, 1/rad^2]");
+}
+
+template <class Field>
+void describe(Field& field, SlamComponentConfig& c) {
+  field("features", c.method.features);
+  field("noise", c.method.noise);
+  field("matcher", c.method.matcher);
+  field("surface", c.method.surface);
+  field("tracker", c.method.tracker);
+  field("keyframe", c.method.keyframe);
+  field("bundle", c.method.bundle);
+  field("pose_graph", c.method.pose_graph);
+  field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
+        "between colour, depth and camera info of one frame [s]");
+  field("graph_period_s", c.graph_period_s, config::in_range(0.0, 60.0),
+        "least time between publications of the pose graph, by the frames' stamps [s]");
+  field("output_dir", c.output_dir, config::anything(),
+        "folder for pose_graph.g2o and keyframes.txt, written at the end; empty: none");
+}
+
+}  // namespace lapis::slam

@@ -5,13 +5,14 @@
 #include <array>
 #include <iostream>
 
+#include "evaluator/map_tools.hpp"
 #include "evaluator/trajectory_tools.hpp"
 
 namespace lapis::evaluator {
 namespace {
 
 constexpr int kBadSetup = 2;
-constexpr std::array kFileTools = {"ate", "rpe"};
+constexpr std::array kFileTools = {"ate", "rpe", "map", "iou", "coverage"};
 
 }  // namespace
 
@@ -24,6 +25,7 @@ int run_file_tool(int argc, const char* const* argv, std::ostream& out, std::ost
   app.require_subcommand(1);
   add_ate_tool(app, out);
   add_rpe_tool(app, out);
+  add_map_tools(app, out);
   try {
     app.parse(argc, argv);
     return 0;

@@ -1,7 +1,6 @@
 #include "evaluator/trajectory_tools.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -12,6 +11,7 @@
 
 #include "evaluator/core/ate.hpp"
 #include "evaluator/core/rpe.hpp"
+#include "evaluator/report.hpp"
 
 namespace lapis::evaluator {
 namespace {
@@ -111,35 +111,6 @@ ordered_json to_json(const geometry::Pose& T) {
   return {{"translation_m", {t.x(), t.y(), t.z()}}, {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
 }
 
-std::string fixed(double value, const char* format = "%.6f") {
-  char text[64];
-  std::snprintf(text, sizeof text, format, value);
-  return text;
-}
-
-void print_row(std::ostream& out, const std::string& name, const ordered_json& value) {
-  out << name << std::string(name.size() < 26 ? 26 - name.size() : 1, ' ');
-  if (!value.is_object()) {
-    out << (value.is_number_float() ? fixed(value.get<double>()) : value.is_string() ? value.get<std::string>()
-                                                                                      : value.dump());
-  } else {
-    for (const auto& [key, figure] : value.items()) {
-      if (figure.is_number()) out << key << ' ' << fixed(figure.get<double>()) << "  ";
-    }
-  }
-  out << '\n';
-}
-
-void print(std::ostream& out, const ordered_json& result, bool as_json) {
-  if (as_json) {
-    out << result.dump(2) << '\n';
-    return;
-  }
-  for (const auto& [key, value] : result.items()) {
-    if (key != "T_reference_estimate") print_row(out, key, value);
-  }
-}
-
 void run_ate(const AteOptions& options, std::ostream& out) {
   const MatchedPair pair = load_pair(options);
   const AbsoluteError error = *absolute_error(pair.matches, kAlignments.at(options.align));
@@ -148,7 +119,7 @@ void run_ate(const AteOptions& options, std::ostream& out) {
   result["T_reference_estimate"] = to_json(error.T_reference_estimate);
   result["position_m"] = to_json(error.position_m);
   result["heading_rad"] = to_json(error.heading_rad);
-  print(out, result, options.as_json);
+  print_report(out, result, options.as_json);
 }
 
 void run_rpe(const RpeOptions& options, std::ostream& out) {
@@ -159,8 +130,8 @@ void run_rpe(const RpeOptions& options, std::ostream& out) {
   }
   const auto error = relative_error(pair.estimate, pair.matches, config);
   if (!error) {
-    throw std::runtime_error(options.estimate + ": no interval of " + fixed(options.delta, "%g") + " " + options.unit +
-                             " lies inside the matched poses; give a smaller --delta");
+    throw std::runtime_error(options.estimate + ": no interval of " + std::to_string(options.delta) + " " +
+                             options.unit + " lies inside the matched poses; give a smaller --delta");
   }
   ordered_json result = to_json(options, pair);
   result["delta"] = options.delta;
@@ -169,7 +140,7 @@ void run_rpe(const RpeOptions& options, std::ostream& out) {
   result["intervals"] = error->intervals.size();
   result["translation_m"] = to_json(error->translation_m);
   result["rotation_deg"] = to_json(error->rotation_rad, kDegreesPerRadian);
-  print(out, result, options.as_json);
+  print_report(out, result, options.as_json);
 }
 
 }  // namespace

@@ -3,11 +3,13 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <cstdio>
 #include <optional>
+#include <span>
 #include <stdexcept>
 
-#include "evaluator/core/text_file.hpp"
+#include "common/files/atomic_file.hpp"
 
 namespace lapis::evaluator {
 namespace {
@@ -73,8 +75,9 @@ StampedPose parse_pose(const std::vector<std::string_view>& words, const std::st
   }
   const Eigen::Quaterniond q(numbers[6], numbers[3], numbers[4], numbers[5]);
   if (!(std::abs(q.norm() - 1.0) <= kQuaternionTolerance)) {
-    refuse(source, line, "the quaternion (columns 5 to 8: x y z w) has norm " + std::to_string(q.norm()) +
-                             "; expected 1 within 0.001");
+    refuse(
+        source, line,
+        "the quaternion (columns 5 to 8: x y z w) has norm " + std::to_string(q.norm()) + "; expected 1 within 0.001");
   }
   return {*stamp, geometry::make_pose({numbers[0], numbers[1], numbers[2]}, q)};
 }
@@ -100,15 +103,15 @@ Trajectory parse_trajectory(std::string_view text, const std::string& source) {
     const auto words = split(line);
     if (words.empty()) continue;
     if (words.size() != kColumns) {
-      refuse(source, line_number, "expected 8 columns (timestamp tx ty tz qx qy qz qw), found " +
-                                      std::to_string(words.size()));
+      refuse(source, line_number,
+             "expected 8 columns (timestamp tx ty tz qx qy qz qw), found " + std::to_string(words.size()));
     }
     const StampedPose pose = parse_pose(words, source, line_number);
     if (!trajectory.empty() && pose.stamp <= trajectory.back().stamp) {
       const bool is_duplicate = pose.stamp == trajectory.back().stamp;
-      refuse(source, line_number, "the stamp " + time::to_string(pose.stamp) +
-                                      (is_duplicate ? " is there twice" : " is earlier than the line before") +
-                                      "; stamps must increase");
+      refuse(source, line_number,
+             "the stamp " + time::to_string(pose.stamp) +
+                 (is_duplicate ? " is there twice" : " is earlier than the line before") + "; stamps must increase");
     }
     trajectory.push_back(pose);
   }
@@ -116,7 +119,11 @@ Trajectory parse_trajectory(std::string_view text, const std::string& source) {
 }
 
 Trajectory read_trajectory(const std::filesystem::path& file) {
-  Trajectory trajectory = parse_trajectory(read_text_file(file), file.string());
+  std::string error;
+  const auto bytes = files::read_file(file.string(), error);
+  if (!bytes) throw std::runtime_error(error);
+  const std::string_view text(reinterpret_cast<const char*>(bytes->data()), bytes->size());
+  Trajectory trajectory = parse_trajectory(text, file.string());
   if (trajectory.empty()) {
     throw std::runtime_error(file.string() + ": holds no pose; expected TUM lines 'timestamp tx ty tz qx qy qz qw'");
   }
@@ -136,7 +143,9 @@ std::string format_trajectory(const Trajectory& trajectory, const std::string& c
 }
 
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory, const std::string& comment) {
-  write_text_file(file, format_trajectory(trajectory, comment));
+  const std::string text = format_trajectory(trajectory, comment);
+  const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
+  if (const auto error = files::replace_file(file.string(), bytes)) throw std::runtime_error(*error);
 }
 
 double path_length_m(const Trajectory& trajectory) {

@@ -1,0 +1,135 @@
+#include "evaluator/core/metrics.hpp"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace lapis::evaluator {
+namespace {
+
+using nlohmann::ordered_json;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+// The contract with everyone who reads run folders.
+const std::vector<std::string> kKeys = {"exit_reason",
+                                        "frames_total",
+                                        "frames_tracked",
+                                        "lost_time_s",
+                                        "loop_closures",
+                                        "ate_se3_rmse_m",
+                                        "ate_origin_rmse_m",
+                                        "ate_raw_rmse_m",
+                                        "rpe_1m_rmse_m",
+                                        "heading_rmse_rad",
+                                        "keyframe_ate_se3_rmse_m",
+                                        "keyframe_ate_origin_rmse_m",
+                                        "keyframe_ate_raw_rmse_m",
+                                        "ate_at_80_m",
+                                        "ate_per_metre",
+                                        "map_error_mean_m",
+                                        "map_error_p95_m",
+                                        "map_completeness_mean_m",
+                                        "iou_top8_mean",
+                                        "iou_mean",
+                                        "iou_by_class",
+                                        "explored_volume_m3",
+                                        "explored_share",
+                                        "time_to_80_s",
+                                        "time_to_90_s",
+                                        "path_length_m",
+                                        "collisions",
+                                        "decision_time_p50_s",
+                                        "decision_time_p95_s",
+                                        "real_time_factor",
+                                        "duration_s",
+                                        "wall_time_s",
+                                        "cpu_ms_per_frame",
+                                        "peak_rss_mb"};
+const std::vector<std::string> kMapKeys = {"map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m",
+                                           "iou_top8_mean",    "iou_mean",        "iou_by_class"};
+
+TEST(Metrics, EveryKeyIsThereAndNullUntilMeasured) {
+  const auto document = ordered_json::parse(to_json(RunMetrics{}));
+  for (const std::string& key : kKeys) EXPECT_TRUE(document.contains(key)) << key;
+  for (const std::string& key : kMapKeys) {
+    EXPECT_TRUE(document.contains("ideal_" + key));
+    EXPECT_TRUE(document.contains("mesh_" + key));
+  }
+  for (const auto& [key, value] : document.items()) EXPECT_TRUE(value.is_null()) << key;
+}
+
+TEST(Metrics, MeasuredZeroIsZeroAndNumbersThatAreNotFiniteAreNull) {
+  RunMetrics metrics;
+  metrics.collisions = 0;
+  metrics.lost_time_s = 0.0;
+  metrics.real_time_factor = std::numeric_limits<double>::quiet_NaN();
+  metrics.cpu_ms_per_frame = {{"slam", 12.5}, {"evaluator", std::nullopt}};
+  const auto document = ordered_json::parse(to_json(metrics));
+  EXPECT_EQ(document["collisions"], 0);
+  EXPECT_EQ(document["lost_time_s"], 0.0);
+  EXPECT_TRUE(document["real_time_factor"].is_null());
+  EXPECT_EQ(document["cpu_ms_per_frame"]["slam"], 12.5);
+  EXPECT_TRUE(document["cpu_ms_per_frame"]["evaluator"].is_null());
+}
+
+TEST(Metrics, NumbersSurviveTheDocument) {
+  RunMetrics metrics;
+  metrics.online.ate_se3_rmse_m = 0.1 + 0.2;
+  EXPECT_EQ(ordered_json::parse(to_json(metrics))["ate_se3_rmse_m"].get<double>(), 0.1 + 0.2);
+  EXPECT_EQ(to_json(metrics), to_json(metrics));
+}
+
+TEST(Metrics, TableShowsWhatIsMissing) {
+  RunMetrics metrics;
+  metrics.exit_reason = "finished";
+  metrics.online.ate_raw_rmse_m = 0.0123;
+  metrics.peak_rss_mb = {{"slam", 100.0}};
+  const std::string table = format_table(metrics);
+  EXPECT_THAT(table, HasSubstr("exit_reason                       finished\n"));
+  EXPECT_THAT(table, HasSubstr("ate_raw_rmse_m                    0.0123\n"));
+  EXPECT_THAT(table, HasSubstr("collisions                        -\n"));
+  EXPECT_THAT(table, HasSubstr("peak_rss_mb.slam                  100.0000\n"));
+  EXPECT_THAT(table, Not(HasSubstr("null")));
+}
+
+TEST(Metrics, TrajectoryFiguresOfADriftingWalk) {
+  Trajectory reference, estimate;
+  for (int i = 0; i <= 100; ++i) {
+    const time::Time stamp{i * 100000000LL};
+    const auto pose = [](double x) { return geometry::make_pose({x, 0, 0}, Eigen::Quaterniond::Identity()); };
+    reference.push_back({stamp, pose(0.1 * i)});
+    estimate.push_back({stamp, pose(0.11 * i)});
+  }
+  const TrajectoryFigures figures = trajectory_figures(reference, estimate);
+  EXPECT_NEAR(*figures.rpe_1m_rmse_m, 0.1, 1e-9);
+  EXPECT_NEAR(*figures.ate_raw_rmse_m, *figures.ate_origin_rmse_m, 1e-9);
+  EXPECT_LT(*figures.ate_se3_rmse_m, *figures.ate_raw_rmse_m);
+  EXPECT_NEAR(*figures.heading_rmse_rad, 0.0, 1e-9);
+  EXPECT_NEAR(*ate_raw_until(reference, estimate, reference[1].stamp), std::sqrt(0.0001 / 2.0), 1e-9);
+  EXPECT_FALSE(ate_raw_until(reference, estimate, time::Time{-1}));
+  EXPECT_FALSE(trajectory_figures({}, estimate).ate_raw_rmse_m);
+}
+
+TEST(Metrics, MapFiguresNameTheClasses) {
+  const auto map = make_labelled_voxels(0.25, {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}, {{2, 0, 0}, 7}});
+  RunMetrics metrics;
+  metrics.map = map_figures(map, map, {{1, "wall"}});
+  const auto document = ordered_json::parse(to_json(metrics));
+  EXPECT_EQ(document["iou_by_class"]["wall"]["iou"], 1.0);
+  EXPECT_EQ(document["iou_by_class"]["wall"]["reference_voxels"], 2);
+  EXPECT_EQ(document["iou_by_class"]["7"]["top8"], true);
+  EXPECT_EQ(document["iou_top8_mean"], 1.0);
+  EXPECT_EQ(document["map_error_mean_m"], 0.0);
+  EXPECT_TRUE(document["mesh_iou_by_class"].is_null());
+}
+
+TEST(Metrics, ARunThatLostTooManyFramesIsLost) {
+  EXPECT_EQ(judged_exit_reason("finished", 95, 100), "finished");
+  EXPECT_EQ(judged_exit_reason("finished", 94, 100), "lost");
+}
+
+}  // namespace
+}  // namespace lapis::evaluator

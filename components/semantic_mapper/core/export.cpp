@@ -85,7 +85,7 @@ Octree encode_octree(const mapping::VoxelMap& map, const mapping::BeliefReader& 
     const geometry::Rgb8 color = labels.color(reader.label(counts));
     node->setColor(color.r, color.g, color.b);
   });
-  tree.updateInnerOccupancy();
+  if (tree.size() > 0) tree.updateInnerOccupancy();  // OctoMap dereferences the root of an empty tree here
   std::ostringstream file, data;
   tree.write(file);
   tree.writeData(data);

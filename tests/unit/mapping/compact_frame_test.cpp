@@ -1,0 +1,95 @@
+#include "common/mapping/compact_frame.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/synthetic_room.hpp"
+
+namespace lapis::mapping {
+namespace {
+
+const geometry::PinholeCamera kCamera{64, 36, 32, 32, 31.5, 17.5};
+
+TEST(CompactFrame, KeepsSampledDepthInMillimetresAndLabels) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<float> depth_m(0.0f, 70.0f);
+  std::uniform_int_distribution<int> label(0, 65535);
+  for (const int stride : {1, 2, 3, 5}) {
+    geometry::DepthImage depth(kCamera.width, kCamera.height);
+    geometry::LabelImage labels(kCamera.width, kCamera.height);
+    for (float& d : depth.pixels) d = depth_m(random);
+    for (std::uint16_t& l : labels.pixels) l = static_cast<std::uint16_t>(label(random));
+    std::string error;
+    const auto frame = CompactFrame::make(kCamera, depth, &labels, {stride, 65535}, error);
+    ASSERT_TRUE(frame) << error;
+    const CompactFrame::Samples samples = frame->unpack();
+    ASSERT_EQ(samples.depth_mm.size(), static_cast<std::size_t>(frame->columns() * frame->rows()));
+    for (int row = 0; row < frame->rows(); ++row)
+      for (int column = 0; column < frame->columns(); ++column) {
+        const auto i = static_cast<std::size_t>(row * frame->columns() + column);
+        const float true_m = depth(column * stride, row * stride);
+        EXPECT_NEAR(samples.depth_mm[i] * 1e-3f, std::min(true_m, 65.535f), 0.00051f);
+        EXPECT_EQ(samples.labels[i], labels(column * stride, row * stride));
+      }
+  }
+}
+
+TEST(CompactFrame, DepthThatIsNoMeasurementIsZero) {
+  geometry::DepthImage depth(kCamera.width, kCamera.height);
+  depth.pixels[0] = std::numeric_limits<float>::quiet_NaN();
+  depth.pixels[1] = std::numeric_limits<float>::infinity();
+  depth.pixels[2] = -1.0f;
+  depth.pixels[3] = 2.0f;
+  std::string error;
+  const auto frame = CompactFrame::make(kCamera, depth, nullptr, {1, 0}, error);
+  ASSERT_TRUE(frame);
+  const auto samples = frame->unpack();
+  EXPECT_EQ(samples.depth_mm[0], 0);
+  EXPECT_EQ(samples.depth_mm[1], 0);
+  EXPECT_EQ(samples.depth_mm[2], 0);
+  EXPECT_EQ(samples.depth_mm[3], 2000);
+  EXPECT_TRUE(samples.labels.empty());
+  EXPECT_DOUBLE_EQ(frame->median_depth_m(), 2.0);
+}
+
+TEST(CompactFrame, LabelsAboveTheListBecomeUnlabelledAndAreCounted) {
+  const geometry::DepthImage depth(kCamera.width, kCamera.height, 1.0f);
+  geometry::LabelImage labels(kCamera.width, kCamera.height, 40);
+  labels.pixels[0] = 41;
+  labels.pixels[5] = 65535;
+  std::string error;
+  const auto frame = CompactFrame::make(kCamera, depth, &labels, {1, 40}, error);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->labels_out_of_list(), 2u);
+  EXPECT_EQ(frame->unpack().labels[0], 0);
+  EXPECT_EQ(frame->unpack().labels[1], 40);
+}
+
+TEST(CompactFrame, NamesWhatDisagrees) {
+  const geometry::DepthImage depth(kCamera.width, kCamera.height, 1.0f), small(8, 8, 1.0f);
+  const geometry::LabelImage small_labels(8, 8);
+  std::string error;
+  EXPECT_FALSE(CompactFrame::make(kCamera, small, nullptr, {}, error));
+  EXPECT_NE(error.find("depth size"), std::string::npos);
+  EXPECT_FALSE(CompactFrame::make(kCamera, depth, &small_labels, {}, error));
+  EXPECT_NE(error.find("label size"), std::string::npos);
+  EXPECT_FALSE(CompactFrame::make(geometry::PinholeCamera{}, depth, nullptr, {}, error));
+  EXPECT_NE(error.find("camera"), std::string::npos);
+  EXPECT_FALSE(CompactFrame::make(kCamera, depth, nullptr, {0, 0}, error));
+  EXPECT_NE(error.find("stride"), std::string::npos);
+}
+
+TEST(CompactFrame, TakesAFractionOfTheImagesMemory) {
+  const geometry::PinholeCamera camera{640, 360, 320, 320, 319.5, 179.5};
+  const auto image = lapis::test::render(lapis::test::furnished_room(), camera, lapis::test::look({-2, -1, 1}, 0.4, 0.1));
+  std::string error;
+  const auto frame = CompactFrame::make(camera, image.depth, &image.labels, {}, error);
+  ASSERT_TRUE(frame);
+  EXPECT_LT(frame->bytes(), 40'000u);  // images: 640 * 360 * 6 = 1,382,400
+}
+
+}  // namespace
+}  // namespace lapis::mapping

@@ -1,0 +1,245 @@
+#include "common/mapping/integration.hpp"
+
+#include <cmath>
+#include <map>
+#include <random>
+#include <set>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "common/mapping/voxel_map.hpp"
+#include "tests/support/synthetic_room.hpp"
+
+namespace lapis::mapping {
+namespace {
+
+using geometry::Pose;
+
+struct PlainVotes {
+  std::set<VoxelIndex> passes;
+  std::map<VoxelIndex, int> hits;
+};
+
+PlainVotes plain(const FrameVotes& votes) {
+  PlainVotes p;
+  for (const BlockVotes& block : votes.blocks) {
+    for (int offset = 0; offset < kBlockVoxels; ++offset) {
+      const bool is_passed = block.passes[static_cast<std::size_t>(offset / 64)] >> (offset % 64) & 1u;
+      if (is_passed) p.passes.insert(voxel_at(block.block, offset));
+    }
+    for (std::uint32_t i = block.hits_begin; i < block.hits_end; ++i)
+      EXPECT_TRUE(p.hits.emplace(voxel_at(block.block, votes.hits[i].offset), votes.hits[i].label).second);
+  }
+  for (const auto& [voxel, label] : p.hits) EXPECT_FALSE(p.passes.contains(voxel));
+  return p;
+}
+
+CompactFrame frame_of(const geometry::PinholeCamera& camera, const geometry::DepthImage& depth,
+                      const geometry::LabelImage* labels = nullptr, int stride = 1) {
+  std::string error;
+  return CompactFrame::make(camera, depth, labels, {stride, 65535}, error).value();
+}
+
+IntegrationConfig exact_config() {
+  IntegrationConfig config;
+  config.depth_noise_per_m = 0.0;
+  return config;
+}
+
+/// Exit of the segment a + t d from a voxel as t; negative when it does not cross the voxel's inside.
+double exit_of(const VoxelIndex& v, double r, const Eigen::Vector3d& a, const Eigen::Vector3d& d) {
+  double enter = 0.0, leave = 1e9;
+  const double low[] = {v.x * r, v.y * r, v.z * r};
+  for (int axis = 0; axis < 3; ++axis) {
+    const double t0 = (low[axis] - a[axis]) / d[axis], t1 = (low[axis] + r - a[axis]) / d[axis];
+    enter = std::max(enter, std::min(t0, t1));
+    leave = std::min(leave, std::max(t0, t1));
+  }
+  return enter < leave ? leave : -1.0;
+}
+
+Pose random_pose(std::mt19937& random) {
+  std::uniform_real_distribution<double> u(-1.0, 1.0);
+  const auto next = [&] { return u(random); };
+  geometry::Vector6d xi;
+  xi << 3 * next(), 3 * next(), 3 * next(), 2 * next(), 2 * next(), 2 * next();
+  return geometry::se3_exp(xi);
+}
+
+TEST(ComputeVotes, EqualsSlabTestOfEveryVoxelAndRay) {
+  // Pixels so far apart that each sees its own voxel: every ray is followed.
+  const geometry::PinholeCamera camera{7, 5, 4, 4, 3, 2};
+  std::mt19937 random(11);
+  std::uniform_real_distribution<float> depth_m(1.5f, 8.0f);
+  const double r = 0.25;
+  const VoxelMap grid(r);
+  IntegrationConfig config = exact_config();
+  for (int trial = 0; trial < 20; ++trial) {
+    config.end_margin_voxels = 0.5 * (trial % 3);
+    geometry::DepthImage depth(camera.width, camera.height);
+    for (float& d : depth.pixels) d = depth_m(random);
+    const Pose T = random_pose(random);
+    const PlainVotes got = plain(compute_votes(frame_of(camera, depth), T, config, r));
+
+    PlainVotes expected;
+    for (int row = 0; row < camera.height; ++row)
+      for (int column = 0; column < camera.width; ++column) {
+        const double depth_rounded = std::round(depth(column, row) * 1000.0f) * 1e-3;
+        Eigen::Vector3d ray = T.linear() * camera.unproject(column, row, depth_rounded);
+        const double range = ray.norm();
+        double t_end = 1.0 - config.end_margin_voxels * r / range;
+        if (range > config.max_range_m) {
+          ray *= config.max_range_m / range;
+          t_end = 1.0;
+        } else {
+          expected.hits[grid.index_of(T.translation() + ray)] = 0;
+        }
+        const VoxelIndex center = grid.index_of(T.translation());
+        const int reach = static_cast<int>(config.max_range_m / r) + 2;
+        for (int z = -reach; z <= reach; ++z)
+          for (int y = -reach; y <= reach; ++y)
+            for (int x = -reach; x <= reach; ++x) {
+              const VoxelIndex v{center.x + x, center.y + y, center.z + z};
+              const double leave = exit_of(v, r, T.translation(), ray);
+              if (leave >= 0.0 && leave <= t_end) expected.passes.insert(v);
+            }
+      }
+    for (const auto& [voxel, label] : expected.hits) expected.passes.erase(voxel);
+    EXPECT_EQ(got.passes, expected.passes) << "trial " << trial;
+    EXPECT_EQ(got.hits, expected.hits) << "trial " << trial;
+  }
+}
+
+TEST(ComputeVotes, HitsAreExactlyTheVoxelsOfTheSampledPoints) {
+  const geometry::PinholeCamera camera{160, 90, 80, 80, 79.5, 44.5};
+  const auto room = lapis::test::furnished_room();
+  for (const double r : {0.02, 0.05, 0.1, 0.25, 0.5}) {
+    const VoxelMap grid(r);
+    const Pose T = lapis::test::look({-1.0, 0.3, 1.1}, 0.7, 0.2);
+    const auto image = lapis::test::render(room, camera, T);
+    const PlainVotes got = plain(compute_votes(frame_of(camera, image.depth, &image.labels), T, exact_config(), r));
+    std::map<VoxelIndex, std::map<int, int>> tally;
+    for (int row = 0; row < camera.height; ++row)
+      for (int column = 0; column < camera.width; ++column) {
+        const Eigen::Vector3d p = camera.unproject(column, row, std::round(image.depth(column, row) * 1000.0f) * 1e-3);
+        if (p.norm() <= 5.0) ++tally[grid.index_of(T * p)][image.labels(column, row)];
+      }
+    // Points on a voxel boundary may fall to either side by rounding.
+    std::size_t different = 0;
+    for (const auto& [voxel, classes] : tally) {
+      int best = 0, most = 0;
+      for (const auto& [label, n] : classes)
+        if (n > most) best = label, most = n;
+      const auto it = got.hits.find(voxel);
+      if (it == got.hits.end() || it->second != best) ++different;
+    }
+    EXPECT_LE(different, tally.size() / 200) << r;
+    EXPECT_NEAR(static_cast<double>(got.hits.size()), static_cast<double>(tally.size()), 1.0 + 0.005 * static_cast<double>(tally.size()));
+  }
+}
+
+/// A camera that looks along +x at a wall; two columns of pixels.
+struct TwoPixels {
+  geometry::PinholeCamera camera{9, 1, 1000, 1000, 4, 0};
+  Pose T = lapis::test::look({0.1, 0.1, 0.1}, 0.0);
+  geometry::DepthImage depth{9, 1, 2.0f};
+  geometry::LabelImage labels{9, 1};
+};
+
+TEST(ComputeVotes, ClassIsTheMajorityAndTiesGoToTheSmallerId) {
+  TwoPixels s;
+  const auto label = [&s] {
+    const PlainVotes got = plain(compute_votes(frame_of(s.camera, s.depth, &s.labels), s.T, exact_config(), 0.5));
+    EXPECT_EQ(got.hits.size(), 1u);
+    return got.hits.begin()->second;
+  };
+  s.labels.pixels = {7, 7, 3, 3, 3, 9, 9, 9, 9};
+  EXPECT_EQ(label(), 9);
+  s.labels.pixels = {7, 7, 7, 3, 3, 3, 0, 0, 0};
+  EXPECT_EQ(label(), 3);
+  s.labels.pixels = {0, 0, 0, 0, 0, 0, 0, 0, 5};  // any label beats none
+  EXPECT_EQ(label(), 5);
+  s.labels.pixels.assign(9, 0);
+  EXPECT_EQ(label(), 0);
+}
+
+TEST(ComputeVotes, FarReturnsCarveWithoutHitAndMissingDepthSaysNothing) {
+  TwoPixels s;
+  s.depth = geometry::DepthImage(9, 1, 40.0f);
+  const PlainVotes far = plain(compute_votes(frame_of(s.camera, s.depth), s.T, exact_config(), 0.5));
+  EXPECT_TRUE(far.hits.empty());
+  EXPECT_EQ(far.passes.size(), 10u);  // 5 m from x = 0.1 leaves cells 0..9
+  s.depth = geometry::DepthImage(9, 1, 0.0f);
+  EXPECT_TRUE(compute_votes(frame_of(s.camera, s.depth), s.T, exact_config(), 0.5).blocks.empty());
+  s.depth = geometry::DepthImage(9, 1, 0.1f);  // below min_range_m
+  EXPECT_TRUE(compute_votes(frame_of(s.camera, s.depth), s.T, exact_config(), 0.5).blocks.empty());
+}
+
+TEST(ComputeVotes, NothingOutsideTheHeightLimits) {
+  const geometry::PinholeCamera camera{64, 36, 32, 32, 31.5, 17.5};
+  const Pose T = lapis::test::look({-1.0, 0.3, 1.1}, 0.7, 0.2);
+  const auto image = lapis::test::render(lapis::test::furnished_room(), camera, T);
+  IntegrationConfig config = exact_config();
+  const CompactFrame frame = frame_of(camera, image.depth, &image.labels);
+  const PlainVotes all = plain(compute_votes(frame, T, config, 0.1));
+  config.min_height_m = 0.5;
+  config.max_height_m = 1.5;
+  const PlainVotes cut = plain(compute_votes(frame, T, config, 0.1));
+  PlainVotes expected;
+  const auto is_inside = [](const VoxelIndex& v) { return v.z >= 5 && v.z < 15; };
+  for (const VoxelIndex& v : all.passes)
+    if (is_inside(v)) expected.passes.insert(v);
+  for (const auto& [v, label] : all.hits)
+    if (is_inside(v)) expected.hits[v] = label;
+  EXPECT_EQ(cut.passes, expected.passes);
+  EXPECT_EQ(cut.hits, expected.hits);
+  EXPECT_LT(cut.hits.size(), all.hits.size());
+}
+
+TEST(ComputeVotes, FreeSpaceIsFreeAndSurfacesAreNeverPassed) {
+  // Nothing may be passed that lies behind the first surface of every pixel.
+  const geometry::PinholeCamera camera{160, 90, 80, 80, 79.5, 44.5};
+  const Pose T = lapis::test::look({-1.0, 0.3, 1.1}, 0.7, 0.2);
+  const auto room = lapis::test::furnished_room();
+  const auto image = lapis::test::render(room, camera, T);
+  const VoxelMap grid(0.1);
+  const PlainVotes got = plain(compute_votes(frame_of(camera, image.depth, &image.labels), T, exact_config(), 0.1));
+  for (const VoxelIndex& voxel : got.passes) {
+    const Eigen::Vector3d center = grid.center_of(voxel);
+    for (const lapis::test::Box& box : room) {
+      const Eigen::Vector3d inside = (center - box.low).cwiseMin(box.high - center);
+      EXPECT_LT(inside.minCoeff(), 0.1) << "a voxel deep inside a box was passed";
+    }
+  }
+  EXPECT_GT(got.passes.size(), 5000u);
+}
+
+TEST(ComputeVotes, IsDeterministic) {
+  const geometry::PinholeCamera camera{160, 90, 80, 80, 79.5, 44.5};
+  const Pose T = lapis::test::look({-1.0, 0.3, 1.1}, 0.7, 0.2);
+  const auto image = lapis::test::render(lapis::test::furnished_room(), camera, T);
+  const CompactFrame frame = frame_of(camera, image.depth, &image.labels, 2);
+  EXPECT_EQ(compute_votes(frame, T, {}, 0.05), compute_votes(frame, T, {}, 0.05));
+}
+
+TEST(ComputeVotes, RefusesRangeOfTooManyVoxels) {
+  TwoPixels s;
+  IntegrationConfig config;
+  config.max_range_m = 11.0;
+  EXPECT_THROW(compute_votes(frame_of(s.camera, s.depth), s.T, config, 0.02), std::runtime_error);
+}
+
+TEST(ValidateIntegrationConfig, NamesTheValue) {
+  IntegrationConfig config;
+  config.max_range_m = 100.0;
+  try {
+    validate(config);
+    FAIL();
+  } catch (const std::runtime_error& error) {
+    EXPECT_NE(std::string(error.what()).find("max_range_m"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace lapis::mapping

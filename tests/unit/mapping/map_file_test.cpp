@@ -1,0 +1,167 @@
+#include "common/mapping/map_file.hpp"
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "common/files/atomic_file.hpp"
+#include "common/mapping/byte_stream.hpp"
+#include "common/mapping/crc32.hpp"
+#include "common/mapping/zstd_codec.hpp"
+#include "tests/unit/mapping/random_votes.hpp"
+
+namespace lapis::mapping {
+namespace {
+
+namespace fs = std::filesystem;
+
+class MapFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::temp_directory_path() / ("lapis_map_file_" + std::to_string(::getpid()));
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+  std::string path(const std::string& name) const { return (folder_ / name).string(); }
+
+  fs::path folder_;
+};
+
+MapFile example(unsigned seed = 1, int frames = 20) {
+  MapFile file{test::random_map(seed, 0.1, frames), {}, LabelList::from_names({{1, "wall"}, {7, "chair"}}), {}};
+  file.sensor_model.prior_occupied = 0.3;
+  file.provenance = {{"source", "test"}, {"frames", "20"}};
+  return file;
+}
+
+void expect_equal(const MapFile& a, const MapFile& b) {
+  EXPECT_EQ(a.map, b.map);
+  EXPECT_EQ(a.sensor_model, b.sensor_model);
+  EXPECT_EQ(a.labels, b.labels);
+  EXPECT_EQ(a.provenance, b.provenance);
+}
+
+TEST_F(MapFileTest, LoadedEqualsSaved) {
+  const MapFile file = example();
+  ASSERT_EQ(save_map(path("map.lapis"), file), std::nullopt);
+  std::string error;
+  const auto loaded = load_map(path("map.lapis"), error);
+  ASSERT_TRUE(loaded) << error;
+  expect_equal(*loaded, file);
+  EXPECT_FALSE(fs::exists(path("map.lapis.part")));
+}
+
+TEST_F(MapFileTest, ModelWithPriorsAndEmptyMapSurvive) {
+  MapFile file{VoxelMap(0.02), paper_sensor_model(), {}, {}};
+  std::string error;
+  const auto loaded = decode_map(encode_map(file), error);
+  ASSERT_TRUE(loaded) << error;
+  expect_equal(*loaded, file);
+}
+
+TEST_F(MapFileTest, EqualMapsGiveEqualBytes) {
+  std::mt19937 random(3);
+  std::vector<FrameVotes> all;
+  for (int i = 0; i < 20; ++i) all.push_back(test::random_votes(random));
+  MapFile a{VoxelMap(0.1), {}, {}, {}}, b = a;
+  for (const FrameVotes& votes : all) a.map.add(votes);
+  for (auto it = all.rbegin(); it != all.rend(); ++it) b.map.add(*it);
+  EXPECT_EQ(encode_map(a), encode_map(b));
+}
+
+TEST_F(MapFileTest, EveryFlippedBitAndEveryTruncationIsRefused) {
+  const std::vector<std::uint8_t> good = encode_map(example(1, 1));
+  std::string error;
+  ASSERT_TRUE(decode_map(good, error));
+  for (std::size_t size = 0; size < good.size(); ++size) ASSERT_FALSE(decode_map(std::span(good).first(size), error));
+  std::vector<std::uint8_t> bad = good;
+  for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+    bad[bit / 8] = static_cast<std::uint8_t>(bad[bit / 8] ^ (1u << bit % 8));
+    ASSERT_FALSE(decode_map(bad, error)) << "bit " << bit;
+    ASSERT_FALSE(error.empty());
+    bad[bit / 8] = good[bit / 8];
+  }
+  bad.push_back(0);
+  EXPECT_FALSE(decode_map(bad, error));
+}
+
+TEST_F(MapFileTest, MaliciousContentWithGoodChecksumNeverCrashes) {
+  // Damages the content below zstd and checksum, as a writer with a bug would.
+  const std::vector<std::uint8_t> good = encode_map(example(2, 2));
+  const auto content = zstd_decompress(std::span(good).subspan(24), 1 << 24);
+  ASSERT_TRUE(content);
+  std::mt19937 random(5);
+  for (int trial = 0; trial < 3000; ++trial) {
+    std::vector<std::uint8_t> bad = *content;
+    for (int i = 0; i < 1 + trial % 4; ++i)
+      bad[random() % (trial % 2 ? bad.size() : 150)] = static_cast<std::uint8_t>(random());
+    if (trial % 5 == 0) bad.resize(random() % bad.size());
+    const auto payload = zstd_compress(bad, 1);
+    ByteWriter checked, file;
+    checked.u64(payload.size());
+    checked.raw(payload);
+    file.raw(std::span(good).first(12));
+    file.u32(crc32(checked.bytes()));
+    file.raw(checked.bytes());
+    std::string error;
+    const bool is_loaded = decode_map(file.bytes(), error).has_value();
+    EXPECT_NE(is_loaded, !error.empty());
+  }
+}
+
+TEST_F(MapFileTest, ErrorsNameFileAndReason) {
+  std::string error;
+  EXPECT_FALSE(load_map(path("absent.lapis"), error));
+  EXPECT_NE(error.find("absent.lapis"), std::string::npos);
+  std::ofstream(path("text.lapis")) << "this is not a map, but long enough to be one";
+  EXPECT_FALSE(load_map(path("text.lapis"), error));
+  EXPECT_NE(error.find("text.lapis: is not a Lapis map"), std::string::npos) << error;
+  EXPECT_FALSE(load_map(folder_.string(), error));
+  const auto failure = save_map(path("no_such_folder/map.lapis"), example());
+  ASSERT_TRUE(failure);
+  EXPECT_NE(failure->find("no_such_folder/map.lapis"), std::string::npos);
+}
+
+TEST_F(MapFileTest, NewerFormatVersionIsNamed) {
+  std::vector<std::uint8_t> bytes = encode_map(example());
+  bytes[8] = 9;
+  std::string error;
+  EXPECT_FALSE(decode_map(bytes, error));
+  EXPECT_NE(error.find("format version 9"), std::string::npos);
+}
+
+TEST_F(MapFileTest, OldFileStaysWholeWhenThereIsNoSpace) {
+  const std::string file = path("map.lapis");
+  const MapFile old = example(1, 1);
+  ASSERT_EQ(save_map(file, old), std::nullopt);
+  // A file size limit makes write() fail as a full disk does.
+  rlimit before{};
+  ASSERT_EQ(::getrlimit(RLIMIT_FSIZE, &before), 0);
+  const auto handler = std::signal(SIGXFSZ, SIG_IGN);
+  const rlimit small{1024, before.rlim_max};
+  ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &small), 0);
+  const auto failure = save_map(file, example(2, 50));
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+
+  ASSERT_TRUE(failure);
+  EXPECT_NE(failure->find(file), std::string::npos);
+  EXPECT_FALSE(fs::exists(file + ".part"));
+  std::string error;
+  const auto loaded = load_map(file, error);
+  ASSERT_TRUE(loaded) << error;
+  expect_equal(*loaded, old);
+}
+
+TEST(Crc32, GivesTheStandardCheckValue) {
+  const std::string text = "123456789";
+  EXPECT_EQ(crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}), 0xCBF43926u);
+}
+
+}  // namespace
+}  // namespace lapis::mapping

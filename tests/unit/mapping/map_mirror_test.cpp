@@ -1,0 +1,172 @@
+#include "common/mapping/map_mirror.hpp"
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/mapping/random_votes.hpp"
+
+namespace lapis::mapping {
+namespace {
+
+constexpr double kResolution_m = 0.1;
+constexpr int kEdge = 2;
+
+/// The publishing side, reduced to its promise: versions of tiles and a state after them.
+class Publisher {
+ public:
+  struct Tile {
+    TileIndex index;
+    std::uint64_t version;
+    std::vector<std::uint8_t> bytes;
+  };
+  explicit Publisher(std::int64_t epoch) : epoch_(epoch) {}
+
+  std::vector<Tile> publish(const FrameVotes& votes) {
+    map_.add(votes);
+    ++version_;
+    std::set<TileIndex> changed;
+    for (const BlockVotes& block : votes.blocks) changed.insert(tile_of(block.block, kEdge));
+    std::vector<Tile> tiles;
+    for (const TileIndex& index : changed) {
+      versions_[index] = version_;
+      tiles.push_back({index, version_, *encode_tile(map_, index, kEdge)});
+    }
+    return tiles;
+  }
+  MapState state() const {
+    MapState state{epoch_, version_, static_cast<std::uint32_t>(versions_.size()), 0, kResolution_m};
+    for (const auto& [index, version] : versions_) state.checksum += tile_hash(index, version);
+    return state;
+  }
+  const VoxelMap& map() const { return map_; }
+  std::int64_t epoch() const { return epoch_; }
+
+ private:
+  std::int64_t epoch_;
+  VoxelMap map_{kResolution_m};
+  std::uint64_t version_ = 0;
+  std::map<TileIndex, std::uint64_t> versions_;
+};
+
+TEST(MapMirror, ServesEachVersionOnceItsTilesAreThere) {
+  std::mt19937 random(1);
+  Publisher publisher(5);
+  MapMirror mirror;
+  EXPECT_EQ(mirror.map(), nullptr);
+  for (int i = 0; i < 10; ++i) {
+    for (const auto& tile : publisher.publish(test::random_votes(random)))
+      EXPECT_EQ(mirror.apply_tile(5, tile.index, tile.version, tile.bytes), TileResult::kAccepted);
+    mirror.apply_state(publisher.state());
+    ASSERT_TRUE(mirror.is_consistent());
+    EXPECT_EQ(*mirror.map(), publisher.map());
+    EXPECT_EQ(mirror.state()->version, static_cast<std::uint64_t>(i + 1));
+  }
+}
+
+TEST(MapMirror, KeepsTheLastConsistentVersionUntilTheNextIsWhole) {
+  std::mt19937 random(2);
+  Publisher publisher(1);
+  MapMirror mirror;
+  for (const auto& tile : publisher.publish(test::random_votes(random)))
+    mirror.apply_tile(1, tile.index, tile.version, tile.bytes);
+  mirror.apply_state(publisher.state());
+  const VoxelMap first = publisher.map();
+
+  const auto tiles = publisher.publish(test::random_votes(random));
+  mirror.apply_state(publisher.state());  // overtakes its tiles
+  for (const auto& tile : tiles) {
+    EXPECT_FALSE(mirror.is_consistent());
+    EXPECT_EQ(*mirror.map(), first);
+    mirror.apply_tile(1, tile.index, tile.version, tile.bytes);
+  }
+  EXPECT_TRUE(mirror.is_consistent());
+  EXPECT_EQ(*mirror.map(), publisher.map());
+}
+
+TEST(MapMirror, AnyOrderRepeatsAndLossEndInTheNewestVersion) {
+  for (unsigned seed = 0; seed < 30; ++seed) {
+    std::mt19937 random(seed);
+    Publisher publisher(1);
+    MapMirror mirror;
+    std::vector<Publisher::Tile> sent;
+    std::vector<MapState> states;
+    for (int i = 0; i < 6; ++i) {
+      for (auto& tile : publisher.publish(test::random_votes(random))) sent.push_back(std::move(tile));
+      states.push_back(publisher.state());
+    }
+    // Keep last 1 per key: older samples of a tile may be lost, the newest is not.
+    std::erase_if(sent, [&](const Publisher::Tile& tile) {
+      const bool is_newest = std::none_of(sent.begin(), sent.end(), [&](const Publisher::Tile& other) {
+        return other.index == tile.index && other.version > tile.version;
+      });
+      return !is_newest && random() % 2 == 0;
+    });
+    std::shuffle(sent.begin(), sent.end(), random);
+    std::shuffle(states.begin(), states.end(), random);
+    for (std::size_t i = 0; i < sent.size(); ++i) {
+      if (i < states.size()) mirror.apply_state(states[i]);
+      mirror.apply_tile(1, sent[i].index, sent[i].version, sent[i].bytes);
+      if (i % 3 == 0) mirror.apply_tile(1, sent[i].index, sent[i].version, sent[i].bytes);
+    }
+    for (const MapState& state : states) mirror.apply_state(state);
+    ASSERT_TRUE(mirror.is_consistent());
+    EXPECT_EQ(*mirror.map(), publisher.map());
+  }
+}
+
+TEST(MapMirror, ChangedBlocksExplainEveryDifference) {
+  std::mt19937 random(4);
+  Publisher publisher(1);
+  MapMirror mirror;
+  VoxelMap copy(kResolution_m);
+  for (int i = 0; i < 5; ++i) {
+    for (const auto& tile : publisher.publish(test::random_votes(random)))
+      mirror.apply_tile(1, tile.index, tile.version, tile.bytes);
+    mirror.apply_state(publisher.state());
+    for (const BlockIndex& block : mirror.take_changed_blocks()) {
+      copy.erase_block(block);
+      if (const VoxelBlock* content = mirror.map()->find(block)) copy.set_block(block, *content);
+    }
+    EXPECT_EQ(copy, publisher.map());
+  }
+  EXPECT_TRUE(mirror.take_changed_blocks().empty());
+}
+
+TEST(MapMirror, ARestartedMapperReplacesTheMapAndOldSamplesAreDropped) {
+  std::mt19937 random(3);
+  Publisher before(10), after(11);
+  MapMirror mirror;
+  const auto old_tiles = before.publish(test::random_votes(random));
+  for (const auto& tile : old_tiles) mirror.apply_tile(10, tile.index, tile.version, tile.bytes);
+  mirror.apply_state(before.state());
+
+  const auto new_tiles = after.publish(test::random_votes(random));
+  for (const auto& tile : new_tiles) {
+    mirror.apply_tile(11, tile.index, tile.version, tile.bytes);
+    EXPECT_EQ(*mirror.map(), before.map());
+  }
+  EXPECT_EQ(mirror.apply_tile(10, old_tiles[0].index, 99, old_tiles[0].bytes), TileResult::kOutdated);
+  mirror.apply_state(before.state());
+  EXPECT_EQ(*mirror.map(), before.map());
+  mirror.apply_state(after.state());
+  EXPECT_TRUE(mirror.is_consistent());
+  EXPECT_EQ(*mirror.map(), after.map());
+}
+
+TEST(MapMirror, DamagedTilesAreReportedAndChangeNothing) {
+  std::mt19937 random(3);
+  Publisher publisher(1);
+  MapMirror mirror;
+  auto tiles = publisher.publish(test::random_votes(random));
+  mirror.apply_state(publisher.state());
+  const std::vector<std::uint8_t> damaged(tiles[0].bytes.begin(), tiles[0].bytes.end() - 1);
+  EXPECT_EQ(mirror.apply_tile(1, tiles[0].index, 1, damaged), TileResult::kDamaged);
+  for (const auto& tile : tiles) mirror.apply_tile(1, tile.index, tile.version, tile.bytes);
+  EXPECT_EQ(*mirror.map(), publisher.map());
+}
+
+}  // namespace
+}  // namespace lapis::mapping

@@ -1,0 +1,135 @@
+#include "common/mapping/voxel_map.hpp"
+
+#include <algorithm>
+#include <set>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/mapping/random_votes.hpp"
+
+namespace lapis::mapping {
+namespace {
+
+using test::random_votes;
+
+/// The plainest possible map: what VoxelMap must agree with.
+struct ReferenceMap {
+  std::map<VoxelIndex, std::uint64_t> passes;
+  std::map<VoxelIndex, std::map<int, std::uint64_t>> hits;
+  void add(const FrameVotes& votes) {
+    for (const BlockVotes& block : votes.blocks) {
+      for (int offset = 0; offset < kBlockVoxels; ++offset)
+        if (block.passes[static_cast<std::size_t>(offset / 64)] >> (offset % 64) & 1u)
+          passes[voxel_at(block.block, offset)] += kOneVote;
+      for (std::uint32_t i = block.hits_begin; i < block.hits_end; ++i)
+        hits[voxel_at(block.block, votes.hits[i].offset)][votes.hits[i].label] += votes.hits[i].weight;
+    }
+  }
+};
+
+std::vector<FrameVotes> many_votes(unsigned seed, int count) {
+  std::mt19937 random(seed);
+  std::vector<FrameVotes> all;
+  for (int i = 0; i < count; ++i) all.push_back(random_votes(random, i % 3 == 0 ? 17 : kOneVote, 40));
+  return all;
+}
+
+TEST(VoxelIndex, OffsetsAndBlocksCoverNegativeCells) {
+  for (int x = -20; x < 20; ++x)
+    for (int z = -9; z < 9; ++z) {
+      const VoxelIndex voxel{x, -x, z};
+      const int offset = offset_in_block(voxel);
+      ASSERT_GE(offset, 0);
+      ASSERT_LT(offset, kBlockVoxels);
+      EXPECT_EQ(voxel_at(block_of(voxel), offset), voxel);
+    }
+}
+
+TEST(VoxelMap, VoxelCoversHalfOpenCellFromOrigin) {
+  const VoxelMap map(0.25);
+  EXPECT_EQ(map.index_of({0.0, 0.249, 0.25}), (VoxelIndex{0, 0, 1}));
+  EXPECT_EQ(map.index_of({-0.001, -0.25, -0.251}), (VoxelIndex{-1, -1, -2}));
+  EXPECT_TRUE(map.center_of({-1, 0, 2}).isApprox(Eigen::Vector3d(-0.125, 0.125, 0.625)));
+}
+
+TEST(VoxelMap, RefusesResolutionOutOfRange) {
+  EXPECT_THROW(VoxelMap(0.019), std::runtime_error);
+  EXPECT_THROW(VoxelMap(0.51), std::runtime_error);
+}
+
+TEST(VoxelMap, EqualsPlainReferenceSums) {
+  VoxelMap map(0.1);
+  ReferenceMap reference;
+  for (const FrameVotes& votes : many_votes(1, 60)) {
+    map.add(votes);
+    reference.add(votes);
+  }
+  std::size_t observed = 0;
+  map.for_each_observed([&](const VoxelIndex& voxel, const VoxelCounts& counts) {
+    ++observed;
+    EXPECT_EQ(counts.passes, reference.passes[voxel]);
+    ASSERT_EQ(counts.hits.size(), reference.hits[voxel].size());
+    auto expected = reference.hits[voxel].begin();
+    for (const ClassCount& hit : counts.hits) {
+      EXPECT_EQ(hit.label, expected->first);
+      EXPECT_EQ(hit.count, expected->second);
+      ++expected;
+    }
+  });
+  std::set<VoxelIndex> expected;
+  for (const auto& [voxel, count] : reference.passes)
+    if (count > 0) expected.insert(voxel);
+  for (const auto& [voxel, classes] : reference.hits)
+    if (!classes.empty()) expected.insert(voxel);
+  EXPECT_EQ(observed, expected.size());
+}
+
+TEST(VoxelMap, OrderOfFramesDoesNotMatter) {
+  std::vector<FrameVotes> all = many_votes(2, 40);
+  VoxelMap forward(0.1), shuffled(0.1);
+  for (const FrameVotes& votes : all) forward.add(votes);
+  std::shuffle(all.begin(), all.end(), std::mt19937(3));
+  for (const FrameVotes& votes : all) shuffled.add(votes);
+  EXPECT_EQ(forward, shuffled);
+}
+
+TEST(VoxelMap, AddThenSubtractLeavesNothing) {
+  std::vector<FrameVotes> all = many_votes(4, 40);
+  VoxelMap map(0.1);
+  for (const FrameVotes& votes : all) map.add(votes);
+  std::shuffle(all.begin(), all.end(), std::mt19937(5));
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    map.subtract(all[i]);
+    VoxelMap rest(0.1);
+    for (std::size_t j = i + 1; j < all.size(); ++j) rest.add(all[j]);
+    ASSERT_EQ(map, rest) << "after taking out " << i + 1 << " frames";
+  }
+  EXPECT_EQ(map.block_count(), 0u);
+}
+
+TEST(VoxelMap, SubtractingWhatIsNotThereIsABug) {
+  const std::vector<FrameVotes> all = many_votes(6, 2);
+  VoxelMap map(0.1);
+  map.add(all[0]);
+  EXPECT_THROW(map.subtract(all[1]), std::logic_error);
+}
+
+TEST(VoxelMap, ManyClassesInOneVoxelAreAllKept) {
+  VoxelBlock block;
+  for (int label = 300; label > 0; --label) block.add_hit(511, static_cast<std::uint16_t>(label), 256);
+  VoxelCounts counts;
+  block.read(511, counts);
+  ASSERT_EQ(counts.hits.size(), 300u);
+  EXPECT_TRUE(std::is_sorted(counts.hits.begin(), counts.hits.end(),
+                             [](const ClassCount& a, const ClassCount& b) { return a.label < b.label; }));
+  for (int label = 1; label <= 300; ++label) EXPECT_TRUE(block.subtract_hit(511, static_cast<std::uint16_t>(label), 256));
+  EXPECT_TRUE(block.is_empty());
+}
+
+TEST(VoxelMap, UnknownVoxelReadsAsNeverObserved) {
+  EXPECT_FALSE(VoxelMap(0.25).read({3, -7, 12}).is_observed());
+}
+
+}  // namespace
+}  // namespace lapis::mapping

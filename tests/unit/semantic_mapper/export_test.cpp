@@ -1,0 +1,134 @@
+#include "semantic_mapper/core/export.hpp"
+
+#include <cstring>
+#include <memory>
+#include <sstream>
+#include <string>
+
+#include <octomap/ColorOcTree.h>
+
+#include <gtest/gtest.h>
+
+#include "common/mapping/frame_votes.hpp"
+
+namespace lapis::semantic_mapper {
+namespace {
+
+using mapping::kOneVote;
+using mapping::VoxelIndex;
+
+struct Fixture {
+  mapping::VoxelMap map{0.25};
+  mapping::BeliefReader reader{mapping::SensorModel{}};
+  mapping::LabelList labels = mapping::LabelList::from_names({{1, "wall"}, {7, "chair"}});
+
+  void hit(const VoxelIndex& v, std::uint16_t label, int votes) {
+    mapping::VoxelBlock block = content(v);
+    block.add_hit(mapping::offset_in_block(v), label, kOneVote * static_cast<std::uint32_t>(votes));
+    map.set_block(mapping::block_of(v), block);
+  }
+  void pass(const VoxelIndex& v, int votes) {
+    mapping::VoxelBlock block = content(v);
+    block.add_pass(mapping::offset_in_block(v), kOneVote * static_cast<std::uint32_t>(votes));
+    map.set_block(mapping::block_of(v), block);
+  }
+  mapping::VoxelBlock content(const VoxelIndex& v) const {
+    const mapping::VoxelBlock* block = map.find(mapping::block_of(v));
+    return block ? *block : mapping::VoxelBlock{};
+  }
+};
+
+Fixture small_scene() {
+  Fixture f;
+  // Eight siblings of one octree node, clamped to the same occupancy but of two classes: must not be merged.
+  for (int i = 0; i < 8; ++i) f.hit({i & 1, i >> 1 & 1, i >> 2}, i < 4 ? 1 : 7, 1000);
+  f.pass({-3, 5, 2}, 4);
+  f.pass({-4, 5, 2}, 9);
+  f.hit({-3, 6, 2}, 0, 5);
+  return f;
+}
+
+TEST(Export, OctreeHasOneLeafPerObservedVoxelWithItsLogOddsAndColor) {
+  const Fixture f = small_scene();
+  std::istringstream stream([&] {
+    const auto bytes = encode_octree(f.map, f.reader, f.labels).file;
+    return std::string(bytes.begin(), bytes.end());
+  }());
+  const std::unique_ptr<octomap::AbstractOcTree> read(octomap::AbstractOcTree::read(stream));
+  auto* tree = dynamic_cast<octomap::ColorOcTree*>(read.get());
+  ASSERT_NE(tree, nullptr);
+  EXPECT_EQ(tree->getNumLeafNodes(), 11u);
+  EXPECT_DOUBLE_EQ(tree->getResolution(), 0.25);
+  f.map.for_each_observed([&](const VoxelIndex& voxel, const mapping::VoxelCounts& counts) {
+    const Eigen::Vector3d p = f.map.center_of(voxel);
+    const octomap::ColorOcTreeNode* node = tree->search(p.x(), p.y(), p.z());
+    ASSERT_NE(node, nullptr);
+    EXPECT_FLOAT_EQ(node->getLogOdds(), static_cast<float>(f.reader.occupancy_log_odds(counts)));
+    if (!f.reader.is_occupied(counts)) return;
+    const geometry::Rgb8 color = f.labels.color(f.reader.label(counts));
+    EXPECT_EQ(node->getColor(), (octomap::ColorOcTreeNode::Color{color.r, color.g, color.b}));
+  });
+}
+
+TEST(Export, OctreeMessageIsTheFileWithoutItsHeader) {
+  const Fixture f = small_scene();
+  const Octree octree = encode_octree(f.map, f.reader, f.labels);
+  ASSERT_GT(octree.file.size(), octree.message.size());
+  EXPECT_TRUE(std::equal(octree.message.rbegin(), octree.message.rend(), octree.file.rbegin()));
+  // As octomap_msgs reads it.
+  octomap::ColorOcTree tree(0.25);
+  std::istringstream stream(std::string(octree.message.begin(), octree.message.end()));
+  tree.readData(stream);
+  EXPECT_EQ(tree.getNumLeafNodes(), 11u);
+}
+
+TEST(Export, PlyHoldsTheOccupiedVoxels) {
+  const Fixture f = small_scene();
+  const std::vector<LabelledPoint> points = occupied_points(f.map, f.reader, f.labels);
+  ASSERT_EQ(points.size(), 9u);
+  const std::vector<std::uint8_t> ply = encode_ply(points);
+  const std::string text(ply.begin(), ply.end());
+  EXPECT_NE(text.find("element vertex 9\n"), std::string::npos);
+  const std::string end = "end_header\n";
+  const std::size_t data = text.find(end) + end.size();
+  constexpr std::size_t kRecord = 3 * 4 + 3 + 2 + 4;
+  ASSERT_EQ(ply.size() - data, 9 * kRecord);
+  for (std::size_t i = 0; i < 9; ++i) {
+    float x = 0, probability = 0;
+    std::uint16_t label = 0;
+    std::memcpy(&x, &ply[data + i * kRecord], 4);
+    std::memcpy(&label, &ply[data + i * kRecord + 15], 2);
+    std::memcpy(&probability, &ply[data + i * kRecord + 17], 4);
+    EXPECT_EQ(x, points[i].position.x());
+    EXPECT_EQ(label, points[i].label);
+    EXPECT_EQ(probability, points[i].probability);
+    EXPECT_GT(probability, 0.5f);
+  }
+}
+
+TEST(Export, GridColumnIsOccupiedThenFreeThenUnknown) {
+  Fixture f;
+  f.pass({2, 3, 1}, 3);
+  f.pass({2, 3, 2}, 3);
+  f.hit({2, 3, 3}, 1, 3);    // occupied above free: occupied
+  f.pass({4, 3, 2}, 3);      // free only
+  f.hit({4, 3, 0}, 1, 9);    // floor: below the band
+  f.hit({4, 3, 9}, 1, 9);    // ceiling: above the band
+  f.hit({9, 9, 0}, 1, 9);    // outside the band: does not extend the grid
+  const OccupancyGrid grid = project_to_grid(f.map, f.reader, {0.2, 1.2});
+  EXPECT_EQ(grid.width, 3);
+  EXPECT_EQ(grid.height, 1);
+  EXPECT_DOUBLE_EQ(grid.origin_x_m, 0.5);
+  EXPECT_DOUBLE_EQ(grid.origin_y_m, 0.75);
+  EXPECT_EQ(grid.cells, (std::vector<std::int8_t>{100, -1, 0}));
+}
+
+TEST(Export, EmptyMapGivesEmptyResults) {
+  const Fixture f;
+  EXPECT_TRUE(project_to_grid(f.map, f.reader, {}).cells.empty());
+  EXPECT_TRUE(occupied_points(f.map, f.reader, f.labels).empty());
+  EXPECT_FALSE(encode_octree(f.map, f.reader, f.labels).file.empty());
+}
+
+}  // namespace
+}  // namespace lapis::semantic_mapper

@@ -5,6 +5,7 @@
 
 #include "common/dds/topic.hpp"
 #include "idl/diagnostic_msgs.hpp"
+#include "idl/geometry_msgs.hpp"
 #include "idl/lapis_msgs.hpp"
 #include "idl/nav_msgs.hpp"
 #include "idl/octomap_msgs.hpp"

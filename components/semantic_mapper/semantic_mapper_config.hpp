@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/config/schema.hpp"
+#include "common/mapping/describe.hpp"
 #include "semantic_mapper/core/export.hpp"
 #include "semantic_mapper/core/semantic_mapper.hpp"
 
@@ -22,42 +22,6 @@ struct SemanticMapperComponentConfig {
   std::string output_dir;
   double save_period_s = 30.0;
 };
-
-}  // namespace lapis::semantic_mapper
-
-namespace lapis::mapping {
-
-template <class Field>
-void describe(Field& field, IntegrationConfig& c) {
-  field("min_range_m", c.min_range_m, config::in_range(0.0, 5.0), "measurements nearer than this say nothing [m]");
-  field("max_range_m", c.max_range_m, config::in_range(0.5, 20.0),
-        "Euclidean; returns beyond carve free space up to here [m]");
-  field("min_height_m", c.min_height_m, config::in_range(-1000.0, 1000.0),
-        "voxels whose centre is lower in the map frame get no votes [m]");
-  field("max_height_m", c.max_height_m, config::in_range(-1000.0, 1000.0),
-        "voxels whose centre is higher get no votes [m]");
-  field("end_margin_voxels", c.end_margin_voxels, config::in_range(0.0, 3.0),
-        "a voxel is passed only if the ray leaves it at least this far before the measured surface");
-  field("depth_noise_per_m", c.depth_noise_per_m, config::in_range(0.0, 0.05),
-        "standard deviation of depth z is this times z^2; passes keep two of them away from the surface [1/m]");
-}
-
-template <class Field>
-void describe(Field& field, CompactFrameConfig& c) {
-  field("stride", c.stride, config::in_range(1, 16), "every stride-th pixel of every stride-th row is kept");
-}
-
-template <class Field>
-void describe(Field& field, SensorModel& c) {
-  field("hit_gain", c.hit_gain, config::in_range(0.01, 5.0), "log-odds gain of occupied by a first hit");
-  field("pass_gain", c.pass_gain, config::in_range(0.01, 5.0), "log-odds loss of occupied by a pass");
-  field("label_accuracy", c.label_accuracy, config::in_range(0.05, 0.999), "probability that a label is right");
-  field("prior_occupied", c.prior_occupied, config::in_range(0.001, 0.999), "of a voxel that was never observed");
-}
-
-}  // namespace lapis::mapping
-
-namespace lapis::semantic_mapper {
 
 template <class Field>
 void describe(Field& field, GridConfig& c) {

@@ -34,7 +34,7 @@ struct PoseGraphSnapshot {
   std::vector<PoseGraphEdge> edges;
 };
 
-/// Nearest symmetric matrix whose eigenvalues lie within the configured bounds.
-geometry::Matrix6d bound_information(const PoseGraphConfig& config, const geometry::Matrix6d& information);
+/// Information of an edge from that of an alignment: times the configured share, eigenvalues within the bounds.
+geometry::Matrix6d edge_information(const PoseGraphConfig& config, const geometry::Matrix6d& information);
 
 }  // namespace lapis::slam

@@ -96,7 +96,7 @@ class RgbdSlam::Implementation {
     result.graph_version = version_;
     result.T_map_keyframe = map_.keyframe(outcome.reference).T_map_camera;
     result.T_keyframe_camera = outcome.alignment.T_reference_camera;
-    result.covariance = bound_information(config_.pose_graph, outcome.alignment.information).inverse();
+    result.covariance = edge_information(config_.pose_graph, outcome.alignment.information).inverse();
     result.map_covariance =
         compound(covariances_[outcome.reference], result.T_keyframe_camera, result.covariance);
     result.features = static_cast<std::uint32_t>(frame.features.size());
@@ -156,7 +156,7 @@ class RgbdSlam::Implementation {
     add_landmarks(id);
     const Alignment& alignment = outcome.alignment;
     edges_.push_back({outcome.reference, id, EdgeType::kOdometry, alignment.T_reference_camera,
-                      bound_information(config_.pose_graph, alignment.information)});
+                      edge_information(config_.pose_graph, alignment.information)});
     links_.push_back({outcome.reference, id, alignment.T_reference_camera, alignment.surface_information});
     adjust_local_map(config_, links_, map_);
     tracker_.set_reference(map_, id);

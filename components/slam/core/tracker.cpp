@@ -38,7 +38,9 @@ Tracker::LocalMap Tracker::local_map(const Map& map, KeyframeId reference) const
 
 TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optional<Pose>& predicted) const {
   TrackOutcome best;
-  best.reason = "no match with the map";
+  const int features = static_cast<int>(frame.features.size());
+  best.reason = shortage(features, config_.tracker.min_inliers, "features");
+  if (features < config_.tracker.min_inliers) return best;
   const auto is_convincing = [&](TrackOutcome outcome) {
     const bool better = outcome.is_tracked ? !best.is_tracked || outcome.inliers.size() > best.inliers.size()
                                            : !best.is_tracked && outcome.inliers.size() >= best.inliers.size();

@@ -1,0 +1,356 @@
+#include "evaluator/evaluator_component.hpp"
+
+#include <spawn.h>
+#include <sys/wait.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cstdio>
+#include <filesystem>
+#include <iostream>
+
+#include "common/files/atomic_file.hpp"
+#include "common/mapping/map_file.hpp"
+#include "common/messages/camera.hpp"
+#include "common/messages/time.hpp"
+#include "evaluator/core/coverage.hpp"
+#include "evaluator/core/map_input.hpp"
+
+namespace lapis::evaluator {
+namespace {
+
+constexpr std::size_t kWaitingFrames = 30;
+constexpr const char* kTimelineHeader =
+    "time_s,explored_volume_m3,explored_share,path_length_m,position_error_m,position_sigma_m,state\n";
+
+std::optional<double> parse(const std::string& text) {
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
+  return value;
+}
+
+void write_text(const std::filesystem::path& file, const std::string& text) {
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  if (const auto problem = files::replace_file(file.string(), bytes)) throw std::runtime_error(*problem);
+}
+
+std::string cell(const std::optional<double>& value) {
+  if (!value) return "";
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6f", *value);
+  return text;
+}
+
+std::map<std::uint16_t, std::string> class_names(const mapping::LabelList& labels) {
+  std::map<std::uint16_t, std::string> names;
+  for (const auto& label : labels.labels()) names[label.id] = label.name;
+  return names;
+}
+
+/// Share of the plain fusion's voxels that a map holds for occupied.
+std::optional<double> share_of(const LabelledVoxels& fusion, const LabelledVoxels& map) {
+  if (fusion.voxels.empty()) return std::nullopt;
+  std::size_t common = 0;
+  auto it = map.voxels.begin();
+  for (const auto& voxel : fusion.voxels) {
+    while (it != map.voxels.end() && is_before(it->index, voxel.index)) ++it;
+    if (it != map.voxels.end() && it->index == voxel.index) ++common;
+  }
+  return static_cast<double>(common) / static_cast<double>(fusion.voxels.size());
+}
+
+}  // namespace
+
+EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& context)
+    : config_(config),
+      context_(context),
+      tracked_(kWaitingFrames),
+      truth_(kWaitingFrames),
+      depth_(kWaitingFrames),
+      labels_(kWaitingFrames),
+      info_(kWaitingFrames),
+      reference_(config.resolution_m),
+      plain_fusion_({config.resolution_m, config.integration.min_range_m, config.integration.max_range_m}),
+      timeline_(kTimelineHeader) {
+  if (config_.output_dir.empty()) {
+    throw std::runtime_error("evaluator.output_dir is not set; give --set evaluator.output_dir=FOLDER");
+  }
+  files::require_writable_folder(config_.output_dir, "evaluator.output_dir");
+  mapping::validate(config_.integration);
+  context.subscribe(topics::kTrackedFrame, [this](Tracked& m) { store(tracked_, m); });
+  truth_source_ = &context.subscribe(topics::kGroundTruth, [this](Odometry& m) { store(truth_, m); });
+  depth_source_ = &context.subscribe(topics::kDepth, [this](Image& m) { store(depth_, m); });
+  labels_source_ = &context.subscribe(topics::kLabels, [this](Image& m) { store(labels_, m); });
+  context.subscribe(topics::kDepthInfo, [this](Info& m) { store(info_, m); });
+  context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
+  context.subscribe(topics::kPoseGraph, [this](auto& m) { graph_ = std::move(m); });
+  context.subscribe(topics::kVoxelTiles, [this](const auto& m) { on_tile(m); });
+  context.subscribe(topics::kMapState, [this](const auto& m) { on_map_state(m); });
+  context.subscribe(topics::kDiagnostics, [this](const auto& m) { on_diagnostics(m); });
+  context.subscribe(topics::kLabelInfo, [this](const vision_msgs::msg::LabelInfo& m) {
+    std::vector<std::pair<std::uint16_t, std::string>> names;
+    for (const auto& entry : m.class_map()) names.emplace_back(entry.class_id(), entry.class_name());
+    try {
+      label_list_ = mapping::LabelList::from_names(names);
+      config_.frame.max_label = label_list_.max_id();
+    } catch (const std::runtime_error& error) {
+      spdlog::warn("label list refused: {}", error.what());
+    }
+  });
+  context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+}
+
+template <class Message>
+void EvaluatorComponent::store(time::StampBuffer<Message>& buffer, Message& message) {
+  const time::Time stamp = messages::from_message(message.header().stamp());
+  buffer.push(stamp, std::move(message));
+}
+
+void EvaluatorComponent::on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message) {
+  for (const auto& status : message.status()) {
+    auto& figures = processes_[status.hardware_id()];
+    for (const auto& pair : status.values()) {
+      if (pair.key() == "cpu_s") figures.cpu_s = parse(pair.value());
+      if (pair.key() == "peak_rss_mb") figures.peak_rss_mb = parse(pair.value());
+      if (pair.key() == "frames") figures.frames = parse(pair.value());
+    }
+  }
+}
+
+void EvaluatorComponent::on_tile(const lapis_msgs::msg::VoxelTile& message) {
+  mapping::TileIndex index;
+  index.x = message.x();
+  index.y = message.y();
+  index.z = message.z();
+  const auto result = mirror_.apply_tile(message.epoch(), index, message.version(), message.data());
+  if (result == mapping::TileResult::kDamaged) context_.status().count("damaged tiles");
+}
+
+void EvaluatorComponent::on_map_state(const lapis_msgs::msg::MapState& message) {
+  mapping::MapState state;
+  state.epoch = message.epoch();
+  state.version = message.version();
+  state.tiles = message.tiles();
+  state.checksum = message.checksum();
+  state.resolution_m = message.resolution_m();
+  mirror_.apply_state(state);
+}
+
+void EvaluatorComponent::work(const runtime::Cycle& cycle) {
+  while (next_frame(cycle)) {
+  }
+  has_ended_ |= cycle.is_final;
+}
+
+/// Joins and records the oldest tracked frame; false when its partners may still come.
+bool EvaluatorComponent::next_frame(const runtime::Cycle& cycle) {
+  using ImageMatch = time::StampBuffer<Image>::Match;
+  if (tracked_.empty()) return false;
+  const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
+  auto& [stamp, tracked] = tracked_.front();
+  const time::Time now = stamp;
+  const auto is_over = [&](const dds::Reader& source) { return cycle.inputs_complete || source.matched() == 0; };
+  Odometry* truth = nullptr;
+  Image* depth = nullptr;
+  Image* labels = nullptr;
+  Info* info = nullptr;
+  const auto truth_match = truth_.match(now, tolerance, is_over(*truth_source_), truth);
+  const auto depth_match = depth_.match(now, tolerance, is_over(*depth_source_), depth);
+  const auto label_match = labels_.match(now, tolerance, is_over(*labels_source_), labels);
+  const auto info_match = info_.match(now, tolerance, is_over(*depth_source_), info);
+  if (truth_match == time::StampBuffer<Odometry>::Match::kWait || depth_match == ImageMatch::kWait ||
+      label_match == ImageMatch::kWait || info_match == time::StampBuffer<Info>::Match::kWait) {
+    return false;
+  }
+  record(tracked, truth, depth, labels, info);
+  tracked_.drop_until(now);
+  truth_.drop_until(now - tolerance);
+  depth_.drop_until(now - tolerance);
+  labels_.drop_until(now - tolerance);
+  info_.drop_until(now - tolerance);
+  return true;
+}
+
+void EvaluatorComponent::record(const Tracked& tracked, const Odometry* truth, const Image* depth, const Image* labels,
+                                const Info* info) {
+  const time::Time stamp = messages::from_message(tracked.header().stamp());
+  newest_ = std::chrono::steady_clock::now();
+  if (!began_) began_ = newest_;
+  const bool is_tracking = tracked.state() == lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
+  if (!is_tracking && first_stamp_) lost_time_s_ += (stamp - last_stamp_).seconds();
+  if (!first_stamp_) first_stamp_ = stamp;
+  last_stamp_ = stamp;
+  ++frames_total_;
+  context_.status().value("frames", static_cast<std::uint64_t>(frames_total_));
+
+  std::optional<geometry::Pose> T_world_camera;
+  if (truth != nullptr) T_world_camera = true_camera_pose(*truth, tracked.header().frame_id());
+  const bool is_new = truth_world_.empty() || truth_world_.back().stamp < stamp;
+  if (T_world_camera && is_new) truth_world_.push_back({stamp, *T_world_camera});
+  if (!is_tracking) return;
+  const auto T_map_keyframe = messages::from_message(tracked.keyframe_pose());
+  const auto T_keyframe_camera = messages::from_message(tracked.pose_in_keyframe());
+  if (!T_map_keyframe || !T_keyframe_camera) return context_.status().count("tracked frames without a valid pose");
+  ++frames_tracked_;
+  const geometry::Pose T_map_camera = *T_map_keyframe * *T_keyframe_camera;
+  if (estimate_.empty() || estimate_.back().stamp < stamp) estimate_.push_back({stamp, T_map_camera});
+  if (T_world_camera && !T_map_world_) T_map_world_ = T_map_camera * T_world_camera->inverse();
+  if (T_world_camera && depth != nullptr && info != nullptr) {
+    add_to_references(*T_world_camera, *depth, labels, *info);
+  }
+  write_timeline_row(stamp);
+}
+
+std::optional<geometry::Pose> EvaluatorComponent::true_camera_pose(const Odometry& truth,
+                                                                   const std::string& optical_frame) {
+  const auto T_world_base = messages::from_message(truth.pose().pose());
+  const auto T_base_camera = static_transforms_.find(truth.child_frame_id(), optical_frame);
+  if (!T_world_base || !T_base_camera) return std::nullopt;
+  return *T_world_base * *T_base_camera;
+}
+
+// The references judge the map, so only frames that slam tracked, which the map can hold, are in them.
+void EvaluatorComponent::add_to_references(const geometry::Pose& T_world_camera, const Image& depth,
+                                           const Image* labels, const Info& info) {
+  const auto camera = messages::from_message(info);
+  const auto metres = messages::to_depth(depth);
+  if (!camera || !metres) return context_.status().count("frames not in the reference: depth or camera info unusable");
+  geometry::LabelImage ids;
+  if (labels != nullptr) {
+    if (auto converted = messages::to_labels(*labels)) ids = std::move(*converted);
+  }
+  std::string error;
+  const auto frame =
+      mapping::CompactFrame::make(*camera, *metres, ids.empty() ? nullptr : &ids, config_.frame, error);
+  if (!frame) return context_.status().count("frames not in the reference: " + error);
+  const geometry::Pose T_map_camera = *T_map_world_ * T_world_camera;
+  reference_.add(mapping::compute_votes(*frame, T_map_camera, config_.integration, config_.resolution_m));
+  plain_fusion_.add(*camera, *metres, ids, T_map_camera);
+}
+
+void EvaluatorComponent::write_timeline_row(time::Time stamp) {
+  if (timeline_stamp_ && (stamp - *timeline_stamp_).seconds() < config_.timeline_period_s) return;
+  timeline_stamp_ = stamp;
+  std::optional<double> volume;
+  if (const auto* map = mirror_.map()) volume = coverage(to_known_space(*map, belief_reader())).explored_volume_m3;
+  std::optional<double> error;
+  if (T_map_world_ && !truth_world_.empty() && truth_world_.back().stamp == stamp) {
+    const geometry::Pose truth = *T_map_world_ * truth_world_.back().T_world_body;
+    error = (estimate_.back().T_world_body.translation() - truth.translation()).norm();
+  }
+  const std::optional<double> path =
+      truth_world_.empty() ? std::nullopt : std::optional<double>(path_length_m(truth_world_));
+  timeline_ += cell((stamp - *first_stamp_).seconds()) + "," + cell(volume) + ",," + cell(path) + "," + cell(error) +
+               ",,TRACKING\n";
+}
+
+mapping::BeliefReader EvaluatorComponent::belief_reader() const {
+  auto model = config_.sensor_model;
+  if (label_list_.max_id() > 1) model.class_count = label_list_.max_id();
+  return mapping::BeliefReader(model);
+}
+
+Trajectory EvaluatorComponent::truth_in_map() const {
+  return T_map_world_ ? express_in(*T_map_world_, truth_world_) : Trajectory{};
+}
+
+Trajectory EvaluatorComponent::keyframes() const {
+  Trajectory trajectory;
+  for (const auto& node : graph_.nodes()) {
+    const time::Time stamp = messages::from_message(node.stamp());
+    const auto T_map_camera = messages::from_message(node.pose());
+    if (T_map_camera && (trajectory.empty() || trajectory.back().stamp < stamp)) {
+      trajectory.push_back({stamp, *T_map_camera});
+    }
+  }
+  return trajectory;
+}
+
+RunMetrics EvaluatorComponent::metrics() const {
+  RunMetrics m;
+  m.exit_reason = judged_exit_reason(has_ended_ ? "completed" : "stopped", frames_tracked_, frames_total_);
+  m.frames_total = frames_total_;
+  m.frames_tracked = frames_tracked_;
+  m.lost_time_s = lost_time_s_;
+  m.loop_closures = std::count_if(graph_.edges().begin(), graph_.edges().end(), [](const auto& edge) {
+    return edge.type() == lapis_msgs::msg::PoseGraphEdge_Constants::TYPE_LOOP_CLOSURE;
+  });
+  const Trajectory truth = truth_in_map();
+  if (!truth.empty()) {
+    m.online = trajectory_figures(truth, estimate_);
+    m.keyframes = trajectory_figures(truth, keyframes());
+    m.path_length_m = path_length_m(truth);
+    if (*m.path_length_m > 0.0 && m.online.ate_raw_rmse_m) m.ate_per_metre = *m.online.ate_raw_rmse_m / *m.path_length_m;
+  }
+  if (first_stamp_) {
+    m.duration_s = (last_stamp_ - *first_stamp_).seconds();
+    m.wall_time_s = std::chrono::duration<double>(newest_ - *began_).count();
+    if (*m.wall_time_s > 0.0) m.real_time_factor = *m.duration_s / *m.wall_time_s;
+  }
+  for (const auto& [name, figures] : processes_) {
+    m.peak_rss_mb[name] = figures.peak_rss_mb;
+    const bool has_rate = figures.cpu_s && figures.frames && *figures.frames > 0.0;
+    m.cpu_ms_per_frame[name] = has_rate ? std::optional<double>(1e3 * *figures.cpu_s / *figures.frames) : std::nullopt;
+  }
+  add_map_figures(m);
+  return m;
+}
+
+void EvaluatorComponent::add_map_figures(RunMetrics& m) const {
+  if (mirror_.map() == nullptr) return;
+  if (!mirror_.is_consistent()) spdlog::warn("the map's last version did not arrive whole; an older one is judged");
+  const auto reader = belief_reader();
+  const KnownSpace estimate = to_known_space(*mirror_.map(), reader);
+  m.explored_volume_m3 = coverage(estimate).explored_volume_m3;
+  if (!T_map_world_) return;
+  if (estimate.occupied.resolution_m != config_.resolution_m) {
+    spdlog::warn("the map has voxels of {} m, evaluator.resolution_m is {}: no map figures",
+                 estimate.occupied.resolution_m, config_.resolution_m);
+    return;
+  }
+  const KnownSpace reference = to_known_space(reference_, reader);
+  m.map = map_figures(reference.occupied, estimate.occupied, class_names(label_list_));
+  m.reference_fusion_share = share_of(plain_fusion_.voxels(), reference.occupied);
+}
+
+void EvaluatorComponent::write_files(const RunMetrics& m) const {
+  const std::filesystem::path folder(config_.output_dir);
+  write_trajectory(folder / "trajectory_estimate.txt", estimate_, "camera optical frame in the map, as published");
+  write_trajectory(folder / "trajectory_ground_truth.txt", truth_in_map(),
+                   "true camera optical frame, in the map by the first true pose");
+  write_text(folder / "timeline.csv", timeline_);
+  write_text(folder / "metrics.json", to_json(m));
+  if (!T_map_world_) return;
+  const mapping::MapFile reference{reference_, belief_reader().model(), label_list_, {{"source", "true poses"}}};
+  if (const auto problem = mapping::save_map((folder / "reference_map.lapis").string(), reference)) {
+    throw std::runtime_error(*problem);
+  }
+}
+
+void EvaluatorComponent::draw_figures() const {
+  const auto script = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lapis_figures.py";
+  std::string python = "python3";
+  std::string script_path = script.string();
+  std::string folder = config_.output_dir;
+  char* arguments[] = {python.data(), script_path.data(), folder.data(), nullptr};
+  pid_t child = 0;
+  int status = 0;
+  const bool has_run = posix_spawnp(&child, "python3", nullptr, nullptr, arguments, environ) == 0 &&
+                       waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  if (!has_run) spdlog::warn("figures were not drawn; try: python3 {} {}", script_path, folder);
+}
+
+void EvaluatorComponent::finish() {
+  for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
+  if (frames_total_ == 0) {
+    spdlog::warn("no frame came; nothing is written");
+    return;
+  }
+  const RunMetrics m = metrics();
+  write_files(m);
+  std::cout << format_table(m) << std::flush;
+  if (config_.figures) draw_figures();
+}
+
+}  // namespace lapis::evaluator

@@ -1,0 +1,97 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <optional>
+#include <string>
+
+#include "common/mapping/label_list.hpp"
+#include "common/mapping/map_mirror.hpp"
+#include "common/messages/geometry.hpp"
+#include "common/runtime/context.hpp"
+#include "common/time/stamp_buffer.hpp"
+#include "evaluator/core/metrics.hpp"
+#include "evaluator/core/plain_fusion.hpp"
+#include "evaluator/core/trajectory.hpp"
+#include "evaluator/evaluator_config.hpp"
+
+namespace lapis::evaluator {
+
+/// Watches a run, builds the reference map from the run's own frames at true poses, and writes the run folder.
+class EvaluatorComponent {
+ public:
+  using Config = EvaluatorConfig;
+  static constexpr const char* kName = "evaluator";
+  static constexpr const char* kSummary =
+      "Evaluates a run against ground truth and writes the run folder.\n"
+      "Tools on files: lapis_evaluator ate|rpe|map|iou|coverage --help";
+
+  EvaluatorComponent(const Config& config, runtime::Context& context);
+  void finish();
+
+ private:
+  using Image = sensor_msgs::msg::Image;
+  using Info = sensor_msgs::msg::CameraInfo;
+  using Tracked = lapis_msgs::msg::TrackedFrame;
+  using Odometry = nav_msgs::msg::Odometry;
+
+  /// Newest figures that a process told on /diagnostics.
+  struct ProcessFigures {
+    std::optional<double> cpu_s;
+    std::optional<double> peak_rss_mb;
+    std::optional<double> frames;
+  };
+
+  template <class Message>
+  void store(time::StampBuffer<Message>& buffer, Message& message);
+  void on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message);
+  void on_tile(const lapis_msgs::msg::VoxelTile& message);
+  void on_map_state(const lapis_msgs::msg::MapState& message);
+  void work(const runtime::Cycle& cycle);
+  bool next_frame(const runtime::Cycle& cycle);
+  void record(const Tracked& tracked, const Odometry* truth, const Image* depth, const Image* labels, const Info* info);
+  std::optional<geometry::Pose> true_camera_pose(const Odometry& truth, const std::string& optical_frame);
+  void add_to_references(const geometry::Pose& T_world_camera, const Image& depth, const Image* labels, const Info& info);
+  void write_timeline_row(time::Time stamp);
+  mapping::BeliefReader belief_reader() const;
+  Trajectory truth_in_map() const;
+  Trajectory keyframes() const;
+  RunMetrics metrics() const;
+  void add_map_figures(RunMetrics& metrics) const;
+  void write_files(const RunMetrics& metrics) const;
+  void draw_figures() const;
+
+  Config config_;
+  runtime::Context& context_;
+  dds::Subscription<Image>* depth_source_ = nullptr;
+  dds::Subscription<Image>* labels_source_ = nullptr;
+  dds::Subscription<Odometry>* truth_source_ = nullptr;
+  time::StampBuffer<Tracked> tracked_;
+  time::StampBuffer<Odometry> truth_;
+  time::StampBuffer<Image> depth_;
+  time::StampBuffer<Image> labels_;
+  time::StampBuffer<Info> info_;
+  messages::StaticTransforms static_transforms_;
+  mapping::LabelList label_list_;
+  mapping::MapMirror mirror_;
+  lapis_msgs::msg::PoseGraph graph_;
+  std::map<std::string, ProcessFigures> processes_;
+
+  Trajectory estimate_;                         // T_map_camera, as published at its time
+  Trajectory truth_world_;                      // T_world_camera
+  std::optional<geometry::Pose> T_map_world_;   // from the first frame that has both
+  mapping::VoxelMap reference_;
+  PlainFusion plain_fusion_;
+  std::string timeline_;
+  std::optional<time::Time> timeline_stamp_;
+  std::optional<time::Time> first_stamp_;
+  time::Time last_stamp_;
+  std::int64_t frames_total_ = 0;
+  std::int64_t frames_tracked_ = 0;
+  double lost_time_s_ = 0.0;
+  bool has_ended_ = false;  // lock-step told that no input follows
+  std::optional<std::chrono::steady_clock::time_point> began_;
+  std::chrono::steady_clock::time_point newest_;
+};
+
+}  // namespace lapis::evaluator

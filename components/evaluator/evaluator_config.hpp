@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+
+#include "common/mapping/describe.hpp"
+
+namespace lapis::evaluator {
+
+struct EvaluatorConfig {
+  std::string output_dir;
+  double resolution_m = 0.25;
+  mapping::IntegrationConfig integration;
+  mapping::CompactFrameConfig frame;
+  mapping::SensorModel sensor_model;
+  double max_stamp_difference_s = 0.016;
+  double timeline_period_s = 1.0;
+  bool figures = true;
+};
+
+template <class Field>
+void describe(Field& field, EvaluatorConfig& c) {
+  field("output_dir", c.output_dir, config::anything(), "run folder");
+  field("resolution_m", c.resolution_m, config::in_range(0.02, 0.5),
+        "edge of a voxel of the reference map; as semantic_mapper.resolution_m [m]");
+  field("integration", c.integration);
+  field("frame", c.frame);
+  field("sensor_model", c.sensor_model);
+  field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
+        "between pose, true pose, depth, labels and camera info of one frame [s]");
+  field("timeline_period_s", c.timeline_period_s, config::in_range(0.1, 3600.0), "time between rows of timeline.csv [s]");
+  field("figures", c.figures, config::anything(), "draw figures/*.png at the end (python3 with matplotlib)");
+}
+
+}  // namespace lapis::evaluator

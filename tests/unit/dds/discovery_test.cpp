@@ -1,0 +1,61 @@
+#include "common/dds/discovery.hpp"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <stdexcept>
+
+namespace lapis::dds {
+namespace {
+
+using Variables = std::map<std::string, std::string>;
+
+DiscoverySettings settings(const Variables& variables) {
+  return discovery_from_environment([&](const std::string& name) -> std::optional<std::string> {
+    const auto it = variables.find(name);
+    return it == variables.end() ? std::nullopt : std::optional<std::string>(it->second);
+  });
+}
+
+TEST(Discovery, DefaultsAreDomainZeroOnTheSubnet) {
+  for (const Variables& variables : {Variables{}, Variables{{"ROS_DOMAIN_ID", ""}, {"ROS_AUTOMATIC_DISCOVERY_RANGE", ""}}}) {
+    const auto found = settings(variables);
+    EXPECT_EQ(found.domain, 0);
+    EXPECT_EQ(found.range, DiscoveryRange::kSubnet);
+    EXPECT_TRUE(found.static_peers.empty());
+  }
+}
+
+TEST(Discovery, DomainIsANumberFrom0To232) {
+  EXPECT_EQ(settings({{"ROS_DOMAIN_ID", "42"}}).domain, 42);
+  EXPECT_EQ(settings({{"ROS_DOMAIN_ID", "232"}}).domain, 232);
+  for (const char* bad : {"233", "-1", "x", "4 ", " 4", "0x10", "1e1", "99999999999999"}) {
+    EXPECT_THROW(settings({{"ROS_DOMAIN_ID", bad}}), std::runtime_error) << bad;
+  }
+}
+
+TEST(Discovery, RangeWordsAreThoseOfJazzy) {
+  const std::map<std::string, DiscoveryRange> words = {
+      {"SUBNET", DiscoveryRange::kSubnet},       {"SYSTEM_DEFAULT", DiscoveryRange::kSubnet},
+      {"LOCALHOST", DiscoveryRange::kLocalhost}, {"OFF", DiscoveryRange::kOff},
+      {"subnet", DiscoveryRange::kLocalhost},    {"nonsense", DiscoveryRange::kLocalhost}};
+  for (const auto& [word, range] : words) EXPECT_EQ(settings({{"ROS_AUTOMATIC_DISCOVERY_RANGE", word}}).range, range) << word;
+}
+
+TEST(Discovery, StaticPeersAreSeparatedBySemicolons) {
+  EXPECT_EQ(settings({{"ROS_STATIC_PEERS", "192.168.1.2;10.0.0.7"}}).static_peers,
+            (std::vector<std::string>{"192.168.1.2", "10.0.0.7"}));
+  EXPECT_EQ(settings({{"ROS_STATIC_PEERS", ";10.0.0.7;;"}}).static_peers, (std::vector<std::string>{"10.0.0.7"}));
+}
+
+TEST(Discovery, LocalhostOnlyOverridesTheOtherTwo) {
+  const auto found = settings({{"ROS_LOCALHOST_ONLY", "1"}, {"ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"},
+                               {"ROS_STATIC_PEERS", "10.0.0.7"}, {"ROS_DOMAIN_ID", "3"}});
+  EXPECT_EQ(found.range, DiscoveryRange::kLocalhost);
+  EXPECT_TRUE(found.static_peers.empty());
+  EXPECT_EQ(found.domain, 3);
+  EXPECT_EQ(settings({{"ROS_LOCALHOST_ONLY", "0"}, {"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}}).range, DiscoveryRange::kOff);
+}
+
+}  // namespace
+}  // namespace lapis::dds

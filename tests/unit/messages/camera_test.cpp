@@ -1,0 +1,191 @@
+#include "common/messages/camera.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+namespace lapis::messages {
+namespace {
+
+using sensor_msgs::msg::Image;
+using ::testing::HasSubstr;
+
+template <class Pixel>
+Image image(const std::string& encoding, std::uint32_t width, std::uint32_t height, const std::vector<Pixel>& pixels,
+            std::size_t channels = 1) {
+  Image message;
+  message.encoding(encoding);
+  message.width(width);
+  message.height(height);
+  message.step(static_cast<std::uint32_t>(width * sizeof(Pixel) * channels));
+  message.data().resize(pixels.size() * sizeof(Pixel));
+  std::memcpy(message.data().data(), pixels.data(), message.data().size());
+  return message;
+}
+
+Image depth_mm(const std::vector<std::uint16_t>& pixels) {
+  return image("16UC1", static_cast<std::uint32_t>(pixels.size()), 1, pixels);
+}
+
+sensor_msgs::msg::CameraInfo camera_info() {
+  sensor_msgs::msg::CameraInfo info;
+  info.width(640);
+  info.height(360);
+  info.k({500.0, 0.0, 319.5, 0.0, 501.0, 179.5, 0.0, 0.0, 1.0});
+  return info;
+}
+
+TEST(CameraInfo, GivesThePinholeModel) {
+  const auto camera = from_message(camera_info());
+  ASSERT_TRUE(camera);
+  EXPECT_EQ(*camera, (geometry::PinholeCamera{640, 360, 500.0, 501.0, 319.5, 179.5}));
+}
+
+TEST(CameraInfo, ZeroDistortionIsNone) {
+  auto info = camera_info();
+  info.d({0.0, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_TRUE(from_message(info));
+  info.d({0.0, 0.1, 0.0, 0.0, 0.0});
+  EXPECT_THAT(from_message(info).reason, HasSubstr("distortion"));
+}
+
+TEST(CameraInfo, RefusesWhatIsNoCamera) {
+  EXPECT_FALSE(from_message(sensor_msgs::msg::CameraInfo()));
+  for (const double bad : {0.0, -500.0, std::numeric_limits<double>::quiet_NaN()}) {
+    auto info = camera_info();
+    info.k()[4] = bad;
+    EXPECT_FALSE(from_message(info)) << bad;
+  }
+  auto info = camera_info();
+  info.width(0);
+  EXPECT_FALSE(from_message(info));
+  info.width(4'000'000'000u);
+  EXPECT_THAT(from_message(info).reason, HasSubstr("too large"));
+}
+
+TEST(Gray, LuminanceFollowsBt601) {
+  const std::vector<std::uint8_t> pixels = {255, 0, 0, 0, 255, 0, 0, 0, 255, 255, 255, 255, 0, 0, 0, 10, 200, 30};
+  const auto rgb = to_gray(image("rgb8", 6, 1, pixels, 3));
+  ASSERT_TRUE(rgb);
+  for (std::size_t i = 0; i < 6; ++i) {
+    const double exact = 0.299 * pixels[3 * i] + 0.587 * pixels[3 * i + 1] + 0.114 * pixels[3 * i + 2];
+    EXPECT_NEAR(rgb->pixels[i], exact, 0.51) << i;
+  }
+  std::vector<std::uint8_t> swapped = pixels;
+  for (std::size_t i = 0; i < 6; ++i) std::swap(swapped[3 * i], swapped[3 * i + 2]);
+  EXPECT_EQ(to_gray(image("bgr8", 6, 1, swapped, 3))->pixels, rgb->pixels);
+  EXPECT_EQ(to_gray(image<std::uint8_t>("mono8", 3, 1, {0, 7, 255}))->pixels, (std::vector<std::uint8_t>{0, 7, 255}));
+}
+
+TEST(Gray, RowPaddingIsSkipped) {
+  Image padded = image<std::uint8_t>("mono8", 2, 2, {1, 2, 99, 99, 3, 4, 99, 99});
+  padded.step(4);
+  EXPECT_EQ(to_gray(padded)->pixels, (std::vector<std::uint8_t>{1, 2, 3, 4}));
+}
+
+TEST(Depth, MillimetresBecomeMetres) {
+  const auto depth = to_depth(depth_mm({0, 1, 1500, 65534, 65535}));
+  ASSERT_TRUE(depth);
+  EXPECT_THAT(depth->pixels, ::testing::ElementsAre(0.0f, ::testing::FloatEq(0.001f), ::testing::FloatEq(1.5f),
+                                                   ::testing::FloatEq(65.534f), 0.0f));
+}
+
+TEST(Depth, MetresThatAreNoMeasurementBecomeZero) {
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  const float infinity = std::numeric_limits<float>::infinity();
+  const auto depth = to_depth(image<float>("32FC1", 6, 1, {1.25f, nan, infinity, -infinity, -1.0f, 0.0f}));
+  ASSERT_TRUE(depth);
+  EXPECT_EQ(depth->pixels, (std::vector<float>{1.25f, 0, 0, 0, 0, 0}));
+}
+
+TEST(Depth, EveryBitPatternGivesANumberThatIsUsable) {
+  std::vector<std::uint32_t> patterns;
+  for (std::uint64_t bits = 0; bits <= 0xFFFFFFFFu; bits += 0x10101) patterns.push_back(static_cast<std::uint32_t>(bits));
+  std::vector<float> floats(patterns.size());
+  std::memcpy(floats.data(), patterns.data(), 4 * patterns.size());
+  const auto width = static_cast<std::uint32_t>(patterns.size() / 8);
+  floats.resize(8u * width);
+  const auto depth = to_depth(image("32FC1", width, 8, floats));
+  ASSERT_TRUE(depth) << depth.reason;
+  for (const float metres : depth->pixels) ASSERT_TRUE(std::isfinite(metres) && metres >= 0.0f);
+}
+
+TEST(Labels, LargestIdOfTheTypeMeansUnlabelled) {
+  EXPECT_EQ(to_labels(image<std::uint8_t>("mono8", 3, 1, {0, 40, 255}))->pixels, (std::vector<std::uint16_t>{0, 40, 0}));
+  EXPECT_EQ(to_labels(image<std::uint8_t>("8UC1", 1, 1, {7}))->pixels, (std::vector<std::uint16_t>{7}));
+  EXPECT_EQ(to_labels(image<std::uint16_t>("mono16", 3, 1, {255, 300, 65535}))->pixels,
+            (std::vector<std::uint16_t>{255, 300, 0}));
+  EXPECT_EQ(to_labels(image<std::uint16_t>("16UC1", 1, 1, {9}))->pixels, (std::vector<std::uint16_t>{9}));
+}
+
+TEST(BadImage, WrongEncodingIsNamed) {
+  Image message = image<std::uint8_t>("yuv422", 2, 2, {0, 0, 0, 0});
+  EXPECT_THAT(to_gray(message).reason, HasSubstr("'yuv422'"));
+  EXPECT_THAT(to_depth(message).reason, HasSubstr("'yuv422'"));
+  EXPECT_THAT(to_labels(message).reason, HasSubstr("'yuv422'"));
+  message.encoding("");
+  EXPECT_FALSE(to_gray(message) || to_depth(message) || to_labels(message));
+}
+
+// All three conversions share the layout check; each kind of wrong layout is tried on each of them.
+void expect_refused(const Image& message, const std::string& reason) {
+  for (const char* encoding : {"rgb8", "mono8", "bgr8"}) {
+    Image color = message;
+    color.encoding(encoding);
+    EXPECT_THAT(to_gray(color).reason, HasSubstr(reason)) << encoding;
+  }
+  for (const char* encoding : {"16UC1", "32FC1"}) {
+    Image depth = message;
+    depth.encoding(encoding);
+    EXPECT_THAT(to_depth(depth).reason, HasSubstr(reason)) << encoding;
+  }
+  for (const char* encoding : {"mono8", "mono16"}) {
+    Image labels = message;
+    labels.encoding(encoding);
+    EXPECT_THAT(to_labels(labels).reason, HasSubstr(reason)) << encoding;
+  }
+}
+
+TEST(BadImage, EmptyOrHugeOrTruncated) {
+  Image empty;
+  expect_refused(empty, "empty");
+
+  Image huge;
+  huge.width(0xFFFFFFFFu);
+  huge.height(0xFFFFFFFFu);
+  huge.step(0xFFFFFFFFu);
+  expect_refused(huge, "larger than 16384 pixels");
+
+  Image narrow;
+  narrow.width(100);
+  narrow.height(2);
+  narrow.step(99);
+  narrow.data().resize(198);
+  expect_refused(narrow, "rows are shorter");
+
+  Image truncated;
+  truncated.width(10);
+  truncated.height(10);
+  truncated.step(40);
+  truncated.data().resize(399);
+  expect_refused(truncated, "image has 399 bytes, 40 x 10 announced");
+  truncated.data().resize(401);
+  expect_refused(truncated, "image has 401 bytes");
+  truncated.data().clear();
+  expect_refused(truncated, "image has 0 bytes");
+}
+
+TEST(BadImage, BigEndianIsRefusedWhereItMatters) {
+  Image wide = depth_mm({1, 2});
+  wide.is_bigendian(1);
+  EXPECT_THAT(to_depth(wide).reason, HasSubstr("big-endian"));
+  Image bytes = image<std::uint8_t>("mono8", 1, 1, {5});
+  bytes.is_bigendian(1);
+  EXPECT_TRUE(to_labels(bytes));
+}
+
+}  // namespace
+}  // namespace lapis::messages

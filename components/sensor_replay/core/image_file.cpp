@@ -104,8 +104,8 @@ std::variant<DepthMillimetres, ImageFault> read_depth(const std::filesystem::pat
   if (raw.type() != CV_16UC1) return ImageFault::kWrongPixelType;
   const std::vector<std::uint16_t> table = millimetre_table(depth_scale);
   DepthMillimetres depth(raw.cols, raw.rows);
-  std::transform(raw.begin<std::uint16_t>(), raw.end<std::uint16_t>(), depth.pixels.begin(),
-                 [&](std::uint16_t value) { return table[value]; });
+  const auto* first = raw.ptr<std::uint16_t>();  // decoded images have no padding
+  std::transform(first, first + raw.total(), depth.pixels.begin(), [&](std::uint16_t value) { return table[value]; });
   return depth;
 }
 

@@ -2,6 +2,7 @@
 
 #include <pthread.h>
 
+#include <atomic>
 #include <csignal>
 #include <iostream>
 #include <thread>
@@ -79,11 +80,13 @@ class SignalWaiter {
   explicit SignalWaiter(dds::Executor& executor) {
     thread_ = std::thread([this, &executor] {
       int signal = 0;
-      sigwait(&set(), &signal);
+      do sigwait(&set(), &signal);
+      while (signal == SIGUSR2 && !is_over_);  // somebody else's SIGUSR2 must not make us deaf
       if (signal != SIGUSR2) executor.stop();
     });
   }
   ~SignalWaiter() {
+    is_over_ = true;
     pthread_kill(thread_.native_handle(), SIGUSR2);  // ends the wait when no signal came
     thread_.join();
   }
@@ -102,6 +105,7 @@ class SignalWaiter {
     }();
     return signals;
   }
+  std::atomic<bool> is_over_{false};
   std::thread thread_;
 };
 

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <string>
+
+#include "common/messages/time.hpp"
+#include "common/runtime/run_component.hpp"
+#include "common/time/stamp_buffer.hpp"
+#include "common/topics.hpp"
+
+namespace lapis::test {
+
+struct EchoConfig {
+  int tiles = 30;
+  std::string greeting = "hello";
+};
+
+template <class Field>
+void describe(Field& field, EchoConfig& c) {
+  field("tiles", c.tiles, config::in_range(0, 10000), "keyed samples published at the start");
+  field("greeting", c.greeting, config::anything(), "answer of the service");
+}
+
+/// Answers every colour image with an odometry of the same stamp; carries a topic of every kind.
+class EchoComponent {
+ public:
+  using Config = EchoConfig;
+  static constexpr const char* kName = "test_echo";
+  static constexpr const char* kSummary = "Echoes images; for tests.";
+
+  EchoComponent(const Config& config, runtime::Context& context)
+      : context_(context),
+        odometry_(context.advertise(topics::kSlamOdometry)),
+        path_(context.advertise(topics::kKeyframePath)),
+        tiles_(context.advertise(topics::kVoxelTiles)) {
+    context.subscribe(topics::kColor, [this](Image& m) { store(m); });
+    context.serve(topics::kSaveMap, [config](const auto&) {
+      std_srvs::srv::Trigger_Response response;
+      response.success(true);
+      response.message(config.greeting);
+      return response;
+    });
+    context.on_cycle([this](const runtime::Cycle&) { work(); });
+    publish_latched(config.tiles);
+  }
+
+ private:
+  using Image = sensor_msgs::msg::Image;
+
+  void store(Image& image) {
+    const time::Time stamp = messages::from_message(image.header().stamp());
+    using Push = time::StampBuffer<Image>::Push;
+    const Push push = images_.push(stamp, std::move(image));
+    if (push == Push::kDuplicate || push == Push::kLate) context_.status().count("images dropped");
+  }
+
+  void work() {
+    while (!images_.empty()) {
+      const auto& [stamp, image] = images_.front();
+      nav_msgs::msg::Odometry message;
+      message.header().stamp(messages::to_message(stamp));
+      message.header().frame_id(context_.frame("map"));
+      message.child_frame_id(context_.frame("base_link"));
+      message.pose().pose().position().x(static_cast<double>(image.data().size()));
+      message.pose().pose().orientation().w(1.0);
+      odometry_.publish(message);
+      context_.status().value("images", ++images_answered_);
+      images_.drop_until(time::Time(stamp));
+    }
+  }
+
+  void publish_latched(int tiles) {
+    for (int i = 0; i < 3; ++i) {  // a late joiner gets the last one only
+      nav_msgs::msg::Path path;
+      path.header().frame_id(context_.frame("map"));
+      path.poses().resize(static_cast<std::size_t>(i) + 1);
+      path_.publish(path);
+    }
+    for (int i = 0; i < tiles; ++i) {
+      lapis_msgs::msg::VoxelTile tile;
+      tile.x(i);
+      tile.version(1);
+      tile.data().assign(4096, static_cast<std::uint8_t>(i));
+      tiles_.publish(tile);
+    }
+  }
+
+  runtime::Context& context_;
+  dds::Publisher<nav_msgs::msg::Odometry>& odometry_;
+  dds::Publisher<nav_msgs::msg::Path>& path_;
+  dds::Publisher<lapis_msgs::msg::VoxelTile>& tiles_;
+  time::StampBuffer<Image> images_;
+  std::uint64_t images_answered_ = 0;
+};
+
+}  // namespace lapis::test

@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws figures/*.png of a run folder: trajectory over the map, errors over time, IoU per class.
 
 A figure whose input files are missing is left out, with a line saying which file; exit status 0 when at least one

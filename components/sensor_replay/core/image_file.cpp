@@ -87,7 +87,7 @@ std::string to_string(ImageFault fault) {
 std::variant<geometry::ColorImage, ImageFault> read_color(const std::filesystem::path& file, ImageSize size) {
   const Decoded decoded = decode(file, size);
   if (const auto* fault = std::get_if<ImageFault>(&decoded)) return *fault;
-  const cv::Mat& bgr = std::get<cv::Mat>(decoded);
+  const auto& bgr = std::get<cv::Mat>(decoded);
   if (bgr.type() != CV_8UC3) return ImageFault::kWrongPixelType;
   static_assert(sizeof(geometry::Rgb8) == 3);
   geometry::ColorImage color(bgr.cols, bgr.rows);
@@ -100,7 +100,7 @@ std::variant<DepthMillimetres, ImageFault> read_depth(const std::filesystem::pat
                                                       double depth_scale) {
   const Decoded decoded = decode(file, size);
   if (const auto* fault = std::get_if<ImageFault>(&decoded)) return *fault;
-  const cv::Mat& raw = std::get<cv::Mat>(decoded);
+  const auto& raw = std::get<cv::Mat>(decoded);
   if (raw.type() != CV_16UC1) return ImageFault::kWrongPixelType;
   const std::vector<std::uint16_t> table = millimetre_table(depth_scale);
   DepthMillimetres depth(raw.cols, raw.rows);
@@ -112,7 +112,7 @@ std::variant<DepthMillimetres, ImageFault> read_depth(const std::filesystem::pat
 std::variant<geometry::LabelImage, ImageFault> read_label(const std::filesystem::path& file, ImageSize size) {
   const Decoded decoded = decode(file, size);
   if (const auto* fault = std::get_if<ImageFault>(&decoded)) return *fault;
-  const cv::Mat& ids = std::get<cv::Mat>(decoded);
+  const auto& ids = std::get<cv::Mat>(decoded);
   if (ids.type() != CV_8UC1 && ids.type() != CV_16UC1) return ImageFault::kWrongPixelType;
   geometry::LabelImage label(ids.cols, ids.rows);
   cv::Mat target(ids.rows, ids.cols, CV_16UC1, label.pixels.data());
@@ -123,7 +123,7 @@ std::variant<geometry::LabelImage, ImageFault> read_label(const std::filesystem:
 std::variant<ImageSize, ImageFault> read_size(const std::filesystem::path& file) {
   const Decoded decoded = decode(file);
   if (const auto* fault = std::get_if<ImageFault>(&decoded)) return *fault;
-  const cv::Mat& image = std::get<cv::Mat>(decoded);
+  const auto& image = std::get<cv::Mat>(decoded);
   return ImageSize{image.cols, image.rows};
 }
 

@@ -81,6 +81,7 @@ Octree encode_octree(const mapping::VoxelMap& map, const mapping::BeliefReader& 
     if (!fits_octree(voxel)) return;
     const auto log_odds = static_cast<float>(reader.occupancy_log_odds(counts));
     octomap::ColorOcTreeNode* node = tree.setNodeValue(octree_key(voxel), log_odds, /*lazy_eval=*/true);
+    node->setLogOdds(log_odds);  // setNodeValue clamps to OctoMap's own, narrower limits
     if (!reader.is_occupied(counts)) return;
     const geometry::Rgb8 color = labels.color(reader.label(counts));
     node->setColor(color.r, color.g, color.b);
@@ -112,7 +113,8 @@ OccupancyGrid project_to_grid(const mapping::VoxelMap& map, const mapping::Belie
   grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height), -1);
   map.for_each_observed([&](const VoxelIndex& voxel, const VoxelCounts& counts) {
     if (!is_in_band(voxel)) return;
-    const auto row = static_cast<std::size_t>(voxel.y - range.low_y), column = static_cast<std::size_t>(voxel.x - range.low_x);
+    const auto row = static_cast<std::size_t>(voxel.y - range.low_y);
+    const auto column = static_cast<std::size_t>(voxel.x - range.low_x);
     std::int8_t& cell = grid.cells[row * static_cast<std::size_t>(grid.width) + column];
     cell = std::max(cell, static_cast<std::int8_t>(reader.is_occupied(counts) ? 100 : 0));
   });

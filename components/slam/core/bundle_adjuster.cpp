@@ -163,7 +163,12 @@ BundleReport adjust_bundle(const BundleConfig& config, const NoiseConfig& noise,
     if (problem.cameras[i].is_fixed) solver.SetParameterBlockConstant(poses[i].data());
   }
   for (const BundleObservation& observation : problem.observations) {
-    const auto& camera = problem.cameras[observation.camera].camera;
+    const auto& [camera, T_map_camera, is_fixed] = problem.cameras[observation.camera];
+    Eigen::Vector3d residual;
+    if (!bundle_residual(noise, camera, observation, T_map_camera, points[observation.point], residual, nullptr,
+                         nullptr)) {
+      continue;
+    }
     solver.AddResidualBlock(new ObservationCost(noise, camera, observation), new ceres::HuberLoss(2.0),
                             poses[observation.camera].data(), points[observation.point].data());
   }

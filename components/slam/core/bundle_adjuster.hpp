@@ -48,7 +48,7 @@ struct BundleReport {
 };
 
 /// Minimises reprojection, depth and link errors (robust for observations) with Ceres, one thread, a fixed number of
-/// iterations at most. On failure the problem is left as it was.
+/// iterations at most. Observations of points behind their camera are left out. On failure nothing changes.
 BundleReport adjust_bundle(const BundleConfig& config, const NoiseConfig& noise, BundleProblem& problem);
 
 /// Whitened residual of an observation and its Jacobians, row-major 3 x 6 by a right perturbation of T_map_camera and

@@ -1,0 +1,73 @@
+#include <random>
+
+#include <benchmark/benchmark.h>
+#include <opencv2/core.hpp>
+
+#include "slam/core/bundle_adjuster.hpp"
+#include "slam/core/rgbd_slam.hpp"
+#include "tests/unit/slam/synthetic_room.hpp"
+
+namespace lapis::slam {
+namespace {
+
+geometry::PinholeCamera camera() { return {640, 360, 320.0, 320.0, 319.5, 179.5}; }
+
+RgbdFrame frame(int index) {
+  return test::render_room(camera(), test::room_path(index), time::Time::from_seconds(index / 30.0));
+}
+
+void extract_features(benchmark::State& state) {
+  const FeatureExtractor extractor{FeatureConfig{}};
+  const RgbdFrame input = frame(0);
+  for (auto _ : state) benchmark::DoNotOptimize(extractor.extract(input.gray));
+}
+
+// Key-frames and their bundle adjustments included.
+void track_frame(benchmark::State& state) {
+  constexpr int kFrames = 60;
+  std::vector<RgbdFrame> frames;
+  for (int i = 0; i < kFrames; ++i) frames.push_back(frame(i));
+  for (auto _ : state) {
+    RgbdSlam slam({}, test::room_path(0));
+    for (const RgbdFrame& input : frames) benchmark::DoNotOptimize(slam.process(input));
+  }
+  state.counters["per_frame"] = benchmark::Counter(kFrames * static_cast<double>(state.iterations()),
+                                                   benchmark::Counter::kIsRate | benchmark::Counter::kInvert);
+}
+
+// `state.range(0)` cameras see the same `state.range(1)` points.
+void local_bundle(benchmark::State& state) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> side(-1.0, 1.0), away(2.0, 5.0);
+  std::normal_distribution<double> normal;
+  BundleProblem scene;
+  for (int i = 0; i < state.range(0); ++i) {
+    scene.cameras.push_back({camera(), geometry::Pose(Eigen::Translation3d(0.05 * i, 0.0, 0.0)), i == 0});
+  }
+  for (std::size_t k = 0; k < static_cast<std::size_t>(state.range(1)); ++k) {
+    const Eigen::Vector3d point(side(random), side(random), away(random));
+    scene.points_map.push_back(point + 0.02 * Eigen::Vector3d(normal(random), normal(random), normal(random)));
+    for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
+      const Eigen::Vector3d p = scene.cameras[i].T_map_camera.inverse() * point;
+      scene.observations.push_back({i, k, camera().project(p), 1.0, p.z()});
+    }
+  }
+  for (auto _ : state) {
+    BundleProblem problem = scene;
+    benchmark::DoNotOptimize(adjust_bundle({}, {}, problem));
+  }
+}
+
+BENCHMARK(extract_features)->Name("extract_features/640x360")->Unit(benchmark::kMillisecond);
+BENCHMARK(track_frame)->Name("track_60_frames/640x360")->Unit(benchmark::kMillisecond);
+BENCHMARK(local_bundle)->Name("local_bundle")->Args({6, 300})->Args({10, 1000})->Unit(benchmark::kMillisecond);
+
+}  // namespace
+}  // namespace lapis::slam
+
+int main(int argc, char** argv) {
+  cv::setNumThreads(1);
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

@@ -1,0 +1,133 @@
+#include "slam/core/rgbd_slam.hpp"
+
+#include <limits>
+
+#include <Eigen/Cholesky>
+#include <gtest/gtest.h>
+
+#include "tests/unit/slam/synthetic_room.hpp"
+
+namespace lapis::slam {
+namespace {
+
+using geometry::Pose;
+
+time::Time stamp(int index) { return time::Time::from_seconds(1.0 + index / 30.0); }
+
+RgbdFrame room_frame(int index) {
+  return test::render_room(test::small_camera(), test::room_path(index), stamp(index));
+}
+
+RgbdFrame black_frame(int index) {
+  return {stamp(index), test::small_camera(), geometry::GrayImage(320, 240), geometry::DepthImage(320, 240, 2.0F)};
+}
+
+Pose T_map_camera(const TrackingResult& result) { return result.T_map_keyframe * result.T_keyframe_camera; }
+
+double distance_m(const TrackingResult& result, int index) {
+  return (T_map_camera(result).translation() - test::room_path(index).translation()).norm();
+}
+
+TEST(RgbdSlam, FollowsACameraThroughARoom) {
+  RgbdSlam slam({}, test::room_path(0));
+  for (int i = 0; i < 60; ++i) {
+    const TrackingResult result = slam.process(room_frame(i));
+    ASSERT_EQ(result.state, TrackingState::kTracking) << "frame " << i << ": " << result.reason;
+    EXPECT_TRUE(result.reason.empty());
+    EXPECT_LT(distance_m(result, i), 0.01) << "frame " << i;
+    EXPECT_TRUE(result.covariance.isApprox(result.covariance.transpose()));
+    EXPECT_EQ(result.is_keyframe, result.T_keyframe_camera.isApprox(Pose::Identity(), 0.0));
+  }
+  EXPECT_GT(slam.landmark_count(), 200U);
+}
+
+TEST(RgbdSlam, GraphHasAnEdgeBetweenConsecutiveKeyframes) {
+  RgbdSlam slam({}, test::room_path(0));
+  std::uint64_t version = 0;
+  std::size_t keyframes = 0;
+  for (int i = 0; i < 60; ++i) {
+    const TrackingResult result = slam.process(room_frame(i));
+    EXPECT_EQ(result.graph_version > version, result.is_keyframe);
+    version = result.graph_version;
+    keyframes += result.is_keyframe ? 1 : 0;
+  }
+  const PoseGraphSnapshot graph = slam.pose_graph();
+  EXPECT_EQ(graph.version, slam.graph_version());
+  ASSERT_EQ(graph.nodes.size(), keyframes);
+  ASSERT_GE(keyframes, 3U);
+  ASSERT_EQ(graph.edges.size(), keyframes - 1);
+  EXPECT_TRUE(graph.nodes[0].T_map_camera.isApprox(test::room_path(0), 1e-12));
+  for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+    const PoseGraphEdge& edge = graph.edges[i];
+    EXPECT_EQ(edge.from, i);
+    EXPECT_EQ(edge.to, i + 1);
+    EXPECT_EQ(edge.information.llt().info(), Eigen::Success);
+    const Pose between = graph.nodes[i].T_map_camera.inverse() * graph.nodes[i + 1].T_map_camera;
+    EXPECT_LT(geometry::se3_log(edge.T_from_to.inverse() * between).norm(), 0.01);
+  }
+}
+
+TEST(RgbdSlam, IsLostWithAReasonInTheDarkAndRecovers) {
+  RgbdSlam slam({}, test::room_path(0));
+  for (int i = 0; i < 10; ++i) slam.process(room_frame(i));
+  for (int i = 10; i < 40; ++i) {
+    const TrackingResult result = slam.process(black_frame(i));
+    EXPECT_EQ(result.state, TrackingState::kLost);
+    EXPECT_EQ(result.reason, "0 features, 15 needed");
+  }
+  // A second later, elsewhere than the motion model could guess.
+  RgbdFrame back = room_frame(5);
+  back.stamp = stamp(40);
+  const TrackingResult result = slam.process(back);
+  ASSERT_EQ(result.state, TrackingState::kTracking) << result.reason;
+  EXPECT_LT(distance_m(result, 5), 0.02);
+}
+
+TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {
+  RgbdSlam slam({}, Pose::Identity());
+  EXPECT_EQ(slam.process(black_frame(0)).state, TrackingState::kInitializing);
+  EXPECT_EQ(slam.process(black_frame(0)).reason, "0 features with depth, 30 needed");
+  ASSERT_EQ(slam.process(room_frame(0)).state, TrackingState::kTracking);
+
+  RgbdFrame no_depth = room_frame(1);
+  no_depth.depth = geometry::DepthImage(320, 240);
+  EXPECT_EQ(slam.process(no_depth).reason, "no depth");
+  RgbdFrame small_depth = room_frame(1);
+  small_depth.depth = geometry::DepthImage(160, 120, 1.0F);
+  EXPECT_EQ(slam.process(small_depth).reason, "depth image size differs from the camera's");
+  RgbdFrame no_gray = room_frame(1);
+  no_gray.gray = {};
+  EXPECT_EQ(slam.process(no_gray).reason, "colour image size differs from the camera's");
+  RgbdFrame no_camera = room_frame(1);
+  no_camera.camera.fx = 0.0;
+  EXPECT_EQ(slam.process(no_camera).reason, "invalid camera");
+  RgbdFrame poisoned = room_frame(1);
+  for (std::size_t i = 0; i < poisoned.depth.pixels.size(); i += 3) {
+    poisoned.depth.pixels[i] = i % 2 == 0 ? std::numeric_limits<float>::quiet_NaN() : -1.0F;
+  }
+  slam.process(poisoned);  // must not crash
+  const TrackingResult result = slam.process(room_frame(2));
+  ASSERT_EQ(result.state, TrackingState::kTracking) << result.reason;
+  EXPECT_LT((test::room_path(0) * T_map_camera(result)).translation().x() - test::room_path(2).translation().x(), 0.01);
+}
+
+TEST(RgbdSlam, GivesTheSameBitsTwice) {
+  RgbdSlam first({}, test::room_path(0));
+  RgbdSlam second({}, test::room_path(0));
+  for (int i = 0; i < 40; ++i) {
+    const RgbdFrame frame = i == 20 ? black_frame(i) : room_frame(i);
+    const TrackingResult a = first.process(frame);
+    const TrackingResult b = second.process(frame);
+    EXPECT_TRUE(a.T_map_keyframe.matrix() == b.T_map_keyframe.matrix());
+    EXPECT_TRUE(a.T_keyframe_camera.matrix() == b.T_keyframe_camera.matrix());
+    EXPECT_TRUE(a.covariance == b.covariance);
+    EXPECT_EQ(a.inliers, b.inliers);
+  }
+  const auto a = first.pose_graph();
+  const auto b = second.pose_graph();
+  ASSERT_EQ(a.edges.size(), b.edges.size());
+  for (std::size_t i = 0; i < a.edges.size(); ++i) EXPECT_TRUE(a.edges[i].information == b.edges[i].information);
+}
+
+}  // namespace
+}  // namespace lapis::slam

@@ -13,6 +13,9 @@ struct Topic {
   using Type = Message;
   const char* name;         ///< ROS name ("/slam/odometry") or, for keyed topics, a plain DDS name without leading slash
   Qos qos;
+  const char* from;         ///< who publishes it
+  const char* rate;         ///< when
+  const char* meaning;      ///< a line for docs/topics.md
   bool is_global = false;   ///< true: never prefixed by --namespace (/tf, /clock, ...)
 };
 
@@ -21,6 +24,8 @@ template <class Service>
 struct ServiceTopic {
   using Type = Service;
   const char* name;
+  const char* from;
+  const char* meaning;
 };
 
 template <class Message>

@@ -28,6 +28,7 @@ struct Arguments {
   std::string log_level = "info";
   bool use_sim_time = false;
   bool print_config = false;
+  bool print_config_table = false;
   bool check_config = false;
 };
 
@@ -42,6 +43,7 @@ void add_common_options(CLI::App& app, Arguments& arguments) {
       ->check(CLI::IsMember({"debug", "info", "warn", "error"}));
   app.add_flag("--use-sim-time", arguments.use_sim_time, "take the time from /clock");
   app.add_flag("--print-config", arguments.print_config, "print the configuration in effect and exit");
+  app.add_flag("--print-config-table", arguments.print_config_table, "the same as a table for the component's page");
   app.add_flag("--check-config", arguments.check_config, "check the configuration and exit");
   app.set_version_flag("--version", std::string("lapis ") + kVersion);
 }
@@ -166,6 +168,10 @@ int run(ComponentFactory factory, int argc, char** argv) {
   }
   if (arguments.print_config) {
     std::cout << config::to_yaml(factory.schema);
+    return kAskedToStop;
+  }
+  if (arguments.print_config_table) {
+    std::cout << config::to_markdown(factory.schema);
     return kAskedToStop;
   }
   if (arguments.check_config) return kAskedToStop;

@@ -1,0 +1,48 @@
+#!/usr/bin/env python3
+"""Documents that are printed by the code stay equal to it, and every shipped configuration loads.
+
+usage: documents_test.py REPOSITORY BIN_DIRECTORY
+"""
+import pathlib
+import subprocess
+import sys
+import unittest
+
+REPOSITORY = pathlib.Path(sys.argv.pop(1))
+BIN = pathlib.Path(sys.argv.pop(1))
+COMPONENTS = ["sensor_replay", "slam", "semantic_mapper", "evaluator"]
+
+
+def output_of(*command):
+    return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True).stdout
+
+
+class Documents(unittest.TestCase):
+    def test_topics_page_is_what_lapis_topics_prints(self):
+        self.assertEqual((REPOSITORY / "docs/topics.md").read_text(), output_of(BIN / "lapis_topics"),
+                         "renew it: build/release/bin/lapis_topics > docs/topics.md")
+
+    def test_default_configurations_are_what_print_config_prints(self):
+        for name in COMPONENTS:
+            with self.subTest(name):
+                file = REPOSITORY / f"config/default/{name}.yaml"
+                self.assertEqual(file.read_text(), output_of(BIN / f"lapis_{name}", "--print-config"),
+                                 f"renew it: build/release/bin/lapis_{name} --print-config > config/default/{name}.yaml")
+
+    def test_every_shipped_configuration_loads(self):
+        files = [f for f in sorted(REPOSITORY.glob("config/**/*.yaml")) if f.stem in COMPONENTS]
+        self.assertGreaterEqual(len(files), len(COMPONENTS))
+        for file in files:
+            with self.subTest(str(file)):
+                output_of(BIN / f"lapis_{file.stem}", "--config", file, "--check-config")
+
+    def test_component_pages_list_every_configuration_key(self):
+        for name in COMPONENTS:
+            with self.subTest(name):
+                page = (REPOSITORY / f"components/{name}/README.md").read_text()
+                table = output_of(BIN / f"lapis_{name}", "--print-config-table")
+                self.assertIn(table, page, f"renew the table: build/release/bin/lapis_{name} --print-config-table")
+
+
+if __name__ == "__main__":
+    unittest.main()

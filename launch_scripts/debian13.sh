@@ -12,7 +12,10 @@ TEXT
 }
 stop() { echo "debian13.sh: $*" >&2; exit 2; }
 
-folder="" mirror=http://deb.debian.org/debian
+folder=""
+# Packages come from where this machine gets its own, unless --mirror says otherwise.
+# shellcheck disable=SC2016 # apt-get expands it
+mirror="$(apt-get indextargets --format '$(REPO_URI)' 2>/dev/null | grep -v security | head -n 1 || true)"
 while [[ $# -gt 0 ]]; do
   case "$1" in
     --mirror) mirror="${2:?--mirror needs a URL}"; shift 2 ;;
@@ -26,7 +29,7 @@ done
 command -v debootstrap >/dev/null || stop "needs the package debootstrap"
 
 if [[ ! -e "$folder/etc/os-release" ]]; then
-  debootstrap --variant=minbase trixie "$folder" "$mirror"
+  debootstrap --variant=minbase trixie "$folder" ${mirror:+"$mirror"}
 fi
 folder="$(cd "$folder" && pwd)"
 if [[ -e /etc/resolv.conf ]]; then cp -L /etc/resolv.conf "$folder/etc/resolv.conf"; fi

@@ -105,13 +105,14 @@ void run_coverage(const MapOptions& options, std::ostream& out) {
   const LoadedMap estimate = load(options.estimate);
   const Coverage figures =
       options.reference.empty() ? coverage(estimate.space) : coverage(load(options.reference).space, estimate.space);
-  ordered_json result = {{"reference", options.reference.empty() ? ordered_json(nullptr) : ordered_json(options.reference)},
-                         {"estimate", options.estimate},
-                         {"resolution_m", estimate.space.occupied.resolution_m},
-                         {"explored_volume_m3", figures.explored_volume_m3},
-                         {"free_volume_m3", figures.free_volume_m3},
-                         {"occupied_volume_m3", figures.occupied_volume_m3},
-                         {"explored_share", value_or_null(figures.explored_share)}};
+  ordered_json result = {
+      {"reference", options.reference.empty() ? ordered_json(nullptr) : ordered_json(options.reference)},
+      {"estimate", options.estimate},
+      {"resolution_m", estimate.space.occupied.resolution_m},
+      {"explored_volume_m3", figures.explored_volume_m3},
+      {"free_volume_m3", figures.free_volume_m3},
+      {"occupied_volume_m3", figures.occupied_volume_m3},
+      {"explored_share", value_or_null(figures.explored_share)}};
   print_report(out, result, options.as_json);
 }
 

@@ -10,6 +10,7 @@ namespace lapis::mapping {
 namespace {
 
 constexpr int kCompressionLevel = 1;
+constexpr int kLargestLabel = 65534;  // integration.cpp needs one value for itself
 
 std::uint16_t to_millimetres(float depth_m) {
   if (!std::isfinite(depth_m) || depth_m <= 0.0f) return 0;
@@ -55,9 +56,12 @@ std::optional<CompactFrame> CompactFrame::make(const geometry::PinholeCamera& ca
                                                const geometry::LabelImage* labels, const CompactFrameConfig& config,
                                                std::string& error) {
   error.clear();
-  if (!geometry::is_valid(camera)) error = "camera intrinsics are not valid";
-  else if (config.stride < 1 || config.stride > 16) error = "stride is outside [1, 16]";
-  else if (depth.width != camera.width || depth.height != camera.height) error = "depth size differs from the camera's";
+  if (!geometry::is_valid(camera))
+    error = "camera intrinsics are not valid";
+  else if (config.stride < 1 || config.stride > 16)
+    error = "stride is outside [1, 16]";
+  else if (depth.width != camera.width || depth.height != camera.height)
+    error = "depth size differs from the camera's";
   else if (labels && (labels->width != depth.width || labels->height != depth.height))
     error = "label size differs from depth size";
   if (!error.empty()) return std::nullopt;
@@ -74,7 +78,7 @@ std::optional<CompactFrame> CompactFrame::make(const geometry::PinholeCamera& ca
       samples.depth_mm.push_back(to_millimetres(depth(column, row)));
       if (!labels) continue;
       const std::uint16_t label = (*labels)(column, row);
-      const bool is_listed = label <= config.max_label;
+      const bool is_listed = label <= std::min(config.max_label, kLargestLabel);
       frame.labels_out_of_list_ += is_listed ? 0 : 1;
       samples.labels.push_back(is_listed ? label : std::uint16_t{0});
     }

@@ -13,7 +13,7 @@ namespace lapis::mapping {
 
 struct CompactFrameConfig {
   int stride = 2;         ///< every stride-th pixel of every stride-th row is kept, in [1, 16]
-  int max_label = 65535;  ///< labels above are kept as unlabelled (0) and counted, in [0, 65535]
+  int max_label = 65534;  ///< labels above are kept as unlabelled (0) and counted; 65535 always is
 };
 
 /// What the mapper keeps of a camera frame, and the only thing it ever integrates. Because the map is moved with the

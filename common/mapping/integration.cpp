@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
@@ -89,7 +89,8 @@ class Projector {
   Eigen::Vector3d x_step_, y_step_, corner_, camera_;
 };
 
-FrameBox box_of(const CompactFrame& frame, const geometry::Pose& T_map_camera, double max_range_m, double resolution_m) {
+FrameBox box_of(const CompactFrame& frame, const geometry::Pose& T_map_camera, double max_range_m,
+                double resolution_m) {
   const geometry::PinholeCamera& camera = frame.camera();
   const Eigen::Vector3d center = T_map_camera.translation();
   Eigen::Vector3d low = center, high = center;
@@ -115,11 +116,11 @@ std::vector<Run> find_runs(const CompactFrame& frame, const CompactFrame::Sample
       const std::uint16_t depth_mm = samples.depth_mm[sample];
       if (depth_mm == 0) continue;
       Eigen::Vector3d ray = projector.direction(column, row) * depth_mm;
-      const double range = ray.norm();
-      if (range < min_range) continue;
+      const double squared_range = ray.squaredNorm();
+      if (squared_range < min_range * min_range) continue;
       std::uint16_t label = samples.labels.empty() ? std::uint16_t{0} : samples.labels[sample];
-      if (range > max_range) {
-        ray *= max_range / range;
+      if (squared_range > max_range * max_range) {
+        ray *= max_range / std::sqrt(squared_range);
         label = kBeyondRange;
       }
       // Box coordinates are positive, so truncation rounds down.
@@ -151,8 +152,8 @@ void sort_by_cell(std::vector<Run>& runs, std::size_t cell_count) {
 /// All samples of one cell.
 struct CellSummary {
   bool is_hit = false;
-  std::uint16_t label = 0;        ///< majority of the labelled samples
-  std::uint32_t ray_sample = 0;   ///< the sample whose ray is followed
+  std::uint16_t label = 0;       ///< majority of the labelled samples
+  std::uint32_t ray_sample = 0;  ///< the sample whose ray is followed
 };
 
 /// Votes of the runs [first, last) of one cell.
@@ -203,26 +204,52 @@ class CellMask {
   std::vector<std::uint64_t> words_;
 };
 
+/// One axis of a walk through the cells. Distances along the ray are 64-bit fixed point (kRayLength = its whole
+/// length): additions are exact, and masks replace the branches that a processor could not predict.
+struct AxisWalk {
+  static constexpr std::int64_t kRayLength = std::int64_t{1} << 44;
+
+  AxisWalk(double start, double along, const CellId* table) {
+    const int cell = static_cast<int>(start);
+    const double to_wall = along > 0.0 ? cell + 1 - start : start - cell;
+    entry = table + cell;
+    step = along > 0.0 ? 1 : -1;
+    t_cell = fixed(1.0 / std::abs(along));
+    t_exit = along == 0.0 ? kNever : fixed(to_wall / std::abs(along));
+  }
+  /// Crosses into the next cell if `mask` is -1, stays if it is 0.
+  void advance(std::int64_t mask) {
+    entry += step & mask;
+    t_exit += t_cell & mask;
+  }
+
+  const CellId* entry;  ///< the cell's part of the id
+  std::ptrdiff_t step;  ///< +1 or -1
+  std::int64_t t_exit;  ///< where the ray leaves the cell
+  std::int64_t t_cell;  ///< from wall to wall
+
+ private:
+  static constexpr std::int64_t kNever = std::int64_t{1} << 62;
+  static std::int64_t fixed(double t) {
+    return t < 1024.0 ? static_cast<std::int64_t>(t * static_cast<double>(kRayLength)) : kNever;
+  }
+};
+
 /// Marks every cell that the segment from `start` along `ray` [voxels] leaves before the share `t_end` of its length.
 void mark_passes(const FrameBox& box, const Eigen::Vector3d& start, const Eigen::Vector3d& ray, double t_end,
                  CellMask& mask) {
-  std::array<int, 3> cell{}, step{};
-  std::array<double, 3> t_exit{}, t_cell{};
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const auto i = static_cast<Eigen::Index>(axis);
-    cell[axis] = static_cast<int>(start[i]);
-    step[axis] = ray[i] > 0.0 ? 1 : -1;
-    t_cell[axis] = ray[i] == 0.0 ? std::numeric_limits<double>::infinity() : 1.0 / std::abs(ray[i]);
-    const double to_wall = ray[i] > 0.0 ? cell[axis] + 1 - start[i] : start[i] - cell[axis];
-    t_exit[axis] = ray[i] == 0.0 ? std::numeric_limits<double>::infinity() : to_wall * t_cell[axis];
-  }
-  const CellId *table_x = box.table(0), *table_y = box.table(1), *table_z = box.table(2);
+  AxisWalk x(start.x(), ray.x(), box.table(0)), y(start.y(), ray.y(), box.table(1)),
+      z(start.z(), ray.z(), box.table(2));
+  const auto end = static_cast<std::int64_t>(t_end * static_cast<double>(AxisWalk::kRayLength));
   while (true) {
-    const std::size_t axis = t_exit[0] < t_exit[1] ? (t_exit[0] < t_exit[2] ? 0 : 2) : (t_exit[1] < t_exit[2] ? 1 : 2);
-    if (t_exit[axis] > t_end) return;
-    mask.set(table_x[cell[0]] + table_y[cell[1]] + table_z[cell[2]]);
-    cell[axis] += step[axis];
-    t_exit[axis] += t_cell[axis];
+    const std::int64_t t = std::min(x.t_exit, std::min(y.t_exit, z.t_exit));
+    if (t > end) return;
+    mask.set(*x.entry + *y.entry + *z.entry);
+    const std::int64_t along_x = -static_cast<std::int64_t>(x.t_exit == t);
+    const std::int64_t along_y = ~along_x & -static_cast<std::int64_t>(y.t_exit == t);
+    x.advance(along_x);
+    y.advance(along_y);
+    z.advance(~(along_x | along_y));
   }
 }
 

@@ -27,7 +27,8 @@ inline constexpr double kMaxRangeInVoxels = 500.0;
 /// What a frame, seen from a pose, says about the map. Each voxel gets at most one vote:
 /// - a hit where a sampled pixel's point within range falls into it; its class is the majority of the voxel's labelled
 ///   pixels (never an average; ties go to the smaller id; unlabelled only when no pixel is labelled);
-/// - otherwise a pass when a ray goes through it. There is one ray per voxel that is seen (to a measured point in it, the
+/// - otherwise a pass when a ray goes through it. There is one ray per voxel that is seen (to a measured point in it,
+/// the
 ///   middle one in scan order), traversed exactly [Amanatides & Woo 1987]. Returns beyond max_range_m end rays there
 ///   without a hit. Pixels without depth say nothing.
 /// Deterministic: the same frame, pose, configuration and resolution give the same votes.

@@ -22,8 +22,8 @@ struct MapFile {
 };
 
 /// Bytes of a map file. Layout (little-endian): "LAPISMAP", format version (u32), CRC-32 of everything after it (u32),
-/// size of the payload (u64), payload: one zstd frame of resolution, sensor model, labels, provenance, number of blocks,
-/// blocks (index, block_codec.hpp) in canonical order. Equal content gives equal bytes.
+/// size of the payload (u64), payload: one zstd frame of resolution, sensor model, labels, provenance, number of
+/// blocks, blocks (index, block_codec.hpp) in canonical order. Equal content gives equal bytes.
 std::vector<std::uint8_t> encode_map(const MapFile& file);
 
 /// Inverse of encode_map; nothing, with the reason in `error`, for anything that is not a whole and undamaged file.

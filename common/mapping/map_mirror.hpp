@@ -16,7 +16,7 @@ namespace lapis::mapping {
 
 /// What the mapper says about a version of its map, after having published the tiles of that version.
 struct MapState {
-  std::int64_t epoch = 0;      ///< grows when a mapper starts a new map
+  std::int64_t epoch = 0;  ///< grows when a mapper starts a new map
   std::uint64_t version = 0;
   std::uint32_t tiles = 0;     ///< tiles that exist in this version
   std::uint64_t checksum = 0;  ///< sum of tile_hash(index, version that last changed it), modulo 2^64
@@ -42,8 +42,8 @@ class MapMirror {
   const std::optional<MapState>& state() const { return served_; }
   /// Newest state that was announced; nothing before the first.
   const std::optional<MapState>& newest_state() const { return newest_; }
-  /// Blocks that may differ from what map() held at the previous call, in canonical order. When a new epoch replaced the
-  /// whole map, all blocks of the old and the new map are in it.
+  /// Blocks that may differ from what map() held at the previous call, in canonical order. When a new epoch replaced
+  /// the whole map, all blocks of the old and the new map are in it.
   std::vector<BlockIndex> take_changed_blocks();
   std::size_t pending_tiles() const { return pending_.size(); }
 

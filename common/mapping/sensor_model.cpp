@@ -25,7 +25,8 @@ void validate(const SensorModel& m) {
   require(m.prior_occupied > 0.0 && m.prior_occupied < 1.0, "prior_occupied must be in (0, 1)");
   require(m.occupancy_limit > 0.0 && m.share_limit > 0.0, "limits must be positive");
   if (m.class_priors.empty()) return;
-  require(m.class_priors.size() == static_cast<std::size_t>(m.class_count), "class_priors must have class_count entries");
+  require(m.class_priors.size() == static_cast<std::size_t>(m.class_count),
+          "class_priors must have class_count entries");
   for (const double p : m.class_priors) require(p > 0.0 && p <= 1.0, "class_priors must be in (0, 1]");
   const double sum = std::accumulate(m.class_priors.begin(), m.class_priors.end(), 0.0);
   require(std::abs(sum - 1.0) < 1e-6, "class_priors must sum to 1");

@@ -10,11 +10,11 @@ namespace lapis::mapping {
 /// How a frame's votes change what is believed about a voxel. Class ids are 1..class_count; a hit of class 0
 /// (unlabelled) or of an id above the list speaks for "occupied" and for no class.
 struct SensorModel {
-  double hit_gain = 0.85;        ///< l: log-odds gain of "occupied" by a first hit, in (0, 5]
-  double pass_gain = 0.4;        ///< m: log-odds loss of "occupied" by a pass, in (0, 5]
-  double label_accuracy = 0.7;   ///< a: probability that a label is right, in (1/class_count, 1)
-  double prior_occupied = 0.2;   ///< P0 of a voxel that was never observed, in (0, 1)
-  int class_count = 40;          ///< C, in [1, 65535]
+  double hit_gain = 0.85;       ///< l: log-odds gain of "occupied" by a first hit, in (0, 5]
+  double pass_gain = 0.4;       ///< m: log-odds loss of "occupied" by a pass, in (0, 5]
+  double label_accuracy = 0.7;  ///< a: probability that a label is right, in (1/class_count, 1)
+  double prior_occupied = 0.2;  ///< P0 of a voxel that was never observed, in (0, 1)
+  int class_count = 40;         ///< C, in [1, 65535]
   /// Prior share of each class given occupied, size C and sum 1; empty = uniform.
   std::vector<double> class_priors;
   /// The paper's own increments (psi = 1, phi = -0.1 for other classes and for passes) instead of those derived from
@@ -33,8 +33,8 @@ SensorModel paper_sensor_model(std::vector<double> class_priors = {0.1, 0.1, 0.1
 
 /// Multi-class belief of a voxel from its counts: eq. 9-11 of the paper with one prior everywhere and the three
 /// increments psi_c = l + ln(a / pi_c) (hit, its class), phi_c = l + ln((1 - a) / (1 - pi_c)) (hit of c, other classes)
-/// and -m (pass, all classes), so that a first hit multiplies the odds of "occupied" by exp(l) for any number of classes.
-/// With h_c hits of class c, u unlabelled hits and n passes, and the free class as reference (y_0 = 0):
+/// and -m (pass, all classes), so that a first hit multiplies the odds of "occupied" by exp(l) for any number of
+/// classes. With h_c hits of class c, u unlabelled hits and n passes, and the free class as reference (y_0 = 0):
 ///   y_c = logit P0 + ln pi_c + u l - n m + sum_j h_j phi_j + h_c (psi_c - phi_c).
 class BeliefReader {
  public:

@@ -18,8 +18,8 @@ inline constexpr double kDefaultTileEdge_m = 0.8;
 inline constexpr int kMaxBlocksPerTileEdge = 16;
 
 /// A tile's edge is the smallest whole number of blocks that is at least `tile_edge_m`: the number of tiles depends on
-/// the volume and hardly on the resolution, while a block is never shared by two tiles. At 0.25 m a block alone has 2 m.
-/// Throws std::runtime_error when the result exceeds kMaxBlocksPerTileEdge.
+/// the volume and hardly on the resolution, while a block is never shared by two tiles. At 0.25 m a block alone has 2
+/// m. Throws std::runtime_error when the result exceeds kMaxBlocksPerTileEdge.
 int blocks_per_tile_edge(double resolution_m, double tile_edge_m);
 
 TileIndex tile_of(const BlockIndex& block, int blocks_per_edge);
@@ -32,10 +32,10 @@ struct DecodedTile {
   std::vector<std::pair<BlockIndex, VoxelBlock>> blocks;  ///< only those that are not empty
 };
 
-/// Bytes of the tile's counts. Layout (little-endian): 'L', format version 1, blocks per edge, flags (1: the body is one
-/// zstd frame), resolution (f64), then the body: every block of the tile as block_codec.hpp says, in canonical order.
-/// The body is compressed only when it is large: small tiles are the rule and must stay cheap. Nothing when even then
-/// it exceeds kMaxTileBytes, which takes several classes in nearly every voxel of a tile of 64,000.
+/// Bytes of the tile's counts. Layout (little-endian): 'L', format version 1, blocks per edge, flags (1: the body is
+/// one zstd frame), resolution (f64), then the body: every block of the tile as block_codec.hpp says, in canonical
+/// order. The body is compressed only when it is large: small tiles are the rule and must stay cheap. Nothing when even
+/// then it exceeds kMaxTileBytes, which takes several classes in nearly every voxel of a tile of 64,000.
 std::optional<std::vector<std::uint8_t>> encode_tile(const VoxelMap& map, const TileIndex& tile, int blocks_per_edge);
 
 /// Inverse of encode_tile for the tile at `tile`. Nothing when the bytes are not exactly what an encoder writes: any

@@ -19,8 +19,8 @@ struct ClassCount {
 
 /// Everything a voxel knows. All zero = never observed.
 struct VoxelCounts {
-  std::uint32_t passes = 0;       ///< [1/256 vote]
-  std::vector<ClassCount> hits;   ///< sorted by label, no zero counts
+  std::uint32_t passes = 0;      ///< [1/256 vote]
+  std::vector<ClassCount> hits;  ///< sorted by label, no zero counts
 
   bool is_observed() const { return passes > 0 || !hits.empty(); }
   bool operator==(const VoxelCounts&) const = default;

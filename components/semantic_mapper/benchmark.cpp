@@ -133,9 +133,10 @@ void register_all() {
     add(named("encode_tiles"), [r](benchmark::State& s) { encode_tiles(s, r); });
   }
   for (const int stride : {1, 2})
-    benchmark::RegisterBenchmark(("compact_frame/stride" + std::to_string(stride)).c_str(),
-                                 [stride](benchmark::State& s) { compact_frame(s, stride); })
-        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(("compact_frame/stride" + std::to_string(stride)).c_str(), [stride](
+                                                                                                benchmark::State& s) {
+      compact_frame(s, stride);
+    })->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace

@@ -57,11 +57,10 @@ std::vector<LabelledPoint> occupied_points(const mapping::VoxelMap& map, const m
 }
 
 std::vector<std::uint8_t> encode_ply(std::span<const LabelledPoint> points) {
-  const std::string header =
-      "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.size()) +
-      "\nproperty float x\nproperty float y\nproperty float z\n"
-      "property uchar red\nproperty uchar green\nproperty uchar blue\n"
-      "property ushort label\nproperty float probability\nend_header\n";
+  const std::string header = "ply\nformat binary_little_endian 1.0\nelement vertex " + std::to_string(points.size()) +
+                             "\nproperty float x\nproperty float y\nproperty float z\n"
+                             "property uchar red\nproperty uchar green\nproperty uchar blue\n"
+                             "property ushort label\nproperty float probability\nend_header\n";
   mapping::ByteWriter out;
   out.raw(to_bytes(header));
   for (const LabelledPoint& point : points) {

@@ -16,9 +16,9 @@ namespace lapis::semantic_mapper {
 /// Centre of an occupied voxel in the map frame [m].
 struct LabelledPoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();
-  geometry::Rgb8 color;          ///< of the class
+  geometry::Rgb8 color;  ///< of the class
   std::uint16_t label = 0;
-  float probability = 0.0f;      ///< P(occupied)
+  float probability = 0.0f;  ///< P(occupied)
 };
 
 /// Occupied voxels (P > 0.5) in canonical order.
@@ -28,9 +28,10 @@ std::vector<LabelledPoint> occupied_points(const mapping::VoxelMap& map, const m
 /// Binary little-endian PLY: vertices x y z (float), red green blue (uchar), label (ushort), probability (float).
 std::vector<std::uint8_t> encode_ply(std::span<const LabelledPoint> points);
 
-/// The map as OctoMap ColorOcTree: one leaf per observed voxel at the same grid, value = occupancy log-odds, colour = the
-/// class' for occupied voxels and white for free ones. Leaves are not pruned: OctoMap would merge equal occupancy of
-/// different classes and mix their colours. Voxels further than 32,768 cells from the origin do not fit and are left out.
+/// The map as OctoMap ColorOcTree: one leaf per observed voxel at the same grid, value = occupancy log-odds, colour =
+/// the class' for occupied voxels and white for free ones. Leaves are not pruned: OctoMap would merge equal occupancy
+/// of different classes and mix their colours. Voxels further than 32,768 cells from the origin do not fit and are left
+/// out.
 struct Octree {
   std::vector<std::uint8_t> file;     ///< content of a .ot file
   std::vector<std::uint8_t> message;  ///< data of octomap_msgs/Octomap with id "ColorOcTree", binary = false
@@ -48,8 +49,8 @@ struct OccupancyGrid {
   double resolution_m = 0.0;
   double origin_x_m = 0.0;
   double origin_y_m = 0.0;
-  int width = 0;   ///< columns, along x
-  int height = 0;  ///< rows, along y
+  int width = 0;                   ///< columns, along x
+  int height = 0;                  ///< rows, along y
   std::vector<std::int8_t> cells;  ///< row by row: 100 occupied, 0 free, -1 unknown
 };
 

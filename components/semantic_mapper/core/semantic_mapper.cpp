@@ -61,7 +61,8 @@ void SemanticMapper::update_keyframe_poses(std::uint64_t graph_version, std::spa
   if (graph_version < graph_version_) return;
   graph_version_ = graph_version;
   for (const KeyframePose& pose : poses)
-    if (geometry::is_valid(pose.T_map_keyframe) && is_near(pose.T_map_keyframe)) move_keyframe(pose.id, pose.T_map_keyframe);
+    if (geometry::is_valid(pose.T_map_keyframe) && is_near(pose.T_map_keyframe))
+      move_keyframe(pose.id, pose.T_map_keyframe);
 }
 
 void SemanticMapper::move_keyframe(std::uint64_t id, const Pose& T_map_keyframe) {

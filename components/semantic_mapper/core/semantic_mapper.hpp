@@ -20,16 +20,16 @@
 namespace lapis::semantic_mapper {
 
 struct MapperConfig {
-  double resolution_m = 0.25;                       ///< edge of a voxel, in [0.02, 0.5]
-  double tile_edge_m = mapping::kDefaultTileEdge_m; ///< least edge of a tile, in [0.1, 6.4]
+  double resolution_m = 0.25;                        ///< edge of a voxel, in [0.02, 0.5]
+  double tile_edge_m = mapping::kDefaultTileEdge_m;  ///< least edge of a tile, in [0.1, 6.4]
   mapping::IntegrationConfig integration;
   /// A frame is moved when a point at its median depth is off by more than this, in [0, 10] voxels.
   double re_anchor_threshold_voxels = 0.2;
   bool re_anchor = true;  ///< false: frames stay where they were first put (the paper's frozen map)
 };
 
-/// A camera frame and where it was taken: T_map_camera = T_map_keyframe * T_keyframe_camera. The pose graph may move the
-/// first factor at any time; the second never changes.
+/// A camera frame and where it was taken: T_map_camera = T_map_keyframe * T_keyframe_camera. The pose graph may move
+/// the first factor at any time; the second never changes.
 struct AnchoredFrame {
   time::Time stamp;
   std::uint64_t keyframe_id = 0;
@@ -61,9 +61,9 @@ struct TileUpdate {
 
 enum class IntegrationStatus {
   kIntegrated,
-  kInvalidPose,   ///< a pose is not finite or not rigid
-  kTooFarAway,    ///< a pose is more than 10 km from its origin
-  kMapIsFull      ///< 2^24 - 1 frames: one more could overflow a count
+  kInvalidPose,  ///< a pose is not finite or not rigid
+  kTooFarAway,   ///< a pose is more than 10 km from its origin
+  kMapIsFull     ///< 2^24 - 1 frames: one more could overflow a count
 };
 
 struct IntegrationReport {
@@ -72,9 +72,9 @@ struct IntegrationReport {
   std::size_t passes = 0;  ///< voxels that got a pass
 };
 
-/// Semantic map that follows the pose graph. Every integrated frame is kept in compact form with the pose at which it is
-/// in the map; when the graph moves its key-frame, its votes are taken out at the old pose and put back at the new one.
-/// At any instant the map equals, bit for bit, one built from the stored frames at their recorded poses.
+/// Semantic map that follows the pose graph. Every integrated frame is kept in compact form with the pose at which it
+/// is in the map; when the graph moves its key-frame, its votes are taken out at the old pose and put back at the new
+/// one. At any instant the map equals, bit for bit, one built from the stored frames at their recorded poses.
 class SemanticMapper {
  public:
   /// Throws std::runtime_error naming the value that is out of range.
@@ -82,7 +82,8 @@ class SemanticMapper {
 
   /// Puts a frame into the map at its key-frame's newest known pose and stores it.
   IntegrationReport integrate(AnchoredFrame frame);
-  /// Newest poses of the graph. Key-frames that are not listed keep theirs; older versions are ignored. Moves nothing yet.
+  /// Newest poses of the graph. Key-frames that are not listed keep theirs; older versions are ignored. Moves nothing
+  /// yet.
   void update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses);
   /// Moves up to `max_frames` of the frames that are off by more than the threshold, oldest first; returns how many.
   std::size_t re_anchor(std::size_t max_frames);

@@ -16,14 +16,14 @@ const geometry::PinholeCamera kCamera{64, 36, 32, 32, 31.5, 17.5};
 TEST(CompactFrame, KeepsSampledDepthInMillimetresAndLabels) {
   std::mt19937 random(1);
   std::uniform_real_distribution<float> depth_m(0.0f, 70.0f);
-  std::uniform_int_distribution<int> label(0, 65535);
+  std::uniform_int_distribution<int> label(0, 65534);
   for (const int stride : {1, 2, 3, 5}) {
     geometry::DepthImage depth(kCamera.width, kCamera.height);
     geometry::LabelImage labels(kCamera.width, kCamera.height);
     for (float& d : depth.pixels) d = depth_m(random);
     for (std::uint16_t& l : labels.pixels) l = static_cast<std::uint16_t>(label(random));
     std::string error;
-    const auto frame = CompactFrame::make(kCamera, depth, &labels, {stride, 65535}, error);
+    const auto frame = CompactFrame::make(kCamera, depth, &labels, {stride, 65534}, error);
     ASSERT_TRUE(frame) << error;
     const CompactFrame::Samples samples = frame->unpack();
     ASSERT_EQ(samples.depth_mm.size(), static_cast<std::size_t>(frame->columns() * frame->rows()));
@@ -84,7 +84,8 @@ TEST(CompactFrame, NamesWhatDisagrees) {
 
 TEST(CompactFrame, TakesAFractionOfTheImagesMemory) {
   const geometry::PinholeCamera camera{640, 360, 320, 320, 319.5, 179.5};
-  const auto image = lapis::test::render(lapis::test::furnished_room(), camera, lapis::test::look({-2, -1, 1}, 0.4, 0.1));
+  const auto image =
+      lapis::test::render(lapis::test::furnished_room(), camera, lapis::test::look({-2, -1, 1}, 0.4, 0.1));
   std::string error;
   const auto frame = CompactFrame::make(camera, image.depth, &image.labels, {}, error);
   ASSERT_TRUE(frame);

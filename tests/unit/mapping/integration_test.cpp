@@ -135,7 +135,8 @@ TEST(ComputeVotes, HitsAreExactlyTheVoxelsOfTheSampledPoints) {
       if (it == got.hits.end() || it->second != best) ++different;
     }
     EXPECT_LE(different, tally.size() / 200) << r;
-    EXPECT_NEAR(static_cast<double>(got.hits.size()), static_cast<double>(tally.size()), 1.0 + 0.005 * static_cast<double>(tally.size()));
+    EXPECT_NEAR(static_cast<double>(got.hits.size()), static_cast<double>(tally.size()),
+                1.0 + 0.005 * static_cast<double>(tally.size()));
   }
 }
 

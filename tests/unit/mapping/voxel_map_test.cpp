@@ -123,13 +123,12 @@ TEST(VoxelMap, ManyClassesInOneVoxelAreAllKept) {
   ASSERT_EQ(counts.hits.size(), 300u);
   EXPECT_TRUE(std::is_sorted(counts.hits.begin(), counts.hits.end(),
                              [](const ClassCount& a, const ClassCount& b) { return a.label < b.label; }));
-  for (int label = 1; label <= 300; ++label) EXPECT_TRUE(block.subtract_hit(511, static_cast<std::uint16_t>(label), 256));
+  for (int label = 1; label <= 300; ++label)
+    EXPECT_TRUE(block.subtract_hit(511, static_cast<std::uint16_t>(label), 256));
   EXPECT_TRUE(block.is_empty());
 }
 
-TEST(VoxelMap, UnknownVoxelReadsAsNeverObserved) {
-  EXPECT_FALSE(VoxelMap(0.25).read({3, -7, 12}).is_observed());
-}
+TEST(VoxelMap, UnknownVoxelReadsAsNeverObserved) { EXPECT_FALSE(VoxelMap(0.25).read({3, -7, 12}).is_observed()); }
 
 }  // namespace
 }  // namespace lapis::mapping

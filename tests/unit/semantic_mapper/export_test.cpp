@@ -110,11 +110,11 @@ TEST(Export, GridColumnIsOccupiedThenFreeThenUnknown) {
   Fixture f;
   f.pass({2, 3, 1}, 3);
   f.pass({2, 3, 2}, 3);
-  f.hit({2, 3, 3}, 1, 3);    // occupied above free: occupied
-  f.pass({4, 3, 2}, 3);      // free only
-  f.hit({4, 3, 0}, 1, 9);    // floor: below the band
-  f.hit({4, 3, 9}, 1, 9);    // ceiling: above the band
-  f.hit({9, 9, 0}, 1, 9);    // outside the band: does not extend the grid
+  f.hit({2, 3, 3}, 1, 3);  // occupied above free: occupied
+  f.pass({4, 3, 2}, 3);    // free only
+  f.hit({4, 3, 0}, 1, 9);  // floor: below the band
+  f.hit({4, 3, 9}, 1, 9);  // ceiling: above the band
+  f.hit({9, 9, 0}, 1, 9);  // outside the band: does not extend the grid
   const OccupancyGrid grid = project_to_grid(f.map, f.reader, {0.2, 1.2});
   EXPECT_EQ(grid.width, 3);
   EXPECT_EQ(grid.height, 1);

@@ -58,7 +58,11 @@ TEST(RecordedSequence, CarvingKeepsNineOfTenSeenVoxels) {
     const auto labels =
         convert<std::uint16_t, std::uint8_t>(cv::imread(folder / "label" / name, cv::IMREAD_UNCHANGED), 1.0);
     std::string error;
-    mapper.integrate({{}, i, poses[i], geometry::Pose::Identity(), 1,
+    mapper.integrate({{},
+                      i,
+                      poses[i],
+                      geometry::Pose::Identity(),
+                      1,
                       mapping::CompactFrame::make(camera, depth, &labels, {2, 40}, error).value()});
     for (int row = 0; row < depth.height; ++row)
       for (int column = 0; column < depth.width; ++column) {

@@ -44,7 +44,8 @@ Tour make_tour() {
     const Pose T_map_keyframe = lapis::test::look({2 * std::cos(angle), std::sin(angle), 1.0}, angle + 2.0, 0.15);
     tour.keyframes.push_back({100 + k, T_map_keyframe});
     for (int i = 0; i < 5; ++i) {
-      const Pose T_keyframe_camera = geometry::se3_exp((geometry::Vector6d() << 0.02 * i, 0, 0.03 * i, 0, 0.04 * i, 0).finished());
+      const Pose T_keyframe_camera =
+          geometry::se3_exp((geometry::Vector6d() << 0.02 * i, 0, 0.03 * i, 0, 0.04 * i, 0).finished());
       tour.frames.push_back({time::Time{static_cast<std::int64_t>(tour.frames.size())}, 100 + k, T_map_keyframe,
                              T_keyframe_camera, 1, frame_at(T_map_keyframe * T_keyframe_camera)});
     }
@@ -89,7 +90,8 @@ TEST(SemanticMapper, EqualsBuildFromRecordsAtEveryInstantAndFromScratchAfterFlus
     for (std::size_t i = 0; i < tour().frames.size(); ++i) {
       AnchoredFrame frame = tour().frames[i];
       frame.graph_version = version;
-      const auto known = std::find_if(last.begin(), last.end(), [&](const auto& k) { return k.id == frame.keyframe_id; });
+      const auto known =
+          std::find_if(last.begin(), last.end(), [&](const auto& k) { return k.id == frame.keyframe_id; });
       frame.T_map_keyframe = known->T_map_keyframe;
       mapper.integrate(frame);
       if (i % 7 == 6) mapper.update_keyframe_poses(++version, last = corrected(random, 0.05));
@@ -176,8 +178,8 @@ TEST(SemanticMapper, WallOfFortyClassesStandsAfterThreeFramesLookThroughIt) {
   for (const float depth_m : {2.0f, 2.0f, 2.0f, 4.0f, 4.0f, 4.0f}) {
     const geometry::DepthImage depth(kCamera.width, kCamera.height, depth_m);
     const geometry::LabelImage labels(kCamera.width, kCamera.height, 1);
-    mapper.integrate({{}, 1, T, Pose::Identity(), 1,
-                      mapping::CompactFrame::make(kCamera, depth, &labels, {1, 40}, error).value()});
+    mapper.integrate(
+        {{}, 1, T, Pose::Identity(), 1, mapping::CompactFrame::make(kCamera, depth, &labels, {1, 40}, error).value()});
   }
   const mapping::BeliefReader reader{mapping::SensorModel{}};
   const mapping::VoxelCounts wall = mapper.map().read(mapper.map().index_of({2.125, 0.125, 1.1}));

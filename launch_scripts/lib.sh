@@ -3,9 +3,13 @@
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bin=${LAPIS_BIN:-$repository/build/release/bin}
+out="" # run folder, set by the script
 pids=()
 names=()
+viewer=""
+declare -A statuses=() # by name, of those that have ended
 
+# die TEXT: bad set-up.
 die() {
   echo "${0##*/}: $*" >&2
   exit 2
@@ -16,20 +20,38 @@ require_build() {
   [ -x "$bin/lapis_slam" ] || "$repository/launch_scripts/setup.sh"
 }
 
-# start NAME ARGUMENT...: lapis_NAME in the background, its log in $out/logs/NAME.log.
+# start NAME ARGUMENT...: lapis_NAME in the background, its log in $out/logs/NAME.log. It ends with this shell, however
+# that ends.
 start() {
+  : >"$out/logs/$1.log"
+  launch "$@" >>"$out/logs/$1.log" 2>&1
+}
+
+# start_shown NAME ARGUMENT...: the same, and what it prints is shown, too.
+start_shown() {
+  local sink
+  exec {sink}> >(exec tee -i "$out/logs/$1.log")
+  viewer=$!
+  launch "$@" >&"$sink" 2>&1
+  exec {sink}>&-
+}
+
+launch() {
   local name=$1
   shift
-  "$bin/lapis_$name" "$@" >"$out/logs/$name.log" 2>&1 &
+  setpriv --pdeathsig TERM "$bin/lapis_$name" "$@" &
   pids+=($!)
   names+=("$name")
 }
 
-# wait_ready NAME SECONDS: until the process has printed its ready line.
+# wait_ready NAME SECONDS: until the process started last has printed its ready line.
 wait_ready() {
-  local name=$1 pid=${pids[-1]} deadline=$((SECONDS + $2))
+  local name=$1 pid=${pids[-1]} deadline=$((SECONDS + $2)) status=0
   until grep -q " $name: ready" "$out/logs/$name.log"; do
-    kill -0 "$pid" 2>/dev/null || fail_with "$name" "ended before it was ready"
+    if ! kill -0 "$pid" 2>/dev/null; then
+      wait "$pid" || status=$?
+      fail_with "$name" "ended before it was ready, with status $status" "$status"
+    fi
     [ $SECONDS -lt $deadline ] || fail_with "$name" "not ready within $2 s"
     read -rt 0.05 <> <(:) || true # a short wait without a process of its own
   done
@@ -40,20 +62,23 @@ end_process() {
   local index=$1 status=0
   kill -TERM "${pids[index]}" 2>/dev/null || true
   wait "${pids[index]}" || status=$?
-  statuses[index]=$status
+  statuses[${names[index]}]=$status
 }
 
-# Ends everything that still runs; the trap of every script that starts processes.
+# Ends everything that still runs; the trap of every script that starts processes. In the order of the starts: who
+# collects what others write at their end was started after them.
 end_all() {
   local index
-  for ((index = ${#pids[@]} - 1; index >= 0; --index)); do
-    kill -TERM "${pids[index]}" 2>/dev/null || true
+  for index in "${!pids[@]}"; do
+    [ -n "${statuses[${names[index]}]:-}" ] || end_process "$index"
   done
-  for index in "${!pids[@]}"; do wait "${pids[index]}" 2>/dev/null || true; done
+  [ -z "$viewer" ] || wait "$viewer" 2>/dev/null || true # now the log is complete
 }
 
+# fail_with NAME TEXT [STATUS]: shows the end of the process's log. Bad set-up (2) stays that, the rest is a failure.
 fail_with() {
   echo "${0##*/}: $1: $2; the end of $out/logs/$1.log:" >&2
   tail -n 5 "$out/logs/$1.log" >&2
+  if [ "${3:-1}" = 2 ]; then exit 2; fi
   exit 1
 }

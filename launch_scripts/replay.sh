@@ -17,63 +17,102 @@ trajectory, pose graph, semantic map, metrics.json and figures.
   --labels FILE    CSV file class_id,class,... that names the labels
   --set KEY=VALUE  configuration, for example semantic_mapper.resolution_m=0.1 or dds.socket_buffer_bytes=212992;
                    it goes to the component that KEY begins with (dds.: to all). --print-config of each process lists the keys
+
+Exit status: 0 played to the end, 1 a process failed, 2 bad set-up, 130 and 143 interrupted.
 TEXT
 }
 
-dataset="" out="" replay=() rate=""
-declare -A settings=([sensor_replay]="" [slam]="" [semantic_mapper]="" [evaluator]="")
+components=(slam semantic_mapper evaluator sensor_replay)
+command_line="$*" dataset="" out="" rate="" replay=() settings=() # settings: component, KEY=VALUE, component, ...
+add_setting() {
+  case $1 in
+    dds.*=*) for name in "${components[@]}"; do settings+=("$name" "$1"); done ;;
+    lockstep.*=*) settings+=(sensor_replay "$1") ;;
+    sensor_replay.*=* | slam.*=* | semantic_mapper.*=* | evaluator.*=*) settings+=("${1%%.*}" "$1") ;;
+    *) die "--set $1: unknown key; wanted is KEY=VALUE with a KEY that begins with dds., lockstep., ${components[*]/%/.}" ;;
+  esac
+}
 while [ $# -gt 0 ]; do
+  case $1 in
+    --out | --rate | --start | --duration | --labels | --set) [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;
+  esac
   case $1 in
     -h | --help) usage && exit 0 ;;
     --out) out=$2 && shift ;;
     --rate) rate=$2 && replay+=(--rate "$2") && shift ;;
     --start | --duration | --labels) replay+=("$1" "$2") && shift ;;
-    --set)
-      for name in "${!settings[@]}"; do
-        case $2 in
-          "$name".* | dds.*) settings[$name]+="--set $2 " ;;
-          lockstep.*) [ "$name" != sensor_replay ] || settings[$name]+="--set $2 " ;;
-        esac
-      done
-      shift
-      ;;
+    --set) add_setting "$2" && shift ;;
     -*) die "unknown option $1 (see --help)" ;;
     *) [ -z "$dataset" ] || die "two data sets given: $dataset and $1"; dataset=$1 ;;
   esac
   shift
 done
 [ -n "$dataset" ] || { usage >&2; exit 2; }
+[ -d "$dataset" ] || die "$dataset: no such folder (wanted is a TUM RGB-D data set)"
 require_build
 out=${out:-$repository/out/$(basename "$dataset")}
-mkdir -p "$out/logs"
-trap end_all EXIT
-trap 'exit 130' INT
-trap 'exit 143' TERM
+mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another with --out DIR"
 
-declare -A statuses=()
+# Sets `arguments` to the --set options of a component.
+collect_arguments() {
+  local i
+  arguments=()
+  for ((i = 0; i < ${#settings[@]}; i += 2)); do
+    [ "${settings[i]}" != "$1" ] || arguments+=(--set "${settings[i + 1]}")
+  done
+}
+
+write_manifest() {
+  local name
+  {
+    printf 'version: "%s"\ncommand: |-\n  replay.sh %s\ndata_set: "%s"\nexit_status:\n' \
+      "$("$bin/lapis_slam" --version)" "$command_line" "$dataset"
+    for name in "${names[@]}"; do echo "  $name: ${statuses[$name]:-null}"; done
+    echo "configuration:"
+    for name in "${components[@]}"; do
+      collect_arguments "$name"
+      echo "  $name:"
+      "$bin/lapis_$name" "${arguments[@]}" --print-config | sed 's/^/    /'
+    done
+  } >"$out/manifest.yaml.part" && mv "$out/manifest.yaml.part" "$out/manifest.yaml"
+}
+
+print_metrics() { sed -n '/^exit_reason/,$p' "$out/logs/evaluator.log"; }
+
+interrupted() {
+  trap '' INT TERM
+  end_all
+  write_manifest
+  print_metrics
+  echo "replay.sh: interrupted by $1; what was played is in $out" >&2
+  exit "$2"
+}
+
+trap end_all EXIT
+trap 'interrupted SIGINT 130' INT
+trap 'interrupted SIGTERM 143' TERM
+
 for name in slam semantic_mapper evaluator; do
-  # shellcheck disable=SC2086 # one word per setting
-  start "$name" --set "$name.output_dir=$out" ${settings[$name]}
+  collect_arguments "$name"
+  start "$name" --set "$name.output_dir=$out" "${arguments[@]}"
   wait_ready "$name" 20
 done
 [ -z "$rate" ] || replay+=(--set sensor_replay.wait_for_readers=3)
-# shellcheck disable=SC2086
-"$bin/lapis_sensor_replay" "$dataset" "${replay[@]}" ${settings[sensor_replay]} \
-  > >(tee "$out/logs/sensor_replay.log") 2>&1 &
-pids+=($!)
-names+=(sensor_replay)
+collect_arguments sensor_replay
+start_shown sensor_replay "$dataset" "${replay[@]}" "${arguments[@]}"
 
 # The first child to end is the replay, unless something went wrong.
 first="" status=0
 wait -n -p first "${pids[@]}" || status=$?
 for index in "${!pids[@]}"; do
-  [ "${pids[index]}" = "$first" ] || continue
-  statuses[$index]=$status
-  [ "${names[index]}" = sensor_replay ] || fail_with "${names[index]}" "ended early with status $status"
+  [ "${pids[index]}" != "$first" ] || statuses[${names[index]}]=$status
 done
-for index in 0 1 2; do end_process $index; done
-sed -n '/^exit_reason/,$p' "$out/logs/evaluator.log"
-for index in "${!names[@]}"; do
-  [ "${statuses[$index]:-0}" = 0 ] || fail_with "${names[index]}" "failed with status ${statuses[$index]}"
+early=${!statuses[*]}
+end_all
+write_manifest
+[ "$early" = sensor_replay ] || fail_with "$early" "ended early with status $status"
+print_metrics
+for name in sensor_replay slam semantic_mapper evaluator; do
+  [ "${statuses[$name]}" = 0 ] || fail_with "$name" "failed with status ${statuses[$name]}" "${statuses[$name]}"
 done
 echo "run folder: $out"

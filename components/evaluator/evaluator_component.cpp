@@ -82,7 +82,10 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
   truth_source_ = &context.subscribe(topics::kGroundTruth, [this](Odometry& m) { store(truth_, m); });
   depth_source_ = &context.subscribe(topics::kDepth, [this](Image& m) { store(depth_, m); });
   labels_source_ = &context.subscribe(topics::kLabels, [this](Image& m) { store(labels_, m); });
-  context.subscribe(topics::kDepthInfo, [this](Info& m) { store(info_, m); });
+  context.subscribe(topics::kDepthInfo, [this](Info& m) {
+    count_frame(messages::from_message(m.header().stamp()));
+    store(info_, m);
+  });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
   context.subscribe(topics::kPoseGraph, [this](auto& m) { graph_ = std::move(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { on_tile(m); });
@@ -105,6 +108,13 @@ template <class Message>
 void EvaluatorComponent::store(time::StampBuffer<Message>& buffer, Message& message) {
   const time::Time stamp = messages::from_message(message.header().stamp());
   buffer.push(stamp, std::move(message));
+}
+
+// The camera's frames, not slam's: a frame that slam had to drop, or never got, is a frame without a pose.
+void EvaluatorComponent::count_frame(time::Time stamp) {
+  if (camera_stamp_ && stamp == *camera_stamp_) return;  // lock-step may repeat one
+  camera_stamp_ = stamp;
+  ++frames_total_;
 }
 
 void EvaluatorComponent::on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message) {
@@ -181,8 +191,8 @@ void EvaluatorComponent::record(const Tracked& tracked, const Odometry* truth, c
   if (!is_tracking && first_stamp_) lost_time_s_ += (stamp - last_stamp_).seconds();
   if (!first_stamp_) first_stamp_ = stamp;
   last_stamp_ = stamp;
-  ++frames_total_;
-  context_.status().value("frames", static_cast<std::uint64_t>(frames_total_));
+  ++frames_judged_;
+  context_.status().value("frames", static_cast<std::uint64_t>(frames_judged_));
 
   std::optional<geometry::Pose> T_world_camera;
   if (truth != nullptr) T_world_camera = true_camera_pose(*truth, tracked.header().frame_id());
@@ -329,22 +339,21 @@ void EvaluatorComponent::write_files(const RunMetrics& m) const {
 }
 
 void EvaluatorComponent::draw_figures() const {
-  const auto script = std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lapis_figures.py";
-  std::string python = "python3";
-  std::string script_path = script.string();
+  const auto bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  std::string script = (bin / "lapis_evaluator_figures.py").string();
   std::string folder = config_.output_dir;
-  char* arguments[] = {python.data(), script_path.data(), folder.data(), nullptr};
+  char* arguments[] = {script.data(), folder.data(), nullptr};
   pid_t child = 0;
   int status = 0;
-  const bool has_run = posix_spawnp(&child, "python3", nullptr, nullptr, arguments, environ) == 0 &&
+  const bool has_run = posix_spawn(&child, script.c_str(), nullptr, nullptr, arguments, environ) == 0 &&
                        waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  if (!has_run) spdlog::warn("figures were not drawn; try: python3 {} {}", script_path, folder);
+  if (!has_run) spdlog::warn("figures were not drawn; try: {} {}", script, folder);
 }
 
 void EvaluatorComponent::finish() {
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
-  if (frames_total_ == 0) {
-    spdlog::warn("no frame came; nothing is written");
+  if (frames_judged_ == 0) {
+    spdlog::warn("no frame of slam came; nothing is written");
     return;
   }
   const RunMetrics m = metrics();

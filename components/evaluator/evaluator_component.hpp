@@ -44,6 +44,7 @@ class EvaluatorComponent {
 
   template <class Message>
   void store(time::StampBuffer<Message>& buffer, Message& message);
+  void count_frame(time::Time stamp);
   void on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message);
   void on_tile(const lapis_msgs::msg::VoxelTile& message);
   void on_map_state(const lapis_msgs::msg::MapState& message);
@@ -86,7 +87,9 @@ class EvaluatorComponent {
   std::optional<time::Time> timeline_stamp_;
   std::optional<time::Time> first_stamp_;
   time::Time last_stamp_;
-  std::int64_t frames_total_ = 0;
+  std::optional<time::Time> camera_stamp_;  // newest
+  std::int64_t frames_total_ = 0;           // of the camera
+  std::int64_t frames_judged_ = 0;          // that slam answered, tracked or not
   std::int64_t frames_tracked_ = 0;
   double lost_time_s_ = 0.0;
   bool has_ended_ = false;  // lock-step told that no input follows

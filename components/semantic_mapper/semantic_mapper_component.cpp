@@ -167,13 +167,9 @@ void SemanticMapperComponent::follow_graph(const Graph& graph) {
 void SemanticMapperComponent::publish(bool is_final) {
   if (is_final || seconds_since(tiles_stamp_, stamp_) >= config_.tile_period_s) publish_tiles();
   publish_views(is_final || seconds_since(views_stamp_, stamp_) >= config_.view_period_s);
-  if (!config_.output_dir.empty() && seconds_since(saved_stamp_, stamp_) >= config_.save_period_s) {
-    saved_stamp_ = stamp_;
-    if (const auto problem = save()) {
-      context_.status().set(runtime::Status::Level::kError, *problem);
-      spdlog::error("{}; mapping goes on", *problem);
-    }
-  }
+  if (config_.output_dir.empty() || seconds_since(saved_stamp_, stamp_) < config_.save_period_s) return;
+  saved_stamp_ = stamp_;
+  if (const auto problem = save()) spdlog::error("map not saved: {}; mapping goes on", *problem);
 }
 
 void SemanticMapperComponent::publish_tiles() {
@@ -236,7 +232,15 @@ std_srvs::srv::Trigger_Response SemanticMapperComponent::save_on_request() {
   return response;
 }
 
+/// Nothing, or why the map could not be saved; the status says so until a later save works.
 std::optional<std::string> SemanticMapperComponent::save() {
+  auto problem = write_files();
+  using Level = runtime::Status::Level;
+  context_.status().set(problem ? Level::kError : Level::kOk, problem ? "map not saved: " + *problem : "mapping");
+  return problem;
+}
+
+std::optional<std::string> SemanticMapperComponent::write_files() {
   mapper_->flush();
   const auto reader = belief_reader();
   const std::filesystem::path folder(config_.output_dir);

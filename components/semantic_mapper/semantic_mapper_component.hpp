@@ -44,6 +44,7 @@ class SemanticMapperComponent {
   std_srvs::srv::Trigger_Response save_on_request();
   /// Nothing on success; otherwise what failed, naming the file.
   std::optional<std::string> save();
+  std::optional<std::string> write_files();
   mapping::BeliefReader belief_reader() const;
   std_msgs::msg::Header header() const;
 

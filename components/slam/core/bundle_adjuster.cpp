@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <array>
 
-#include <Eigen/Eigenvalues>
 #include <ceres/ceres.h>
+#include <Eigen/Eigenvalues>
 
 #include "slam/core/pose_refiner.hpp"
 
@@ -140,7 +140,7 @@ bool bundle_residual(const NoiseConfig& noise, const geometry::PinholeCamera& ca
 Vector6d link_error(const BundleLink& link, const Pose& T_map_from, const Pose& T_map_to, Matrix6d* by_from,
                     Matrix6d* by_to) {
   const Pose T_from_to = T_map_from.inverse() * T_map_to;
-  const Vector6d error = geometry::se3_log(link.T_from_to.inverse() * T_from_to);
+  Vector6d error = geometry::se3_log(link.T_from_to.inverse() * T_from_to);
   // log(E exp(xi)) = e + Jr^-1(e) xi with Jr^-1 = I + ad(e)/2 + ad(e)^2/12 up to O(|e|^4): errors are small.
   Matrix6d ad = Matrix6d::Zero();
   ad.topLeftCorner<3, 3>() = geometry::skew(error.tail<3>());

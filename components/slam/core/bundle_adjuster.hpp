@@ -55,8 +55,8 @@ BundleReport adjust_bundle(const BundleConfig& config, const NoiseConfig& noise,
 /// 3 x 3 by the point; either may be null. False when the point is not in front of the camera.
 bool bundle_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
                      const BundleObservation& observation, const geometry::Pose& T_map_camera,
-                     const Eigen::Vector3d& p_map, Eigen::Vector3d& residual,
-                     Eigen::Matrix<double, 3, 6>* by_pose, Eigen::Matrix3d* by_point);
+                     const Eigen::Vector3d& p_map, Eigen::Vector3d& residual, Eigen::Matrix<double, 3, 6>* by_pose,
+                     Eigen::Matrix3d* by_point);
 
 /// Error log(T_from_to^-1 * T_map_from^-1 * T_map_to) of a link and its Jacobians by right perturbations of both poses.
 geometry::Vector6d link_error(const BundleLink& link, const geometry::Pose& T_map_from, const geometry::Pose& T_map_to,

@@ -4,19 +4,19 @@ namespace lapis::slam {
 
 /// ORB features spread over the image.
 struct FeatureConfig {
-  int max_features = 600;       ///< features per frame, all levels together [100, 5000]
-  int levels = 4;               ///< pyramid levels [1, 12]
-  double scale_factor = 1.3;    ///< size ratio of neighbouring levels [1.05, 2]
-  int fast_threshold = 10;      ///< least FAST contrast, grey levels [1, 100]
+  int max_features = 600;     ///< features per frame, all levels together [100, 5000]
+  int levels = 4;             ///< pyramid levels [1, 12]
+  double scale_factor = 1.3;  ///< size ratio of neighbouring levels [1.05, 2]
+  int fast_threshold = 10;    ///< least FAST contrast, grey levels [1, 100]
 };
 
 /// Standard deviations of the measurements. Depth noise of structured light and stereo grows with z^2.
 struct NoiseConfig {
-  double pixel_sigma_px = 0.7;        ///< corner position at the finest level [0.1, 5]
-  double depth_sigma_m = 0.003;       ///< constant part of the depth noise [1e-4, 0.1]
-  double depth_sigma_per_m = 0.002;   ///< quadratic part: sigma = depth_sigma_m + depth_sigma_per_m * z^2 [1/m] [0, 0.1]
-  double max_depth_m = 10.0;          ///< measurements beyond this are ignored [0.5, 50]
-  double min_depth_m = 0.1;           ///< measurements nearer than this are ignored [0.01, 5]
+  double pixel_sigma_px = 0.7;       ///< corner position at the finest level [0.1, 5]
+  double depth_sigma_m = 0.003;      ///< constant part of the depth noise [1e-4, 0.1]
+  double depth_sigma_per_m = 0.002;  ///< quadratic part: sigma = depth_sigma_m + depth_sigma_per_m * z^2 [1/m] [0, 0.1]
+  double max_depth_m = 10.0;         ///< measurements beyond this are ignored [0.5, 50]
+  double min_depth_m = 0.1;          ///< measurements nearer than this are ignored [0.01, 5]
 };
 
 /// Matching of features with landmarks.
@@ -30,21 +30,21 @@ struct MatcherConfig {
 /// Surface patches of key-frames, aligned with the depth image (point to plane).
 struct SurfaceConfig {
   bool enabled = true;
-  int grid_step_px = 12;        ///< spacing of the samples of a key-frame [4, 64]
-  int keyframes = 2;            ///< newest key-frames whose samples are aligned [1, 5]
-  double max_distance_m = 0.10; ///< widest gate of a sample's plane distance in the first round [0.01, 1]
-  double weight = 0.2;          ///< neighbouring samples err together: share of a sample that counts [0.001, 1]
+  int grid_step_px = 12;         ///< spacing of the samples of a key-frame [4, 64]
+  int keyframes = 2;             ///< newest key-frames whose samples are aligned [1, 5]
+  double max_distance_m = 0.10;  ///< widest gate of a sample's plane distance in the first round [0.01, 1]
+  double weight = 0.2;           ///< neighbouring samples err together: share of a sample that counts [0.001, 1]
 };
 
 struct TrackerConfig {
-  int min_matches = 30;          ///< projection matches below which the next way of matching is tried [6, 500]
-  int min_inliers = 15;          ///< fewer after the refinement is lost [6, 200]
-  int local_keyframes = 5;       ///< key-frames whose landmarks form the local map [1, 50]
-  int recovery_keyframes = 5;    ///< newest key-frames tried by brute force when all else fails [1, 50]
-  int ransac_iterations = 200;   ///< PnP [10, 10000]
-  double ransac_error_px = 4.0;  ///< PnP inlier threshold [0.5, 20]
-  int refine_iterations = 4;     ///< Levenberg-Marquardt steps per round [1, 50]
-  double max_prediction_s = 0.5; ///< longest gap that the motion model bridges [0.01, 5]
+  int min_matches = 30;           ///< projection matches below which the next way of matching is tried [6, 500]
+  int min_inliers = 15;           ///< fewer after the refinement is lost [6, 200]
+  int local_keyframes = 5;        ///< key-frames whose landmarks form the local map [1, 50]
+  int recovery_keyframes = 5;     ///< newest key-frames tried by brute force when all else fails [1, 50]
+  int ransac_iterations = 200;    ///< PnP [10, 10000]
+  double ransac_error_px = 4.0;   ///< PnP inlier threshold [0.5, 20]
+  int refine_iterations = 4;      ///< Levenberg-Marquardt steps per round [1, 50]
+  double max_prediction_s = 0.5;  ///< longest gap that the motion model bridges [0.01, 5]
 };
 
 /// A frame becomes a key-frame when any of the reasons holds and the last one is far enough back.
@@ -56,18 +56,18 @@ struct KeyframeConfig {
 };
 
 struct BundleConfig {
-  int window = 6;             ///< free key-frames [1, 30]
-  int max_fixed = 6;          ///< fixed key-frames that also see the landmarks [1, 50]
-  int max_landmarks = 1000;   ///< newest kept [50, 20000]
-  int max_iterations = 5;     ///< Levenberg-Marquardt [1, 100]
+  int window = 6;            ///< free key-frames [1, 30]
+  int max_fixed = 6;         ///< fixed key-frames that also see the landmarks [1, 50]
+  int max_landmarks = 1000;  ///< newest kept [50, 20000]
+  int max_iterations = 5;    ///< Levenberg-Marquardt [1, 100]
 };
 
 /// From the Hessian of an alignment to the information of an edge. The share is calibrated on the recorded sequences
 /// (normalised estimation error squared near its expectation); the bounds keep an edge from being blind or too sure.
 struct PoseGraphConfig {
-  double information_share = 0.15;  ///< of the residuals that count as independent [1e-3, 1]
-  double min_information = 1.0;   ///< [1/m^2, 1/rad^2] [1e-6, 1e6]
-  double max_information = 1e8;   ///< [1/m^2, 1/rad^2] [1, 1e12]
+  double information_share = 0.1;  ///< of the residuals that count as independent [1e-3, 1]
+  double min_information = 1.0;    ///< [1/m^2, 1/rad^2] [1e-6, 1e6]
+  double max_information = 1e8;    ///< [1/m^2, 1/rad^2] [1, 1e12]
 };
 
 struct SlamConfig {

@@ -56,8 +56,8 @@ std::vector<Corner> detect_corners(const cv::Mat& image, int threshold) {
   std::vector<Corner> corners;
   corners.reserve(found.size());
   for (const auto& point : found) {
-    corners.push_back({static_cast<int>(point.pt.x) + inside.x, static_cast<int>(point.pt.y) + inside.y,
-                       point.response});
+    corners.push_back(
+        {static_cast<int>(point.pt.x) + inside.x, static_cast<int>(point.pt.y) + inside.y, point.response});
   }
   return corners;
 }
@@ -75,8 +75,8 @@ std::vector<Corner> spread_corners(std::vector<Corner> corners, int width, int h
   std::vector<std::size_t> taken(columns * rows, 0);
   std::vector<std::vector<Corner>> ranks;  // the best of every cell, the second best, ...
   for (const Corner& corner : corners) {
-    const std::size_t rank = taken[static_cast<std::size_t>(corner.y / cell) * columns +
-                                   static_cast<std::size_t>(corner.x / cell)]++;
+    const std::size_t rank =
+        taken[static_cast<std::size_t>(corner.y / cell) * columns + static_cast<std::size_t>(corner.x / cell)]++;
     if (rank == ranks.size()) ranks.emplace_back();
     ranks[rank].push_back(corner);
   }
@@ -116,8 +116,8 @@ struct FeatureExtractor::Implementation {
       for (const Corner& corner :
            spread_corners(detect_corners(image, config.fast_threshold), image.cols, image.rows, count)) {
         points.emplace_back(static_cast<float>(corner.x * scale), static_cast<float>(corner.y * scale),
-                            static_cast<float>((2 * kPatchRadius + 1) * scale),
-                            corner_angle(image, corner.x, corner.y), corner.score, static_cast<int>(i));
+                            static_cast<float>((2 * kPatchRadius + 1) * scale), corner_angle(image, corner.x, corner.y),
+                            corner.score, static_cast<int>(i));
       }
     }
     return points;

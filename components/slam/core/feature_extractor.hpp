@@ -25,7 +25,7 @@ struct Feature {
 
 /// Corner candidate of one pyramid level.
 struct Corner {
-  int x = 0, y = 0;   ///< [px] of the level
+  int x = 0, y = 0;  ///< [px] of the level
   float score = 0.0F;
 };
 

@@ -19,9 +19,8 @@ int cell_of(double coordinate, int cells) {
 }  // namespace
 
 FeatureIndex::FeatureIndex(const std::vector<Feature>& features, int width, int height)
-    : columns_(static_cast<int>(width / kCellSize_px) + 1),
-      rows_(static_cast<int>(height / kCellSize_px) + 1),
-      cells_(static_cast<std::size_t>(columns_ * rows_)) {
+    : columns_(static_cast<int>(width / kCellSize_px) + 1), rows_(static_cast<int>(height / kCellSize_px) + 1),
+      cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {
   pixels_.reserve(features.size());
   for (std::size_t i = 0; i < features.size(); ++i) {
     const Eigen::Vector2d& pixel = features[i].pixel;

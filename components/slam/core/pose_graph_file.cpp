@@ -88,10 +88,8 @@ class LineReader {
   }
   Matrix6d information() {
     Matrix6d result;
-    for (int row = 0; row < 6; ++row) {
-      for (int column = row; column < 6; ++column) {
-        result(row, column) = result(column, row) = number() / (file_scale(row) * file_scale(column));
-      }
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j) result(i, j) = result(j, i) = number() / (file_scale(i) * file_scale(j));
     }
     return result;
   }

@@ -19,8 +19,8 @@ struct PoseGraphFileError {
 /// edge types and the version have no place in the format.
 void write_g2o(std::ostream& stream, const PoseGraphSnapshot& graph);
 
-/// Reads what write_g2o writes, ignoring other tags than these two, comments (#) and FIX. Edges become kOdometry. Vertices
-/// need not precede the edges; an edge may name a vertex that the file lacks (some files have edges only).
+/// Reads what write_g2o writes, ignoring other tags than these two, comments (#) and FIX. Edges become kOdometry.
+/// Vertices need not precede the edges; an edge may name a vertex that the file lacks (some files have edges only).
 std::variant<PoseGraphSnapshot, PoseGraphFileError> read_g2o(std::istream& stream);
 
 }  // namespace lapis::slam

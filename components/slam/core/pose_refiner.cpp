@@ -16,7 +16,7 @@ using geometry::Matrix6d;
 using geometry::Pose;
 using geometry::Vector6d;
 
-constexpr double kHuber = 2.0;  // sigmas up to which an error counts in full
+constexpr double kHuber = 2.0;                          // sigmas up to which an error counts in full
 constexpr double kPixelGate = 5.99, kDepthGate = 6.63;  // chi-square, 95 % of 2 and 99 % of 1 degrees of freedom
 constexpr std::array kGateShare{1.0, 0.4, 0.2};         // of the widest surface gate, a round each
 

@@ -25,8 +25,8 @@ struct PointConstraint {
 struct AlignmentProblem {
   geometry::PinholeCamera camera;
   std::span<const PointConstraint> points;
-  std::span<const SurfaceSample> surface;         ///< in the reference frame
-  const geometry::DepthImage* depth = nullptr;    ///< of the frame; needed when there are surface samples
+  std::span<const SurfaceSample> surface;       ///< in the reference frame
+  const geometry::DepthImage* depth = nullptr;  ///< of the frame; needed when there are surface samples
 };
 
 /// Refined pose and how well it explains the measurements.
@@ -34,11 +34,11 @@ struct Alignment {
   geometry::Pose T_reference_camera = geometry::Pose::Identity();
   geometry::Matrix6d information = geometry::Matrix6d::Zero();          ///< right perturbation, not yet bounded
   geometry::Matrix6d surface_information = geometry::Matrix6d::Zero();  ///< the surface's share of `information`
-  std::vector<bool> is_inlier;  ///< of each point
+  std::vector<bool> is_inlier;                                          ///< of each point
   int inliers = 0;
-  double rms_px = 0.0;          ///< reprojection error of the inliers
-  int surface_matches = 0;      ///< samples that found their surface again
-  double surface_rms_m = 0.0;   ///< plane distance of these
+  double rms_px = 0.0;         ///< reprojection error of the inliers
+  int surface_matches = 0;     ///< samples that found their surface again
+  double surface_rms_m = 0.0;  ///< plane distance of these
 };
 
 /// Whitened residual (u, v, depth) of a point and its Jacobian by a right perturbation of T_reference_camera, which is

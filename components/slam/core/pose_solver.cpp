@@ -17,9 +17,9 @@ std::optional<geometry::Pose> solve_pose(const TrackerConfig& config, const geom
   cv::Vec3d translation;
   std::vector<int> inliers;
   // OpenCV's RANSAC seeds its own generator with a constant: the same input gives the same pose.
-  const bool found = cv::solvePnPRansac(points, shown, K, cv::noArray(), rotation, translation, false,
-                                        config.ransac_iterations, static_cast<float>(config.ransac_error_px), 0.999,
-                                        inliers, cv::SOLVEPNP_AP3P);
+  const bool found =
+      cv::solvePnPRansac(points, shown, K, cv::noArray(), rotation, translation, false, config.ransac_iterations,
+                         static_cast<float>(config.ransac_error_px), 0.999, inliers, cv::SOLVEPNP_AP3P);
   if (!found || inliers.size() < static_cast<std::size_t>(config.min_inliers)) return std::nullopt;
   geometry::Pose T_camera_reference = geometry::Pose::Identity();
   T_camera_reference.linear() = geometry::so3_exp({rotation[0], rotation[1], rotation[2]});

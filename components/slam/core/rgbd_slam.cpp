@@ -36,7 +36,7 @@ std::optional<std::string> find_fault(const RgbdFrame& frame, const NoiseConfig&
   return std::nullopt;
 }
 
-// Covariance of A * B from those of A and B, right perturbations. Eq. 23 in [Mangelsson 2019], independent errors.
+// Covariance of A * B for independent right perturbations: A exp(a) B exp(b) = A B exp(Ad(B^-1) a) exp(b).
 Matrix6d compound(const Matrix6d& covariance_a, const Pose& B, const Matrix6d& covariance_b) {
   const Matrix6d move = geometry::adjoint(B.inverse());
   return move * covariance_a * move.transpose() + covariance_b;
@@ -47,10 +47,7 @@ Matrix6d compound(const Matrix6d& covariance_a, const Pose& B, const Matrix6d& c
 class RgbdSlam::Implementation {
  public:
   Implementation(const SlamConfig& config, const Pose& T_map_first_camera)
-      : config_(config),
-        T_map_first_camera_(T_map_first_camera),
-        extractor_(config.features),
-        tracker_(config),
+      : config_(config), T_map_first_camera_(T_map_first_camera), extractor_(config.features), tracker_(config),
         motion_(config.tracker.max_prediction_s) {}
 
   TrackingResult process(const RgbdFrame& input) {
@@ -97,8 +94,7 @@ class RgbdSlam::Implementation {
     result.T_map_keyframe = map_.keyframe(outcome.reference).T_map_camera;
     result.T_keyframe_camera = outcome.alignment.T_reference_camera;
     result.covariance = edge_information(config_.pose_graph, outcome.alignment.information).inverse();
-    result.map_covariance =
-        compound(covariances_[outcome.reference], result.T_keyframe_camera, result.covariance);
+    result.map_covariance = compound(covariances_[outcome.reference], result.T_keyframe_camera, result.covariance);
     result.features = static_cast<std::uint32_t>(frame.features.size());
     result.matches = static_cast<std::uint32_t>(outcome.matches);
     result.inliers = static_cast<std::uint32_t>(outcome.alignment.inliers);
@@ -113,7 +109,7 @@ class RgbdSlam::Implementation {
                           &frame);
     }
     const KeyframeId id = add_keyframe(frame, T_map_first_camera_);
-    covariances_.push_back(Matrix6d::Zero());
+    covariances_.emplace_back(Matrix6d::Zero());
     add_landmarks(id);
     tracker_.set_reference(map_, id);
     motion_.update(map_, frame.input->stamp, id, Pose::Identity());

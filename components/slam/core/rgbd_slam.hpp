@@ -19,9 +19,9 @@ enum class TrackingState : std::uint8_t { kInitializing, kTracking, kDeadReckoni
 /// What one frame gave. Poses are those of the camera's optical frame.
 struct TrackingResult {
   TrackingState state = TrackingState::kInitializing;
-  std::string reason;              ///< why there is no pose; empty when tracking
+  std::string reason;  ///< why there is no pose; empty when tracking
   bool is_keyframe = false;
-  std::uint64_t keyframe_id = 0;   ///< reference key-frame; the frame itself when is_keyframe
+  std::uint64_t keyframe_id = 0;  ///< reference key-frame; the frame itself when is_keyframe
   std::uint64_t graph_version = 0;
   geometry::Pose T_map_keyframe = geometry::Pose::Identity();     ///< valid only when tracking
   geometry::Pose T_keyframe_camera = geometry::Pose::Identity();  ///< valid only when tracking; never corrected later
@@ -32,7 +32,7 @@ struct TrackingResult {
   std::uint32_t features = 0;
   std::uint32_t matches = 0;
   std::uint32_t inliers = 0;
-  double rms_px = 0.0;             ///< reprojection error of the inliers
+  double rms_px = 0.0;  ///< reprojection error of the inliers
 };
 
 /// RGB-D key-frame odometry: features and surfaces aligned with a local map, local bundle adjustment, pose graph.

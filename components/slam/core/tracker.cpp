@@ -85,8 +85,8 @@ TrackOutcome Tracker::track_brute_force(const Map& map, const Frame& frame, cons
   outcome.reason = "no pose explains " + std::to_string(config_.tracker.min_inliers) + " matches";
   if (!T_reference_camera) return outcome;
   // The pose is good enough to find the rest of the local map by projection.
-  const auto more = match_by_projection(config_, map, local.landmarks, frame, reference.T_map_camera * *T_reference_camera,
-                                        config_.matcher.search_radius_px);
+  const auto more = match_by_projection(config_, map, local.landmarks, frame,
+                                        reference.T_map_camera * *T_reference_camera, config_.matcher.search_radius_px);
   return align(map, frame, local, more, *T_reference_camera);
 }
 

@@ -14,11 +14,11 @@ namespace lapis::slam {
 /// Pose of a frame relative to a key-frame, or the reason why there is none.
 struct TrackOutcome {
   bool is_tracked = false;
-  std::string reason;            ///< empty when tracked
+  std::string reason;  ///< empty when tracked
   KeyframeId reference = 0;
   Alignment alignment;
   std::vector<Match> inliers;
-  int matches = 0;               ///< before the refinement
+  int matches = 0;  ///< before the refinement
 };
 
 /// Finds the pose of frames in the map around a reference key-frame.

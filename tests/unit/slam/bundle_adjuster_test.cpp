@@ -120,8 +120,8 @@ TEST(BundleResidual, JacobiansMatchDifferences) {
     const auto evaluate = [&](const Pose& T, const Eigen::Vector3d& p, Eigen::Vector3d& value) {
       ASSERT_TRUE(bundle_residual(noise, camera.camera, observation, T, p, value, nullptr, nullptr));
     };
-    ASSERT_TRUE(bundle_residual(noise, camera.camera, observation, camera.T_map_camera, point, residual, &by_pose,
-                                &by_point));
+    ASSERT_TRUE(
+        bundle_residual(noise, camera.camera, observation, camera.T_map_camera, point, residual, &by_pose, &by_point));
     for (int i = 0; i < 6; ++i) {
       const Vector6d step = kStep * Vector6d::Unit(i);
       evaluate(camera.T_map_camera * geometry::se3_exp(step), point, plus);
@@ -150,10 +150,12 @@ TEST(LinkError, JacobiansMatchDifferences) {
     for (int i = 0; i < 6; ++i) {
       const Pose plus = geometry::se3_exp(kStep * Vector6d::Unit(i));
       const Pose minus = plus.inverse();
-      const Vector6d numeric_from = (link_error(link, from * plus, to, nullptr, nullptr) -
-                                     link_error(link, from * minus, to, nullptr, nullptr)) / (2.0 * kStep);
-      const Vector6d numeric_to = (link_error(link, from, to * plus, nullptr, nullptr) -
-                                   link_error(link, from, to * minus, nullptr, nullptr)) / (2.0 * kStep);
+      const Vector6d numeric_from =
+          (link_error(link, from * plus, to, nullptr, nullptr) - link_error(link, from * minus, to, nullptr, nullptr)) /
+          (2.0 * kStep);
+      const Vector6d numeric_to =
+          (link_error(link, from, to * plus, nullptr, nullptr) - link_error(link, from, to * minus, nullptr, nullptr)) /
+          (2.0 * kStep);
       EXPECT_LT((numeric_from - by_from.col(i)).norm(), 1e-5);
       EXPECT_LT((numeric_to - by_to.col(i)).norm(), 1e-5);
     }

@@ -49,7 +49,8 @@ TEST(SpreadCorners, DoesNotDependOnTheOrderOfItsInput) {
   const auto second = spread_corners(corners, 320, 240, 80);
   ASSERT_EQ(first.size(), second.size());
   for (std::size_t i = 0; i < first.size(); ++i) {
-    EXPECT_EQ(std::tuple(first[i].x, first[i].y, first[i].score), std::tuple(second[i].x, second[i].y, second[i].score));
+    EXPECT_EQ(std::tuple(first[i].x, first[i].y, first[i].score),
+              std::tuple(second[i].x, second[i].y, second[i].score));
   }
 }
 

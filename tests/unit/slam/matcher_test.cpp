@@ -24,8 +24,8 @@ class MatcherTest : public ::testing::Test {
       const Feature& feature = first.features[i];
       if (feature.depth_m <= 0.0) continue;
       const Eigen::Vector3d p = camera_.unproject(feature.pixel.x(), feature.pixel.y(), feature.depth_m);
-      const LandmarkId id = map_.add_landmark(test::room_path(0) * p,
-                                              finest_distance(config_.features, p.norm(), feature.octave));
+      const LandmarkId id =
+          map_.add_landmark(test::room_path(0) * p, finest_distance(config_.features, p.norm(), feature.octave));
       map_.add_observation(id, {0, static_cast<int>(i)});
       all_.push_back(id);
     }

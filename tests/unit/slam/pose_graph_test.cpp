@@ -6,8 +6,8 @@
 #include <random>
 #include <sstream>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "slam/core/pose_graph_file.hpp"
 
@@ -149,8 +149,8 @@ TEST(PoseGraphFile, ReadsPublicGraphs) {
                                              : std::filesystem::path(LAPIS_SOURCE_DIR) / ".." / "shared" / "data") /
                       "posegraph";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data at " << folder << "; set LAPIS_TEST_DATA";
-  for (const auto& [name, nodes, edges] : {std::tuple("sphere2500.g2o", 2500U, 4949U),
-                                           std::tuple("parking-garage.g2o", 1661U, 6275U)}) {
+  for (const auto& [name, nodes, edges] :
+       {std::tuple("sphere2500.g2o", 2500U, 4949U), std::tuple("parking-garage.g2o", 1661U, 6275U)}) {
     std::ifstream stream(folder / name);
     const auto result = read_g2o(stream);
     ASSERT_TRUE(std::holds_alternative<PoseGraphSnapshot>(result)) << std::get<PoseGraphFileError>(result).message;

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <random>
 
-#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
+#include <Eigen/Eigenvalues>
 
 #include "slam/core/noise_model.hpp"
 #include "slam/core/pose_solver.hpp"
@@ -101,8 +101,8 @@ TEST(RefinePose, SurvivesOutliers) {
   for (std::size_t i = 0; i < 60; ++i) points[i].pixel += Eigen::Vector2d(20.0 + static_cast<double>(i), -25.0);
   Vector6d offset;
   offset << 0.02, -0.01, 0.02, 0.01, 0.01, -0.01;
-  const auto result = refine_pose(config, {test::small_camera(), points, {}, nullptr},
-                                  some_pose() * geometry::se3_exp(offset));
+  const auto result =
+      refine_pose(config, {test::small_camera(), points, {}, nullptr}, some_pose() * geometry::se3_exp(offset));
   EXPECT_LT(error(some_pose(), result.T_reference_camera).head<3>().norm(), 0.003);
   EXPECT_LT(error(some_pose(), result.T_reference_camera).tail<3>().norm(), 0.002);
   for (std::size_t i = 0; i < 60; ++i) EXPECT_FALSE(result.is_inlier[i]);

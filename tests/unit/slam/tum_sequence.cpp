@@ -88,8 +88,8 @@ std::optional<TumSequence> find_sequence(const std::string& name) {
   TumSequence sequence;
   std::string color_stamp, color, depth_stamp, depth;
   while (associations >> color_stamp >> color >> depth_stamp >> depth) {
-    sequence.entries.push_back({time::Time::from_seconds(std::stod(color_stamp)), folder / color, folder / depth,
-                                Pose::Identity()});
+    sequence.entries.push_back(
+        {time::Time::from_seconds(std::stod(color_stamp)), folder / color, folder / depth, Pose::Identity()});
   }
   read_camera(folder / "camera.yaml", sequence);
   read_truth(folder / "groundtruth.txt", sequence);

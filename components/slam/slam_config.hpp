@@ -44,7 +44,7 @@ void describe(Field& field, MatcherConfig& c) {
 
 template <class Field>
 void describe(Field& field, SurfaceConfig& c) {
-  field("enabled", c.enabled, config::anything(), "");
+  field("enabled", c.enabled, config::anything(), "align surface patches of key-frames with the depth image");
   field("grid_step_px", c.grid_step_px, config::in_range(4, 64), "spacing of the samples of a key-frame");
   field("keyframes", c.keyframes, config::in_range(1, 5), "newest key-frames whose samples are aligned");
   field("max_distance_m", c.max_distance_m, config::in_range(0.01, 1),
@@ -61,7 +61,7 @@ void describe(Field& field, TrackerConfig& c) {
   field("local_keyframes", c.local_keyframes, config::in_range(1, 50), "key-frames whose landmarks form the local map");
   field("recovery_keyframes", c.recovery_keyframes, config::in_range(1, 50),
         "newest key-frames tried by brute force when all else fails");
-  field("ransac_iterations", c.ransac_iterations, config::in_range(10, 10000), "PnP");
+  field("ransac_iterations", c.ransac_iterations, config::in_range(10, 10000), "rounds of PnP with RANSAC");
   field("ransac_error_px", c.ransac_error_px, config::in_range(0.5, 20), "PnP inlier threshold");
   field("refine_iterations", c.refine_iterations, config::in_range(1, 50), "Levenberg-Marquardt steps per round");
   field("max_prediction_s", c.max_prediction_s, config::in_range(0.01, 5), "longest gap that the motion model bridges");
@@ -69,10 +69,13 @@ void describe(Field& field, TrackerConfig& c) {
 
 template <class Field>
 void describe(Field& field, KeyframeConfig& c) {
-  field("min_tracked_share", c.min_tracked_share, config::in_range(0, 1), "of the reference key-frame's landmarks");
-  field("max_translation_m", c.max_translation_m, config::in_range(0.01, 5), "from the reference key-frame");
-  field("max_rotation_rad", c.max_rotation_rad, config::in_range(0.01, 3), "from the reference key-frame");
-  field("min_frames", c.min_frames, config::in_range(1, 100), "between key-frames");
+  field("min_tracked_share", c.min_tracked_share, config::in_range(0, 1),
+        "new key-frame when a smaller share of the reference's landmarks is tracked");
+  field("max_translation_m", c.max_translation_m, config::in_range(0.01, 5),
+        "new key-frame when further from the reference [m]");
+  field("max_rotation_rad", c.max_rotation_rad, config::in_range(0.01, 3),
+        "new key-frame when turned further from the reference [rad]");
+  field("min_frames", c.min_frames, config::in_range(1, 100), "least number of frames between key-frames");
 }
 
 template <class Field>
@@ -85,6 +88,8 @@ void describe(Field& field, BundleConfig& c) {
 
 template <class Field>
 void describe(Field& field, PoseGraphConfig& c) {
+  field("information_share", c.information_share, config::in_range(1e-3, 1),
+        "share of the residuals that count as independent in an edge's information");
   field("min_information", c.min_information, config::in_range(1e-6, 1e6), "[1/m^2, 1/rad^2]");
   field("max_information", c.max_information, config::in_range(1, 1e12), "[1/m^2, 1/rad^2]");
 }

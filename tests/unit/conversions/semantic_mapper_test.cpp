@@ -1,0 +1,132 @@
+#include "semantic_mapper/conversions.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstring>
+
+#include "common/messages/geometry.hpp"
+#include "common/messages/time.hpp"
+
+namespace lapis::semantic_mapper {
+namespace {
+
+using ::testing::HasSubstr;
+
+sensor_msgs::msg::Image depth_image(std::uint32_t width, std::uint32_t height, std::uint16_t millimetres) {
+  sensor_msgs::msg::Image message;
+  message.width(width);
+  message.height(height);
+  message.encoding("16UC1");
+  message.step(width * 2);
+  for (std::uint32_t i = 0; i < width * height; ++i) {
+    message.data().push_back(static_cast<std::uint8_t>(millimetres & 255));
+    message.data().push_back(static_cast<std::uint8_t>(millimetres >> 8));
+  }
+  return message;
+}
+
+sensor_msgs::msg::CameraInfo camera_info(std::uint32_t width, std::uint32_t height) {
+  sensor_msgs::msg::CameraInfo info;
+  info.width(width);
+  info.height(height);
+  info.k({8.0, 0.0, 3.5, 0.0, 8.0, 2.5, 0.0, 0.0, 1.0});
+  return info;
+}
+
+lapis_msgs::msg::TrackedFrame tracked_frame() {
+  lapis_msgs::msg::TrackedFrame message;
+  message.header().stamp(messages::to_message(time::Time{42}));
+  message.keyframe_id(5);
+  message.graph_version(6);
+  message.keyframe_pose(messages::to_message(geometry::Pose::Identity()));
+  message.pose_in_keyframe(messages::to_message(geometry::Pose::Identity()));
+  return message;
+}
+
+mapping::CompactFrame compact_frame() {
+  const auto frame = to_core(depth_image(8, 6, 1000), nullptr, camera_info(8, 6), {});
+  return *frame;
+}
+
+TEST(SemanticMapperConversions, DepthWithoutLabelsIsAFrameWithoutLabels) {
+  const auto frame = to_core(depth_image(8, 6, 1000), nullptr, camera_info(8, 6), {});
+  ASSERT_TRUE(frame);
+  EXPECT_FALSE(frame->has_labels());
+  EXPECT_DOUBLE_EQ(frame->median_depth_m(), 1.0);
+}
+
+TEST(SemanticMapperConversions, SizesThatDisagreeAreRefused) {
+  EXPECT_FALSE(to_core(depth_image(8, 6, 1000), nullptr, camera_info(4, 6), {}));
+  auto labels = depth_image(4, 6, 1);
+  labels.encoding("mono16");
+  EXPECT_FALSE(to_core(depth_image(8, 6, 1000), &labels, camera_info(8, 6), {}));
+}
+
+TEST(SemanticMapperConversions, AnchorKeepsIdsAndStamp) {
+  const auto anchored = to_core(tracked_frame(), compact_frame());
+  ASSERT_TRUE(anchored);
+  EXPECT_EQ(anchored->keyframe_id, 5u);
+  EXPECT_EQ(anchored->graph_version, 6u);
+  EXPECT_EQ(anchored->stamp, time::Time{42});
+}
+
+TEST(SemanticMapperConversions, InvalidPosesAreRefusedByName) {
+  auto tracked = tracked_frame();
+  tracked.pose_in_keyframe(geometry_msgs::msg::Pose());  // the all-zero quaternion of "unknown"
+  EXPECT_THAT(to_core(tracked, compact_frame()).reason, HasSubstr("pose_in_keyframe"));
+}
+
+TEST(SemanticMapperConversions, LabelListNamesClassesAndRefusesRepetition) {
+  vision_msgs::msg::LabelInfo message;
+  for (const std::uint16_t id : std::initializer_list<std::uint16_t>{0, 2, 1}) {
+    vision_msgs::msg::VisionClass entry;
+    entry.class_id(id);
+    entry.class_name("name " + std::to_string(id));
+    message.class_map().push_back(entry);
+  }
+  const auto labels = to_core(message);
+  ASSERT_TRUE(labels);
+  EXPECT_EQ(labels->name(2), "name 2");
+  EXPECT_EQ(labels->max_id(), 2);
+  message.class_map().push_back(message.class_map().back());
+  EXPECT_FALSE(to_core(message));
+}
+
+TEST(SemanticMapperConversions, PointCloudFieldsReadBack) {
+  const LabelledPoint point{{1.0f, 2.0f, 3.0f}, {255, 128, 1}, 9, 0.75f};
+  const auto message = to_message(std::vector{point}, std_msgs::msg::Header());
+  ASSERT_EQ(message.width(), 1u);
+  ASSERT_EQ(message.data().size(), message.point_step());
+  for (const auto& field : message.fields()) {
+    const auto* bytes = message.data().data() + field.offset();
+    float number = 0.0f;
+    std::uint32_t word = 0;
+    std::uint16_t id = 0;
+    if (field.name() == "label") {
+      std::memcpy(&id, bytes, sizeof id);
+      EXPECT_EQ(id, 9);
+    } else if (field.name() == "rgb") {
+      std::memcpy(&word, bytes, sizeof word);
+      EXPECT_EQ(word, 0x00ff8001u);
+    } else {
+      std::memcpy(&number, bytes, sizeof number);
+      const std::map<std::string, float> expected = {{"x", 1.0f}, {"y", 2.0f}, {"z", 3.0f}, {"probability", 0.75f}};
+      EXPECT_EQ(number, expected.at(field.name()));
+    }
+  }
+}
+
+TEST(SemanticMapperConversions, OccupancyGridKeepsItsOriginAndCells) {
+  OccupancyGrid grid{0.25, -1.0, 2.0, 2, 1, {100, -1}};
+  const auto message = to_message(grid, std_msgs::msg::Header());
+  EXPECT_FLOAT_EQ(message.info().resolution(), 0.25f);
+  EXPECT_EQ(message.info().width(), 2u);
+  EXPECT_EQ(message.info().origin().position().x(), -1.0);
+  EXPECT_EQ(message.info().origin().orientation().w(), 1.0);
+  EXPECT_EQ(message.data()[0], 100);
+  EXPECT_EQ(message.data()[1], -1);
+}
+
+}  // namespace
+}  // namespace lapis::semantic_mapper

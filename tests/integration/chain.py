@@ -1,0 +1,189 @@
+"""What the integration tests share: the launcher, single processes, recorded data and run folders.
+
+Every process that a test starts carries the environment variable LAPIS_TEST_RUN with a value of its own, by which what
+was left behind is found, and only such processes are ever ended.
+"""
+import contextlib
+import json
+import os
+import select
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+import uuid
+from pathlib import Path
+
+REPOSITORY = Path(__file__).resolve().parents[2]
+BIN = Path(os.environ.get("LAPIS_BIN", REPOSITORY / "build/release/bin"))
+DATA = Path(os.environ.get("LAPIS_TEST_DATA", REPOSITORY.parent / "shared/data"))
+REDWOOD = DATA / "rgbd/redwood_livingroom1"
+AWS = DATA / "rgbd/aws_small_house_loop"
+AWS_CLASSES = DATA / "environments/aws_small_house/classes.csv"
+COMPONENTS = ("slam", "semantic_mapper", "evaluator", "sensor_replay")
+SKIPPED = 77  # SKIP_RETURN_CODE of ctest
+
+
+def main():
+    """Runs the tests of the calling module; skips them, loudly, where the recorded data is not there."""
+    missing = [str(folder) for folder in (REDWOOD, AWS) if not folder.is_dir()]
+    if missing:
+        print(f"SKIPPED [integration] no recorded data at {', '.join(missing)}; set LAPIS_TEST_DATA")
+        sys.exit(SKIPPED)
+    unittest.main(verbosity=2)
+
+
+class Process:
+    """A program whose output can be waited for. It is killed at the end of a `with` block and with the test."""
+
+    def __init__(self, command, log, run=None):
+        self.run = run or str(uuid.uuid4())
+        self.log_file = Path(log)
+        self.log_file.parent.mkdir(parents=True, exist_ok=True)
+        self._lines = []
+        self._grew = threading.Condition()
+        self._has_ended = False
+        # setpriv: a test that is killed takes its processes with it. The launcher ends its children on SIGTERM.
+        words = ["setpriv", "--pdeathsig", "TERM", *map(str, command)]
+        self._process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
+                                         stderr=subprocess.STDOUT, text=True, errors="replace",
+                                         env={**os.environ, "LAPIS_BIN": str(BIN), "LAPIS_TEST_RUN": self.run})
+        self.pid = self._process.pid
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+
+    def _read(self):
+        with open(self.log_file, "w", encoding="utf-8") as log:
+            for line in self._process.stdout:
+                log.write(line)
+                log.flush()
+                with self._grew:
+                    self._lines.append(line.rstrip("\n"))
+                    self._grew.notify_all()
+        with self._grew:
+            self._has_ended = True
+            self._grew.notify_all()
+
+    def __enter__(self):
+        return self
+
+    def __exit__(self, *_):
+        self.kill()
+
+    def lines(self):
+        with self._grew:
+            return list(self._lines)
+
+    def output(self):
+        return "\n".join(self.lines()) + f"\n({self.log_file})"
+
+    def wait_for(self, find, seconds=20.0):
+        """Waits until find(lines) is true and returns that; None at the deadline or at the end of the output."""
+        with self._grew:
+            self._grew.wait_for(lambda: self._has_ended or find(self._lines), timeout=seconds)
+            return find(self._lines) or None
+
+    def wait_for_text(self, text, seconds=20.0):
+        return self.wait_for(lambda lines: next((line for line in lines if text in line), None), seconds)
+
+    def is_alive(self):
+        return self._process.poll() is None
+
+    def send(self, number):
+        self._process.send_signal(number)
+
+    def wait(self, seconds=60.0):
+        """Exit status (negative: the signal), with the whole output read; AssertionError at the deadline."""
+        try:
+            status = self._process.wait(seconds)
+        except subprocess.TimeoutExpired:
+            raise AssertionError(f"still runs after {seconds} s: {self.output()}") from None
+        self._reader.join(seconds)
+        return status
+
+    def stop(self, number=signal.SIGTERM, seconds=20.0):
+        self.send(number)
+        return self.wait(seconds)
+
+    def kill(self):
+        if self.is_alive():
+            self._process.kill()
+        self._process.wait()
+        self._reader.join(10)
+        self._process.stdout.close()
+
+
+def replay(dataset, out, *options, log=None):
+    """launch_scripts/replay.sh, started."""
+    command = [REPOSITORY / "launch_scripts/replay.sh", dataset, "--out", out, *options]
+    return Process(command, log or f"{out}.log")
+
+
+def start(component, log, *arguments, run=None):
+    """One process of the chain, ready."""
+    process = Process([BIN / f"lapis_{component}", *arguments], log, run)
+    if not process.wait_for_text(f" {component}: ready"):
+        process.kill()
+        raise AssertionError(f"{component} is not ready: {process.output()}")
+    return process
+
+
+def processes_of(run):
+    """Ids and program names of the living processes that carry the run's mark."""
+    found = {}
+    for folder in Path("/proc").iterdir():
+        with contextlib.suppress(OSError):
+            if folder.name.isdigit() and f"LAPIS_TEST_RUN={run}".encode() in (folder / "environ").read_bytes():
+                found[int(folder.name)] = Path(os.readlink(folder / "exe")).name
+    return found
+
+
+def wait_until_gone(run, seconds=20.0):
+    """Waits for the end of all processes with the run's mark; returns those that are left at the deadline."""
+    end = time.monotonic() + seconds
+    for pid in processes_of(run):
+        with contextlib.suppress(ProcessLookupError):
+            descriptor = os.pidfd_open(pid)
+            select.select([descriptor], [], [], max(0.0, end - time.monotonic()))
+            os.close(descriptor)
+    return processes_of(run)
+
+
+def metrics_of(folder):
+    return json.loads((Path(folder) / "metrics.json").read_text(encoding="utf-8"))
+
+
+def is_map_whole(file):
+    """True when the map loads, which compares its checksums."""
+    command = [BIN / "lapis_evaluator", "coverage", "--estimate", file]
+    return subprocess.run(command, capture_output=True, check=False).returncode == 0
+
+
+class ChainTest(unittest.TestCase):
+    """A test case with a folder of its own; what is in it is kept, and named, when a test fails."""
+
+    def run(self, result=None):
+        result = result or self.defaultTestResult()
+        self.folder = Path(tempfile.mkdtemp(prefix="lapis_integration_"))
+        problems = len(result.errors) + len(result.failures)
+        super().run(result)
+        if len(result.errors) + len(result.failures) > problems:
+            print(f"logs and files are in {self.folder}", file=sys.stderr)
+        else:
+            shutil.rmtree(self.folder)
+        return result
+
+    def assert_no_orphan(self, process):
+        self.assertEqual(wait_until_gone(process.run), {}, "processes left behind")
+
+    def play(self, dataset, name, *options):
+        """Plays a data set to the end, demands success and returns the run folder."""
+        out = self.folder / name
+        with replay(dataset, out, *options) as run:
+            self.assertEqual(run.wait(120), 0, run.output())
+            self.assert_no_orphan(run)
+        return out

@@ -1,0 +1,75 @@
+// Prints a line per sample of the chain's topics, so that a test written in a script can see what is published:
+//   TOPIC stamp_s DETAIL
+// with the number of the session (/slam/frame), of the integrated frames (map_state), or the process and its number of
+// frames (/diagnostics). It saves the map when SIGUSR1 comes and prints the answer. It ends on SIGTERM.
+
+#include <csignal>
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include "common/messages/time.hpp"
+#include "common/topics.hpp"
+#include "tests/support/topic_probe.hpp"
+
+namespace lapis::test {
+namespace {
+
+volatile std::sig_atomic_t is_asked_to_stop = 0;
+volatile std::sig_atomic_t is_asked_to_save = 0;
+
+template <class Stamp>
+void print(const char* topic, const Stamp& stamp, const std::string& detail) {
+  std::cout << topic << ' ' << time::to_string(messages::from_message(stamp)) << ' ' << detail << std::endl;
+}
+
+void print_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message) {
+  for (const auto& status : message.status()) {
+    std::string frames = "0";
+    for (const auto& pair : status.values()) {
+      if (pair.key() == "frames") frames = pair.value();
+    }
+    print("diagnostics", message.header().stamp(), status.hardware_id() + " " + frames);
+  }
+}
+
+void listen(TopicProbe& probe) {
+  probe.listen<sensor_msgs::msg::CameraInfo>(topics::kColorInfo,
+                                             [](auto& m) { print("camera", m.header().stamp(), ""); });
+  probe.listen<lapis_msgs::msg::TrackedFrame>(
+      topics::kTrackedFrame, [](auto& m) { print("slam", m.header().stamp(), std::to_string(m.session())); });
+  probe.listen<lapis_msgs::msg::MapState>(topics::kMapState, [](auto& m) {
+    print("semantic_mapper", m.header().stamp(), std::to_string(m.frames_integrated()));
+  });
+  probe.listen<diagnostic_msgs::msg::DiagnosticArray>(topics::kDiagnostics, [](auto& m) { print_diagnostics(m); });
+}
+
+void save(TopicProbe& probe, dds::ServiceClient<std_srvs::srv::Trigger>& client) {
+  const auto number = client.call({});
+  std::optional<std_srvs::srv::Trigger_Response> answer;
+  if (number) probe.wait_until([&] { return (answer = client.take_reply(*number)).has_value(); }, Seconds(20));
+  if (!answer) {
+    std::cout << "save unanswered" << std::endl;
+  } else {
+    std::cout << "save " << (answer->success() ? "done: " : "refused: ") << answer->message() << std::endl;
+  }
+}
+
+}  // namespace
+}  // namespace lapis::test
+
+int main() {
+  using namespace lapis::test;
+  std::signal(SIGTERM, [](int) { is_asked_to_stop = 1; });
+  std::signal(SIGUSR1, [](int) { is_asked_to_save = 1; });
+  TopicProbe probe("stamp_probe");
+  listen(probe);
+  auto& client = probe.client(lapis::topics::kSaveMap);
+  std::cout << "stamp_probe: ready" << std::endl;
+  while (is_asked_to_stop == 0) {
+    probe.wait_until([] { return is_asked_to_stop != 0 || is_asked_to_save != 0; }, Seconds(1));
+    if (is_asked_to_save != 0) save(probe, client);
+    is_asked_to_save = 0;
+  }
+  return 0;
+}

@@ -28,7 +28,7 @@ void Executor::spin_once(Clock::duration timeout) {
   compat::fdds::ConditionSeq active;
   wait_set_.wait(active, compat::duration(patience.count()));
   bool worked = guard_.get_trigger_value();
-  guard_.set_trigger_value(false);
+  if (worked) guard_.set_trigger_value(false);  // unconditionally, it could swallow a wake() of just now
   for (Source* source : sources_) worked |= source->dispatch() > 0;
   worked |= run_due_timers();
   if (worked && cycle_ && !stopping_) cycle_();

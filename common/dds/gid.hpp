@@ -2,6 +2,7 @@
 
 #include <array>
 #include <compare>
+#include <cstddef>
 #include <cstdint>
 
 #include "common/dds/compat.hpp"
@@ -10,6 +11,9 @@ namespace lapis::dds {
 
 /// Globally unique id of a participant, reader or writer: 12 bytes of prefix, 4 bytes of entity id, as ROS 2 shows it.
 using Gid = std::array<std::uint8_t, 16>;
+
+/// The first bytes of a Gid, the same for all endpoints of a participant.
+inline constexpr std::ptrdiff_t kGidPrefixBytes = 12;
 
 inline Gid to_gid(const compat::rtps::GUID_t& guid) {
   Gid gid{};

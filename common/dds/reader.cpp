@@ -1,5 +1,6 @@
 #include "common/dds/reader.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "common/dds/endpoint_qos.hpp"
@@ -44,6 +45,14 @@ std::size_t Reader::matched() const {
 bool Reader::is_matched(const Gid& writer) const {
   const std::lock_guard lock(mutex_);
   return writers_.contains(writer);
+}
+
+bool Reader::is_participant_matched(const Gid& participant) const {
+  const auto is_of_it = [&](const Gid& writer) {
+    return std::equal(writer.begin(), writer.begin() + kGidPrefixBytes, participant.begin());
+  };
+  const std::lock_guard lock(mutex_);
+  return std::any_of(writers_.begin(), writers_.end(), is_of_it);
 }
 
 void Reader::on_subscription_matched(compat::fdds::DataReader* /*reader*/,

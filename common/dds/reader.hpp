@@ -34,6 +34,8 @@ class Reader : private compat::fdds::DataReaderListener {
   Gid gid() const { return gid_; }
   std::size_t matched() const;
   bool is_matched(const Gid& writer) const;
+  /// True when any writer of a participant is matched.
+  bool is_participant_matched(const Gid& participant) const;
   compat::fdds::StatusCondition& condition() { return reader_->get_statuscondition(); }
 
  private:

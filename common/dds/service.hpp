@@ -1,9 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <optional>
 #include <utility>
+#include <vector>
 
 #include "common/dds/subscription.hpp"
 #include "common/dds/writer.hpp"
@@ -42,7 +44,8 @@ class ServiceServer : public Source {
     std::size_t count = 0;
     compat::fdds::SampleInfo info;
     for (auto taken = take(&request_, info); taken != Taken::kNothing; taken = take(&request_, info)) {
-      if (taken == Taken::kSample) pending_.push_back({request_id(info), handler_(request_)});
+      const auto deadline = std::chrono::steady_clock::now() + kMatchingPatience;
+      if (taken == Taken::kSample) pending_.push_back({request_id(info), handler_(request_), deadline});
       ++count;
     }
     send_replies();
@@ -50,10 +53,12 @@ class ServiceServer : public Source {
   }
 
  private:
+  static constexpr std::chrono::seconds kMatchingPatience{2};
+
   struct Pending {
     RequestId id;
     Response response;
-    int patience = 20;  // dispatches that the client's reader may still take to match
+    std::chrono::steady_clock::time_point deadline;  // until when the client's reader may still match
   };
 
   static RequestId request_id(const compat::fdds::SampleInfo& info) {
@@ -67,9 +72,10 @@ class ServiceServer : public Source {
 
   // A VOLATILE writer loses a reply whose reader it has not matched yet; such replies wait for the match.
   void send_replies() {
-    std::erase_if(pending_, [this](Pending& pending) {
+    const auto now = std::chrono::steady_clock::now();
+    std::erase_if(pending_, [this, now](Pending& pending) {
       const bool names_reader = (pending.id.client[15] & 0x04) != 0;  // entity kind of readers
-      if (names_reader && !reply_.is_matched(pending.id.client) && --pending.patience > 0) return false;
+      if (names_reader && !reply_.is_matched(pending.id.client) && now < pending.deadline) return false;
       compat::rtps::WriteParams params;
       params.related_sample_identity(pending.id.identity);
       reply_.write(&pending.response, params);

@@ -8,6 +8,7 @@ namespace lapis::runtime {
 namespace {
 
 constexpr double kJoinRepeat_s = 0.1;    // tick 0 is for those who come later, so it is repeated often
+constexpr double kTickRepeat_s = 0.5;    // later ones for a participant that has been restarted
 constexpr double kLongestWait_s = 60.0;  // policy "wait"
 
 double seconds_since(std::chrono::steady_clock::time_point t) {
@@ -40,7 +41,7 @@ void LockstepDriver::begin(time::Time stamp, bool is_final) {
   stamp_ = stamp;
   is_final_ = is_final;
   state_ = State::kWaiting;
-  tick_began_ = Clock::now();
+  tick_began_ = frame_published_ = Clock::now();
   release_stage();
   advance();  // no stages: nothing to wait for
 }
@@ -70,24 +71,37 @@ void LockstepDriver::publish_tick() {
     count.count(writer->written());
     tick.counts().push_back(count);
   }
+  for (const auto& source : context_.sources()) {
+    lapis_msgs::msg::TopicEndpoint reader;
+    reader.topic(source->dds_name());
+    reader.gid(source->gid());
+    tick.readers().push_back(reader);
+  }
   for (const auto& [participant, ack] : last_ack_) {
     for (const auto& count : ack.counts()) tick.counts().push_back(count);
     for (const auto& reader : ack.readers()) tick.readers().push_back(reader);
   }
   tick_.publish(tick);
-  last_published_ = Clock::now();
+  tick_published_ = Clock::now();
 }
 
 void LockstepDriver::on_ack(const Ack& ack) {
   const auto& stages = config_.stages;
   const std::string participant = ack.participant();
   if (ack.run_gid() != tick_.gid() || std::find(stages.begin(), stages.end(), participant) == stages.end()) return;
-  heard_[participant] = Clock::now();
+  // BUSY is no sign of life: who waits for an input that cannot come any more would wait for ever.
+  if (ack.status() == lapis_msgs::msg::Ack_Constants::STATUS_DONE) heard_[participant] = Clock::now();
   const auto known = last_ack_.find(participant);
   const bool is_old = known != last_ack_.end() && known->second.participant_gid() == ack.participant_gid() &&
                       std::make_pair(ack.tick(), ack.stage()) < std::make_pair(known->second.tick(), known->second.stage());
   if (is_old) return;
+  const bool is_new = known == last_ack_.end() || known->second.participant_gid() != ack.participant_gid();
   last_ack_[participant] = ack;
+  if (is_new && state_ == State::kJoining) {
+    // All must match the newcomer's endpoints, so all are asked again; a VOLATILE sample from before is nobody's.
+    ++stage_;
+    publish_tick();
+  }
   if (ack.status() == lapis_msgs::msg::Ack_Constants::STATUS_ERROR) {
     failure_ = participant + " reported an error in lock-step: " + ack.reason();
     state_ = State::kFailed;
@@ -144,11 +158,18 @@ std::vector<std::string> LockstepDriver::silent() const {
   return names;
 }
 
+// The endpoints of a participant that has left must not be waited for. It drops out of discovery with its lease.
+void LockstepDriver::forget_the_dead() {
+  std::erase_if(last_ack_,
+                [this](const auto& entry) { return !acks_.is_participant_matched(entry.second.participant_gid()); });
+}
+
 void LockstepDriver::check_time() {
+  forget_the_dead();
   if (state_ == State::kJoining) {
     advance();
     if (state_ != State::kJoining) return;
-    if (seconds_since(last_published_) >= kJoinRepeat_s) publish_tick();
+    if (seconds_since(tick_published_) >= kJoinRepeat_s) publish_tick();
     if (seconds_since(tick_began_) > config_.hard_timeout_s) give_up_on(silent(), config_.hard_timeout_s);
     return;
   }
@@ -158,10 +179,13 @@ void LockstepDriver::check_time() {
       config_.silent_participant == "wait" ? std::max(kLongestWait_s, config_.hard_timeout_s) : config_.hard_timeout_s;
   if (silence_s > patience_s) {
     give_up_on(silent(), silence_s);
-  } else if (silence_s > config_.soft_timeout_s && seconds_since(last_published_) > config_.soft_timeout_s) {
+  } else if (silence_s > config_.soft_timeout_s && seconds_since(frame_published_) > config_.soft_timeout_s) {
     spdlog::warn("lock-step: no answer of {} to tick {} for {:.0f} s; publishing it again", config_.stages[stage_],
                  number_, silence_s);
     republish_();
+    frame_published_ = Clock::now();
+    publish_tick();
+  } else if (seconds_since(tick_published_) > kTickRepeat_s) {
     publish_tick();
   }
 }

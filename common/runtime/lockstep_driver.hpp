@@ -54,6 +54,7 @@ class LockstepDriver {
   void check_time();
   void publish_tick();
   void release_stage();
+  void forget_the_dead();
   void advance();
   bool has_answered(const std::string& participant) const;
   bool is_everybody_matched() const;
@@ -68,13 +69,14 @@ class LockstepDriver {
   State state_ = State::kJoining;
   std::string failure_;
   std::map<std::string, Ack> last_ack_;           // by participant
-  std::map<std::string, Clock::time_point> heard_;  // last sign of life in this stage, by participant
+  std::map<std::string, Clock::time_point> heard_;  // last answer or begin of the stage, by participant
   std::uint64_t number_ = 0;
   std::uint32_t stage_ = 0;
   time::Time stamp_;
   bool is_final_ = false;
   Clock::time_point tick_began_;
-  Clock::time_point last_published_;
+  Clock::time_point tick_published_;
+  Clock::time_point frame_published_;
   double longest_tick_s_ = 0.0;
 };
 

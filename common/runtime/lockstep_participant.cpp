@@ -36,6 +36,7 @@ LockstepParticipant::LockstepParticipant(Context& context)
 }
 
 void LockstepParticipant::after_handlers() {
+  if (pending_ && !is_active()) pending_.reset();  // the driver is gone: nobody waits for the answer
   if (pending_) {
     answer_pending();
   } else if (!is_active()) {
@@ -67,7 +68,8 @@ void LockstepParticipant::on_tick(const Tick& tick) {
 
 void LockstepParticipant::answer_pending() {
   const Tick& tick = *pending_;
-  if (!has_joined_ && !are_endpoints_matched(tick)) return;
+  const bool is_joining = !has_joined_ || tick.tick() == 0;
+  if (is_joining && !are_endpoints_matched(tick)) return;
   const bool is_first = !has_joined_ && tick.tick() > 0;
   const bool gives_up = is_first && Clock::now() - pending_since_ > kJoiningPatience;
   if (!are_inputs_received(tick) && !gives_up) return;

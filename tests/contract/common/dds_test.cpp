@@ -21,7 +21,7 @@ using GraphInfo = rmw_dds_common::msg::ParticipantEntitiesInfo;
 using ::testing::HasSubstr;
 
 constexpr const char* kEcho = "lapis_test_echo";
-constexpr dds::Topic<GraphInfo> kGraph{"ros_discovery_info", {.depth = 100, .latched = true}, true};
+constexpr dds::Topic<GraphInfo> kGraph{"ros_discovery_info", {.depth = 100, .latched = true}, "all", "on change", "ROS 2 graph", true};
 
 // What discovery says of an endpoint against the topic table. History depth is not on the wire, so a remote participant
 // cannot check it; tests/unit/dds does.

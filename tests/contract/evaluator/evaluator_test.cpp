@@ -1,0 +1,129 @@
+// lapis_evaluator alone, as a process in a run: slam, truth and camera are played by the test.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "common/messages/geometry.hpp"
+#include "common/messages/time.hpp"
+#include "tests/support/camera_feed.hpp"
+#include "tests/support/child_process.hpp"
+
+namespace lapis::test {
+namespace {
+
+using ::testing::HasSubstr;
+
+constexpr const char* kEvaluator = "lapis_evaluator";
+
+std::string fresh_folder() {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / "lapis_evaluator_contract";
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder.string();
+}
+
+std::string read(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+class EvaluatorContract : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ASSERT_TRUE(wait_until_ready(evaluator)) << evaluator.log();
+    ASSERT_TRUE(probe.wait_until([&] { return truth.matched() > 0 && slam.matched() > 0 && feed.is_matched_by_evaluator(); }))
+        << evaluator.log();
+  }
+  nav_msgs::msg::Odometry true_pose(int index) const {
+    nav_msgs::msg::Odometry message;
+    message.header().stamp(messages::to_message(CameraFeed::stamp(index)));
+    message.header().frame_id("world");
+    message.child_frame_id("base_link");
+    message.pose().pose(messages::to_message(T_base_camera() * slow_motion(index) * T_base_camera().inverse()));
+    return message;
+  }
+  lapis_msgs::msg::TrackedFrame tracked(int index) const {
+    lapis_msgs::msg::TrackedFrame message;
+    message.header().stamp(messages::to_message(CameraFeed::stamp(index)));
+    message.header().frame_id(SyntheticCamera::kOpticalFrame);
+    message.map_frame_id("map");
+    message.session(1);
+    message.state(lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING);
+    message.keyframe_pose(messages::to_message(T_base_camera()));
+    message.pose_in_keyframe(messages::to_message(slow_motion(index)));
+    return message;
+  }
+  void send(const CameraFrame& frame, int index) {
+    truth.publish(true_pose(index));
+    feed.send(frame);
+    slam.publish(tracked(index));
+  }
+
+  const std::string folder = fresh_folder();
+  TopicProbe probe;
+  CameraFeed feed{probe};
+  dds::Publisher<nav_msgs::msg::Odometry>& truth = probe.advertise(topics::kGroundTruth);
+  dds::Publisher<lapis_msgs::msg::TrackedFrame>& slam = probe.advertise(topics::kTrackedFrame);
+  const std::vector<diagnostic_msgs::msg::DiagnosticArray>& diagnostics = probe.collect(topics::kDiagnostics);
+  ChildProcess evaluator{kEvaluator, {"--set", "evaluator.output_dir=" + folder, "--set", "evaluator.figures=false"}};
+};
+
+TEST_F(EvaluatorContract, WritesTheRunFolderWhenItIsStopped) {
+  constexpr int kFrames = 6;
+  for (int i = 0; i < kFrames; ++i) send(feed.frame(i), i);
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "6"; })) << evaluator.log();
+  EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
+  const std::string metrics = read(std::filesystem::path(folder) / "metrics.json");
+  EXPECT_THAT(metrics, HasSubstr("\"frames_total\": 6"));
+  EXPECT_THAT(metrics, HasSubstr("\"frames_tracked\": 6"));
+  EXPECT_THAT(metrics, Not(HasSubstr("nan")));
+  for (const char* file : {"trajectory_estimate.txt", "trajectory_ground_truth.txt", "timeline.csv"}) {
+    EXPECT_FALSE(read(std::filesystem::path(folder) / file).empty()) << file;
+  }
+}
+
+TEST_F(EvaluatorContract, GarbageIsSurvived) {
+  send(feed.frame(0), 0);
+  auto wrong = feed.frame(1);
+  wrong.depth->encoding("rgb8");
+  wrong.labels->data().resize(3);
+  send(wrong, 1);
+  auto info = feed.frame(2);
+  info.info->width(3);
+  send(info, 2);
+  send(feed.frame(2), 2);  // duplicate
+  send(feed.frame(1), 1);  // backward
+  auto bad_pose = tracked(3);
+  bad_pose.keyframe_pose().orientation().w(5.0);
+  slam.publish(bad_pose);
+  truth.publish(true_pose(3));
+  feed.send(feed.frame(3));
+  send(feed.frame(4), 4);
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "5"; })) << evaluator.log();
+  const auto values = newest_values(diagnostics, "evaluator");
+  EXPECT_GE(sum_of(values, "not in the reference"), 2);
+  EXPECT_GE(sum_of(values, "without a valid pose"), 1);
+  EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
+  EXPECT_THAT(read(std::filesystem::path(folder) / "metrics.json"), HasSubstr("\"frames_total\": 5"));
+}
+
+TEST_F(EvaluatorContract, SilenceWritesNothingAndIsNoFailure) {
+  EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(10)), 0) << evaluator.log();
+  EXPECT_THAT(evaluator.log(), HasSubstr("no frame came"));
+  EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(folder) / "metrics.json"));
+}
+
+TEST(EvaluatorSetUp, FolderIsRequired) {
+  ChildProcess evaluator(kEvaluator);
+  EXPECT_EQ(evaluator.wait(), 2) << evaluator.log();
+  EXPECT_THAT(evaluator.log(), HasSubstr("evaluator.output_dir"));
+  ChildProcess nowhere(kEvaluator, {"--set", "evaluator.output_dir=/proc/nowhere"});
+  EXPECT_EQ(nowhere.wait(), 2) << nowhere.log();
+}
+
+}  // namespace
+}  // namespace lapis::test

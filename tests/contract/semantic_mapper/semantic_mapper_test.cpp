@@ -1,0 +1,251 @@
+// lapis_semantic_mapper alone: the camera and slam are played by the test.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <filesystem>
+#include <set>
+
+#include "common/mapping/map_mirror.hpp"
+#include "common/messages/geometry.hpp"
+#include "common/messages/time.hpp"
+#include "tests/support/camera_feed.hpp"
+#include "tests/support/child_process.hpp"
+
+namespace lapis::test {
+namespace {
+
+using lapis_msgs::msg::MapState;
+using lapis_msgs::msg::VoxelTile;
+using ::testing::HasSubstr;
+
+constexpr const char* kMapper = "lapis_semantic_mapper";
+
+/// A client of the map, as a planner would be one.
+class MapClient {
+ public:
+  explicit MapClient(TopicProbe& probe) {
+    probe.listen<VoxelTile>(topics::kVoxelTiles, [this](auto& m) {
+      const auto result = mirror.apply_tile(m.epoch(), {m.x(), m.y(), m.z()}, m.version(), m.data());
+      damaged += result == mapping::TileResult::kDamaged ? 1 : 0;
+    });
+    probe.listen<MapState>(topics::kMapState, [this](auto& m) {
+      states.push_back(m);
+      mirror.apply_state({m.epoch(), m.version(), m.tiles(), m.checksum(), m.resolution_m()});
+    });
+  }
+  bool has_map() const { return mirror.is_consistent() && mirror.newest_state()->tiles > 0; }
+
+  mapping::MapMirror mirror;
+  std::vector<MapState> states;
+  int damaged = 0;
+};
+
+class MapperContract : public ::testing::Test {
+ protected:
+  explicit MapperContract(std::vector<std::string> arguments = {"--set", "semantic_mapper.tile_period_s=0"})
+      : mapper(kMapper, arguments) {}
+
+  void SetUp() override {
+    ASSERT_TRUE(wait_until_ready(mapper)) << mapper.log();
+    ASSERT_TRUE(probe.wait_until([&] { return feed.is_matched_by_mapper() && slam.matched() > 0; })) << mapper.log();
+  }
+  lapis_msgs::msg::TrackedFrame tracked(int index, std::int64_t session = 1) const {
+    lapis_msgs::msg::TrackedFrame message;
+    message.header().stamp(messages::to_message(CameraFeed::stamp(index)));
+    message.header().frame_id(SyntheticCamera::kOpticalFrame);
+    message.map_frame_id("map");
+    message.session(session);
+    message.state(lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING);
+    message.keyframe_pose(messages::to_message(T_base_camera()));
+    message.pose_in_keyframe(messages::to_message(slow_motion(index)));
+    return message;
+  }
+  /// Sends a frame with its pose and waits until a map that contains it has arrived.
+  bool map_frame(int index, std::int64_t session = 1) {
+    const std::uint64_t before = client.states.empty() ? 0 : client.states.back().frames_integrated();
+    feed.send(feed.frame(index));
+    slam.publish(tracked(index, session));
+    return probe.wait_until([&] {
+      return !client.states.empty() && client.states.back().frames_integrated() > before && client.has_map();
+    });
+  }
+  bool wait_for_count(const std::string& text, double number) {
+    return probe.wait_until([&] { return sum_of(newest_values(diagnostics, "semantic_mapper"), text) >= number; },
+                            Seconds(5));
+  }
+
+  TopicProbe probe;
+  CameraFeed feed{probe};
+  dds::Publisher<lapis_msgs::msg::TrackedFrame>& slam = probe.advertise(topics::kTrackedFrame);
+  MapClient client{probe};
+  const std::vector<diagnostic_msgs::msg::DiagnosticArray>& diagnostics = probe.collect(topics::kDiagnostics);
+  ChildProcess mapper;
+};
+
+TEST_F(MapperContract, TilesAndStateMakeAConsistentMirrorAlsoForALateJoiner) {
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(map_frame(i)) << i << mapper.log();
+  EXPECT_EQ(client.damaged, 0);
+  EXPECT_EQ(messages::from_message(client.states.back().header().stamp()), CameraFeed::stamp(3));
+  EXPECT_EQ(client.states.back().header().frame_id(), "map");
+  EXPECT_EQ(client.states.back().frames_integrated(), 4u);
+  TopicProbe late("late");
+  MapClient late_client(late);
+  ASSERT_TRUE(late.wait_until([&] { return late_client.has_map(); })) << mapper.log();
+  EXPECT_EQ(late_client.states.back().checksum(), client.states.back().checksum());
+  EXPECT_EQ(late_client.mirror.state()->tiles, client.mirror.state()->tiles);
+}
+
+TEST_F(MapperContract, ViewsAreMadeForANewReaderAndAreFinite) {
+  ASSERT_TRUE(map_frame(0)) << mapper.log();
+  TopicProbe viewer("viewer");
+  const auto& points = viewer.collect(topics::kMapPoints);
+  const auto& octomap = viewer.collect(topics::kOctomap);
+  const auto& grid = viewer.collect(topics::kOccupancyGrid);
+  int index = 1;
+  ASSERT_TRUE(viewer.wait_until([&] {
+    if (points.empty() || octomap.empty() || grid.empty()) map_frame(index++);
+    return !points.empty() && !octomap.empty() && !grid.empty();
+  })) << mapper.log();
+  for (const auto& header : {points[0].header(), octomap[0].header(), grid[0].header()}) {
+    EXPECT_EQ(header.frame_id(), "map");
+    EXPECT_GE(messages::from_message(header.stamp()), CameraFeed::stamp(0));
+  }
+  const auto& cloud = points[0];
+  ASSERT_GT(cloud.width(), 0u);
+  ASSERT_EQ(cloud.data().size(), static_cast<std::size_t>(cloud.row_step()) * cloud.height());
+  for (std::size_t at = 0; at < cloud.data().size(); at += cloud.point_step()) {
+    float xyz[3];
+    std::memcpy(xyz, &cloud.data()[at], sizeof xyz);
+    ASSERT_TRUE(std::isfinite(xyz[0]) && std::isfinite(xyz[1]) && std::isfinite(xyz[2]));
+  }
+  EXPECT_FALSE(octomap[0].data().empty());
+  EXPECT_EQ(grid[0].data().size(), static_cast<std::size_t>(grid[0].info().width()) * grid[0].info().height());
+}
+
+TEST_F(MapperContract, GarbageIsCountedAndMappingGoesOn) {
+  ASSERT_TRUE(map_frame(0)) << mapper.log();
+  int index = 1;
+  const auto spoil = [&](const std::function<void(CameraFrame&, lapis_msgs::msg::TrackedFrame&)>& change) {
+    auto frame = feed.frame(index);
+    auto pose = tracked(index++);
+    change(frame, pose);
+    feed.send(frame);
+    slam.publish(pose);
+    return map_frame(index++);
+  };
+  EXPECT_TRUE(spoil([](auto& f, auto&) { f.depth->encoding("rgb8"); }));
+  EXPECT_TRUE(spoil([](auto& f, auto&) { f.depth->data().resize(10); }));
+  EXPECT_TRUE(spoil([](auto& f, auto&) { f.labels->encoding("32FC1"); }));
+  EXPECT_TRUE(spoil([](auto& f, auto&) { f.info->height(17); }));
+  EXPECT_TRUE(spoil([](auto&, auto& pose) { pose.keyframe_pose().orientation().w(7.0); }));
+  EXPECT_TRUE(spoil([](auto&, auto& pose) { pose.pose_in_keyframe().position().x(std::nan("")); }));
+  EXPECT_TRUE(spoil([](auto&, auto& pose) { pose.pose_in_keyframe().position().x(1e7); }));
+  EXPECT_TRUE(spoil([](auto&, auto& pose) {
+    pose.state(lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST);
+    pose.keyframe_pose({});
+  }));
+  EXPECT_TRUE(wait_for_count("frames dropped", 7)) << mapper.log();
+  EXPECT_TRUE(wait_for_count("slam has no pose", 1)) << mapper.log();
+  EXPECT_TRUE(mapper.is_running()) << mapper.log();
+  EXPECT_EQ(client.damaged, 0);
+}
+
+TEST_F(MapperContract, LabelsAboveTheListAreUnlabelledAndCounted) {
+  auto frame = feed.frame(0);
+  std::fill(frame.labels->data().begin(), frame.labels->data().end(), 200);
+  feed.send(frame);
+  slam.publish(tracked(0));
+  EXPECT_TRUE(probe.wait_until([&] { return client.has_map(); })) << mapper.log();
+  EXPECT_TRUE(wait_for_count("label not in the list", 1)) << mapper.log();
+}
+
+TEST_F(MapperContract, DuplicateAndBackwardStampsAreDropped) {
+  for (int i = 0; i < 4; ++i) ASSERT_TRUE(map_frame(i)) << mapper.log();
+  for (const int old : {3, 1}) {
+    feed.send(feed.frame(old));
+    slam.publish(tracked(old));
+  }
+  ASSERT_TRUE(map_frame(4)) << mapper.log();
+  EXPECT_EQ(client.states.back().frames_integrated(), 5u);
+  EXPECT_TRUE(wait_for_count("slam frame dropped", 2)) << mapper.log();
+}
+
+TEST_F(MapperContract, DepthWithoutMeasurementsAddsNothingAndHurtsNobody) {
+  ASSERT_TRUE(map_frame(0)) << mapper.log();
+  int index = 1;
+  for (const int fill : {0, 255}) {
+    auto frame = feed.frame(index);
+    std::fill(frame.depth->data().begin(), frame.depth->data().end(), fill);
+    feed.send(frame);
+    slam.publish(tracked(index++));
+    ASSERT_TRUE(map_frame(index++)) << mapper.log();
+  }
+  EXPECT_TRUE(mapper.is_running());
+}
+
+TEST_F(MapperContract, RestartedSlamBeginsANewMapAndOldTilesAreGone) {
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(map_frame(i)) << mapper.log();
+  const auto first_epoch = client.states.back().epoch();
+  ASSERT_TRUE(map_frame(3, 2)) << mapper.log();
+  EXPECT_GT(client.states.back().epoch(), first_epoch);
+  TopicProbe late("late");
+  std::set<std::int64_t> epochs;
+  late.listen<VoxelTile>(topics::kVoxelTiles, [&](auto& tile) { epochs.insert(tile.epoch()); });
+  MapClient late_client(late);
+  ASSERT_TRUE(late.wait_until([&] { return late_client.has_map(); })) << mapper.log();
+  EXPECT_EQ(epochs, (std::set<std::int64_t>{client.states.back().epoch()})) << "ended keys leave no samples behind";
+}
+
+TEST_F(MapperContract, SaveWithoutAFolderIsRefusedWithTheKey) {
+  auto& save = probe.client(topics::kSaveMap);
+  ASSERT_TRUE(probe.wait_until([&] { return save.is_ready(); }));
+  const auto call = save.call({});
+  ASSERT_TRUE(call);
+  std::optional<std_srvs::srv::Trigger_Response> reply;
+  ASSERT_TRUE(probe.wait_until([&] { return (reply = save.take_reply(*call)).has_value(); })) << mapper.log();
+  EXPECT_FALSE(reply->success());
+  EXPECT_THAT(reply->message(), HasSubstr("semantic_mapper.output_dir"));
+}
+
+std::string fresh_folder(const std::string& name) {
+  const auto folder = std::filesystem::path(::testing::TempDir()) / name;
+  std::filesystem::remove_all(folder);
+  std::filesystem::create_directories(folder);
+  return folder.string();
+}
+
+class MapperWithFolder : public MapperContract {
+ protected:
+  MapperWithFolder()
+      : MapperContract({"--set", "semantic_mapper.tile_period_s=0", "--set", "semantic_mapper.output_dir=" + folder_}) {}
+  static inline const std::string folder_ = fresh_folder("lapis_mapper_contract");
+};
+
+TEST_F(MapperWithFolder, MapIsSavedOnRequestAndAtTheEnd) {
+  ASSERT_TRUE(map_frame(0)) << mapper.log();
+  auto& save = probe.client(topics::kSaveMap);
+  ASSERT_TRUE(probe.wait_until([&] { return save.is_ready(); }));
+  const auto call = save.call({});
+  std::optional<std_srvs::srv::Trigger_Response> reply;
+  ASSERT_TRUE(probe.wait_until([&] { return (reply = save.take_reply(*call)).has_value(); })) << mapper.log();
+  EXPECT_TRUE(reply->success()) << reply->message();
+  for (const char* file : {"map.lapis", "map.ot", "map.ply"}) {
+    EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder_) / file)) << file;
+    std::filesystem::remove(std::filesystem::path(folder_) / file);
+  }
+  EXPECT_EQ(mapper.stop(SIGTERM), 0) << mapper.log();
+  EXPECT_TRUE(std::filesystem::exists(std::filesystem::path(folder_) / "map.lapis"));
+}
+
+TEST(MapperSetUp, FolderThatCannotBeWrittenIsStatus2) {
+  ChildProcess mapper(kMapper, {"--set", "semantic_mapper.output_dir=/proc/nowhere"});
+  EXPECT_EQ(mapper.wait(), 2) << mapper.log();
+  EXPECT_THAT(mapper.log(), HasSubstr("semantic_mapper.output_dir"));
+}
+
+}  // namespace
+}  // namespace lapis::test

@@ -1,0 +1,231 @@
+// lapis_slam alone, fed with a synthetic camera.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <csignal>
+#include <cstring>
+#include <limits>
+
+#include "common/messages/geometry.hpp"
+#include "common/messages/time.hpp"
+#include "tests/support/camera_feed.hpp"
+#include "tests/support/child_process.hpp"
+
+namespace lapis::test {
+namespace {
+
+using lapis_msgs::msg::TrackedFrame;
+using nav_msgs::msg::Odometry;
+
+constexpr const char* kSlam = "lapis_slam";
+constexpr auto kTracking = lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
+
+bool is_finite(const Odometry& message) {
+  const auto& covariance = message.pose().covariance();
+  const auto& twist = message.twist().twist();
+  return messages::from_message(message.pose().pose()).value.has_value() &&
+         std::all_of(covariance.begin(), covariance.end(), [](double v) { return std::isfinite(v); }) &&
+         std::isfinite(twist.linear().x()) && std::isfinite(twist.linear().y()) && std::isfinite(twist.linear().z()) &&
+         std::isfinite(twist.angular().x()) && std::isfinite(twist.angular().y()) && std::isfinite(twist.angular().z());
+}
+
+/// slam, a camera and somebody who listens.
+class SlamContract : public ::testing::Test {
+ protected:
+  explicit SlamContract(const std::vector<std::string>& arguments = {}) : slam(kSlam, arguments) {}
+
+  void SetUp() override {
+    ASSERT_TRUE(wait_until_ready(slam)) << slam.log();
+    ASSERT_TRUE(probe.wait_until([&] { return is_connected(); })) << slam.log();
+  }
+  bool is_connected() const {
+    return feed.is_matched_by_slam() && diagnostics_source.matched() > 0 && frames_source.matched() > 0 &&
+           odometry_source.matched() > 0;
+  }
+  /// Sends a frame and waits for its answer on /slam/frame.
+  bool track(int index) {
+    feed.send(feed.frame(index));
+    return probe.wait_until([&] {
+      return !frames.empty() && messages::from_message(frames.back().header().stamp()) == CameraFeed::stamp(index);
+    });
+  }
+  /// Waits until the sum of the diagnostics counters that contain `text` is at least `number`.
+  bool wait_for_count(const std::string& text, double number) {
+    return probe.wait_until([&] { return sum_of(newest_values(diagnostics, "slam"), text) >= number; }, Seconds(5));
+  }
+
+  TopicProbe probe;
+  CameraFeed feed{probe};
+  std::vector<TrackedFrame> frames;
+  std::vector<Odometry> odometry;
+  std::vector<diagnostic_msgs::msg::DiagnosticArray> diagnostics;
+  dds::Source& frames_source =
+      probe.listen<TrackedFrame>(topics::kTrackedFrame, [this](auto& m) { frames.push_back(m); });
+  dds::Source& odometry_source = probe.listen<Odometry>(topics::kSlamOdometry, [this](auto& m) { odometry.push_back(m); });
+  dds::Source& diagnostics_source = probe.listen<diagnostic_msgs::msg::DiagnosticArray>(
+      topics::kDiagnostics, [this](auto& m) { diagnostics.push_back(m); });
+  ChildProcess slam;
+};
+
+TEST_F(SlamContract, TracksWithCopiedStampsRightFramesAndFiniteNumbers) {
+  const auto& transforms = probe.collect(topics::kTransforms);
+  ASSERT_TRUE(track(0)) << slam.log();  // also lets /tf match
+  constexpr int kFrames = 15;
+  for (int i = 1; i < kFrames; ++i) ASSERT_TRUE(track(i)) << i << slam.log();
+  ASSERT_TRUE(probe.wait_until([&] { return odometry.size() == kFrames && transforms.size() + 1 >= kFrames; }));
+  ASSERT_EQ(frames.size(), static_cast<std::size_t>(kFrames));
+  const auto T_map_first = *messages::from_message(odometry[0].pose().pose());
+  for (int i = 0; i < kFrames; ++i) {
+    const auto at = static_cast<std::size_t>(i);
+    EXPECT_EQ(frames[at].state(), kTracking) << i << " " << frames[at].reason();
+    EXPECT_EQ(frames[at].header().frame_id(), SyntheticCamera::kOpticalFrame);
+    EXPECT_EQ(frames[at].map_frame_id(), "map");
+    EXPECT_EQ(messages::from_message(odometry[at].header().stamp()), CameraFeed::stamp(i));
+    EXPECT_EQ(odometry[at].header().frame_id(), "map");
+    EXPECT_EQ(odometry[at].child_frame_id(), "base_link");
+    ASSERT_TRUE(is_finite(odometry[at])) << i;
+    EXPECT_GE(odometry[at].pose().covariance()[0], 0.0);
+    // The camera's true motion, seen from the base.
+    const auto T_camera = slow_motion(0).inverse() * slow_motion(i);
+    const auto T_expected = T_base_camera() * T_camera * T_base_camera().inverse();
+    const auto T_base = T_map_first.inverse() * *messages::from_message(odometry[at].pose().pose());
+    EXPECT_LT((T_base.translation() - T_expected.translation()).norm(), 0.02) << i;
+  }
+  std::map<std::string, std::string> parents;
+  for (const auto& transform : transforms.back().transforms()) {
+    parents[transform.child_frame_id()] = transform.header().frame_id();
+    EXPECT_EQ(messages::from_message(transform.header().stamp()), CameraFeed::stamp(kFrames - 1));
+  }
+  EXPECT_EQ(parents, (std::map<std::string, std::string>{{"odom", "map"}, {"base_link", "odom"}}));
+}
+
+TEST_F(SlamContract, LateJoinerGetsGraphPathAndStatus) {
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(track(i)) << slam.log();
+  TopicProbe late("late");
+  const auto& graph = late.collect(topics::kPoseGraph);
+  const auto& path = late.collect(topics::kKeyframePath);
+  const auto& status = late.collect(topics::kSlamStatus);
+  EXPECT_TRUE(late.wait_until([&] { return !graph.empty() && !path.empty() && !status.empty(); }, Seconds(5)))
+      << "graph " << graph.size() << ", path " << path.size() << ", status " << status.size();
+  ASSERT_FALSE(graph.empty() || status.empty());
+  EXPECT_EQ(graph[0].header().frame_id(), "map");
+  EXPECT_FALSE(graph[0].nodes().empty());
+  EXPECT_EQ(status[0].state(), kTracking);
+}
+
+TEST_F(SlamContract, GarbageIsCountedAndTrackingGoesOn) {
+  int index = 0;
+  for (; index < 3; ++index) ASSERT_TRUE(track(index)) << slam.log();
+  const auto spoil = [&](const std::function<void(CameraFrame&)>& change) {
+    auto frame = feed.frame(index++);
+    change(frame);
+    feed.send(frame);
+    return track(index++);  // the next good frame is tracked
+  };
+  EXPECT_TRUE(spoil([](auto& f) { f.color->encoding("yuv422"); }));
+  EXPECT_TRUE(spoil([](auto& f) { f.color->data().resize(100); }));
+  EXPECT_TRUE(spoil([](auto& f) { f.color->width(0xFFFFFFFFu); }));
+  EXPECT_TRUE(spoil([](auto& f) { f.depth->encoding("rgb8"); }));
+  EXPECT_TRUE(spoil([](auto& f) { f.depth->data().resize(f.depth->data().size() / 2); }));
+  EXPECT_TRUE(spoil([](auto& f) { f.info->width(64); }));
+  EXPECT_TRUE(spoil([](auto& f) { f.info->k({}); }));
+  EXPECT_TRUE(spoil([](auto& f) { f.info->d({0.1, 0.0, 0.0, 0.0, 0.0}); }));
+  for (const auto& frame : frames) EXPECT_EQ(frame.state(), kTracking) << frame.reason();
+  for (const char* reason : {"colour encoding", "image has 100 bytes", "larger than 16384", "depth encoding",
+                             "depth image has", "camera info says 64x240", "no valid size", "distortion"}) {
+    EXPECT_TRUE(wait_for_count(reason, 1)) << reason << slam.log();
+  }
+  EXPECT_GE(sum_of(newest_values(diagnostics, "slam"), "frames dropped"), 8);
+  EXPECT_TRUE(slam.is_running()) << slam.log();
+}
+
+TEST_F(SlamContract, FrameWithoutAnyMeasuredDepthIsLostWithAReasonAndFoundAgain) {
+  int index = 0;
+  for (; index < 3; ++index) ASSERT_TRUE(track(index)) << slam.log();
+  for (const std::string kind : {"NaN", "0", "65535"}) {
+    SCOPED_TRACE(kind);
+    auto frame = feed.frame(index);
+    if (kind == "NaN") {
+      frame.depth = feed.camera().depth_metres(CameraFeed::stamp(index), slow_motion(index));
+      const float nan = std::numeric_limits<float>::quiet_NaN();
+      for (std::size_t i = 0; i + 4 <= frame.depth->data().size(); i += 4) std::memcpy(&frame.depth->data()[i], &nan, 4);
+    } else {
+      std::fill(frame.depth->data().begin(), frame.depth->data().end(), kind == "0" ? 0 : 255);
+    }
+    feed.send(frame);
+    ASSERT_TRUE(probe.wait_until([&] {
+      return messages::from_message(frames.back().header().stamp()) == CameraFeed::stamp(index);
+    })) << slam.log();
+    EXPECT_TRUE(frames.back().state() == kTracking || !frames.back().reason().empty());
+    ++index;
+    ASSERT_TRUE(track(index)) << slam.log();
+    EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
+    ++index;
+  }
+  EXPECT_TRUE(std::all_of(odometry.begin(), odometry.end(), is_finite));
+}
+
+TEST_F(SlamContract, DuplicateAndBackwardStampsAreDropped) {
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(track(i)) << slam.log();
+  feed.send(feed.frame(4));
+  feed.send(feed.frame(2));
+  ASSERT_TRUE(track(5)) << slam.log();
+  EXPECT_EQ(frames.size(), 6u);
+  EXPECT_TRUE(wait_for_count("stamp was there before", 1)) << slam.log();
+  EXPECT_TRUE(wait_for_count("older than what was processed", 1)) << slam.log();
+}
+
+TEST_F(SlamContract, FrameWithoutDepthIsCounted) {
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(track(i)) << slam.log();
+  auto blind = feed.frame(3);
+  blind.depth.reset();
+  feed.send(blind);
+  ASSERT_TRUE(track(4)) << slam.log();
+  EXPECT_EQ(frames.back().state(), kTracking);
+  EXPECT_TRUE(wait_for_count("no depth image", 1)) << slam.log();
+}
+
+TEST_F(SlamContract, SilenceIsSurvivedAndEndsCleanly) {
+  ASSERT_TRUE(track(0)) << slam.log();
+  const auto seen = diagnostics.size();
+  EXPECT_TRUE(probe.wait_until([&] { return diagnostics.size() >= seen + 3; })) << "diagnostics go on without input";
+  EXPECT_EQ(slam.stop(SIGTERM, Seconds(5)), 0) << slam.log();
+}
+
+TEST(SlamPeer, NewCameraIsTrackedAsWell) {
+  ChildProcess slam(kSlam);
+  ASSERT_TRUE(wait_until_ready(slam)) << slam.log();
+  for (int life = 0; life < 2; ++life) {
+    TopicProbe probe;
+    CameraFeed feed(probe);
+    const auto& frames = probe.collect(topics::kTrackedFrame);
+    int index = life * 100;
+    // Repeated with new stamps: the first ones may be sent before the match.
+    ASSERT_TRUE(probe.wait_until([&] {
+      feed.send(feed.frame(index++));
+      probe.wait_until([] { return false; }, Seconds(0.05));
+      return !frames.empty() && frames.back().state() == kTracking;
+    })) << life << slam.log();
+  }
+}
+
+TEST(SlamNamespace, PrefixesFrames) {
+  TopicProbe probe("probe", "robot1");
+  CameraFeed feed(probe, "robot1/");
+  const auto& odometry = probe.collect(topics::kSlamOdometry);
+  ChildProcess slam(kSlam, {"--namespace", "robot1"});
+  ASSERT_TRUE(wait_until_ready(slam)) << slam.log();
+  int index = 0;
+  ASSERT_TRUE(probe.wait_until([&] {
+    feed.send(feed.frame(index++));
+    probe.wait_until([] { return false; }, Seconds(0.05));
+    return !odometry.empty();
+  })) << slam.log();
+  EXPECT_EQ(odometry[0].header().frame_id(), "robot1/map");
+  EXPECT_EQ(odometry[0].child_frame_id(), "robot1/base_link");
+}
+
+}  // namespace
+}  // namespace lapis::test

@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# run_interop.sh SOURCE_DIR BIN_DIR WORK_DIR: camera -> slam -> semantic_mapper, watched by a ROS 2 node from npm.
+set -euo pipefail
+
+source_dir=$1 bin=$2 work=$3
+if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
+  echo "SKIPPED: the interop tier needs node and npm (Debian: apt install nodejs npm); ROS 2 visibility was NOT tested"
+  exit 77
+fi
+if [ -z "${LAPIS_INTEROP_INSIDE:-}" ]; then
+  mkdir -p "$work"
+  cp "$source_dir"/{package.json,package-lock.json,.npmrc} "$work"
+  (cd "$work" && npm ci --ignore-scripts --no-progress) ||
+    { echo "SKIPPED: npm ci failed (is a registry reachable?); ROS 2 visibility was NOT tested"; exit 77; }
+  LAPIS_INTEROP_INSIDE=1 exec "$bin/lapis_in_private_domain" "$0" "$@"
+fi
+
+pids=()
+stop_all() {
+  for pid in "${pids[@]}"; do kill "$pid" 2>/dev/null || true; done
+  wait
+}
+trap stop_all EXIT
+for program in lapis_slam lapis_semantic_mapper lapis_test_camera; do
+  "$bin/$program" >"$work/$program.log" 2>&1 &
+  pids+=($!)
+done
+
+LAPIS_NODE_MODULES=$work node "$source_dir/observe.mjs" --seconds 60 \
+  /slam/odometry=nav_msgs/msg/Odometry \
+  /camera/color/image_raw=sensor_msgs/msg/Image \
+  /camera/depth/camera_info=sensor_msgs/msg/CameraInfo \
+  /tf=tf2_msgs/msg/TFMessage \
+  /diagnostics=diagnostic_msgs/msg/DiagnosticArray >"$work/seen.json" ||
+  { cat "$work/seen.json" "$work"/lapis_*.log; exit 1; }
+node -e '
+const assert = require("assert");
+const { topics, messages } = JSON.parse(require("fs").readFileSync(process.argv[1]));
+const odometry = messages["/slam/odometry"];
+assert.strictEqual(odometry.header.frame_id, "map");
+assert.strictEqual(odometry.child_frame_id, "base_link");
+const q = odometry.pose.pose.orientation;
+assert(Math.abs(Math.hypot(q.x, q.y, q.z, q.w) - 1) < 1e-6);
+assert.strictEqual(odometry.pose.covariance.length, 36);
+const image = messages["/camera/color/image_raw"];
+assert.deepStrictEqual([image.width, image.height, image.encoding, image.step], [320, 240, "rgb8", 960]);
+assert.strictEqual(image.data, "230400 bytes");
+assert.strictEqual(image.header.frame_id, "camera_color_optical_frame");
+const expected = {
+  "/tf_static": "tf2_msgs/msg/TFMessage", "/slam/pose_graph": "lapis_msgs/msg/PoseGraph",
+  "/slam/path": "nav_msgs/msg/Path", "/semantic_mapper/points": "sensor_msgs/msg/PointCloud2",
+  "/semantic_mapper/octomap": "octomap_msgs/msg/Octomap",
+  "/semantic_mapper/occupancy_grid": "nav_msgs/msg/OccupancyGrid",
+};
+for (const [topic, type] of Object.entries(expected)) assert.strictEqual(topics[topic], type, topic);
+assert(!Object.keys(topics).some((name) => name.includes("tiles")), "keyed topics are plain DDS");
+console.log(`${Object.keys(topics).length} topics listed with ROS types; ${Object.keys(messages).length} decoded`);
+' "$work/seen.json"

@@ -99,6 +99,11 @@ std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std:
   return bytes;
 }
 
+void replace_text(const std::filesystem::path& path, std::string_view text) {
+  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
+  if (const auto problem = replace_file(path.string(), bytes)) throw std::runtime_error(*problem);
+}
+
 void require_writable_folder(const std::string& folder, const std::string& key) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

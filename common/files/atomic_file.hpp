@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace lapis::files {
@@ -12,6 +14,9 @@ namespace lapis::files {
 /// old file's name only then. At any failure (no space, no permission, no folder) the old file is untouched, the part
 /// file is removed, and the reason, which names the file, is returned. Nothing is returned on success.
 [[nodiscard]] std::optional<std::string> replace_file(const std::string& path, std::span<const std::uint8_t> bytes);
+
+/// The same for text; throws std::runtime_error with the reason.
+void replace_text(const std::filesystem::path& path, std::string_view text);
 
 /// Content of a file; nothing, with a reason that names the file, when it cannot be read.
 std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std::string& error);

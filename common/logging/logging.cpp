@@ -8,9 +8,10 @@
 namespace lapis::logging {
 
 void set_up(const std::string& component, const std::string& level) {
-  static const std::map<std::string, spdlog::level::level_enum> levels = {
-      {"debug", spdlog::level::debug}, {"info", spdlog::level::info},
-      {"warn", spdlog::level::warn},   {"error", spdlog::level::err}};
+  static const std::map<std::string, spdlog::level::level_enum> levels = {{"debug", spdlog::level::debug},
+                                                                          {"info", spdlog::level::info},
+                                                                          {"warn", spdlog::level::warn},
+                                                                          {"error", spdlog::level::err}};
   const auto it = levels.find(level);
   if (it == levels.end()) throw std::runtime_error("--log-level '" + level + "': use debug, info, warn or error");
   auto logger = spdlog::get(component);

@@ -54,7 +54,8 @@ std::uint8_t luminance(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
 Converted<geometry::PinholeCamera> from_message(const sensor_msgs::msg::CameraInfo& message) {
   using Result = Converted<geometry::PinholeCamera>;
   geometry::PinholeCamera camera;
-  if (message.width() > kLargestSide || message.height() > kLargestSide) return Result::refused("camera info too large");
+  if (message.width() > kLargestSide || message.height() > kLargestSide)
+    return Result::refused("camera info too large");
   camera.width = static_cast<int>(message.width());
   camera.height = static_cast<int>(message.height());
   camera.fx = message.k()[0];
@@ -77,7 +78,8 @@ Converted<geometry::GrayImage> to_gray(const Image& message) {
     return Result::refused("colour encoding '" + encoding + "' is not rgb8, bgr8 or mono8");
   }
   const std::size_t bytes = encoding == "mono8" ? 1 : 3;
-  if (const auto problem = layout_problem(message, bytes); !problem.empty()) return Result::refused("colour " + problem);
+  if (const auto problem = layout_problem(message, bytes); !problem.empty())
+    return Result::refused("colour " + problem);
   if (bytes == 1) return map_pixels<std::uint8_t>(message, 1, [](const std::uint8_t* p) { return *p; });
   if (is_rgb) return map_pixels<std::uint8_t>(message, 3, [](const auto* p) { return luminance(p[0], p[1], p[2]); });
   return map_pixels<std::uint8_t>(message, 3, [](const auto* p) { return luminance(p[2], p[1], p[0]); });

@@ -19,7 +19,8 @@ class StampBuffer {
 
   enum class Push { kStored, kDuplicate, kLate, kRestarted, kOverflow };
   /// kDuplicate and kLate: not stored, the stamp is there or has been taken. kRestarted: the stamp lies more than a
-  /// second in the past, so the source began anew; what was held is gone. kOverflow: stored, and the oldest was dropped.
+  /// second in the past, so the source began anew; what was held is gone. kOverflow: stored, and the oldest was
+  /// dropped.
   Push push(Time stamp, Message message) {
     Push result = Push::kStored;
     if (newest_ && *newest_ - stamp > kRestartGap) {

@@ -30,11 +30,6 @@ std::optional<double> parse(const std::string& text) {
   return value;
 }
 
-void write_text(const std::filesystem::path& file, const std::string& text) {
-  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
-  if (const auto problem = files::replace_file(file.string(), bytes)) throw std::runtime_error(*problem);
-}
-
 std::string cell(const std::optional<double>& value) {
   if (!value) return "";
   char text[40];
@@ -63,14 +58,8 @@ std::optional<double> share_of(const LabelledVoxels& fusion, const LabelledVoxel
 }  // namespace
 
 EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& context)
-    : config_(config),
-      context_(context),
-      tracked_(kWaitingFrames),
-      truth_(kWaitingFrames),
-      depth_(kWaitingFrames),
-      labels_(kWaitingFrames),
-      info_(kWaitingFrames),
-      reference_(config.resolution_m),
+    : config_(config), context_(context), tracked_(kWaitingFrames), truth_(kWaitingFrames), depth_(kWaitingFrames),
+      labels_(kWaitingFrames), info_(kWaitingFrames), reference_(config.resolution_m),
       plain_fusion_({config.resolution_m, config.integration.min_range_m, config.integration.max_range_m}),
       timeline_(kTimelineHeader) {
   if (config_.output_dir.empty()) {
@@ -231,8 +220,7 @@ void EvaluatorComponent::add_to_references(const geometry::Pose& T_world_camera,
     if (auto converted = messages::to_labels(*labels)) ids = std::move(*converted);
   }
   std::string error;
-  const auto frame =
-      mapping::CompactFrame::make(*camera, *metres, ids.empty() ? nullptr : &ids, config_.frame, error);
+  const auto frame = mapping::CompactFrame::make(*camera, *metres, ids.empty() ? nullptr : &ids, config_.frame, error);
   if (!frame) return context_.status().count("frames not in the reference: " + error);
   const geometry::Pose T_map_camera = *T_map_world_ * T_world_camera;
   reference_.add(mapping::compute_votes(*frame, T_map_camera, config_.integration, config_.resolution_m));
@@ -291,7 +279,8 @@ RunMetrics EvaluatorComponent::metrics() const {
     m.online = trajectory_figures(truth, estimate_);
     m.keyframes = trajectory_figures(truth, keyframes());
     m.path_length_m = path_length_m(truth);
-    if (*m.path_length_m > 0.0 && m.online.ate_raw_rmse_m) m.ate_per_metre = *m.online.ate_raw_rmse_m / *m.path_length_m;
+    if (*m.path_length_m > 0.0 && m.online.ate_raw_rmse_m)
+      m.ate_per_metre = *m.online.ate_raw_rmse_m / *m.path_length_m;
   }
   if (first_stamp_) {
     m.duration_s = (last_stamp_ - *first_stamp_).seconds();
@@ -326,11 +315,12 @@ void EvaluatorComponent::add_map_figures(RunMetrics& m) const {
 
 void EvaluatorComponent::write_files(const RunMetrics& m) const {
   const std::filesystem::path folder(config_.output_dir);
-  write_trajectory(folder / "trajectory_estimate.txt", estimate_, "camera optical frame in the map, as published");
-  write_trajectory(folder / "trajectory_ground_truth.txt", truth_in_map(),
-                   "true camera optical frame, in the map by the first true pose");
-  write_text(folder / "timeline.csv", timeline_);
-  write_text(folder / "metrics.json", to_json(m));
+  trajectory::write_trajectory(folder / "trajectory_estimate.txt", estimate_,
+                               "camera optical frame in the map, as published");
+  trajectory::write_trajectory(folder / "trajectory_ground_truth.txt", truth_in_map(),
+                               "true camera optical frame, in the map by the first true pose");
+  files::replace_text(folder / "timeline.csv", timeline_);
+  files::replace_text(folder / "metrics.json", to_json(m));
   if (!T_map_world_) return;
   const mapping::MapFile reference{reference_, belief_reader().model(), label_list_, {{"source", "true poses"}}};
   if (const auto problem = mapping::save_map((folder / "reference_map.lapis").string(), reference)) {

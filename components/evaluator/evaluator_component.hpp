@@ -12,7 +12,6 @@
 #include "common/time/stamp_buffer.hpp"
 #include "evaluator/core/metrics.hpp"
 #include "evaluator/core/plain_fusion.hpp"
-#include "evaluator/core/trajectory.hpp"
 #include "evaluator/evaluator_config.hpp"
 
 namespace lapis::evaluator {
@@ -52,7 +51,8 @@ class EvaluatorComponent {
   bool next_frame(const runtime::Cycle& cycle);
   void record(const Tracked& tracked, const Odometry* truth, const Image* depth, const Image* labels, const Info* info);
   std::optional<geometry::Pose> true_camera_pose(const Odometry& truth, const std::string& optical_frame);
-  void add_to_references(const geometry::Pose& T_world_camera, const Image& depth, const Image* labels, const Info& info);
+  void add_to_references(const geometry::Pose& T_world_camera, const Image& depth, const Image* labels,
+                         const Info& info);
   void write_timeline_row(time::Time stamp);
   mapping::BeliefReader belief_reader() const;
   Trajectory truth_in_map() const;
@@ -78,9 +78,9 @@ class EvaluatorComponent {
   lapis_msgs::msg::PoseGraph graph_;
   std::map<std::string, ProcessFigures> processes_;
 
-  Trajectory estimate_;                         // T_map_camera, as published at its time
-  Trajectory truth_world_;                      // T_world_camera
-  std::optional<geometry::Pose> T_map_world_;   // from the first frame that has both
+  Trajectory estimate_;                        // T_map_camera, as published at its time
+  Trajectory truth_world_;                     // T_world_camera
+  std::optional<geometry::Pose> T_map_world_;  // from the first frame that has both
   mapping::VoxelMap reference_;
   PlainFusion plain_fusion_;
   std::string timeline_;

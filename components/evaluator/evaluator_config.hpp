@@ -27,7 +27,8 @@ void describe(Field& field, EvaluatorConfig& c) {
   field("sensor_model", c.sensor_model);
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
         "between pose, true pose, depth, labels and camera info of one frame [s]");
-  field("timeline_period_s", c.timeline_period_s, config::in_range(0.1, 3600.0), "time between rows of timeline.csv [s]");
+  field("timeline_period_s", c.timeline_period_s, config::in_range(0.1, 3600.0),
+        "time between rows of timeline.csv [s]");
   field("figures", c.figures, config::anything(), "draw figures/*.png at the end (python3 with matplotlib)");
 }
 

@@ -75,8 +75,8 @@ std::string stamps_of(const Trajectory& trajectory) {
 
 MatchedPair load_pair(const PairOptions& options) {
   MatchedPair pair;
-  pair.reference = read_trajectory(options.reference);
-  pair.estimate = read_trajectory(options.estimate);
+  pair.reference = trajectory::read_trajectory(options.reference);
+  pair.estimate = trajectory::read_trajectory(options.estimate);
   const AssociationConfig config{kRules.at(options.association),
                                  time::Duration::from_seconds(options.max_difference_s)};
   pair.matches = associate(pair.reference, pair.estimate, config);

@@ -18,17 +18,10 @@ double seconds_since(const std::optional<time::Time>& then, time::Time now) {
 }  // namespace
 
 SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::Context& context)
-    : config_(config),
-      context_(context),
-      tiles_(context.advertise(topics::kVoxelTiles)),
-      map_state_(context.advertise(topics::kMapState)),
-      octomap_(context.advertise(topics::kOctomap)),
-      points_(context.advertise(topics::kMapPoints)),
-      grid_(context.advertise(topics::kOccupancyGrid)),
-      tracked_(kWaitingFrames),
-      depth_(kWaitingFrames),
-      labels_(kWaitingFrames),
-      info_(kWaitingFrames) {
+    : config_(config), context_(context), tiles_(context.advertise(topics::kVoxelTiles)),
+      map_state_(context.advertise(topics::kMapState)), octomap_(context.advertise(topics::kOctomap)),
+      points_(context.advertise(topics::kMapPoints)), grid_(context.advertise(topics::kOccupancyGrid)),
+      tracked_(kWaitingFrames), depth_(kWaitingFrames), labels_(kWaitingFrames), info_(kWaitingFrames) {
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "semantic_mapper.output_dir");
   context.subscribe(topics::kTrackedFrame, [this](Tracked& m) { store(tracked_, m, "slam frame"); });
   context.subscribe(topics::kDepth, [this](Image& m) { store(depth_, m, "depth"); });

@@ -67,8 +67,8 @@ class SemanticMapperComponent {
   std::unique_ptr<SemanticMapper> mapper_;  // exists once slam tracks
   std::int64_t session_ = 0;
   std::int64_t epoch_ = 0;
-  time::Time stamp_;                            // of the newest integrated frame
-  std::optional<time::Time> tiles_stamp_;       // published last
+  time::Time stamp_;                       // of the newest integrated frame
+  std::optional<time::Time> tiles_stamp_;  // published last
   std::optional<time::Time> views_stamp_;
   std::optional<time::Time> saved_stamp_;
   std::set<std::tuple<int, int, int>> published_tiles_;  // of this epoch

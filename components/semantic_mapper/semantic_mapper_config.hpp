@@ -25,8 +25,10 @@ struct SemanticMapperComponentConfig {
 
 template <class Field>
 void describe(Field& field, GridConfig& c) {
-  field("min_height_m", c.min_height_m, config::in_range(-100.0, 100.0), "voxels whose centre is below say nothing [m]");
-  field("max_height_m", c.max_height_m, config::in_range(-100.0, 100.0), "voxels whose centre is above say nothing [m]");
+  field("min_height_m", c.min_height_m, config::in_range(-100.0, 100.0),
+        "voxels whose centre is below say nothing [m]");
+  field("max_height_m", c.max_height_m, config::in_range(-100.0, 100.0),
+        "voxels whose centre is above say nothing [m]");
 }
 
 template <class Field>
@@ -37,7 +39,8 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("frame", c.frame);
   field("sensor_model", c.sensor_model);
   field("grid", c.grid);
-  field("re_anchor", c.map.re_anchor, config::anything(), "frames follow the pose graph; false: the paper's frozen map");
+  field("re_anchor", c.map.re_anchor, config::anything(),
+        "frames follow the pose graph; false: the paper's frozen map");
   field("re_anchor_threshold_voxels", c.map.re_anchor_threshold_voxels, config::in_range(0.0, 10.0),
         "a frame is moved when a point at its median depth is off by more");
   field("re_anchored_frames_per_cycle", c.re_anchored_frames_per_cycle, config::in_range(1, 10000),
@@ -50,7 +53,8 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("view_period_s", c.view_period_s, config::in_range(0.0, 60.0),
         "least time between octomap, points and occupancy grid, which are made only for readers [s]");
   field("output_dir", c.output_dir, config::anything(), "folder for map.lapis, map.ot and map.ply; empty: none");
-  field("save_period_s", c.save_period_s, config::in_range(1.0, 86400.0), "time between saves, by the frames' stamps [s]");
+  field("save_period_s", c.save_period_s, config::in_range(1.0, 86400.0),
+        "time between saves, by the frames' stamps [s]");
 }
 
 }  // namespace lapis::semantic_mapper

@@ -14,7 +14,8 @@ constexpr double kFarewell_s = 2.0;  // at the end, for readers that still miss 
 
 TumDatasetConfig dataset_config(const SensorReplayConfig& config) {
   if (config.dataset.empty()) {
-    throw std::runtime_error("no data set given; call: lapis_sensor_replay DATASET (a folder with rgb.txt, depth.txt, camera.yaml)");
+    throw std::runtime_error(
+        "no data set given; call: lapis_sensor_replay DATASET (a folder with rgb.txt, depth.txt, camera.yaml)");
   }
   return {config.dataset, config.class_list, config.max_stamp_difference_s};
 }
@@ -47,19 +48,13 @@ std::optional<int> SensorReplayComponent::run_tool(const Config& config) {
 }
 
 SensorReplayComponent::SensorReplayComponent(const Config& config, runtime::Context& context)
-    : config_(config),
-      context_(context),
-      dataset_(dataset_config(config)),
-      range_(selected(dataset_, config)),
-      ids_{context.frame("base_link"), context.frame("camera_link"), context.frame("camera_color_optical_frame"),
-           "world"},
+    : config_(config), context_(context), dataset_(dataset_config(config)),
+      range_(selected(dataset_, config)), ids_{context.frame("base_link"), context.frame("camera_link"),
+                                               context.frame("camera_color_optical_frame"), "world"},
       frames_([this](std::size_t index) { return dataset_.load_frame(index); }, range_),
-      color_(context.advertise(topics::kColor)),
-      depth_(context.advertise(topics::kDepth)),
-      color_info_(context.advertise(topics::kColorInfo)),
-      depth_info_(context.advertise(topics::kDepthInfo)),
-      static_transforms_(context.advertise(topics::kStaticTransforms)),
-      clock_(context.advertise(topics::kClock)) {
+      color_(context.advertise(topics::kColor)), depth_(context.advertise(topics::kDepth)),
+      color_info_(context.advertise(topics::kColorInfo)), depth_info_(context.advertise(topics::kDepthInfo)),
+      static_transforms_(context.advertise(topics::kStaticTransforms)), clock_(context.advertise(topics::kClock)) {
   if (dataset_.has_labels()) {
     labels_ = &context.advertise(topics::kLabels);
     label_info_ = &context.advertise(topics::kLabelInfo);
@@ -156,8 +151,9 @@ void SensorReplayComponent::count(const SkippedFrame& skipped) {
 
 void SensorReplayComponent::count(const ImageProblem& problem) {
   const std::string kind = problem.part == ImagePart::kDepth ? "depth" : "label";
-  context_.status().count(kind + " images unusable: " + to_string(problem.fault));
-  if (context_.rate_limit().pass(kind)) spdlog::warn("{} image not published: {}", kind, to_string(problem));
+  const std::string key = kind + " images unusable: " + to_string(problem.fault);
+  context_.status().count(key);
+  if (context_.rate_limit().pass(key)) spdlog::warn("{} image not published: {}", kind, to_string(problem));
 }
 
 void SensorReplayComponent::report_progress(bool is_last) {

@@ -1,11 +1,11 @@
 #include "slam/slam_component.hpp"
 
-#include <cstdio>
 #include <filesystem>
 #include <sstream>
 
 #include "common/files/atomic_file.hpp"
 #include "common/messages/time.hpp"
+#include "common/trajectory/trajectory.hpp"
 #include "slam/core/pose_graph_file.hpp"
 
 namespace lapis::slam {
@@ -13,33 +13,13 @@ namespace {
 
 constexpr time::Duration kStatusPeriod{1'000'000'000};
 
-void write(const std::string& folder, const std::string& name, const std::string& text) {
-  const std::vector<std::uint8_t> bytes(text.begin(), text.end());
-  if (const auto problem = files::replace_file((std::filesystem::path(folder) / name).string(), bytes)) {
-    throw std::runtime_error(*problem);
-  }
-}
-
-std::string trajectory_line(time::Time stamp, const geometry::Pose& T) {
-  const Eigen::Quaterniond q = geometry::unit_quaternion(T);
-  char line[300];
-  std::snprintf(line, sizeof line, "%s %.9f %.9f %.9f %.9f %.9f %.9f %.9f\n", time::to_string(stamp).c_str(),
-                T.translation().x(), T.translation().y(), T.translation().z(), q.x(), q.y(), q.z(), q.w());
-  return line;
-}
-
 }  // namespace
 
 SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
-    : config_(config),
-      context_(context),
-      ids_{context.frame("map"), context.frame("odom"), context.frame("base_link")},
-      odometry_(context.advertise(topics::kSlamOdometry)),
-      tracked_frame_(context.advertise(topics::kTrackedFrame)),
-      transforms_(context.advertise(topics::kTransforms)),
-      path_(context.advertise(topics::kKeyframePath)),
-      pose_graph_(context.advertise(topics::kPoseGraph)),
-      status_(context.advertise(topics::kSlamStatus)) {
+    : config_(config), context_(context), ids_{context.frame("map"), context.frame("odom"), context.frame("base_link")},
+      odometry_(context.advertise(topics::kSlamOdometry)), tracked_frame_(context.advertise(topics::kTrackedFrame)),
+      transforms_(context.advertise(topics::kTransforms)), path_(context.advertise(topics::kKeyframePath)),
+      pose_graph_(context.advertise(topics::kPoseGraph)), status_(context.advertise(topics::kSlamStatus)) {
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "slam.output_dir");
   context.subscribe(topics::kColor, [this](Image& m) { store(color_, m, "colour"); });
   context.subscribe(topics::kDepth, [this](Image& m) { store(depth_, m, "depth"); });
@@ -150,8 +130,7 @@ void SlamComponent::publish(const TrackingResult& result) {
 
 void SlamComponent::publish_odometry(const TrackingResult& result) {
   auto message = to_odometry(result, frame_, ids_);
-  const geometry::Pose T_map_base =
-      result.T_map_keyframe * result.T_keyframe_camera * frame_.T_base_camera.inverse();
+  const geometry::Pose T_map_base = result.T_map_keyframe * result.T_keyframe_camera * frame_.T_base_camera.inverse();
   if (last_pose_ && frame_.stamp > last_pose_->first) {
     set_twist(last_pose_->second.inverse() * T_map_base, frame_.stamp - last_pose_->first, message);
   }
@@ -204,10 +183,11 @@ void SlamComponent::finish() {
   const auto graph = slam_->pose_graph();
   std::ostringstream g2o;
   write_g2o(g2o, graph);
-  write(config_.output_dir, "pose_graph.g2o", g2o.str());
-  std::string keyframes = "# key-frames: camera optical frame in " + ids_.map + "; stamp tx ty tz qx qy qz qw\n";
-  for (const auto& node : graph.nodes) keyframes += trajectory_line(node.stamp, node.T_map_camera);
-  write(config_.output_dir, "keyframes.txt", keyframes);
+  const std::filesystem::path folder(config_.output_dir);
+  files::replace_text(folder / "pose_graph.g2o", g2o.str());
+  trajectory::Trajectory keyframes;
+  for (const auto& node : graph.nodes) keyframes.push_back({node.stamp, node.T_map_camera});
+  trajectory::write_trajectory(folder / "keyframes.txt", keyframes, "key-frames: camera optical frame in " + ids_.map);
 }
 
 }  // namespace lapis::slam

@@ -1,7 +1,6 @@
 #include "evaluator/core/association.hpp"
 
 #include <algorithm>
-#include <optional>
 #include <tuple>
 
 namespace lapis::evaluator {
@@ -53,32 +52,13 @@ std::vector<Match> match_nearest(const Trajectory& reference, const Trajectory& 
   return matches;
 }
 
-geometry::Pose interpolate(const StampedPose& a, const StampedPose& b, time::Time stamp) {
-  const double share = (stamp - a.stamp).seconds() / (b.stamp - a.stamp).seconds();
-  const Eigen::Vector3d p_a = a.T_world_body.translation();
-  const Eigen::Vector3d p_b = b.T_world_body.translation();
-  const Eigen::Quaterniond q_a = geometry::unit_quaternion(a.T_world_body);
-  return geometry::make_pose((1.0 - share) * p_a + share * p_b,
-                             q_a.slerp(share, geometry::unit_quaternion(b.T_world_body)));
-}
-
-std::optional<geometry::Pose> pose_at(const Trajectory& reference, time::Time stamp, time::Duration limit) {
-  const auto after = first_not_before(reference, stamp);
-  if (after == reference.end()) return std::nullopt;
-  if (after->stamp == stamp) return after->T_world_body;
-  if (after == reference.begin()) return std::nullopt;
-  const auto before = after - 1;
-  if (std::min(stamp - before->stamp, after->stamp - stamp) >= limit) return std::nullopt;
-  return interpolate(*before, *after, stamp);
-}
-
 }  // namespace
 
 std::vector<Match> associate(const Trajectory& reference, const Trajectory& estimate, const AssociationConfig& config) {
   if (config.rule == AssociationRule::kNearest) return match_nearest(reference, estimate, config.max_difference);
   std::vector<Match> matches;
   for (std::size_t i = 0; i < estimate.size(); ++i) {
-    const auto T_world_reference = pose_at(reference, estimate[i].stamp, config.max_difference);
+    const auto T_world_reference = trajectory::pose_at(reference, estimate[i].stamp, config.max_difference);
     if (T_world_reference) matches.push_back({i, estimate[i].stamp, estimate[i].T_world_body, *T_world_reference});
   }
   return matches;

@@ -2,9 +2,12 @@
 
 #include <vector>
 
-#include "evaluator/core/trajectory.hpp"
+#include "common/trajectory/trajectory.hpp"
 
 namespace lapis::evaluator {
+
+using trajectory::StampedPose;
+using trajectory::Trajectory;
 
 enum class AssociationRule {
   kNearest,      ///< one-to-one, smallest time difference first (the TUM RGB-D benchmark's rule)

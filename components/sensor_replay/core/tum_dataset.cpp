@@ -48,7 +48,7 @@ TumDataset::TumDataset(const TumDatasetConfig& config) : config_(config) {
   read_frames();
   camera_ = read_camera_file(config.folder / "camera.yaml");
   const fs::path truth = config.folder / "groundtruth.txt";
-  if (fs::exists(truth)) trajectory_ = read_trajectory(truth);
+  if (fs::exists(truth)) trajectory_ = trajectory::read_trajectory(truth);
   has_labels_ = fs::is_directory(config.folder / "label");
   if (!config.class_list.empty()) {
     class_list_ = read_class_list(config.class_list);
@@ -117,7 +117,7 @@ std::size_t TumDataset::frames_without_depth() const {
 }
 
 std::optional<geometry::Pose> TumDataset::ground_truth(std::size_t index) const {
-  return interpolate(trajectory_, stamp(index), time::Duration::from_seconds(config_.max_stamp_difference_s));
+  return trajectory::pose_at(trajectory_, stamp(index), time::Duration::from_seconds(config_.max_stamp_difference_s));
 }
 
 std::vector<ImageProblem> TumDataset::missing_images() const {

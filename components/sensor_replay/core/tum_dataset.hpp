@@ -10,10 +10,10 @@
 #include "common/geometry/image.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
+#include "common/trajectory/trajectory.hpp"
 #include "sensor_replay/core/camera_file.hpp"
 #include "sensor_replay/core/class_list.hpp"
 #include "sensor_replay/core/image_file.hpp"
-#include "sensor_replay/core/trajectory.hpp"
 #include "sensor_replay/core/tum_lists.hpp"
 
 namespace lapis::sensor_replay {
@@ -107,7 +107,7 @@ class TumDataset {
   TumDatasetConfig config_;
   CameraFile camera_;
   std::vector<ListedFrame> frames_;
-  std::vector<StampedPose> trajectory_;
+  trajectory::Trajectory trajectory_;
   std::vector<ClassName> class_list_;
   bool has_labels_ = false;
 };

@@ -149,7 +149,8 @@ TEST_F(ConfigTest, GarbageIsRefusedOrApplied) {
 
 TEST_F(ConfigTest, MarkdownTableHasARowPerKey) {
   const std::string table = to_markdown(schema_);
-  EXPECT_THAT(table, HasSubstr("| `slam.tracker.max_depth_m` | `5` | 0.1 to 20 | measurements beyond this are ignored |"));
+  EXPECT_THAT(table,
+              HasSubstr("| `slam.tracker.max_depth_m` | `5` | 0.1 to 20 | measurements beyond this are ignored |"));
   EXPECT_THAT(table, HasSubstr("fast \\| exact"));
 }
 

@@ -63,8 +63,7 @@ sensor_msgs::msg::CameraInfo camera_info(std::uint32_t width, std::uint32_t heig
 }
 
 TEST(SlamConversions, FrameKeepsStampCameraAndSizes) {
-  const auto frame =
-      to_core(image(64, 48, "rgb8", 3), image(64, 48, "16UC1", 2), camera_info(64, 48), time::Time{5});
+  const auto frame = to_core(image(64, 48, "rgb8", 3), image(64, 48, "16UC1", 2), camera_info(64, 48), time::Time{5});
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->stamp, time::Time{5});
   EXPECT_EQ(frame->camera.width, 64);
@@ -165,7 +164,8 @@ TEST(SlamConversions, PoseGraphCarriesTheUpperTriangleRowByRow) {
   graph.nodes.push_back({2, time::Time{20}, random_pose(engine)});
   PoseGraphEdge edge{1, 2, EdgeType::kOdometry, random_pose(engine), geometry::Matrix6d::Zero()};
   for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column) edge.information(row, column) = 10 * std::min(row, column) + std::max(row, column);
+    for (int column = 0; column < 6; ++column)
+      edge.information(row, column) = 10 * std::min(row, column) + std::max(row, column);
   }
   graph.edges.push_back(edge);
   const auto message = to_message(graph, context_of(engine), kIds);

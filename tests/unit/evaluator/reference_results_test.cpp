@@ -9,7 +9,7 @@
 
 #include "evaluator/core/ate.hpp"
 #include "evaluator/core/rpe.hpp"
-#include "evaluator/core/trajectory.hpp"
+#include "common/trajectory/trajectory.hpp"
 
 namespace lapis::evaluator {
 namespace {
@@ -29,8 +29,8 @@ class ReferenceResults : public ::testing::Test {
     }
     std::ifstream(data_folder() / "reference_results.json") >> document_;
     results_ = document_.front();
-    reference_ = read_trajectory(data_folder() / "freiburg1_xyz-groundtruth.txt");
-    estimate_ = read_trajectory(data_folder() / "freiburg1_xyz-rgbdslam.txt");
+    reference_ = trajectory::read_trajectory(data_folder() / "freiburg1_xyz-groundtruth.txt");
+    estimate_ = trajectory::read_trajectory(data_folder() / "freiburg1_xyz-rgbdslam.txt");
     matches_ = associate(reference_, estimate_, {AssociationRule::kNearest});
   }
 

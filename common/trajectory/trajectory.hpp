@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -8,7 +9,7 @@
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
 
-namespace lapis::evaluator {
+namespace lapis::trajectory {
 
 /// Pose of a moving frame (camera or robot body) in a fixed one, at an instant.
 struct StampedPose {
@@ -36,7 +37,12 @@ void write_trajectory(const std::filesystem::path& file, const Trajectory& traje
 
 /// Sum of the straight distances between successive positions [m].
 double path_length_m(const Trajectory& trajectory);
+/// Pose at an instant: linear in translation, spherical linear in rotation between the two poses around it. Nothing is
+/// extrapolated: empty before the first and after the last pose, and where the nearer of the two is not closer than
+/// `max_difference`. A pose of exactly that stamp is always found.
+std::optional<geometry::Pose> pose_at(const Trajectory& trajectory, time::Time stamp, time::Duration max_difference);
+
 /// The same trajectory seen from another fixed frame: each pose becomes T_new_world * T_world_body.
 Trajectory express_in(const geometry::Pose& T_new_world, const Trajectory& trajectory);
 
-}  // namespace lapis::evaluator
+}  // namespace lapis::trajectory

@@ -1,4 +1,4 @@
-#include "evaluator/core/trajectory.hpp"
+#include "common/trajectory/trajectory.hpp"
 
 #include <gmock/gmock.h>
 
@@ -7,7 +7,7 @@
 #include <random>
 #include <stdexcept>
 
-namespace lapis::evaluator {
+namespace lapis::trajectory {
 namespace {
 
 using ::testing::AllOf;
@@ -143,5 +143,34 @@ TEST(Trajectory, PathLengthIsIndependentOfTheFrame) {
   EXPECT_EQ(path_length_m({}), 0.0);
 }
 
+constexpr time::Duration kLimit{20'000'000};
+
+TEST(PoseAt, AgreesWithTheConstantTwistBetweenTwoPoses) {
+  // A turn about a fixed axis with proportional translation is what linear and slerp interpolation must reproduce.
+  const Eigen::Vector3d axis = Eigen::Vector3d(0.2, -0.7, 0.4).normalized();
+  const auto expected = [&](double share) {
+    return geometry::make_pose(share * Eigen::Vector3d(1.0, 2.0, -3.0),
+                               Eigen::Quaterniond(Eigen::AngleAxisd(0.9 * share, axis)));
+  };
+  const Trajectory ends{{time::Time{0}, expected(0.0)}, {time::Time{30'000'000}, expected(1.0)}};
+  for (const double share : {0.0, 0.1, 0.5, 0.75, 1.0}) {
+    const auto T = pose_at(ends, time::Time{static_cast<std::int64_t>(share * 30e6)}, kLimit);
+    ASSERT_TRUE(T) << share;
+    EXPECT_TRUE(T->isApprox(expected(share), 1e-9)) << share;
+  }
+}
+
+TEST(PoseAt, MakesNothingUp) {
+  const geometry::Pose I = geometry::Pose::Identity();
+  const Trajectory poses{{time::Time{1'000'000'000}, I}, {time::Time{2'000'000'000}, I}};
+  EXPECT_FALSE(pose_at({}, time::Time{0}, kLimit));
+  EXPECT_FALSE(pose_at(poses, time::Time{999'999'999}, kLimit)) << "before the first pose";
+  EXPECT_FALSE(pose_at(poses, time::Time{2'000'000'001}, kLimit)) << "after the last pose";
+  EXPECT_FALSE(pose_at(poses, time::Time{1'500'000'000}, kLimit)) << "in a gap";
+  EXPECT_FALSE(pose_at(poses, time::Time{1'020'000'000}, kLimit)) << "at the limit";
+  EXPECT_TRUE(pose_at(poses, time::Time{1'019'999'999}, kLimit)) << "below the limit";
+  EXPECT_TRUE(pose_at(poses, time::Time{2'000'000'000}, time::Duration{0})) << "at the last pose";
+}
+
 }  // namespace
-}  // namespace lapis::evaluator
+}  // namespace lapis::trajectory

@@ -1,17 +1,18 @@
-#include "evaluator/core/trajectory.hpp"
+#include "common/trajectory/trajectory.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <iterator>
 #include <optional>
-#include <span>
 #include <stdexcept>
 
 #include "common/files/atomic_file.hpp"
 
-namespace lapis::evaluator {
+namespace lapis::trajectory {
 namespace {
 
 constexpr double kQuaternionTolerance = 1e-3;
@@ -143,9 +144,7 @@ std::string format_trajectory(const Trajectory& trajectory, const std::string& c
 }
 
 void write_trajectory(const std::filesystem::path& file, const Trajectory& trajectory, const std::string& comment) {
-  const std::string text = format_trajectory(trajectory, comment);
-  const std::span bytes(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  if (const auto error = files::replace_file(file.string(), bytes)) throw std::runtime_error(*error);
+  files::replace_text(file, format_trajectory(trajectory, comment));
 }
 
 double path_length_m(const Trajectory& trajectory) {
@@ -156,10 +155,26 @@ double path_length_m(const Trajectory& trajectory) {
   return length;
 }
 
+std::optional<geometry::Pose> pose_at(const Trajectory& trajectory, time::Time stamp, time::Duration max_difference) {
+  const auto after = std::lower_bound(trajectory.begin(), trajectory.end(), stamp,
+                                      [](const StampedPose& pose, time::Time t) { return pose.stamp < t; });
+  if (after == trajectory.end()) return std::nullopt;
+  if (after->stamp == stamp) return after->T_world_body;
+  if (after == trajectory.begin()) return std::nullopt;
+  const auto before = std::prev(after);
+  if (std::min(stamp - before->stamp, after->stamp - stamp) >= max_difference) return std::nullopt;
+  const double share = (stamp - before->stamp).seconds() / (after->stamp - before->stamp).seconds();
+  const Eigen::Vector3d p_before = before->T_world_body.translation();
+  const Eigen::Vector3d p_after = after->T_world_body.translation();
+  const Eigen::Quaterniond q_before = geometry::unit_quaternion(before->T_world_body);
+  return geometry::make_pose((1.0 - share) * p_before + share * p_after,
+                             q_before.slerp(share, geometry::unit_quaternion(after->T_world_body)));
+}
+
 Trajectory express_in(const geometry::Pose& T_new_world, const Trajectory& trajectory) {
   Trajectory result = trajectory;
   for (StampedPose& pose : result) pose.T_world_body = T_new_world * pose.T_world_body;
   return result;
 }
 
-}  // namespace lapis::evaluator
+}  // namespace lapis::trajectory

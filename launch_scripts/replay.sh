@@ -16,7 +16,8 @@ trajectory, pose graph, semantic map, metrics.json and figures.
   --start S        skip S seconds;  --duration S  play S seconds
   --labels FILE    CSV file class_id,class,... that names the labels
   --set KEY=VALUE  configuration, for example semantic_mapper.resolution_m=0.1 or dds.socket_buffer_bytes=212992;
-                   it goes to the component that KEY begins with (dds.: to all). --print-config of each process lists the keys
+                   it goes to the component that KEY begins with (dds.: to all). --print-config of each process lists
+                   the keys
 
 Exit status: 0 played to the end, 1 a process failed, 2 bad set-up, 130 and 143 interrupted.
 TEXT
@@ -29,7 +30,7 @@ add_setting() {
     dds.*=*) for name in "${components[@]}"; do settings+=("$name" "$1"); done ;;
     lockstep.*=*) settings+=(sensor_replay "$1") ;;
     sensor_replay.*=* | slam.*=* | semantic_mapper.*=* | evaluator.*=*) settings+=("${1%%.*}" "$1") ;;
-    *) die "--set $1: unknown key; wanted is KEY=VALUE with a KEY that begins with dds., lockstep., ${components[*]/%/.}" ;;
+    *) die "--set $1: unknown key; wanted is KEY=VALUE, KEY begins with dds., lockstep., ${components[*]/%/.}" ;;
   esac
 }
 while [ $# -gt 0 ]; do

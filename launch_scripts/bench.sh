@@ -1,0 +1,58 @@
+#!/usr/bin/env bash
+# What the chain costs: CPU time per frame and process, frames lost in real time, and the Google Benchmarks.
+set -euo pipefail
+# shellcheck source-path=SCRIPTDIR
+source "$(dirname "$0")/lib.sh"
+
+usage() {
+  cat <<'TEXT'
+usage: bench.sh [DATASET] [--runs N]
+  DATASET   recorded RGB-D; default: rgbd/aws_small_house_loop in LAPIS_TEST_DATA
+  --runs N  lock-step replays of which the median is printed; default 3
+Run it on a machine that has nothing else to do: the table names the load it found.
+TEXT
+}
+
+dataset=${LAPIS_TEST_DATA:-$repository/../shared/data}/rgbd/aws_small_house_loop runs=3
+while [ $# -gt 0 ]; do
+  case $1 in
+    -h | --help) usage && exit 0 ;;
+    --runs) [ $# -gt 1 ] || die "--runs needs a value"; runs=$2 && shift ;;
+    -*) die "unknown option $1 (see --help)" ;;
+    *) dataset=$1 ;;
+  esac
+  shift
+done
+[ -d "$dataset" ] || die "$dataset: no such folder; name a data set, or set LAPIS_TEST_DATA"
+require_build
+export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST
+out=$(mktemp -d)
+trap 'rm -r "$out"' EXIT
+
+play() { # NAME OPTION...
+  local name=$1
+  shift
+  "$repository/launch_scripts/replay.sh" "$dataset" --out "$out/$name" --set evaluator.figures=false "$@" \
+    >"$out/$name.log" 2>&1 || { cat "$out/$name.log" >&2; exit 1; }
+}
+read -r load _ </proc/loadavg
+for ((run = 1; run <= runs; ++run)); do play "lockstep_$run"; done
+play real_time --rate 1
+
+python3 - "$out" "$runs" "$load" <<'PYTHON'
+import json, re, statistics, sys
+out, runs, load = sys.argv[1], int(sys.argv[2]), sys.argv[3]
+metrics = [json.load(open(f"{out}/lockstep_{run + 1}/metrics.json")) for run in range(runs)]
+log = lambda name: open(f"{out}/real_time/logs/{name}.log").read()
+total = int(re.search(r": (\d+) frames, ", log("sensor_replay"))[1])
+done = {"slam": int(re.search(r"(\d+) of \d+ frames tracked", log("slam"))[1]),
+        "semantic_mapper": int(re.search(r"(\d+) frames integrated", log("semantic_mapper"))[1])}
+print(f"{metrics[0]['frames_total']} frames, lock-step: median of {runs}; load before: {load}")
+print(f"{'process':18}{'CPU ms/frame':>14}{'peak RSS MB':>14}{'lost at --rate 1':>20}")
+for name in metrics[0]["cpu_ms_per_frame"]:
+    cpu, memory = (statistics.median(m[key][name] for m in metrics) for key in ("cpu_ms_per_frame", "peak_rss_mb"))
+    lost = f"{total - done[name]} of {total}" if name in done else ""
+    print(f"{name:18}{cpu:14.1f}{memory:14.0f}{lost:>20}")
+PYTHON
+
+for benchmark in "$bin"/lapis_*_benchmark; do [ ! -x "$benchmark" ] || { echo; "$benchmark"; }; done

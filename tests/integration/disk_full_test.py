@@ -1,0 +1,120 @@
+#!/usr/bin/env python3
+"""No space left while the map is saved: the error is clear, the old file stays whole, mapping goes on."""
+import errno
+import signal
+import unittest
+from pathlib import Path
+
+import chain
+
+DISK_SIZE = "4m"
+MAP_FILES = ("map.lapis", "map.ot", "map.ply")
+
+
+class SmallDisk:
+    """A file system of its own in a mount namespace of its own: nothing stays mounted, whatever happens."""
+
+    def __init__(self, folder, log):
+        folder.mkdir()
+        script = f'mount -t tmpfs -o size={DISK_SIZE} none "$1" && echo mounted && exec sleep infinity'
+        command = ["unshare", "--mount", "--propagation", "private", "sh", "-c", script, "sh", folder]
+        self.holder = chain.Process(command, log)
+        self.is_mounted = self.holder.wait_for_text("mounted") is not None
+        self.path = Path(f"/proc/{self.holder.pid}/root{folder}")
+        self.enter = ["nsenter", f"--mount=/proc/{self.holder.pid}/ns/mnt"]
+
+    def fill(self):
+        try:
+            with open(self.path / "ballast", "ab", buffering=0) as file:
+                while True:
+                    file.write(bytes(4096))
+        except OSError as error:
+            if error.errno != errno.ENOSPC:
+                raise
+
+    def clear(self):
+        (self.path / "ballast").unlink()
+
+
+class DiskFullTest(chain.ChainTest):
+    def setUp(self):
+        self.disk = SmallDisk(self.folder / "disk", self.folder / "disk.log")
+        self.addCleanup(self.disk.holder.kill)
+        if not self.disk.is_mounted:
+            print("SKIPPED [integration] disk_full: a tmpfs cannot be mounted here (needs root):",
+                  self.disk.holder.output())
+            raise unittest.SkipTest("a tmpfs cannot be mounted here (needs root)")
+        self.probe = self.started(chain.Process([chain.BIN / "lapis_stamp_probe"], self.folder / "probe.log"))
+        self.assertTrue(self.probe.wait_for_text("stamp_probe: ready"), self.probe.output())
+        command = [*self.disk.enter, chain.BIN / "lapis_semantic_mapper",
+                   "--set", f"semantic_mapper.output_dir={self.folder / 'disk'}",
+                   "--set", "semantic_mapper.save_period_s=1"]
+        self.mapper = self.started(chain.Process(command, self.folder / "semantic_mapper.log"))
+        self.assertTrue(self.mapper.wait_for_text("semantic_mapper: ready"), self.mapper.output())
+        self.started(chain.start("slam", self.folder / "slam.log"))
+        self.started(chain.start("sensor_replay", self.folder / "sensor_replay.log", chain.AWS, "--rate", "1",
+                                 "--set", "sensor_replay.wait_for_readers=2"))
+
+    def started(self, process):
+        self.addCleanup(process.kill)
+        return process
+
+    def integrated(self):
+        """Number of frames in the newest map state."""
+        counts = [int(line.split()[2]) for line in self.probe.lines() if line.startswith("semantic_mapper ")]
+        return counts[-1] if counts else 0
+
+    def wait_for_frames(self, count):
+        self.assertTrue(self.probe.wait_for(lambda _: self.integrated() >= count, 30),
+                        f"{self.integrated()} of {count} frames\n" + self.mapper.output())
+
+    def save(self):
+        """Answer of the service."""
+        begin = len(self.probe.lines())
+        self.probe.send(signal.SIGUSR1)
+        answer = self.probe.wait_for(lambda lines: next((l for l in lines[begin:] if l.startswith("save ")), None), 30)
+        self.assertIsNotNone(answer, self.probe.output())
+        return answer
+
+    def saved_map(self):
+        """Bytes of map.lapis, which loads."""
+        content = (self.disk.path / "map.lapis").read_bytes()
+        copy = self.folder / "copy.lapis"
+        copy.write_bytes(content)
+        self.assertTrue(chain.is_map_whole(copy), "map.lapis does not load")
+        return content
+
+    def fill_until_saving_fails(self):
+        for _ in range(10):  # a save that was under way frees space again when it ends: enough for the first file
+            self.disk.fill()
+            answer = self.save()
+            if answer.startswith("save refused") and "map.lapis" in answer:
+                return answer
+        return self.fail(f"saving works on a full disk: {answer}")
+
+    def test_disk_full(self):
+        self.wait_for_frames(20)
+        self.assertIn("save done", self.save())
+
+        answer = self.fill_until_saving_fails()
+        self.assertIn("No space left on device", answer)
+        before = self.saved_map()
+        frames = self.integrated()
+        self.assertTrue(self.mapper.wait_for_text("mapping goes on"), self.mapper.output())
+        self.wait_for_frames(frames + 20)
+        self.assertIn("save refused", self.save())
+        self.assertEqual(self.saved_map(), before, "the old file has been touched")
+
+        self.disk.clear()
+        self.assertIn("save done", self.save())
+        self.assertNotEqual(self.saved_map(), before)
+
+        self.fill_until_saving_fails()
+        self.assertEqual(self.mapper.stop(), 1, self.mapper.output())
+        self.assertIn("No space left on device", self.mapper.lines()[-1])
+        self.saved_map()
+        self.assertEqual(sorted(path.name for path in self.disk.path.iterdir()), ["ballast", *MAP_FILES])
+
+
+if __name__ == "__main__":
+    chain.main()

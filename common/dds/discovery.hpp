@@ -11,9 +11,9 @@ enum class DiscoveryRange { kSubnet, kLocalhost, kOff };
 
 /// Who may find us; the meaning of ROS 2 Jazzy's environment variables.
 struct DiscoverySettings {
-  int domain = 0;                         ///< ROS_DOMAIN_ID
+  int domain = 0;                                  ///< ROS_DOMAIN_ID
   DiscoveryRange range = DiscoveryRange::kSubnet;  ///< ROS_AUTOMATIC_DISCOVERY_RANGE
-  std::vector<std::string> static_peers;  ///< ROS_STATIC_PEERS, separated by ';'
+  std::vector<std::string> static_peers;           ///< ROS_STATIC_PEERS, separated by ';'
 };
 
 using Environment = std::function<std::optional<std::string>(const std::string& name)>;

@@ -11,8 +11,8 @@ Reader::Reader(Participant& participant, const std::string& dds_name, const std:
                compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos)
     : participant_(participant), dds_name_(dds_name), counts_gaps_(!qos.latched) {
   auto& topic = participant.topic(dds_name, type_name, std::move(type));
-  const auto mask =
-      compat::fdds::StatusMask::subscription_matched() << compat::fdds::StatusMask::requested_incompatible_qos();
+  const auto mask = compat::fdds::StatusMask::subscription_matched()
+                    << compat::fdds::StatusMask::requested_incompatible_qos();
   reader_ = participant.subscriber().create_datareader(&topic, reader_qos(qos, type_hash), this, mask);
   if (reader_ == nullptr) throw std::runtime_error("DDS reader of " + dds_name + " could not be created");
   reader_->get_statuscondition().set_enabled_statuses(compat::fdds::StatusMask::data_available());

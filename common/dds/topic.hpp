@@ -11,12 +11,12 @@ namespace lapis::dds {
 template <class Message>
 struct Topic {
   using Type = Message;
-  const char* name;         ///< ROS name ("/slam/odometry") or, for keyed topics, a plain DDS name without leading slash
+  const char* name;  ///< ROS name ("/slam/odometry") or, for keyed topics, a plain DDS name without leading slash
   Qos qos;
-  const char* from;         ///< who publishes it
-  const char* rate;         ///< when
-  const char* meaning;      ///< a line for docs/topics.md
-  bool is_global = false;   ///< true: never prefixed by --namespace (/tf, /clock, ...)
+  const char* from;        ///< who publishes it
+  const char* rate;        ///< when
+  const char* meaning;     ///< a line for docs/topics.md
+  bool is_global = false;  ///< true: never prefixed by --namespace (/tf, /clock, ...)
 };
 
 /// A service: request and reply topics derive from its name.

@@ -10,7 +10,8 @@ Writer::Writer(Participant& participant, const std::string& dds_name, const std:
                compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos)
     : participant_(participant), dds_name_(dds_name) {
   auto& topic = participant.topic(dds_name, type_name, std::move(type));
-  const auto mask = compat::fdds::StatusMask::publication_matched() << compat::fdds::StatusMask::offered_incompatible_qos();
+  const auto mask = compat::fdds::StatusMask::publication_matched()
+                    << compat::fdds::StatusMask::offered_incompatible_qos();
   writer_ = participant.publisher().create_datawriter(&topic, writer_qos(qos, type_hash), this, mask);
   if (writer_ == nullptr) throw std::runtime_error("DDS writer of " + dds_name + " could not be created");
   gid_ = to_gid(writer_->guid());

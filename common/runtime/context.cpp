@@ -2,8 +2,8 @@
 
 #include <sys/resource.h>
 
-#include "common/runtime/lockstep_participant.hpp"
 #include "common/messages/time.hpp"
+#include "common/runtime/lockstep_participant.hpp"
 
 namespace lapis::runtime {
 namespace {
@@ -20,14 +20,14 @@ double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 *
 }  // namespace
 
 Context::Context(const ContextOptions& options)
-    : options_(options),
-      clock_(options.use_sim_time ? time::Clock::Kind::kSimulated : time::Clock::Kind::kSystem),
+    : options_(options), clock_(options.use_sim_time ? time::Clock::Kind::kSimulated : time::Clock::Kind::kSystem),
       participant_(options.participant) {
-  diagnostics_ = std::make_unique<dds::Publisher<diagnostic_msgs::msg::DiagnosticArray>>(participant_,
-                                                                                          topics::kDiagnostics);
+  diagnostics_ =
+      std::make_unique<dds::Publisher<diagnostic_msgs::msg::DiagnosticArray>>(participant_, topics::kDiagnostics);
   if (options.use_sim_time) {
     clock_source_ = std::make_unique<dds::Subscription<rosgraph_msgs::msg::Clock>>(
-        participant_, topics::kClock, [this](auto& message) { clock_.announce(messages::from_message(message.clock())); });
+        participant_, topics::kClock,
+        [this](auto& message) { clock_.announce(messages::from_message(message.clock())); });
     executor_.add(*clock_source_);
   }
   lockstep_ = std::make_unique<LockstepParticipant>(*this);
@@ -38,7 +38,8 @@ Context::Context(const ContextOptions& options)
 Context::~Context() = default;
 
 void Context::every(double period_s, std::function<void()> action) {
-  const auto period = std::chrono::duration_cast<dds::Executor::Clock::duration>(std::chrono::duration<double>(period_s));
+  const auto period =
+      std::chrono::duration_cast<dds::Executor::Clock::duration>(std::chrono::duration<double>(period_s));
   executor_.every(period, std::move(action));
 }
 

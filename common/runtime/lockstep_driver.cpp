@@ -24,10 +24,7 @@ std::string joined(const std::vector<std::string>& words) {
 }  // namespace
 
 LockstepDriver::LockstepDriver(Context& context, const LockstepConfig& config, std::function<void()> republish)
-    : context_(context),
-      config_(config),
-      republish_(std::move(republish)),
-      tick_(context.participant(), topics::kTick),
+    : context_(context), config_(config), republish_(std::move(republish)), tick_(context.participant(), topics::kTick),
       acks_(context.participant(), topics::kAck, [this](Ack& ack) { on_ack(ack); }) {
   context.executor().add(acks_);
   context.every(kJoinRepeat_s / 2, [this] { check_time(); });
@@ -92,8 +89,9 @@ void LockstepDriver::on_ack(const Ack& ack) {
   // BUSY is no sign of life: who waits for an input that cannot come any more would wait for ever.
   if (ack.status() == lapis_msgs::msg::Ack_Constants::STATUS_DONE) heard_[participant] = Clock::now();
   const auto known = last_ack_.find(participant);
-  const bool is_old = known != last_ack_.end() && known->second.participant_gid() == ack.participant_gid() &&
-                      std::make_pair(ack.tick(), ack.stage()) < std::make_pair(known->second.tick(), known->second.stage());
+  const bool is_old =
+      known != last_ack_.end() && known->second.participant_gid() == ack.participant_gid() &&
+      std::make_pair(ack.tick(), ack.stage()) < std::make_pair(known->second.tick(), known->second.stage());
   if (is_old) return;
   const bool is_new = known == last_ack_.end() || known->second.participant_gid() != ack.participant_gid();
   last_ack_[participant] = ack;

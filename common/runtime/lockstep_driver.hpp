@@ -68,7 +68,7 @@ class LockstepDriver {
   dds::Subscription<Ack> acks_;
   State state_ = State::kJoining;
   std::string failure_;
-  std::map<std::string, Ack> last_ack_;           // by participant
+  std::map<std::string, Ack> last_ack_;             // by participant
   std::map<std::string, Clock::time_point> heard_;  // last answer or begin of the stage, by participant
   std::uint64_t number_ = 0;
   std::uint32_t stage_ = 0;

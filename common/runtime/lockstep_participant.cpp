@@ -28,8 +28,7 @@ auto find_topic(const Endpoints& endpoints, const std::string& dds_name) {
 }  // namespace
 
 LockstepParticipant::LockstepParticipant(Context& context)
-    : context_(context),
-      ack_(context.participant(), topics::kAck),
+    : context_(context), ack_(context.participant(), topics::kAck),
       ticks_(context.participant(), topics::kTick, [this](Tick& tick) { on_tick(tick); }) {
   context.executor().add(ticks_);
   context.every(1.0, [this] { say_busy(); });

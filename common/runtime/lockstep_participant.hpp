@@ -35,9 +35,9 @@ class LockstepParticipant {
   Context& context_;
   dds::Publisher<lapis_msgs::msg::Ack> ack_;
   dds::Subscription<Tick> ticks_;
-  dds::Gid run_{};                   // the driver's tick writer; zero: not in lock-step
-  bool has_joined_ = false;          // endpoints of this run are matched
-  std::optional<Tick> pending_;      // received, not answered
+  dds::Gid run_{};               // the driver's tick writer; zero: not in lock-step
+  bool has_joined_ = false;      // endpoints of this run are matched
+  std::optional<Tick> pending_;  // received, not answered
   Clock::time_point pending_since_;
   std::optional<std::pair<std::uint64_t, std::uint32_t>> answered_;  // tick and stage
   double cpu_s_at_answer_ = 0.0;

@@ -15,12 +15,15 @@ std::string qos_text(const lapis::dds::Qos& qos) {
 }  // namespace
 
 int main() {
-  std::cout << "# Topics\n\n"
-               "Printed by `lapis_topics` from `common/topics.hpp`; a test compares. Everything is RELIABLE and KEEP_LAST;\n"
-               "*latched* is TRANSIENT_LOCAL, the rest VOLATILE; the number is the depth. Names with a leading slash are ROS 2\n"
-               "names (`rt/...` on the wire); keyed topics are plain DDS, which ROS 2 tools do not see. `--namespace robot1` puts\n"
-               "`/robot1` in front of all but the global ones (marked *).\n\n"
-               "| topic | type | QoS | rate | from | what |\n| --- | --- | --- | --- | --- | --- |\n";
+  std::cout
+      << "# Topics\n\n"
+         "Printed by `lapis_topics` from `common/topics.hpp`; a test compares. Everything is RELIABLE and KEEP_LAST;\n"
+         "*latched* is TRANSIENT_LOCAL, the rest VOLATILE; the number is the depth. Names with a leading slash are ROS "
+         "2\n"
+         "names (`rt/...` on the wire); keyed topics are plain DDS, which ROS 2 tools do not see. `--namespace robot1` "
+         "puts\n"
+         "`/robot1` in front of all but the global ones (marked *).\n\n"
+         "| topic | type | QoS | rate | from | what |\n| --- | --- | --- | --- | --- | --- |\n";
   lapis::topics::for_each([](const auto& topic) {
     using Message = typename std::decay_t<decltype(topic)>::Type;
     std::cout << "| `" << topic.name << "`" << (topic.is_global ? " *" : "") << " | "

@@ -56,8 +56,7 @@ ContextOptions context_options(const std::string& name, const Arguments& argumen
   options.participant.name_space = arguments.name_space;
   options.participant.discovery = dds::discovery_from_environment();
   if (arguments.domain) options.participant.discovery.domain = *arguments.domain;
-  options.participant.transport =
-      arguments.transport == "shm" ? dds::Transport::kSharedMemory : dds::Transport::kUdp;
+  options.participant.transport = arguments.transport == "shm" ? dds::Transport::kSharedMemory : dds::Transport::kUdp;
   options.participant.socket_buffer_bytes = dds.socket_buffer_bytes;
   return options;
 }

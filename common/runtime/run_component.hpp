@@ -53,7 +53,7 @@ int run_component(int argc, char** argv) {
   factory.summary = Component::kSummary;
   factory.schema(Component::kName, config);
   if constexpr (requires { &Config::lockstep; }) factory.schema("lockstep", config.lockstep);
-  if constexpr (requires(CLI::App& app) { Component::add_options(app, config); }) {
+  if constexpr (requires(CLI::App & app) { Component::add_options(app, config); }) {
     factory.add_options = [&config](CLI::App& app) { Component::add_options(app, config); };
   }
   if constexpr (requires { Component::run_tool(config); }) {

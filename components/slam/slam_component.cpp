@@ -145,7 +145,7 @@ void SlamComponent::publish_graph(bool is_final) {
   if (!is_due && !is_final) return;
   const auto graph = slam_->pose_graph();
   pose_graph_.publish(to_message(graph, frame_, ids_));
-  if (path_.matched() > 0 || is_final) path_.publish(to_path(graph, frame_, ids_));
+  path_.publish(to_path(graph, frame_, ids_));
   graph_version_ = graph.version;
   graph_stamp_ = frame_.stamp;
 }

@@ -20,9 +20,9 @@ namespace {
 using runtime::LockstepDriver;
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kColorBytes = 691'200;   // 640 x 360 rgb8
-constexpr std::size_t kDepthBytes = 921'600;   // 640 x 360 32FC1
-constexpr std::size_t kLabelBytes = 230'400;   // 640 x 360 mono8
+constexpr std::size_t kColorBytes = 691'200;  // 640 x 360 rgb8
+constexpr std::size_t kDepthBytes = 921'600;  // 640 x 360 32FC1
+constexpr std::size_t kLabelBytes = 230'400;  // 640 x 360 mono8
 
 struct NoConfig {};
 
@@ -82,13 +82,9 @@ sensor_msgs::msg::Image image(std::size_t bytes) {
 class Sensor {
  public:
   explicit Sensor(int socket_buffer_bytes)
-      : context_(options(socket_buffer_bytes)),
-        color_(context_.advertise(topics::kColor)),
-        depth_(context_.advertise(topics::kDepth)),
-        labels_(context_.advertise(topics::kLabels)),
-        color_image_(image(kColorBytes)),
-        depth_image_(image(kDepthBytes)),
-        label_image_(image(kLabelBytes)),
+      : context_(options(socket_buffer_bytes)), color_(context_.advertise(topics::kColor)),
+        depth_(context_.advertise(topics::kDepth)), labels_(context_.advertise(topics::kLabels)),
+        color_image_(image(kColorBytes)), depth_image_(image(kDepthBytes)), label_image_(image(kLabelBytes)),
         driver_(context_, {{"idle_0", "idle_1", "idle_2"}, 5.0, 30.0, "abort"}, [this] { publish(); }) {}
 
   /// Waits until the last tick has been answered; throws when a participant is missing.
@@ -167,7 +163,9 @@ void print(Measured measured, int socket_buffer_bytes) {
   double total_ms = 0.0;
   for (const double ms : wall) total_ms += ms;
   std::sort(wall.begin(), wall.end());
-  const auto at = [&](double share) { return wall[static_cast<std::size_t>(share * static_cast<double>(wall.size() - 1))]; };
+  const auto at = [&](double share) {
+    return wall[static_cast<std::size_t>(share * static_cast<double>(wall.size() - 1))];
+  };
   std::printf("lock-step, 1,843,200 B per tick to 3 participants that do no work, socket buffers %d B\n\n",
               socket_buffer_bytes);
   std::printf("| ticks/s | wall per tick p50 | p99 | max [ms] |\n| --- | --- | --- | --- |\n");

@@ -5,11 +5,8 @@
 namespace lapis::test {
 
 CameraFeed::CameraFeed(TopicProbe& probe, const std::string& frame_prefix)
-    : prefix_(frame_prefix),
-      color_(probe.advertise(topics::kColor)),
-      depth_(probe.advertise(topics::kDepth)),
-      labels_(probe.advertise(topics::kLabels)),
-      color_info_(probe.advertise(topics::kColorInfo)),
+    : prefix_(frame_prefix), color_(probe.advertise(topics::kColor)), depth_(probe.advertise(topics::kDepth)),
+      labels_(probe.advertise(topics::kLabels)), color_info_(probe.advertise(topics::kColorInfo)),
       depth_info_(probe.advertise(topics::kDepthInfo)) {
   probe.advertise(topics::kStaticTransforms).publish(camera_mount(frame_prefix));
   probe.advertise(topics::kLabelInfo).publish(camera_.label_info());

@@ -21,7 +21,8 @@ using GraphInfo = rmw_dds_common::msg::ParticipantEntitiesInfo;
 using ::testing::HasSubstr;
 
 constexpr const char* kEcho = "lapis_test_echo";
-constexpr dds::Topic<GraphInfo> kGraph{"ros_discovery_info", {.depth = 100, .latched = true}, "all", "on change", "ROS 2 graph", true};
+constexpr dds::Topic<GraphInfo> kGraph{
+    "ros_discovery_info", {.depth = 100, .latched = true}, "all", "on change", "ROS 2 graph", true};
 
 // What discovery says of an endpoint against the topic table. History depth is not on the wire, so a remote participant
 // cannot check it; tests/unit/dds does.
@@ -158,9 +159,11 @@ TEST(Wire, LateJoinerGetsEveryKey) {
   ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
   TopicProbe late;
   std::map<int, std::size_t> tiles;
-  late.listen<lapis_msgs::msg::VoxelTile>(topics::kVoxelTiles, [&](auto& tile) { tiles[tile.x()] = tile.data().size(); });
+  late.listen<lapis_msgs::msg::VoxelTile>(topics::kVoxelTiles,
+                                          [&](auto& tile) { tiles[tile.x()] = tile.data().size(); });
   ASSERT_TRUE(late.wait_until([&] { return tiles.size() == kTiles; }))
-      << tiles.size() << " of " << kTiles << " tiles came\n" << echo.log();
+      << tiles.size() << " of " << kTiles << " tiles came\n"
+      << echo.log();
   EXPECT_TRUE(std::all_of(tiles.begin(), tiles.end(), [](const auto& tile) { return tile.second == 4096; }));
 }
 

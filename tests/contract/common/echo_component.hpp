@@ -28,10 +28,8 @@ class EchoComponent {
   static constexpr const char* kSummary = "Echoes images; for tests.";
 
   EchoComponent(const Config& config, runtime::Context& context)
-      : context_(context),
-        odometry_(context.advertise(topics::kSlamOdometry)),
-        path_(context.advertise(topics::kKeyframePath)),
-        tiles_(context.advertise(topics::kVoxelTiles)) {
+      : context_(context), odometry_(context.advertise(topics::kSlamOdometry)),
+        path_(context.advertise(topics::kKeyframePath)), tiles_(context.advertise(topics::kVoxelTiles)) {
     context.subscribe(topics::kColor, [this](Image& m) { store(m); });
     context.serve(topics::kSaveMap, [config](const auto&) {
       std_srvs::srv::Trigger_Response response;

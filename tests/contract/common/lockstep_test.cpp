@@ -122,7 +122,8 @@ TEST(LockstepOrder, StagesAreReleasedOneAfterAnotherWithTheCountsOfTheEarlierOne
   ASSERT_TRUE(run.wait_for(State::kIdle));
   for (int i = 0; i < 5; ++i) ASSERT_TRUE(run.step());
   std::map<std::uint64_t, std::uint64_t> echoed;  // odometries counted when the follower was released, by tick
-  ASSERT_TRUE(observer.wait_until([&] { return !ticks.empty() && ticks.back().tick() == 5 && ticks.back().stage() == 1; }));
+  ASSERT_TRUE(
+      observer.wait_until([&] { return !ticks.empty() && ticks.back().tick() == 5 && ticks.back().stage() == 1; }));
   bool is_follower_known = false;  // when tick 1 came, had all been asked to match the follower's reader?
   for (const auto& tick : ticks) {
     if (tick.tick() == 0) {

@@ -35,8 +35,9 @@ class EvaluatorContract : public ::testing::Test {
  protected:
   void SetUp() override {
     ASSERT_TRUE(wait_until_ready(evaluator)) << evaluator.log();
-    ASSERT_TRUE(probe.wait_until([&] { return truth.matched() > 0 && slam.matched() > 0 && feed.is_matched_by_evaluator(); }))
-        << evaluator.log();
+    ASSERT_TRUE(probe.wait_until([&] {
+      return truth.matched() > 0 && slam.matched() > 0 && feed.is_matched_by_evaluator();
+    })) << evaluator.log();
   }
   nav_msgs::msg::Odometry true_pose(int index) const {
     nav_msgs::msg::Odometry message;
@@ -75,7 +76,8 @@ class EvaluatorContract : public ::testing::Test {
 TEST_F(EvaluatorContract, WritesTheRunFolderWhenItIsStopped) {
   constexpr int kFrames = 6;
   for (int i = 0; i < kFrames; ++i) send(feed.frame(i), i);
-  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "6"; })) << evaluator.log();
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "6"; }))
+      << evaluator.log();
   EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
   const std::string metrics = read(std::filesystem::path(folder) / "metrics.json");
   EXPECT_THAT(metrics, HasSubstr("\"frames_total\": 6"));
@@ -103,7 +105,8 @@ TEST_F(EvaluatorContract, GarbageIsSurvived) {
   truth.publish(true_pose(3));
   feed.send(feed.frame(3));
   send(feed.frame(4), 4);
-  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "5"; })) << evaluator.log();
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "5"; }))
+      << evaluator.log();
   const auto values = newest_values(diagnostics, "evaluator");
   EXPECT_GE(sum_of(values, "not in the reference"), 2);
   EXPECT_GE(sum_of(values, "without a valid pose"), 1);

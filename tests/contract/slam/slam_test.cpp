@@ -63,7 +63,8 @@ class SlamContract : public ::testing::Test {
   std::vector<diagnostic_msgs::msg::DiagnosticArray> diagnostics;
   dds::Source& frames_source =
       probe.listen<TrackedFrame>(topics::kTrackedFrame, [this](auto& m) { frames.push_back(m); });
-  dds::Source& odometry_source = probe.listen<Odometry>(topics::kSlamOdometry, [this](auto& m) { odometry.push_back(m); });
+  dds::Source& odometry_source =
+      probe.listen<Odometry>(topics::kSlamOdometry, [this](auto& m) { odometry.push_back(m); });
   dds::Source& diagnostics_source = probe.listen<diagnostic_msgs::msg::DiagnosticArray>(
       topics::kDiagnostics, [this](auto& m) { diagnostics.push_back(m); });
   ChildProcess slam;
@@ -74,7 +75,11 @@ TEST_F(SlamContract, TracksWithCopiedStampsRightFramesAndFiniteNumbers) {
   ASSERT_TRUE(track(0)) << slam.log();  // also lets /tf match
   constexpr int kFrames = 15;
   for (int i = 1; i < kFrames; ++i) ASSERT_TRUE(track(i)) << i << slam.log();
-  ASSERT_TRUE(probe.wait_until([&] { return odometry.size() == kFrames && transforms.size() + 1 >= kFrames; }));
+  ASSERT_TRUE(probe.wait_until([&] {
+    return odometry.size() == kFrames && !transforms.empty() &&
+           messages::from_message(transforms.back().transforms().at(0).header().stamp()) ==
+               CameraFeed::stamp(kFrames - 1);
+  }));
   ASSERT_EQ(frames.size(), static_cast<std::size_t>(kFrames));
   const auto T_map_first = *messages::from_message(odometry[0].pose().pose());
   for (int i = 0; i < kFrames; ++i) {
@@ -150,7 +155,8 @@ TEST_F(SlamContract, FrameWithoutAnyMeasuredDepthIsLostWithAReasonAndFoundAgain)
     if (kind == "NaN") {
       frame.depth = feed.camera().depth_metres(CameraFeed::stamp(index), slow_motion(index));
       const float nan = std::numeric_limits<float>::quiet_NaN();
-      for (std::size_t i = 0; i + 4 <= frame.depth->data().size(); i += 4) std::memcpy(&frame.depth->data()[i], &nan, 4);
+      for (std::size_t i = 0; i + 4 <= frame.depth->data().size(); i += 4)
+        std::memcpy(&frame.depth->data()[i], &nan, 4);
     } else {
       std::fill(frame.depth->data().begin(), frame.depth->data().end(), kind == "0" ? 0 : 255);
     }
@@ -197,17 +203,18 @@ TEST_F(SlamContract, SilenceIsSurvivedAndEndsCleanly) {
 TEST(SlamPeer, NewCameraIsTrackedAsWell) {
   ChildProcess slam(kSlam);
   ASSERT_TRUE(wait_until_ready(slam)) << slam.log();
+  int index = 0;
   for (int life = 0; life < 2; ++life) {
     TopicProbe probe;
     CameraFeed feed(probe);
     const auto& frames = probe.collect(topics::kTrackedFrame);
-    int index = life * 100;
     // Repeated with new stamps: the first ones may be sent before the match.
     ASSERT_TRUE(probe.wait_until([&] {
       feed.send(feed.frame(index++));
       probe.wait_until([] { return false; }, Seconds(0.05));
       return !frames.empty() && frames.back().state() == kTracking;
-    })) << life << slam.log();
+    })) << life
+        << slam.log();
   }
 }
 

@@ -18,7 +18,8 @@ DiscoverySettings settings(const Variables& variables) {
 }
 
 TEST(Discovery, DefaultsAreDomainZeroOnTheSubnet) {
-  for (const Variables& variables : {Variables{}, Variables{{"ROS_DOMAIN_ID", ""}, {"ROS_AUTOMATIC_DISCOVERY_RANGE", ""}}}) {
+  for (const Variables& variables :
+       {Variables{}, Variables{{"ROS_DOMAIN_ID", ""}, {"ROS_AUTOMATIC_DISCOVERY_RANGE", ""}}}) {
     const auto found = settings(variables);
     EXPECT_EQ(found.domain, 0);
     EXPECT_EQ(found.range, DiscoveryRange::kSubnet);
@@ -39,7 +40,8 @@ TEST(Discovery, RangeWordsAreThoseOfJazzy) {
       {"SUBNET", DiscoveryRange::kSubnet},       {"SYSTEM_DEFAULT", DiscoveryRange::kSubnet},
       {"LOCALHOST", DiscoveryRange::kLocalhost}, {"OFF", DiscoveryRange::kOff},
       {"subnet", DiscoveryRange::kLocalhost},    {"nonsense", DiscoveryRange::kLocalhost}};
-  for (const auto& [word, range] : words) EXPECT_EQ(settings({{"ROS_AUTOMATIC_DISCOVERY_RANGE", word}}).range, range) << word;
+  for (const auto& [word, range] : words)
+    EXPECT_EQ(settings({{"ROS_AUTOMATIC_DISCOVERY_RANGE", word}}).range, range) << word;
 }
 
 TEST(Discovery, StaticPeersAreSeparatedBySemicolons) {
@@ -49,12 +51,15 @@ TEST(Discovery, StaticPeersAreSeparatedBySemicolons) {
 }
 
 TEST(Discovery, LocalhostOnlyOverridesTheOtherTwo) {
-  const auto found = settings({{"ROS_LOCALHOST_ONLY", "1"}, {"ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"},
-                               {"ROS_STATIC_PEERS", "10.0.0.7"}, {"ROS_DOMAIN_ID", "3"}});
+  const auto found = settings({{"ROS_LOCALHOST_ONLY", "1"},
+                               {"ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"},
+                               {"ROS_STATIC_PEERS", "10.0.0.7"},
+                               {"ROS_DOMAIN_ID", "3"}});
   EXPECT_EQ(found.range, DiscoveryRange::kLocalhost);
   EXPECT_TRUE(found.static_peers.empty());
   EXPECT_EQ(found.domain, 3);
-  EXPECT_EQ(settings({{"ROS_LOCALHOST_ONLY", "0"}, {"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}}).range, DiscoveryRange::kOff);
+  EXPECT_EQ(settings({{"ROS_LOCALHOST_ONLY", "0"}, {"ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF"}}).range,
+            DiscoveryRange::kOff);
 }
 
 }  // namespace

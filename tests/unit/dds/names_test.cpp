@@ -33,7 +33,8 @@ TEST(Names, GlobalTopicsStay) {
 
 TEST(Names, NamespaceIsCheckedAsInRos2) {
   for (const char* good : {"", "robot1", "_x", "fleet/robot_1", "A"}) EXPECT_NO_THROW(check_namespace(good)) << good;
-  for (const char* bad : {"/robot1", "robot1/", "robot 1", "1robot", "fleet//robot", "fleet/1", "röbot", "robot-1", "/"}) {
+  for (const char* bad :
+       {"/robot1", "robot1/", "robot 1", "1robot", "fleet//robot", "fleet/1", "röbot", "robot-1", "/"}) {
     EXPECT_THROW(check_namespace(bad), std::runtime_error) << bad;
   }
 }

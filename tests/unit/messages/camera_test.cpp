@@ -90,7 +90,7 @@ TEST(Depth, MillimetresBecomeMetres) {
   const auto depth = to_depth(depth_mm({0, 1, 1500, 65534, 65535}));
   ASSERT_TRUE(depth);
   EXPECT_THAT(depth->pixels, ::testing::ElementsAre(0.0f, ::testing::FloatEq(0.001f), ::testing::FloatEq(1.5f),
-                                                   ::testing::FloatEq(65.534f), 0.0f));
+                                                    ::testing::FloatEq(65.534f), 0.0f));
 }
 
 TEST(Depth, MetresThatAreNoMeasurementBecomeZero) {
@@ -103,7 +103,8 @@ TEST(Depth, MetresThatAreNoMeasurementBecomeZero) {
 
 TEST(Depth, EveryBitPatternGivesANumberThatIsUsable) {
   std::vector<std::uint32_t> patterns;
-  for (std::uint64_t bits = 0; bits <= 0xFFFFFFFFu; bits += 0x10101) patterns.push_back(static_cast<std::uint32_t>(bits));
+  for (std::uint64_t bits = 0; bits <= 0xFFFFFFFFu; bits += 0x10101)
+    patterns.push_back(static_cast<std::uint32_t>(bits));
   std::vector<float> floats(patterns.size());
   std::memcpy(floats.data(), patterns.data(), 4 * patterns.size());
   const auto width = static_cast<std::uint32_t>(patterns.size() / 8);
@@ -114,7 +115,8 @@ TEST(Depth, EveryBitPatternGivesANumberThatIsUsable) {
 }
 
 TEST(Labels, LargestIdOfTheTypeMeansUnlabelled) {
-  EXPECT_EQ(to_labels(image<std::uint8_t>("mono8", 3, 1, {0, 40, 255}))->pixels, (std::vector<std::uint16_t>{0, 40, 0}));
+  EXPECT_EQ(to_labels(image<std::uint8_t>("mono8", 3, 1, {0, 40, 255}))->pixels,
+            (std::vector<std::uint16_t>{0, 40, 0}));
   EXPECT_EQ(to_labels(image<std::uint8_t>("8UC1", 1, 1, {7}))->pixels, (std::vector<std::uint16_t>{7}));
   EXPECT_EQ(to_labels(image<std::uint16_t>("mono16", 3, 1, {255, 300, 65535}))->pixels,
             (std::vector<std::uint16_t>{255, 300, 0}));

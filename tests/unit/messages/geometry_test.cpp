@@ -15,8 +15,8 @@ constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 Pose random_pose(std::mt19937& random) {
   std::uniform_real_distribution<double> number(-10.0, 10.0);
   const Eigen::Vector3d translation(number(random), number(random), number(random));
-  return geometry::make_pose(translation,
-                             Eigen::Quaterniond(number(random), number(random), number(random), number(random)).normalized());
+  return geometry::make_pose(
+      translation, Eigen::Quaterniond(number(random), number(random), number(random), number(random)).normalized());
 }
 
 geometry_msgs::msg::TransformStamped link(const std::string& parent, const std::string& child, const Pose& T) {
@@ -79,7 +79,8 @@ TEST(Covariance, IsRowMajor) {
     for (int column = 0; column < 6; ++column) covariance(row, column) = 10.0 * row + column;
   }
   const auto out = to_row_major(covariance);
-  for (std::size_t i = 0; i < 36; ++i) EXPECT_EQ(out[i], 10.0 * static_cast<double>(i / 6) + static_cast<double>(i % 6));
+  for (std::size_t i = 0; i < 36; ++i)
+    EXPECT_EQ(out[i], 10.0 * static_cast<double>(i / 6) + static_cast<double>(i % 6));
 }
 
 TEST(StaticTransforms, MultipliesAlongTheChainOfSeveralWriters) {

@@ -214,9 +214,9 @@ TEST(Wire, DiagnosticsComeOnceASecondAndCount) {
   ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
   ASSERT_TRUE(probe.wait_until_matched());
   color.publish(image(2'000, 10));
+  ASSERT_TRUE(probe.wait_until([&] { return !odometry.empty(); }));
   color.publish(image(2'000, 10));
   color.publish(image(1'000, 10));
-  ASSERT_TRUE(probe.wait_until([&] { return !odometry.empty(); }));
   const std::size_t seen = diagnostics.size();
   const auto begin = std::chrono::steady_clock::now();
   ASSERT_TRUE(probe.wait_until([&] { return diagnostics.size() >= seen + 4; }));

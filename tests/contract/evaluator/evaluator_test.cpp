@@ -74,14 +74,14 @@ class EvaluatorContract : public ::testing::Test {
 };
 
 TEST_F(EvaluatorContract, WritesTheRunFolderWhenItIsStopped) {
-  constexpr int kFrames = 6;
+  constexpr int kFrames = 4;  // no more at once than a reader keeps (5)
   for (int i = 0; i < kFrames; ++i) send(feed.frame(i), i);
-  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "6"; }))
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "4"; }))
       << evaluator.log();
   EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
   const std::string metrics = read(std::filesystem::path(folder) / "metrics.json");
-  EXPECT_THAT(metrics, HasSubstr("\"frames_total\": 6"));
-  EXPECT_THAT(metrics, HasSubstr("\"frames_tracked\": 6"));
+  EXPECT_THAT(metrics, HasSubstr("\"frames_total\": 4"));
+  EXPECT_THAT(metrics, HasSubstr("\"frames_tracked\": 4"));
   EXPECT_THAT(metrics, Not(HasSubstr("nan")));
   for (const char* file : {"trajectory_estimate.txt", "trajectory_ground_truth.txt", "timeline.csv"}) {
     EXPECT_FALSE(read(std::filesystem::path(folder) / file).empty()) << file;
@@ -99,6 +99,8 @@ TEST_F(EvaluatorContract, GarbageIsSurvived) {
   send(info, 2);
   send(feed.frame(2), 2);  // duplicate
   send(feed.frame(1), 1);  // backward
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "3"; }))
+      << evaluator.log();
   auto bad_pose = tracked(3);
   bad_pose.keyframe_pose().orientation().w(5.0);
   slam.publish(bad_pose);
@@ -111,12 +113,12 @@ TEST_F(EvaluatorContract, GarbageIsSurvived) {
   EXPECT_GE(sum_of(values, "not in the reference"), 2);
   EXPECT_GE(sum_of(values, "without a valid pose"), 1);
   EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
-  EXPECT_THAT(read(std::filesystem::path(folder) / "metrics.json"), HasSubstr("\"frames_total\": 5"));
+  EXPECT_THAT(read(std::filesystem::path(folder) / "metrics.json"), HasSubstr("\"frames_tracked\": 4"));
 }
 
 TEST_F(EvaluatorContract, SilenceWritesNothingAndIsNoFailure) {
   EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(10)), 0) << evaluator.log();
-  EXPECT_THAT(evaluator.log(), HasSubstr("no frame came"));
+  EXPECT_THAT(evaluator.log(), HasSubstr("came; nothing is written"));
   EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(folder) / "metrics.json"));
 }
 

@@ -89,6 +89,10 @@ void SensorReplayComponent::work() {
       return;
     }
     has_ended_ = !publish_next();
+    if (has_ended_) {
+      longest_tick_s_ = driver_->longest_tick_s();
+      closing_ = Clock::now();
+    }
     driver_->begin(stamp_, has_ended_);
   }
   if (driver_->state() == State::kFailed) context_.fail(driver_->failure());
@@ -170,8 +174,9 @@ void SensorReplayComponent::report_progress(bool is_last) {
 void SensorReplayComponent::finish() {
   if (driver_ == nullptr) {
     for (const auto& writer : context_.writers()) writer->wait_until_acknowledged(kFarewell_s);
-  } else {
-    spdlog::info("longest tick {:.3f} s", driver_->longest_tick_s());
+  } else if (closing_) {
+    spdlog::info("longest tick {:.3f} s; the closing one, in which others finish their work, {:.3f} s", longest_tick_s_,
+                 seconds_between(*closing_, Clock::now()));
   }
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
 }

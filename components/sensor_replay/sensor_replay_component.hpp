@@ -59,6 +59,8 @@ class SensorReplayComponent {
   time::Time stamp_;
   std::size_t played_ = 0;
   bool has_ended_ = false;
+  double longest_tick_s_ = 0.0;               // of those with a frame
+  std::optional<Clock::time_point> closing_;  // begin of the tick after the last frame
   std::optional<Clock::time_point> began_;
   Clock::time_point reported_;
 };

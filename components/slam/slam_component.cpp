@@ -1,6 +1,7 @@
 #include "slam/slam_component.hpp"
 
 #include <filesystem>
+#include <opencv2/core/utility.hpp>
 #include <sstream>
 
 #include "common/files/atomic_file.hpp"
@@ -20,6 +21,7 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
       odometry_(context.advertise(topics::kSlamOdometry)), tracked_frame_(context.advertise(topics::kTrackedFrame)),
       transforms_(context.advertise(topics::kTransforms)), path_(context.advertise(topics::kKeyframePath)),
       pose_graph_(context.advertise(topics::kPoseGraph)), status_(context.advertise(topics::kSlamStatus)) {
+  cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "slam.output_dir");
   context.subscribe(topics::kColor, [this](Image& m) { store(color_, m, "colour"); });
   context.subscribe(topics::kDepth, [this](Image& m) { store(depth_, m, "depth"); });

@@ -7,9 +7,9 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "common/trajectory/trajectory.hpp"
 #include "evaluator/core/ate.hpp"
 #include "evaluator/core/rpe.hpp"
-#include "common/trajectory/trajectory.hpp"
 
 namespace lapis::evaluator {
 namespace {

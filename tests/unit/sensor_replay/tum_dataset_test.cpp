@@ -122,7 +122,7 @@ TEST_F(Dataset, ErrorsInEveryListNameFileAndLine) {
   EXPECT_THAT(open_error(), HasSubstr((path() / "depth.txt").string() + ":2: time stamp 0.100000000 occurs twice"));
   write_text(path() / "depth.txt", "0.1 depth/00000.png\n");
   write_text(path() / "groundtruth.txt", "0.1 0 0 zero 0 0 0 1\n");
-  EXPECT_THAT(open_error(), HasSubstr((path() / "groundtruth.txt").string() + ":1: \"zero\" is not"));
+  EXPECT_THAT(open_error(), HasSubstr((path() / "groundtruth.txt").string() + ":1: 'zero' is not"));
 }
 
 TEST_F(Dataset, ListsOnDifferentClocksAreRefused) {

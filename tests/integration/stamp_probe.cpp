@@ -68,8 +68,9 @@ int main() {
   std::cout << "stamp_probe: ready" << std::endl;
   while (is_asked_to_stop == 0) {
     probe.wait_until([] { return is_asked_to_stop != 0 || is_asked_to_save != 0; }, Seconds(1));
-    if (is_asked_to_save != 0) save(probe, client);
-    is_asked_to_save = 0;
+    if (is_asked_to_save == 0) continue;
+    is_asked_to_save = 0;  // before the answer is printed, which may bring the next request
+    save(probe, client);
   }
   return 0;
 }

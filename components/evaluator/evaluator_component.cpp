@@ -20,6 +20,7 @@ namespace lapis::evaluator {
 namespace {
 
 constexpr std::size_t kWaitingFrames = 30;
+constexpr time::Duration kRestartGap{1'000'000'000};  // stamps further back are those of a source that began anew
 constexpr const char* kTimelineHeader =
     "time_s,explored_volume_m3,explored_share,path_length_m,position_error_m,position_sigma_m,state\n";
 
@@ -101,7 +102,8 @@ void EvaluatorComponent::store(time::StampBuffer<Message>& buffer, Message& mess
 
 // The camera's frames, not slam's: a frame that slam had to drop, or never got, is a frame without a pose.
 void EvaluatorComponent::count_frame(time::Time stamp) {
-  if (camera_stamp_ && stamp == *camera_stamp_) return;  // lock-step may repeat one
+  const bool is_repeated = camera_stamp_ && stamp <= *camera_stamp_ && *camera_stamp_ - stamp < kRestartGap;
+  if (is_repeated) return;  // lock-step may repeat one
   camera_stamp_ = stamp;
   ++frames_total_;
 }

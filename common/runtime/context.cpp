@@ -63,6 +63,9 @@ void Context::run() {
   spdlog::info("ready");
   executor_.spin();
   publish_diagnostics();
+  for (const auto& source : sources_) {
+    if (source->missed() > 0) spdlog::warn("missed samples {}: {}", source->dds_name(), source->missed());
+  }
 }
 
 void Context::run_cycle(const Cycle& cycle) {

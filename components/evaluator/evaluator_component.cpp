@@ -97,7 +97,10 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
 template <class Message>
 void EvaluatorComponent::store(time::StampBuffer<Message>& buffer, Message& message) {
   const time::Time stamp = messages::from_message(message.header().stamp());
-  buffer.push(stamp, std::move(message));
+  const auto result = buffer.push(stamp, std::move(message));
+  if (result == time::StampBuffer<Message>::Push::kOverflow) {
+    context_.status().count("messages dropped: their partners did not come");
+  }
 }
 
 // The camera's frames, not slam's: a frame that slam had to drop, or never got, is a frame without a pose.
@@ -136,6 +139,7 @@ void EvaluatorComponent::on_map_state(const lapis_msgs::msg::MapState& message) 
   state.checksum = message.checksum();
   state.resolution_m = message.resolution_m();
   mirror_.apply_state(state);
+  map_session_ = message.session();
 }
 
 void EvaluatorComponent::work(const runtime::Cycle& cycle) {
@@ -164,6 +168,7 @@ bool EvaluatorComponent::next_frame(const runtime::Cycle& cycle) {
       label_match == ImageMatch::kWait || info_match == time::StampBuffer<Info>::Match::kWait) {
     return false;
   }
+  if (truth != nullptr && !cycle.inputs_complete && !is_mount_known(*truth, tracked)) return false;
   record(tracked, truth, depth, labels, info);
   tracked_.drop_until(now);
   truth_.drop_until(now - tolerance);
@@ -173,12 +178,23 @@ bool EvaluatorComponent::next_frame(const runtime::Cycle& cycle) {
   return true;
 }
 
+/// True when the camera's mount is known, without which a true pose of the base says nothing of the camera.
+bool EvaluatorComponent::is_mount_known(const Odometry& truth, const Tracked& tracked) {
+  const std::string& optical_frame = tracked.header().frame_id();
+  if (static_transforms_.find(truth.child_frame_id(), optical_frame)) return true;
+  if (context_.rate_limit().pass("mount")) {
+    spdlog::warn("waiting: no transform from {} to {} on /tf_static", truth.child_frame_id(), optical_frame);
+  }
+  return false;
+}
+
 void EvaluatorComponent::record(const Tracked& tracked, const Odometry* truth, const Image* depth, const Image* labels,
                                 const Info* info) {
   const time::Time stamp = messages::from_message(tracked.header().stamp());
   newest_ = std::chrono::steady_clock::now();
   if (!began_) began_ = newest_;
-  const bool is_tracking = tracked.state() == lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
+  const bool is_judged = is_of_judged_session(tracked);
+  const bool is_tracking = is_judged && tracked.state() == lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
   if (!is_tracking && first_stamp_) lost_time_s_ += (stamp - last_stamp_).seconds();
   if (!first_stamp_) first_stamp_ = stamp;
   last_stamp_ = stamp;
@@ -201,6 +217,14 @@ void EvaluatorComponent::record(const Tracked& tracked, const Odometry* truth, c
     add_to_references(*T_world_camera, *depth, labels, *info);
   }
   write_timeline_row(stamp);
+}
+
+// The run is judged in the frame of slam's first map: poses of a later session have another origin.
+bool EvaluatorComponent::is_of_judged_session(const Tracked& tracked) {
+  if (!session_) session_ = tracked.session();
+  if (*session_ == tracked.session()) return true;
+  context_.status().count("frames not judged: slam began a new map");
+  return false;
 }
 
 std::optional<geometry::Pose> EvaluatorComponent::true_camera_pose(const Odometry& truth,
@@ -300,6 +324,10 @@ RunMetrics EvaluatorComponent::metrics() const {
 
 void EvaluatorComponent::add_map_figures(RunMetrics& m) const {
   if (mirror_.map() == nullptr) return;
+  if (map_session_ != session_) {
+    spdlog::warn("the map belongs to a later session of slam than the run's first frame: no map figures");
+    return;
+  }
   if (!mirror_.is_consistent()) spdlog::warn("the map's last version did not arrive whole; an older one is judged");
   const auto reader = belief_reader();
   const KnownSpace estimate = to_known_space(*mirror_.map(), reader);

@@ -50,6 +50,8 @@ class EvaluatorComponent {
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
   void record(const Tracked& tracked, const Odometry* truth, const Image* depth, const Image* labels, const Info* info);
+  bool is_mount_known(const Odometry& truth, const Tracked& tracked);
+  bool is_of_judged_session(const Tracked& tracked);
   std::optional<geometry::Pose> true_camera_pose(const Odometry& truth, const std::string& optical_frame);
   void add_to_references(const geometry::Pose& T_world_camera, const Image& depth, const Image* labels,
                          const Info& info);
@@ -78,6 +80,8 @@ class EvaluatorComponent {
   lapis_msgs::msg::PoseGraph graph_;
   std::map<std::string, ProcessFigures> processes_;
 
+  std::optional<std::int64_t> session_;        // of the first frame: the one that is judged
+  std::optional<std::int64_t> map_session_;    // of the newest map state
   Trajectory estimate_;                        // T_map_camera, as published at its time
   Trajectory truth_world_;                     // T_world_camera
   std::optional<geometry::Pose> T_map_world_;  // from the first frame that has both

@@ -172,6 +172,13 @@ void SemanticMapperComponent::publish_tiles() {
     published_tiles_.emplace(tile.index.x, tile.index.y, tile.index.z);
     tiles_.publish(to_message(tile, epoch_));
   }
+  if (mapper_->tiles_too_large() > 0) {
+    context_.status().value("tiles_too_large", static_cast<std::uint64_t>(mapper_->tiles_too_large()));
+    if (context_.rate_limit().pass("tile")) {
+      spdlog::warn("{} tiles are over 1 MiB and were not published; lower semantic_mapper.tile_edge_m",
+                   mapper_->tiles_too_large());
+    }
+  }
   const auto state = mapper_->state();
   lapis_msgs::msg::MapState message;
   message.header(header());

@@ -1,6 +1,6 @@
 #include "common/dds/names.hpp"
 
-#include <regex>
+#include <cctype>
 #include <stdexcept>
 
 namespace lapis::dds {
@@ -15,8 +15,15 @@ std::string request_dds_name(const std::string& service) { return "rq" + service
 std::string reply_dds_name(const std::string& service) { return "rr" + service + "Reply"; }
 
 void check_namespace(const std::string& name_space) {
-  static const std::regex pattern("([A-Za-z_][A-Za-z0-9_]*(/[A-Za-z_][A-Za-z0-9_]*)*)?");
-  if (!std::regex_match(name_space, pattern)) {
+  bool starts_word = true;
+  bool is_valid = true;
+  for (const char c : name_space) {
+    const auto letter = static_cast<unsigned char>(c);
+    const bool is_word = std::isalpha(letter) != 0 || c == '_' || (!starts_word && std::isdigit(letter) != 0);
+    is_valid &= is_word || (c == '/' && !starts_word);
+    starts_word = c == '/';
+  }
+  if (!name_space.empty() && (!is_valid || starts_word)) {
     throw std::runtime_error("--namespace '" + name_space +
                              "': use words of letters, digits and _ with / between, such as robot1 or fleet/robot1");
   }

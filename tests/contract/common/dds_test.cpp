@@ -181,7 +181,9 @@ TEST(Wire, ServiceAnswersEveryCallOfEveryClient) {
       calls.emplace_back(client, *number);
     }
   }
-  for (const auto& [client, number] : calls) {
+  for (const auto& call : calls) {
+    auto& client = call.first;
+    const auto number = call.second;
     std::optional<std_srvs::srv::Trigger_Response> reply;
     ASSERT_TRUE(probe.wait_until([&] { return (reply = client->take_reply(number)).has_value(); })) << echo.log();
     EXPECT_TRUE(reply->success());

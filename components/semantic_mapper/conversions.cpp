@@ -96,14 +96,14 @@ lapis_msgs::msg::VoxelTile to_message(const TileUpdate& tile, std::int64_t epoch
   return message;
 }
 
-octomap_msgs::msg::Octomap to_message(const Octree& tree, double resolution_m, const std_msgs::msg::Header& header) {
+octomap_msgs::msg::Octomap to_message(const Octree& octree, double resolution_m, const std_msgs::msg::Header& header) {
   octomap_msgs::msg::Octomap message;
   message.header(header);
   message.binary(false);
   message.id("ColorOcTree");
   message.resolution(resolution_m);
-  message.data().resize(tree.message.size());
-  if (!tree.message.empty()) std::memcpy(message.data().data(), tree.message.data(), tree.message.size());
+  message.data().resize(octree.tree.size());
+  if (!octree.tree.empty()) std::memcpy(message.data().data(), octree.tree.data(), octree.tree.size());
   return message;
 }
 

@@ -30,7 +30,7 @@ messages::Converted<mapping::LabelList> to_core(const vision_msgs::msg::LabelInf
 std::vector<KeyframePose> to_core(const lapis_msgs::msg::PoseGraph& graph);
 
 lapis_msgs::msg::VoxelTile to_message(const TileUpdate& tile, std::int64_t epoch);
-octomap_msgs::msg::Octomap to_message(const Octree& tree, double resolution_m, const std_msgs::msg::Header& header);
+octomap_msgs::msg::Octomap to_message(const Octree& octree, double resolution_m, const std_msgs::msg::Header& header);
 sensor_msgs::msg::PointCloud2 to_message(std::span<const LabelledPoint> points, const std_msgs::msg::Header& header);
 nav_msgs::msg::OccupancyGrid to_message(const OccupancyGrid& grid, const std_msgs::msg::Header& header);
 

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "common/messages/time.hpp"
+#include "sensor_replay/camera_yaml.hpp"
 #include "sensor_replay/core/dataset_summary.hpp"
 
 namespace lapis::sensor_replay {
@@ -44,12 +45,12 @@ void SensorReplayComponent::add_options(CLI::App& app, Config& config) {
 
 std::optional<int> SensorReplayComponent::run_tool(const Config& config) {
   if (!config.list) return std::nullopt;
-  std::cout << describe(TumDataset(dataset_config(config)));
+  std::cout << describe(TumDataset(dataset_config(config), read_camera_file));
   return 0;
 }
 
 SensorReplayComponent::SensorReplayComponent(const Config& config, runtime::Context& context)
-    : config_(config), context_(context), dataset_(dataset_config(config)),
+    : config_(config), context_(context), dataset_(dataset_config(config), read_camera_file),
       range_(selected(dataset_, config)), ids_{context.frame("base_link"), context.frame("camera_link"),
                                                context.frame("camera_color_optical_frame"), "world"},
       frames_([this](std::size_t index) { return dataset_.load_frame(index); }, range_),

@@ -33,8 +33,8 @@ std::vector<std::uint8_t> encode_ply(std::span<const LabelledPoint> points);
 /// of different classes and mix their colours. Voxels further than 32,768 cells from the origin do not fit and are left
 /// out.
 struct Octree {
-  std::vector<std::uint8_t> file;     ///< content of a .ot file
-  std::vector<std::uint8_t> message;  ///< data of octomap_msgs/Octomap with id "ColorOcTree", binary = false
+  std::vector<std::uint8_t> file;  ///< content of a .ot file
+  std::vector<std::uint8_t> tree;  ///< the nodes alone, without the file's header
 };
 Octree encode_octree(const mapping::VoxelMap& map, const mapping::BeliefReader& reader,
                      const mapping::LabelList& labels);

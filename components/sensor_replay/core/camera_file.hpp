@@ -2,7 +2,7 @@
 
 #include <array>
 #include <filesystem>
-#include <string>
+#include <functional>
 
 #include "common/geometry/pinhole_camera.hpp"
 #include "sensor_replay/core/camera_mount.hpp"
@@ -18,12 +18,8 @@ struct CameraFile {
   CameraMount mount;                   ///< camera_height [m] and pitch_down_deg; absent = 0
 };
 
-/// Reads camera.yaml.
-/// @throws std::runtime_error naming file, line, key, value and bound for missing or unknown keys and bad values. When
-///   the file does not exist the message shows what to write into it.
-CameraFile read_camera_file(const std::filesystem::path& file);
-
-/// A camera.yaml, as one line, for an original TUM sequence; its name ("rgbd_dataset_freiburg1_xyz") tells the camera.
-std::string example_camera_file(const std::string& sequence_name);
+/// Reads the calibration of a data set from a file, of whatever format. Throws std::runtime_error with one line naming
+/// file and remedy.
+using CameraReader = std::function<CameraFile(const std::filesystem::path& file)>;
 
 }  // namespace lapis::sensor_replay

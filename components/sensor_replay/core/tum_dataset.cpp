@@ -40,13 +40,13 @@ std::string to_string(const ImageProblem& problem) {
   return (problem.file.empty() ? name : name + " " + problem.file.string()) + ": " + to_string(problem.fault);
 }
 
-TumDataset::TumDataset(const TumDatasetConfig& config) : config_(config) {
+TumDataset::TumDataset(const TumDatasetConfig& config, const CameraReader& read_camera) : config_(config) {
   if (config.max_stamp_difference_s < 0.0 || config.max_stamp_difference_s > 1.0) {
     throw std::runtime_error("max_stamp_difference_s: must be from 0 to 1");
   }
   if (!fs::is_directory(config.folder)) fail(config.folder, "no such folder (expected a TUM RGB-D data set)");
   read_frames();
-  camera_ = read_camera_file(config.folder / "camera.yaml");
+  camera_ = read_camera(config.folder / "camera.yaml");
   const fs::path truth = config.folder / "groundtruth.txt";
   if (fs::exists(truth)) trajectory_ = trajectory::read_trajectory(truth);
   has_labels_ = fs::is_directory(config.folder / "label");

@@ -67,10 +67,11 @@ struct FrameRange {
 /// may be called from several threads.
 class TumDataset {
  public:
-  /// Reads and checks the lists, camera.yaml, ground truth and class list; decodes three colour images to compare their
-  /// size with camera.yaml. Single missing or damaged images are no error here: `load_frame` reports them.
+  /// Reads and checks the lists, camera.yaml (by `read_camera`), ground truth and class list; decodes three colour
+  /// images to compare their size with camera.yaml. Single missing or damaged images are no error here: `load_frame`
+  /// reports them.
   /// @throws std::runtime_error with one line naming the file and the remedy.
-  explicit TumDataset(const TumDatasetConfig& config);
+  TumDataset(const TumDatasetConfig& config, const CameraReader& read_camera);
 
   std::size_t size() const { return frames_.size(); }
   time::Time stamp(std::size_t index) const { return frames_[index].color.stamp; }

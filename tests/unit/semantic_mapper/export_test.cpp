@@ -73,11 +73,11 @@ TEST(Export, OctreeHasOneLeafPerObservedVoxelWithItsLogOddsAndColor) {
 TEST(Export, OctreeMessageIsTheFileWithoutItsHeader) {
   const Fixture f = small_scene();
   const Octree octree = encode_octree(f.map, f.reader, f.labels);
-  ASSERT_GT(octree.file.size(), octree.message.size());
-  EXPECT_TRUE(std::equal(octree.message.rbegin(), octree.message.rend(), octree.file.rbegin()));
+  ASSERT_GT(octree.file.size(), octree.tree.size());
+  EXPECT_TRUE(std::equal(octree.tree.rbegin(), octree.tree.rend(), octree.file.rbegin()));
   // As octomap_msgs reads it.
   octomap::ColorOcTree tree(0.25);
-  std::istringstream stream(std::string(octree.message.begin(), octree.message.end()));
+  std::istringstream stream(std::string(octree.tree.begin(), octree.tree.end()));
   tree.readData(stream);
   EXPECT_EQ(tree.getNumLeafNodes(), 11u);
 }

@@ -1,4 +1,4 @@
-#include "sensor_replay/core/camera_file.hpp"
+#include "sensor_replay/camera_yaml.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

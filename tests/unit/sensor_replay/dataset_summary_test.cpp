@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sensor_replay/camera_yaml.hpp"
 #include "synthetic_dataset.hpp"
 
 namespace lapis::sensor_replay {
@@ -13,7 +14,7 @@ using testing::ContainsRegex;
 TEST(DatasetSummary, SaysWhatThereIs) {
   const test::TemporaryFolder folder;
   test::write_dataset(folder.path(), 6);
-  const TumDataset dataset({.folder = folder.path(), .class_list = {}});
+  const TumDataset dataset({.folder = folder.path(), .class_list = {}}, read_camera_file);
   EXPECT_NEAR(*path_length_m(dataset), 0.5, 1e-9);
   const std::string text = describe(dataset);
   EXPECT_THAT(text, ContainsRegex("frames +6\n"));
@@ -32,7 +33,7 @@ TEST(DatasetSummary, SaysWhatThereIsNot) {
   std::filesystem::remove(folder.path() / "rgb/00003.png");
   std::filesystem::remove_all(folder.path() / "label");
   test::write_text(folder.path() / "depth.txt", "0.0 depth/00000.png\n0.1 depth/00001.png\n");
-  const TumDataset dataset({.folder = folder.path(), .class_list = {}});
+  const TumDataset dataset({.folder = folder.path(), .class_list = {}}, read_camera_file);
   EXPECT_FALSE(path_length_m(dataset));
   const std::string text = describe(dataset);
   EXPECT_THAT(text, ContainsRegex("depth +2 frames; 4 without\n"));

@@ -5,6 +5,7 @@
 #include <atomic>
 #include <stdexcept>
 
+#include "sensor_replay/camera_yaml.hpp"
 #include "synthetic_dataset.hpp"
 
 namespace lapis::sensor_replay {
@@ -30,7 +31,7 @@ TEST(FramePrefetcher, GivesTheSameBytesAsLoadingOneByOne) {
   test::write_dataset(folder.path(), 12);
   test::truncate(folder.path() / "depth/00003.png", 0.5);
   std::filesystem::remove(folder.path() / "rgb/00005.png");
-  const TumDataset dataset({.folder = folder.path(), .class_list = {}});
+  const TumDataset dataset({.folder = folder.path(), .class_list = {}}, read_camera_file);
   FramePrefetcher frames([&](std::size_t index) { return dataset.load_frame(index); }, {0, dataset.size()});
   for (std::size_t i = 0; i < dataset.size(); ++i) {
     const LoadedFrame expected = dataset.load_frame(i);

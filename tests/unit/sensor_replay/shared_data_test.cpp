@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <numbers>
 
+#include "sensor_replay/camera_yaml.hpp"
 #include "sensor_replay/core/dataset_summary.hpp"
 #include "sensor_replay/core/tum_dataset.hpp"
 
@@ -19,7 +20,9 @@ class SharedData : public testing::Test {
     }
     folder_ = std::filesystem::path(folder) / "rgbd";
   }
-  TumDataset open(const char* name) const { return TumDataset({.folder = folder_ / name, .class_list = {}}); }
+  TumDataset open(const char* name) const {
+    return TumDataset({.folder = folder_ / name, .class_list = {}}, read_camera_file);
+  }
 
   std::filesystem::path folder_;
 };

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "sensor_replay/camera_yaml.hpp"
 #include "synthetic_dataset.hpp"
 
 namespace lapis::sensor_replay {
@@ -23,7 +24,7 @@ class Dataset : public testing::Test {
   Dataset() { test::write_dataset(path(), kFrames); }
 
   const fs::path& path() const { return folder_.path(); }
-  TumDataset open() const { return TumDataset({.folder = path(), .class_list = {}}); }
+  TumDataset open() const { return TumDataset({.folder = path(), .class_list = {}}, read_camera_file); }
   std::string open_error() const {
     return error_of([&] { open(); });
   }
@@ -81,7 +82,7 @@ TEST_F(Dataset, ClassesComeFromTheListOrFromTheImages) {
   write_text(path() / "classes.csv", "class_id,class\n1,wall\n9,chair\n");
   EXPECT_THAT(open().classes(), ElementsAre(ClassName{1, "wall"}, ClassName{9, "chair"}));
   write_text(path() / "mine.csv", "class_id,class\n4,mine\n");
-  const TumDataset dataset({.folder = path(), .class_list = path() / "mine.csv"});
+  const TumDataset dataset({.folder = path(), .class_list = path() / "mine.csv"}, read_camera_file);
   EXPECT_THAT(dataset.classes(), ElementsAre(ClassName{4, "mine"}));
   fs::remove_all(path() / "label");
   EXPECT_TRUE(open().classes().empty());
@@ -94,7 +95,7 @@ TEST_F(Dataset, ClassesComeFromTheListOrFromTheImages) {
 // ----------------------------------------------------------------------
 
 TEST_F(Dataset, MissingFolderOrFilesAreNamed) {
-  EXPECT_THAT(error_of([&] { TumDataset({.folder = path() / "nowhere", .class_list = {}}); }),
+  EXPECT_THAT(error_of([&] { TumDataset({.folder = path() / "nowhere", .class_list = {}}, read_camera_file); }),
               HasSubstr((path() / "nowhere").string() + ": no such folder"));
   fs::remove(path() / "camera.yaml");
   EXPECT_THAT(open_error(), testing::AllOf(HasSubstr((path() / "camera.yaml").string()), HasSubstr("{width: 640")));
@@ -148,7 +149,10 @@ TEST_F(Dataset, CameraFileThatDisagreesWithTheImagesIsRefused) {
 }
 
 TEST_F(Dataset, ToleranceIsChecked) {
-  EXPECT_THAT(error_of([&] { TumDataset({path(), {}, -0.1}); }), HasSubstr("max_stamp_difference_s: must be from 0"));
+  EXPECT_THAT(error_of([&] {
+                TumDataset({path(), {}, -0.1}, read_camera_file);
+              }),
+              HasSubstr("max_stamp_difference_s: must be from 0"));
 }
 
 // ---- bad data: a value with a reason, the replay goes on

@@ -1,4 +1,4 @@
-#include "sensor_replay/core/camera_file.hpp"
+#include "sensor_replay/camera_yaml.hpp"
 
 #include <yaml-cpp/yaml.h>
 

@@ -1,7 +1,6 @@
 // The published figures of the TUM RGB-D benchmark's own tools on fr1/xyz (Sturm et al., IROS 2012).
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -10,27 +9,22 @@
 #include "common/trajectory/trajectory.hpp"
 #include "evaluator/core/ate.hpp"
 #include "evaluator/core/rpe.hpp"
+#include "tests/support/test_data.hpp"
 
 namespace lapis::evaluator {
 namespace {
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
 
-std::filesystem::path data_folder() {
-  const char* folder = std::getenv("LAPIS_TEST_DATA");
-  return std::filesystem::path(folder != nullptr ? folder : LAPIS_DEFAULT_TEST_DATA) / "trajectory";
-}
-
 class ReferenceResults : public ::testing::Test {
  protected:
   void SetUp() override {
-    if (!std::filesystem::exists(data_folder() / "reference_results.json")) {
-      GTEST_SKIP() << "shared data absent: set LAPIS_TEST_DATA (looked in " << data_folder() << ")";
-    }
-    std::ifstream(data_folder() / "reference_results.json") >> document_;
+    const auto folder = lapis::test::find_test_data("trajectory");
+    if (!folder) GTEST_SKIP() << lapis::test::missing_test_data("trajectory");
+    std::ifstream(*folder / "reference_results.json") >> document_;
     results_ = document_.front();
-    reference_ = trajectory::read_trajectory(data_folder() / "freiburg1_xyz-groundtruth.txt");
-    estimate_ = trajectory::read_trajectory(data_folder() / "freiburg1_xyz-rgbdslam.txt");
+    reference_ = trajectory::read_trajectory(*folder / "freiburg1_xyz-groundtruth.txt");
+    estimate_ = trajectory::read_trajectory(*folder / "freiburg1_xyz-rgbdslam.txt");
     matches_ = associate(reference_, estimate_, {AssociationRule::kNearest});
   }
 

@@ -11,16 +11,12 @@
 #include <gtest/gtest.h>
 
 #include "semantic_mapper/core/semantic_mapper.hpp"
+#include "tests/support/test_data.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path data_folder() {
-  const char* given = std::getenv("LAPIS_TEST_DATA");
-  return given ? fs::path(given) : fs::path(__FILE__).parent_path() / "../../../../shared/data";
-}
 
 std::vector<geometry::Pose> read_poses(const fs::path& file) {
   std::ifstream in(file);
@@ -45,8 +41,9 @@ geometry::Image<Pixel> convert(const cv::Mat& image, double scale) {
 /// A map that forgets nothing that was seen must stay filled: nine of ten voxels that any pixel of any frame fell into
 /// are occupied, although all rays of all frames carve.
 TEST(RecordedSequence, CarvingKeepsNineOfTenSeenVoxels) {
-  const fs::path folder = data_folder() / "rgbd/aws_small_house_loop";
-  if (!fs::exists(folder)) GTEST_SKIP() << folder << " is absent; set LAPIS_TEST_DATA to the shared data folder";
+  const auto found = lapis::test::find_test_data("rgbd/aws_small_house_loop");
+  if (!found) GTEST_SKIP() << lapis::test::missing_test_data("rgbd/aws_small_house_loop");
+  const fs::path folder = *found;
   const geometry::PinholeCamera camera{640, 360, 320, 320, 319.5, 179.5};
   const std::vector<geometry::Pose> poses = read_poses(folder / "groundtruth.txt");
   ASSERT_EQ(poses.size(), 268u);

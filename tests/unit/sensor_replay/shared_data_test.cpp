@@ -7,6 +7,7 @@
 #include "sensor_replay/camera_yaml.hpp"
 #include "sensor_replay/core/dataset_summary.hpp"
 #include "sensor_replay/core/tum_dataset.hpp"
+#include "tests/support/test_data.hpp"
 
 namespace lapis::sensor_replay {
 namespace {
@@ -14,11 +15,9 @@ namespace {
 class SharedData : public testing::Test {
  protected:
   void SetUp() override {
-    const char* folder = std::getenv("LAPIS_TEST_DATA");
-    if (!folder || !std::filesystem::is_directory(std::filesystem::path(folder) / "rgbd")) {
-      GTEST_SKIP() << "LAPIS_TEST_DATA does not name the shared test data";
-    }
-    folder_ = std::filesystem::path(folder) / "rgbd";
+    const auto folder = lapis::test::find_test_data("rgbd");
+    if (!folder) GTEST_SKIP() << lapis::test::missing_test_data("rgbd");
+    folder_ = *folder;
   }
   TumDataset open(const char* name) const {
     return TumDataset({.folder = folder_ / name, .class_list = {}}, read_camera_file);

@@ -11,6 +11,8 @@
 
 #include "slam/core/pose_graph_file.hpp"
 
+#include "tests/support/test_data.hpp"
+
 namespace lapis::slam {
 namespace {
 
@@ -144,14 +146,11 @@ TEST(PoseGraphFile, SurvivesTruncationAndFlippedBits) {
 }
 
 TEST(PoseGraphFile, ReadsPublicGraphs) {
-  const char* configured = std::getenv("LAPIS_TEST_DATA");
-  const auto folder = (configured != nullptr ? std::filesystem::path(configured)
-                                             : std::filesystem::path(LAPIS_SOURCE_DIR) / ".." / "shared" / "data") /
-                      "posegraph";
-  if (!std::filesystem::exists(folder)) GTEST_SKIP() << "no shared data at " << folder << "; set LAPIS_TEST_DATA";
+  const auto folder = lapis::test::find_test_data("posegraph");
+  if (!folder) GTEST_SKIP() << lapis::test::missing_test_data("posegraph");
   for (const auto& [name, nodes, edges] :
        {std::tuple("sphere2500.g2o", 2500U, 4949U), std::tuple("parking-garage.g2o", 1661U, 6275U)}) {
-    std::ifstream stream(folder / name);
+    std::ifstream stream(*folder / name);
     const auto result = read_g2o(stream);
     ASSERT_TRUE(std::holds_alternative<PoseGraphSnapshot>(result)) << std::get<PoseGraphFileError>(result).message;
     EXPECT_EQ(std::get<PoseGraphSnapshot>(result).nodes.size(), nodes);

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 
 #include "slam/core/rgbd_slam.hpp"
+#include "tests/support/test_data.hpp"
 #include "tests/unit/slam/tum_sequence.hpp"
 
 namespace lapis::slam {
@@ -16,7 +17,7 @@ double cpu_ms() { return 1e3 * static_cast<double>(std::clock()) / CLOCKS_PER_SE
 // Tracks a shared recording, prints one line of figures, checks the online trajectory.
 void expect_tracked(const std::string& name, double max_ate_m) {
   const auto sequence = test::find_sequence(name);
-  if (!sequence) GTEST_SKIP() << "no shared data set " << name << "; set LAPIS_TEST_DATA";
+  if (!sequence) GTEST_SKIP() << lapis::test::missing_test_data("rgbd/" + name);
   cv::setNumThreads(1);
   RgbdSlam slam({}, geometry::Pose::Identity());
   std::vector<geometry::Pose> truth, estimate;

@@ -9,17 +9,13 @@
 #include <Eigen/SVD>
 #include <opencv2/imgcodecs.hpp>
 
+#include "tests/support/test_data.hpp"
+
 namespace lapis::slam::test {
 namespace {
 
 namespace fs = std::filesystem;
 using geometry::Pose;
-
-fs::path data_root() {
-  const char* configured = std::getenv("LAPIS_TEST_DATA");
-  if (configured != nullptr) return configured;
-  return fs::path(LAPIS_SOURCE_DIR) / ".." / "shared" / "data";
-}
 
 void read_camera(const fs::path& file, TumSequence& sequence) {
   std::ifstream stream(file);
@@ -82,9 +78,10 @@ RgbdFrame TumSequence::load(std::size_t index) const {
 }
 
 std::optional<TumSequence> find_sequence(const std::string& name) {
-  const fs::path folder = data_root() / "rgbd" / name;
+  const auto found = lapis::test::find_test_data("rgbd/" + name);
+  if (!found) return std::nullopt;
+  const fs::path folder = *found;
   std::ifstream associations(folder / "associations.txt");
-  if (!associations) return std::nullopt;
   TumSequence sequence;
   std::string color_stamp, color, depth_stamp, depth;
   while (associations >> color_stamp >> color >> depth_stamp >> depth) {

@@ -103,15 +103,11 @@ collect_arguments sensor_replay
 start_shown sensor_replay "$dataset" "${replay[@]}" "${arguments[@]}"
 
 # The first child to end is the replay, unless something went wrong.
-first="" status=0
-wait -n -p first "${pids[@]}" || status=$?
-for index in "${!pids[@]}"; do
-  [ "${pids[index]}" != "$first" ] || statuses[${names[index]}]=$status
-done
-early=${!statuses[*]}
+wait_first
+early=${names[first]}
 end_all
 write_manifest
-[ "$early" = sensor_replay ] || fail_with "$early" "ended early with status $status"
+[ "$early" = sensor_replay ] || fail_with "$early" "ended early with status ${statuses[$early]}"
 print_metrics
 for name in sensor_replay slam semantic_mapper evaluator; do
   [ "${statuses[$name]}" = 0 ] || fail_with "$name" "failed with status ${statuses[$name]}" "${statuses[$name]}"

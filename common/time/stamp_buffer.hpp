@@ -10,6 +10,20 @@
 
 namespace lapis::time {
 
+enum class Push {
+  kStored,
+  kDuplicate,  ///< not stored: the stamp is there or was taken last
+  kLate,       ///< not stored: later stamps have been taken
+  kRestarted,  ///< stored; the stamp lies more than a second in the past, so the source began anew and the rest is gone
+  kOverflow    ///< stored, and the oldest was dropped
+};
+
+enum class Match {
+  kFound,
+  kMissing,
+  kWait  ///< one that fits (better) may still come
+};
+
 /// Recent messages of one stream in the order of their stamps, so that streams can be joined by stamp. Joining depends
 /// on stamps only, never on the order of arrival between streams.
 template <class Message>
@@ -17,10 +31,6 @@ class StampBuffer {
  public:
   explicit StampBuffer(std::size_t capacity = 8) : capacity_(capacity) {}
 
-  enum class Push { kStored, kDuplicate, kLate, kRestarted, kOverflow };
-  /// kDuplicate and kLate: not stored, the stamp is there or has been taken. kRestarted: the stamp lies more than a
-  /// second in the past, so the source began anew; what was held is gone. kOverflow: stored, and the oldest was
-  /// dropped.
   Push push(Time stamp, Message message) {
     Push result = Push::kStored;
     if (newest_ && *newest_ - stamp > kRestartGap) {
@@ -50,9 +60,7 @@ class StampBuffer {
     taken_ = std::max(taken_.value_or(stamp), stamp);
   }
 
-  enum class Match { kFound, kMissing, kWait };
-  /// Looks for the message nearest to `stamp` within `tolerance`. kWait: one that fits (better) may still come;
-  /// `is_complete` says that nothing more will.
+  /// Looks for the message nearest to `stamp` within `tolerance`; `is_complete` says that nothing more will come.
   Match match(Time stamp, Duration tolerance, bool is_complete, Message*& found) {
     found = nullptr;
     std::optional<Duration> best;

@@ -59,8 +59,11 @@ std::optional<double> share_of(const LabelledVoxels& fusion, const LabelledVoxel
 }  // namespace
 
 EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& context)
-    : config_(config), context_(context), tracked_(kWaitingFrames), truth_(kWaitingFrames), depth_(kWaitingFrames),
-      labels_(kWaitingFrames), info_(kWaitingFrames), reference_(config.resolution_m),
+    : config_(config), context_(context), tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
+      truth_(context, topics::kGroundTruth, "ground truth", kWaitingFrames),
+      depth_(context, topics::kDepth, "depth", kWaitingFrames),
+      labels_(context, topics::kLabels, "labels", kWaitingFrames),
+      info_(context, topics::kDepthInfo, "camera info", kWaitingFrames), reference_(config.resolution_m),
       plain_fusion_({config.resolution_m, config.integration.min_range_m, config.integration.max_range_m}),
       timeline_(kTimelineHeader) {
   if (config_.output_dir.empty()) {
@@ -68,14 +71,7 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
   }
   files::require_writable_folder(config_.output_dir, "evaluator.output_dir");
   mapping::validate(config_.integration);
-  context.subscribe(topics::kTrackedFrame, [this](Tracked& m) { store(tracked_, m); });
-  truth_source_ = &context.subscribe(topics::kGroundTruth, [this](Odometry& m) { store(truth_, m); });
-  depth_source_ = &context.subscribe(topics::kDepth, [this](Image& m) { store(depth_, m); });
-  labels_source_ = &context.subscribe(topics::kLabels, [this](Image& m) { store(labels_, m); });
-  context.subscribe(topics::kDepthInfo, [this](Info& m) {
-    count_frame(messages::from_message(m.header().stamp()));
-    store(info_, m);
-  });
+  info_.on_arrival([this](time::Time stamp) { count_frame(stamp); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
   context.subscribe(topics::kPoseGraph, [this](auto& m) { graph_ = std::move(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { on_tile(m); });
@@ -92,15 +88,6 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
     }
   });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
-}
-
-template <class Message>
-void EvaluatorComponent::store(time::StampBuffer<Message>& buffer, Message& message) {
-  const time::Time stamp = messages::from_message(message.header().stamp());
-  const auto result = buffer.push(stamp, std::move(message));
-  if (result == time::StampBuffer<Message>::Push::kOverflow) {
-    context_.status().count("messages dropped: their partners did not come");
-  }
 }
 
 // The camera's frames, not slam's: a frame that slam had to drop, or never got, is a frame without a pose.
@@ -150,22 +137,22 @@ void EvaluatorComponent::work(const runtime::Cycle& cycle) {
 
 /// Joins and records the oldest tracked frame; false when its partners may still come.
 bool EvaluatorComponent::next_frame(const runtime::Cycle& cycle) {
-  using ImageMatch = time::StampBuffer<Image>::Match;
+  using time::Match;
   if (tracked_.empty()) return false;
   const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
   auto& [stamp, tracked] = tracked_.front();
   const time::Time now = stamp;
-  const auto is_over = [&](const dds::Reader& source) { return cycle.inputs_complete || source.matched() == 0; };
+  const auto is_over = [&](const auto& input) { return cycle.inputs_complete || !input.has_publisher(); };
   Odometry* truth = nullptr;
   Image* depth = nullptr;
   Image* labels = nullptr;
   Info* info = nullptr;
-  const auto truth_match = truth_.match(now, tolerance, is_over(*truth_source_), truth);
-  const auto depth_match = depth_.match(now, tolerance, is_over(*depth_source_), depth);
-  const auto label_match = labels_.match(now, tolerance, is_over(*labels_source_), labels);
-  const auto info_match = info_.match(now, tolerance, is_over(*depth_source_), info);
-  if (truth_match == time::StampBuffer<Odometry>::Match::kWait || depth_match == ImageMatch::kWait ||
-      label_match == ImageMatch::kWait || info_match == time::StampBuffer<Info>::Match::kWait) {
+  const auto truth_match = truth_.match(now, tolerance, is_over(truth_), truth);
+  const auto depth_match = depth_.match(now, tolerance, is_over(depth_), depth);
+  const auto label_match = labels_.match(now, tolerance, is_over(labels_), labels);
+  const auto info_match = info_.match(now, tolerance, is_over(info_), info);
+  if (truth_match == Match::kWait || depth_match == Match::kWait || label_match == Match::kWait ||
+      info_match == Match::kWait) {
     return false;
   }
   if (truth != nullptr && !cycle.inputs_complete && !is_mount_known(*truth, tracked)) return false;

@@ -9,7 +9,7 @@
 #include "common/mapping/map_mirror.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
-#include "common/time/stamp_buffer.hpp"
+#include "common/runtime/stamped_input.hpp"
 #include "evaluator/core/metrics.hpp"
 #include "evaluator/core/plain_fusion.hpp"
 #include "evaluator/evaluator_config.hpp"
@@ -41,8 +41,6 @@ class EvaluatorComponent {
     std::optional<double> frames;
   };
 
-  template <class Message>
-  void store(time::StampBuffer<Message>& buffer, Message& message);
   void count_frame(time::Time stamp);
   void on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message);
   void on_tile(const lapis_msgs::msg::VoxelTile& message);
@@ -66,14 +64,11 @@ class EvaluatorComponent {
 
   Config config_;
   runtime::Context& context_;
-  dds::Subscription<Image>* depth_source_ = nullptr;
-  dds::Subscription<Image>* labels_source_ = nullptr;
-  dds::Subscription<Odometry>* truth_source_ = nullptr;
-  time::StampBuffer<Tracked> tracked_;
-  time::StampBuffer<Odometry> truth_;
-  time::StampBuffer<Image> depth_;
-  time::StampBuffer<Image> labels_;
-  time::StampBuffer<Info> info_;
+  runtime::StampedInput<Tracked> tracked_;
+  runtime::StampedInput<Odometry> truth_;
+  runtime::StampedInput<Image> depth_;
+  runtime::StampedInput<Image> labels_;
+  runtime::StampedInput<Info> info_;
   messages::StaticTransforms static_transforms_;
   mapping::LabelList label_list_;
   mapping::MapMirror mirror_;

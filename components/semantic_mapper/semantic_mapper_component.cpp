@@ -21,29 +21,15 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
     : config_(config), context_(context), tiles_(context.advertise(topics::kVoxelTiles)),
       map_state_(context.advertise(topics::kMapState)), octomap_(context.advertise(topics::kOctomap)),
       points_(context.advertise(topics::kMapPoints)), grid_(context.advertise(topics::kOccupancyGrid)),
-      tracked_(kWaitingFrames), depth_(kWaitingFrames), labels_(kWaitingFrames), info_(kWaitingFrames) {
+      tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
+      depth_(context, topics::kDepth, "depth", kWaitingFrames),
+      labels_(context, topics::kLabels, "labels", kWaitingFrames),
+      info_(context, topics::kColorInfo, "camera info", kWaitingFrames) {
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "semantic_mapper.output_dir");
-  context.subscribe(topics::kTrackedFrame, [this](Tracked& m) { store(tracked_, m, "slam frame"); });
-  context.subscribe(topics::kDepth, [this](Image& m) { store(depth_, m, "depth"); });
-  context.subscribe(topics::kColorInfo, [this](Info& m) { store(info_, m, "camera info"); });
-  labels_source_ = &context.subscribe(topics::kLabels, [this](Image& m) { store(labels_, m, "labels"); });
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
-}
-
-template <class Message>
-void SemanticMapperComponent::store(time::StampBuffer<Message>& buffer, Message& message, const char* stream) {
-  using Push = typename time::StampBuffer<Message>::Push;
-  const time::Time stamp = messages::from_message(message.header().stamp());
-  switch (buffer.push(stamp, std::move(message))) {
-    case Push::kStored: return;
-    case Push::kDuplicate: return context_.status().count(std::string(stream) + " dropped: stamp was there before");
-    case Push::kLate: return context_.status().count(std::string(stream) + " dropped: older than what was processed");
-    case Push::kOverflow: return context_.status().count(std::string(stream) + " dropped: its partners did not come");
-    case Push::kRestarted: return context_.status().count(std::string(stream) + ": stamps went back");
-  }
 }
 
 void SemanticMapperComponent::set_labels(const vision_msgs::msg::LabelInfo& message) {
@@ -73,6 +59,7 @@ void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
 
 /// Joins and integrates the oldest tracked frame; false when its partners may still come.
 bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
+  using time::Match;
   if (tracked_.empty()) return false;
   const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
   auto& [stamp, tracked] = tracked_.front();
@@ -80,14 +67,11 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   Image* depth = nullptr;
   Image* labels = nullptr;
   Info* info = nullptr;
-  const bool no_labels_come = cycle.inputs_complete || labels_source_->matched() == 0;
+  const bool no_labels_come = cycle.inputs_complete || !labels_.has_publisher();
   const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
   const auto label_match = labels_.match(now, tolerance, no_labels_come, labels);
   const auto info_match = info_.match(now, tolerance, cycle.inputs_complete, info);
-  if (depth_match == time::StampBuffer<Image>::Match::kWait || label_match == time::StampBuffer<Image>::Match::kWait ||
-      info_match == time::StampBuffer<Info>::Match::kWait) {
-    return false;
-  }
+  if (depth_match == Match::kWait || label_match == Match::kWait || info_match == Match::kWait) return false;
   if (tracked.state() != lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING) {
     drop("slam has no pose");
   } else if (depth == nullptr) {

@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/runtime/context.hpp"
-#include "common/time/stamp_buffer.hpp"
+#include "common/runtime/stamped_input.hpp"
 #include "semantic_mapper/conversions.hpp"
 #include "semantic_mapper/semantic_mapper_config.hpp"
 
@@ -28,8 +28,6 @@ class SemanticMapperComponent {
   using Tracked = lapis_msgs::msg::TrackedFrame;
   using Graph = lapis_msgs::msg::PoseGraph;
 
-  template <class Message>
-  void store(time::StampBuffer<Message>& buffer, Message& message, const char* stream);
   void set_labels(const vision_msgs::msg::LabelInfo& message);
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
@@ -55,12 +53,11 @@ class SemanticMapperComponent {
   dds::Publisher<octomap_msgs::msg::Octomap>& octomap_;
   dds::Publisher<sensor_msgs::msg::PointCloud2>& points_;
   dds::Publisher<nav_msgs::msg::OccupancyGrid>& grid_;
-  dds::Subscription<Image>* labels_source_ = nullptr;
 
-  time::StampBuffer<Tracked> tracked_;
-  time::StampBuffer<Image> depth_;
-  time::StampBuffer<Image> labels_;
-  time::StampBuffer<Info> info_;
+  runtime::StampedInput<Tracked> tracked_;
+  runtime::StampedInput<Image> depth_;
+  runtime::StampedInput<Image> labels_;
+  runtime::StampedInput<Info> info_;
   std::optional<Graph> graph_;  // newest, not yet followed
   mapping::LabelList label_list_;
 

@@ -12,6 +12,7 @@
 namespace lapis::slam {
 namespace {
 
+constexpr std::size_t kWaitingMessages = 8;
 constexpr time::Duration kStatusPeriod{1'000'000'000};
 
 }  // namespace
@@ -20,30 +21,15 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), ids_{context.frame("map"), context.frame("odom"), context.frame("base_link")},
       odometry_(context.advertise(topics::kSlamOdometry)), tracked_frame_(context.advertise(topics::kTrackedFrame)),
       transforms_(context.advertise(topics::kTransforms)), path_(context.advertise(topics::kKeyframePath)),
-      pose_graph_(context.advertise(topics::kPoseGraph)), status_(context.advertise(topics::kSlamStatus)) {
+      pose_graph_(context.advertise(topics::kPoseGraph)), status_(context.advertise(topics::kSlamStatus)),
+      color_(context, topics::kColor, "colour", kWaitingMessages),
+      depth_(context, topics::kDepth, "depth", kWaitingMessages),
+      info_(context, topics::kColorInfo, "camera info", kWaitingMessages) {
   cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "slam.output_dir");
-  context.subscribe(topics::kColor, [this](Image& m) { store(color_, m, "colour"); });
-  context.subscribe(topics::kDepth, [this](Image& m) { store(depth_, m, "depth"); });
-  context.subscribe(topics::kColorInfo, [this](Info& m) { store(info_, m, "camera info"); });
+  color_.on_restart([this] { start_new_map(); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
-}
-
-template <class Message>
-void SlamComponent::store(time::StampBuffer<Message>& buffer, Message& message, const char* stream) {
-  using Push = typename time::StampBuffer<Message>::Push;
-  const time::Time stamp = messages::from_message(message.header().stamp());
-  switch (buffer.push(stamp, std::move(message))) {
-    case Push::kStored: return;
-    case Push::kDuplicate: return context_.status().count(std::string(stream) + " dropped: stamp was there before");
-    case Push::kLate: return context_.status().count(std::string(stream) + " dropped: older than what was processed");
-    case Push::kOverflow: return context_.status().count(std::string(stream) + " dropped: its partners did not come");
-    case Push::kRestarted:
-      spdlog::warn("{}: stamps went back, the source has started anew", stream);
-      if (static_cast<void*>(&buffer) == &color_) start_new_map();
-      return;
-  }
 }
 
 void SlamComponent::work(const runtime::Cycle& cycle) {
@@ -54,7 +40,7 @@ void SlamComponent::work(const runtime::Cycle& cycle) {
 
 /// Joins and processes the oldest colour image; false when its partners may still come.
 bool SlamComponent::next_frame(const runtime::Cycle& cycle) {
-  using Match = time::StampBuffer<Image>::Match;
+  using time::Match;
   if (color_.empty()) return false;
   const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
   auto& [stamp, color] = color_.front();
@@ -63,7 +49,7 @@ bool SlamComponent::next_frame(const runtime::Cycle& cycle) {
   Info* info = nullptr;
   const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
   const auto info_match = info_.match(now, tolerance, cycle.inputs_complete, info);
-  if (depth_match == Match::kWait || info_match == time::StampBuffer<Info>::Match::kWait) return false;
+  if (depth_match == Match::kWait || info_match == Match::kWait) return false;
   if (depth == nullptr) {
     drop("no depth image for a colour image");
   } else if (info == nullptr) {
@@ -118,6 +104,7 @@ void SlamComponent::drop(const std::string& reason) {
 }
 
 void SlamComponent::start_new_map() {
+  spdlog::warn("the camera's stamps went back, so it has started anew: a new map begins");
   slam_.reset();
   last_pose_.reset();
   graph_stamp_.reset();

@@ -5,7 +5,7 @@
 
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
-#include "common/time/stamp_buffer.hpp"
+#include "common/runtime/stamped_input.hpp"
 #include "slam/conversions.hpp"
 #include "slam/core/rgbd_slam.hpp"
 #include "slam/slam_config.hpp"
@@ -26,8 +26,6 @@ class SlamComponent {
   using Image = sensor_msgs::msg::Image;
   using Info = sensor_msgs::msg::CameraInfo;
 
-  template <class Message>
-  void store(time::StampBuffer<Message>& buffer, Message& message, const char* stream);
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
   bool prepare(const Image& color);
@@ -49,9 +47,9 @@ class SlamComponent {
   dds::Publisher<lapis_msgs::msg::PoseGraph>& pose_graph_;
   dds::Publisher<lapis_msgs::msg::SlamStatus>& status_;
 
-  time::StampBuffer<Image> color_;
-  time::StampBuffer<Image> depth_;
-  time::StampBuffer<Info> info_;
+  runtime::StampedInput<Image> color_;
+  runtime::StampedInput<Image> depth_;
+  runtime::StampedInput<Info> info_;
   messages::StaticTransforms static_transforms_;
 
   std::unique_ptr<RgbdSlam> slam_;  // exists once the camera's mount is known

@@ -46,9 +46,8 @@ class EchoComponent {
 
   void store(Image& image) {
     const time::Time stamp = messages::from_message(image.header().stamp());
-    using Push = time::StampBuffer<Image>::Push;
-    const Push push = images_.push(stamp, std::move(image));
-    if (push == Push::kDuplicate || push == Push::kLate) context_.status().count("images dropped");
+    const time::Push push = images_.push(stamp, std::move(image));
+    if (push == time::Push::kDuplicate || push == time::Push::kLate) context_.status().count("images dropped");
   }
 
   void work() {

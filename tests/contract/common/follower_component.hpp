@@ -42,7 +42,7 @@ class FollowerComponent {
       const time::Time stamp = images_.front().first;
       Odometry* odometry = nullptr;
       const auto match = odometry_.match(stamp, time::Duration{0}, cycle.inputs_complete, odometry);
-      if (match == time::StampBuffer<Odometry>::Match::kWait) return;
+      if (match == time::Match::kWait) return;
       lapis_msgs::msg::TrackedFrame message;
       message.header().stamp(messages::to_message(stamp));
       message.header().frame_id(context_.frame("camera_color_optical_frame"));

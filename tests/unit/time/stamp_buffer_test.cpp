@@ -16,7 +16,7 @@ constexpr Duration kTolerance{10'000'000};
 
 Time at_ms(std::int64_t milliseconds) { return {milliseconds * 1'000'000}; }
 
-Buffer::Push push(Buffer& buffer, std::int64_t milliseconds) {
+Push push(Buffer& buffer, std::int64_t milliseconds) {
   return buffer.push(at_ms(milliseconds), std::to_string(milliseconds));
 }
 
@@ -34,7 +34,7 @@ TEST(StampBuffer, KeepsTheOrderOfStampsWhateverTheOrderOfArrival) {
   std::vector<std::int64_t> stamps = {0, 33, 66, 100, 133, 166};
   do {
     Buffer buffer;
-    for (const auto stamp : stamps) ASSERT_EQ(push(buffer, stamp), Buffer::Push::kStored);
+    for (const auto stamp : stamps) ASSERT_EQ(push(buffer, stamp), Push::kStored);
     ASSERT_EQ(drain(buffer), (std::vector<std::string>{"0", "33", "66", "100", "133", "166"}));
   } while (std::next_permutation(stamps.begin(), stamps.end()));
 }
@@ -43,18 +43,18 @@ TEST(StampBuffer, RefusesWhatIsThereAndWhatWasTaken) {
   Buffer buffer;
   push(buffer, 33);
   push(buffer, 66);
-  EXPECT_EQ(push(buffer, 33), Buffer::Push::kDuplicate);
+  EXPECT_EQ(push(buffer, 33), Push::kDuplicate);
   buffer.drop_until(at_ms(33));
-  EXPECT_EQ(push(buffer, 33), Buffer::Push::kDuplicate);
-  EXPECT_EQ(push(buffer, 32), Buffer::Push::kLate);
-  EXPECT_EQ(push(buffer, 66), Buffer::Push::kDuplicate);
+  EXPECT_EQ(push(buffer, 33), Push::kDuplicate);
+  EXPECT_EQ(push(buffer, 32), Push::kLate);
+  EXPECT_EQ(push(buffer, 66), Push::kDuplicate);
   EXPECT_EQ(drain(buffer), (std::vector<std::string>{"66"}));
 }
 
 TEST(StampBuffer, FullBufferDropsItsOldestAndSaysSo) {
   Buffer buffer(3);
-  for (const auto stamp : {0, 33, 66}) EXPECT_EQ(push(buffer, stamp), Buffer::Push::kStored);
-  EXPECT_EQ(push(buffer, 100), Buffer::Push::kOverflow);
+  for (const auto stamp : {0, 33, 66}) EXPECT_EQ(push(buffer, stamp), Push::kStored);
+  EXPECT_EQ(push(buffer, 100), Push::kOverflow);
   EXPECT_EQ(drain(buffer), (std::vector<std::string>{"33", "66", "100"}));
 }
 
@@ -63,9 +63,9 @@ TEST(StampBuffer, SourceThatBeginsAnewIsFollowed) {
   push(buffer, 5000);
   push(buffer, 5033);
   buffer.drop_until(at_ms(5033));
-  EXPECT_EQ(push(buffer, 5033 - 999), Buffer::Push::kLate);
-  EXPECT_EQ(push(buffer, 100), Buffer::Push::kRestarted);
-  EXPECT_EQ(push(buffer, 133), Buffer::Push::kStored);
+  EXPECT_EQ(push(buffer, 5033 - 999), Push::kLate);
+  EXPECT_EQ(push(buffer, 100), Push::kRestarted);
+  EXPECT_EQ(push(buffer, 133), Push::kStored);
   EXPECT_EQ(drain(buffer), (std::vector<std::string>{"100", "133"}));
 }
 
@@ -73,8 +73,8 @@ TEST(StampBuffer, OneStampFarInTheFutureDoesNotBlockTheStream) {
   Buffer buffer;
   push(buffer, 0);
   push(buffer, 100'000'000);
-  EXPECT_EQ(push(buffer, 33), Buffer::Push::kRestarted);
-  EXPECT_EQ(push(buffer, 66), Buffer::Push::kStored);
+  EXPECT_EQ(push(buffer, 33), Push::kRestarted);
+  EXPECT_EQ(push(buffer, 66), Push::kStored);
   EXPECT_EQ(drain(buffer), (std::vector<std::string>{"33", "66"}));
 }
 
@@ -82,24 +82,24 @@ TEST(StampBuffer, MatchFindsTheNearestWithinTolerance) {
   Buffer buffer;
   for (const auto stamp : {0, 30, 40, 100}) push(buffer, stamp);
   std::string* found = nullptr;
-  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, false, found), Buffer::Match::kFound);
+  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, false, found), Match::kFound);
   EXPECT_EQ(*found, "30");
-  EXPECT_EQ(buffer.match(at_ms(38), kTolerance, false, found), Buffer::Match::kFound);
+  EXPECT_EQ(buffer.match(at_ms(38), kTolerance, false, found), Match::kFound);
   EXPECT_EQ(*found, "40");
-  EXPECT_EQ(buffer.match(at_ms(60), kTolerance, false, found), Buffer::Match::kMissing);
+  EXPECT_EQ(buffer.match(at_ms(60), kTolerance, false, found), Match::kMissing);
   EXPECT_EQ(found, nullptr);
 }
 
 TEST(StampBuffer, MatchWaitsWhileABetterOneMayCome) {
   Buffer buffer;
   std::string* found = nullptr;
-  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, false, found), Buffer::Match::kWait);
-  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, true, found), Buffer::Match::kMissing);
+  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, false, found), Match::kWait);
+  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, true, found), Match::kMissing);
   push(buffer, 30);
-  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, false, found), Buffer::Match::kWait);
-  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, true, found), Buffer::Match::kFound);
+  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, false, found), Match::kWait);
+  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, true, found), Match::kFound);
   push(buffer, 33);
-  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, false, found), Buffer::Match::kFound);
+  EXPECT_EQ(buffer.match(at_ms(33), kTolerance, false, found), Match::kFound);
   EXPECT_EQ(*found, "33");
 }
 
@@ -125,8 +125,8 @@ class Join {
       auto& [stamp, message] = color_.front();
       std::string* found = nullptr;
       const auto match = depth_.match(stamp, kTolerance, is_complete, found);
-      if (match == Buffer::Match::kWait) return;
-      pairs_.push_back(message + (match == Buffer::Match::kFound ? "+" + *found : "+none"));
+      if (match == Match::kWait) return;
+      pairs_.push_back(message + (match == Match::kFound ? "+" + *found : "+none"));
       color_.drop_until(stamp);
     }
   }

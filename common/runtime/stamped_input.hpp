@@ -1,0 +1,66 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+
+#include "common/messages/time.hpp"
+#include "common/runtime/context.hpp"
+#include "common/time/stamp_buffer.hpp"
+
+namespace lapis::runtime {
+
+/// The messages of one topic, waiting in the order of their stamps to be joined with those of other topics. What cannot
+/// be used is counted on /diagnostics by stream and reason.
+template <class Message>
+class StampedInput {
+ public:
+  /// `name`: the stream's name in counters. `capacity`: messages that may wait; the oldest is dropped beyond.
+  StampedInput(Context& context, const dds::Topic<Message>& topic, std::string name, std::size_t capacity)
+      : context_(context), name_(std::move(name)), buffer_(capacity),
+        source_(context.subscribe(topic, [this](Message& message) { store(message); })) {}
+  StampedInput(const StampedInput&) = delete;
+  StampedInput& operator=(const StampedInput&) = delete;
+
+  /// Called with every message that arrives, before it is stored.
+  void on_arrival(std::function<void(time::Time stamp)> action) { on_arrival_ = std::move(action); }
+  /// Called when the source began anew: stamps went back by more than a second.
+  void on_restart(std::function<void()> action) { on_restart_ = std::move(action); }
+
+  bool has_publisher() const { return source_.matched() > 0; }
+  bool empty() const { return buffer_.empty(); }
+  /// Oldest message and its stamp; the input must not be empty.
+  std::pair<time::Time, Message>& front() { return buffer_.front(); }
+  /// As StampBuffer::match.
+  time::Match match(time::Time stamp, time::Duration tolerance, bool is_complete, Message*& found) {
+    return buffer_.match(stamp, tolerance, is_complete, found);
+  }
+  void drop_until(time::Time stamp) { buffer_.drop_until(stamp); }
+
+ private:
+  void store(Message& message) {
+    using time::Push;
+    const time::Time stamp = messages::from_message(message.header().stamp());
+    if (on_arrival_) on_arrival_(stamp);
+    switch (buffer_.push(stamp, std::move(message))) {
+      case Push::kStored: return;
+      case Push::kDuplicate: return count(" dropped: stamp was there before");
+      case Push::kLate: return count(" dropped: older than what was processed");
+      case Push::kOverflow: return count(" dropped: its partners did not come");
+      case Push::kRestarted:
+        count(": stamps went back, the source began anew");
+        if (on_restart_) on_restart_();
+        return;
+    }
+  }
+  void count(const char* what) { context_.status().count(name_ + what); }
+
+  Context& context_;
+  std::string name_;
+  time::StampBuffer<Message> buffer_;
+  std::function<void(time::Time)> on_arrival_;
+  std::function<void()> on_restart_;
+  dds::Subscription<Message>& source_;  // last: its handler uses the rest
+};
+
+}  // namespace lapis::runtime

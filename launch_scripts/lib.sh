@@ -7,7 +7,6 @@ out="" # run folder, set by the script
 pids=()
 names=()
 viewer=""
-exec {never}<> <(:) # nothing is ever written to it: reading from it is a short wait without a process of its own
 declare -A statuses=() # by name, of those that have ended
 
 # die TEXT: bad set-up.
@@ -54,18 +53,19 @@ wait_ready() {
       fail_with "$name" "ended before it was ready, with status $status" "$status"
     fi
     [ $SECONDS -lt $deadline ] || fail_with "$name" "not ready within $2 s"
-    read -rt 0.05 -u "$never" || true
+    sleep 0.05
   done
 }
 
 # wait_first: until one of the processes has ended; sets `first` to its index. Asked again and again, because `wait -n`
-# of bash 5.2 waits for ever when the process ends while bash reaps another child.
+# of bash 5.2 waits for ever when the process ends while bash reaps another child, and a trap that exits out of
+# `read -t` crashes.
 wait_first() {
   while true; do
     for first in "${!pids[@]}"; do
       kill -0 "${pids[first]}" 2>/dev/null || return 0
     done
-    read -rt 0.1 -u "$never" || true
+    sleep 0.1
   done
 }
 

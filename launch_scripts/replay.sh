@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Plays a recorded RGB-D data set through slam, semantic_mapper and evaluator.
 set -euo pipefail
+shopt -s extglob
 # shellcheck source-path=SCRIPTDIR
 source "$(dirname "$0")/lib.sh"
 
@@ -16,10 +17,12 @@ trajectory, pose graph, semantic map, metrics.json and figures.
   --start S        skip S seconds;  --duration S  play S seconds
   --labels FILE    CSV file class_id,class,... that names the labels
   --set KEY=VALUE  configuration, for example semantic_mapper.resolution_m=0.1 or dds.socket_buffer_bytes=212992;
-                   it goes to the component that KEY begins with (dds.: to all). --print-config of each process lists
-                   the keys
+                   it goes to the component that KEY begins with (dds.: to all). What describes the map and how frames
+                   enter it goes from semantic_mapper to the evaluator's reference, too. --print-config of each process
+                   lists the keys
 
-Exit status: 0 played to the end, 1 a process failed, 2 bad set-up, 130 and 143 interrupted.
+Results of an earlier run in DIR are removed. Exit status: 0 played to the end, 1 a process failed or no frame was
+judged, 2 bad set-up, 130 and 143 interrupted.
 TEXT
 }
 
@@ -29,6 +32,8 @@ add_setting() {
   case $1 in
     dds.*=*) for name in "${components[@]}"; do settings+=("$name" "$1"); done ;;
     lockstep.*=*) settings+=(sensor_replay "$1") ;;
+    semantic_mapper.@(resolution_m|integration.*|frame.*|sensor_model.*)=*)
+      settings+=(semantic_mapper "$1" evaluator "evaluator.${1#*.}") ;;
     sensor_replay.*=* | slam.*=* | semantic_mapper.*=* | evaluator.*=*) settings+=("${1%%.*}" "$1") ;;
     *) die "--set $1: unknown key; wanted is KEY=VALUE, KEY begins with dds., lockstep., ${components[*]/%/.}" ;;
   esac
@@ -53,11 +58,15 @@ done
 require_build
 out=${out:-$repository/out/$(basename "$dataset")}
 mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another with --out DIR"
+(cd "$out" && rm -f manifest.yaml metrics.json timeline.csv trajectory_{estimate,ground_truth}.txt keyframes.txt \
+  pose_graph.g2o map.{lapis,ot,ply} reference_map.lapis figures/{trajectory,errors,class_iou}.png \
+  logs/{slam,semantic_mapper,evaluator,sensor_replay}.log)
+[ -z "$rate" ] || replay+=(--set sensor_replay.wait_for_readers=3)
 
-# Sets `arguments` to the --set options of a component.
+# Sets `arguments` to the command line of a component.
 collect_arguments() {
   local i
-  arguments=()
+  if [ "$1" = sensor_replay ]; then arguments=("$dataset" "${replay[@]}"); else arguments=(--set "$1.output_dir=$out"); fi
   for ((i = 0; i < ${#settings[@]}; i += 2)); do
     [ "${settings[i]}" != "$1" ] || arguments+=(--set "${settings[i + 1]}")
   done
@@ -78,7 +87,7 @@ write_manifest() {
   } >"$out/manifest.yaml.part" && mv "$out/manifest.yaml.part" "$out/manifest.yaml"
 }
 
-print_metrics() { sed -n '/^exit_reason/,$p' "$out/logs/evaluator.log"; }
+print_metrics() { [ ! -f "$out/metrics.json" ] || sed -n '/^exit_reason/,$p' "$out/logs/evaluator.log"; }
 
 interrupted() {
   trap '' INT TERM
@@ -95,12 +104,11 @@ trap 'interrupted SIGTERM 143' TERM
 
 for name in slam semantic_mapper evaluator; do
   collect_arguments "$name"
-  start "$name" --set "$name.output_dir=$out" "${arguments[@]}"
+  start "$name" "${arguments[@]}"
   wait_ready "$name" 20
 done
-[ -z "$rate" ] || replay+=(--set sensor_replay.wait_for_readers=3)
 collect_arguments sensor_replay
-start_shown sensor_replay "$dataset" "${replay[@]}" "${arguments[@]}"
+start_shown sensor_replay "${arguments[@]}"
 
 # The first child to end is the replay, unless something went wrong.
 wait_first
@@ -112,4 +120,5 @@ print_metrics
 for name in sensor_replay slam semantic_mapper evaluator; do
   [ "${statuses[$name]}" = 0 ] || fail_with "$name" "failed with status ${statuses[$name]}" "${statuses[$name]}"
 done
+[ -f "$out/metrics.json" ] || fail_with slam "no frame was judged; the reason may be here or in the other logs"
 echo "run folder: $out"

@@ -20,7 +20,7 @@ as_root() {
   sudo "$@"
 }
 # Names of installed packages and of what they provide (NodeSource's nodejs, for example, provides npm).
-installed=" $(dpkg-query -W -f='${db:Status-Status} ${Package} ${Provides}\n' 2>/dev/null |
+installed=" $({ dpkg-query -W -f='${db:Status-Status} ${Package} ${Provides}\n' 2>/dev/null || true; } |
   sed -n 's/^installed //p' | sed 's/([^)]*)//g' | tr ',\n' '  ')"
 is_installed() { [[ "$installed" == *" $1 "* ]]; }
 is_available() { apt-cache show --no-all-versions "$1" >/dev/null 2>&1; }
@@ -35,7 +35,7 @@ first_of() {
 install_packages() {
   local entries entry name missing=() names=()
   mapfile -t entries < <(grep -Ev '^[[:space:]]*(#|$)' "$root/launch_scripts/packages.txt")
-  if ! grep -Eqs '^ID(_LIKE)?=.*debian' /etc/os-release || ! command -v apt-get dpkg-query >/dev/null; then
+  if ! grep -Eqs '^ID(_LIKE)?=.*debian' /etc/os-release || ! type apt-get dpkg-query >/dev/null 2>&1; then
     stop "this is not Debian; install what your distribution has of these and build with cmake --preset release:" \
       $'\n'"${entries[*]}"
   fi

@@ -23,6 +23,10 @@ while [[ $# -gt 0 ]]; do
   esac
 done
 
+if [[ -n "${LAPIS_TEST_DATA:-}" ]]; then
+  [[ -d "$LAPIS_TEST_DATA" ]] || { echo "test.sh: LAPIS_TEST_DATA=$LAPIS_TEST_DATA: no such folder" >&2; exit 2; }
+  LAPIS_TEST_DATA="$(cd "$LAPIS_TEST_DATA" && pwd)" # tests run in other folders
+fi
 "$root/launch_scripts/setup.sh"
 cd "$root"
 export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST
@@ -35,12 +39,9 @@ echo "test data: ${LAPIS_TEST_DATA:-none, tests that need it are skipped}"
 failed=() skipped="" log=build/release/Testing/Temporary/LastTest.log
 for tier in "${tiers[@]}"; do
   echo "== $tier"
-  if [[ "$tier" == interop && -f tests/interop/package.json && ! -d tests/interop/node_modules ]]; then
-    npm ci --silent --prefix tests/interop || echo "warning: no npm packages, interop tests that need them are skipped"
-  fi
   ctest --preset release -L "^$tier\$" || failed+=("$tier")
   # GoogleTest's own skips count as passed for ctest; its log has them.
-  skipped+="$(grep -Eh '^\[  SKIPPED \] [^ ]+ \(|^SKIPPED \[|\*\*\*Skipped' "$log" || true)"$'\n'
+  skipped+="$(grep -Eh '^\[  SKIPPED \] [^ ]+ \(|^SKIPPED( \[|:)|\*\*\*Skipped' "$log" || true)"$'\n'
 done
 skipped="$(sort -u <<<"$skipped" | sed '/^$/d')"
 if [[ -n "$skipped" ]]; then printf '== skipped (%s)\n%s\n' "$(wc -l <<<"$skipped")" "$skipped"; fi

@@ -42,4 +42,19 @@ bool TopicProbe::wait_until_matched(std::size_t peers, Seconds deadline) {
       deadline);
 }
 
+// Discovery tells of readers in the order of their creation, and reliably. So who sends to the newest knows all others.
+bool TopicProbe::wait_until_known_by(const std::string& component, Seconds deadline) {
+  using Graph = rmw_dds_common::msg::ParticipantEntitiesInfo;
+  bool is_known = false;
+  dds::Subscription<Graph> newest(participant_, kRosGraph, [&](const Graph& graph) {
+    for (const auto& node : graph.node_entities_info_seq()) is_known |= node.node_name() == component;
+  });
+  return wait_until(
+      [&] {
+        newest.dispatch();
+        return is_known;
+      },
+      deadline);
+}
+
 }  // namespace lapis::test

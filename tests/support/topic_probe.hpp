@@ -10,9 +10,14 @@
 #include "common/dds/publisher.hpp"
 #include "common/dds/service.hpp"
 #include "common/dds/subscription.hpp"
+#include "idl/rmw_dds_common.hpp"
 #include "tests/support/child_process.hpp"
 
 namespace lapis::test {
+
+/// What every node says of itself once its endpoints exist. Not in the topic table: it belongs to ROS 2's middleware.
+inline constexpr dds::Topic<rmw_dds_common::msg::ParticipantEntitiesInfo> kRosGraph{
+    "ros_discovery_info", {.depth = 100, .latched = true}, "all", "on change", "ROS 2 graph", true};
 
 /// Takes part in the DDS domain of a test: collects what is published and publishes what a test wants to say.
 /// Nothing happens in the background: samples are taken while the test waits.
@@ -55,6 +60,10 @@ class TopicProbe {
   bool wait_until(const std::function<bool()>& condition, Seconds deadline = Seconds(10));
   /// Waits until every publisher and subscription of the probe has found at least `peers` counterparts.
   bool wait_until_matched(std::size_t peers = 1, Seconds deadline = Seconds(10));
+  /// Waits until the process of that name sends to every subscription of the probe. That a subscription is matched()
+  /// says only that the probe has found the writer, and what a VOLATILE writer sends to a reader that it has not found
+  /// yet is lost.
+  bool wait_until_known_by(const std::string& component, Seconds deadline = Seconds(10));
 
   dds::Participant& participant() { return participant_; }
   dds::Executor& executor() { return executor_; }

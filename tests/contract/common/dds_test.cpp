@@ -9,7 +9,6 @@
 
 #include "common/messages/time.hpp"
 #include "common/topics.hpp"
-#include "idl/rmw_dds_common.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/endpoint_watcher.hpp"
 #include "tests/support/topic_probe.hpp"
@@ -17,12 +16,10 @@
 namespace lapis::test {
 namespace {
 
-using GraphInfo = rmw_dds_common::msg::ParticipantEntitiesInfo;
 using ::testing::HasSubstr;
 
 constexpr const char* kEcho = "lapis_test_echo";
-constexpr dds::Topic<GraphInfo> kGraph{
-    "ros_discovery_info", {.depth = 100, .latched = true}, "all", "on change", "ROS 2 graph", true};
+constexpr const char* kEchoNode = "test_echo";
 
 // What discovery says of an endpoint against the topic table. History depth is not on the wire, so a remote participant
 // cannot check it; tests/unit/dds does.
@@ -80,7 +77,7 @@ TEST(Wire, EndpointsAreThoseOfTheTopicTable) {
 TEST(Wire, ParticipantIsARos2Node) {
   TopicProbe probe;
   const EndpointWatcher watcher(probe.participant());
-  const auto& graph = probe.collect(kGraph);
+  const auto& graph = probe.collect(kRosGraph);
   ChildProcess echo(kEcho, {"--namespace", "robot1"});
   ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
   ASSERT_TRUE(probe.wait_until([&] { return !graph.empty() && watcher.endpoints().size() >= 10; }));
@@ -103,7 +100,7 @@ TEST(Wire, ParticipantIsARos2Node) {
 
 TEST(Wire, NodeWithoutNamespaceIsInTheRoot) {
   TopicProbe probe;
-  const auto& graph = probe.collect(kGraph);
+  const auto& graph = probe.collect(kRosGraph);
   ChildProcess echo(kEcho);
   ASSERT_TRUE(probe.wait_until([&] { return !graph.empty(); })) << echo.log();
   EXPECT_EQ(graph.back().node_entities_info_seq().at(0).node_namespace(), "/");
@@ -116,7 +113,7 @@ TEST(Wire, NamespacePrefixesNamesAndFramesButNotGlobalTopics) {
   const auto& odometry = probe.collect(topics::kSlamOdometry);
   ChildProcess echo(kEcho, {"--namespace", "robot1"});
   ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
-  ASSERT_TRUE(probe.wait_until_matched());
+  ASSERT_TRUE(probe.wait_until_matched() && probe.wait_until_known_by(kEchoNode)) << echo.log();
   ASSERT_TRUE(probe.wait_until([&] { return watcher.endpoints().size() >= 10; }));
   expect_echo_endpoints(watcher, "robot1");
   EXPECT_TRUE(watcher.writer("rt/robot1/slam/odometry"));
@@ -134,7 +131,7 @@ TEST(Wire, ImagesOfAMegabyteArriveWholeAndStampsAreCopied) {
   const auto& odometry = probe.collect(topics::kSlamOdometry);
   ChildProcess echo(kEcho);
   ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
-  ASSERT_TRUE(probe.wait_until_matched());
+  ASSERT_TRUE(probe.wait_until_matched() && probe.wait_until_known_by(kEchoNode)) << echo.log();
   for (std::int64_t i = 1; i <= 20; ++i) {
     color.publish(image(i * 33'333'333, 1'000'000));
     const auto count = static_cast<std::size_t>(i);
@@ -214,7 +211,7 @@ TEST(Wire, DiagnosticsComeOnceASecondAndCount) {
   const auto& odometry = probe.collect(topics::kSlamOdometry);
   ChildProcess echo(kEcho);
   ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
-  ASSERT_TRUE(probe.wait_until_matched());
+  ASSERT_TRUE(probe.wait_until_matched() && probe.wait_until_known_by(kEchoNode)) << echo.log();
   color.publish(image(2'000, 10));
   ASSERT_TRUE(probe.wait_until([&] { return !odometry.empty(); }));
   color.publish(image(2'000, 10));
@@ -258,7 +255,7 @@ TEST(Wire, PeerThatLeavesAndComesBackIsFoundAgain) {
     TopicProbe peer;
     auto& color = peer.advertise(topics::kColor);
     const auto& odometry = peer.collect(topics::kSlamOdometry);
-    ASSERT_TRUE(peer.wait_until_matched());
+    ASSERT_TRUE(peer.wait_until_matched() && peer.wait_until_known_by(kEchoNode)) << echo.log();
     color.publish(image((life + 1) * 1'000'000, 100));
     EXPECT_TRUE(peer.wait_until([&] { return !odometry.empty(); })) << echo.log();
   }

@@ -37,13 +37,13 @@ class ReplayContract : public ::testing::Test {
 TEST_F(ReplayContract, EveryFrameComesWithItsStampAndFrameIds) {
   TopicProbe probe;
   const auto& color = probe.collect(topics::kColor);
-  const auto& depth = probe.collect(topics::kDepth);
   const auto& labels = probe.collect(topics::kLabels);
   const auto& info = probe.collect(topics::kColorInfo);
   const auto& truth = probe.collect(topics::kGroundTruth);
   const auto& clock = probe.collect(topics::kClock);
   const auto& mount = probe.collect(topics::kStaticTransforms);
   const auto& label_info = probe.collect(topics::kLabelInfo);
+  const auto& depth = probe.collect(topics::kDepth);  // last: the replay waits for it, and then knows the others, too
   ChildProcess replay(kReplay, arguments({"--rate", "4", "--set", "sensor_replay.wait_for_readers=1"}));
   ASSERT_TRUE(probe.wait_until([&] { return depth.size() == kFrames && truth.size() == kFrames; })) << replay.log();
   ASSERT_TRUE(probe.wait_until([&] { return color.size() == kFrames && labels.size() == kFrames; })) << replay.log();

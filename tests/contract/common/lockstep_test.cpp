@@ -22,6 +22,7 @@ using State = LockstepDriver::State;
 constexpr const char* kEcho = "lapis_test_echo";
 constexpr const char* kFollower = "lapis_test_follower";
 constexpr std::size_t kImageBytes = 921'600;
+constexpr double kShortPatience_s = 5.0;  // a hard time-out that loaded machines do not reach while processes join
 
 LockstepConfig config(const std::string& policy = "abort", double hard_timeout_s = 20.0, double soft_timeout_s = 5.0) {
   return {{"test_echo", "test_follower"}, soft_timeout_s, hard_timeout_s, policy};
@@ -163,7 +164,8 @@ TEST(LockstepSilence, FrameAndTickAreRepeatedAndReceiversDropWhatTheyHad) {
 TEST(LockstepSilence, AbortNamesTheSilentOne) {
   ChildProcess echo(kEcho);
   ChildProcess follower(kFollower);
-  Driven run(config("abort", 1.0, 0.5));
+  ASSERT_TRUE(wait_until_ready(echo) && wait_until_ready(follower)) << echo.log() << follower.log();
+  Driven run(config("abort", kShortPatience_s, 0.5));
   ASSERT_TRUE(run.wait_for(State::kIdle));
   ASSERT_TRUE(run.step());
   follower.stop(SIGKILL);
@@ -184,7 +186,8 @@ TEST(LockstepSilence, AbortNamesTheOneThatNeverCame) {
 TEST(LockstepSilence, DemoteGoesOnWithout) {
   ChildProcess echo(kEcho);
   ChildProcess follower(kFollower);
-  Driven run(config("demote", 1.0, 0.5));
+  ASSERT_TRUE(wait_until_ready(echo) && wait_until_ready(follower)) << echo.log() << follower.log();
+  Driven run(config("demote", kShortPatience_s, 0.5));
   ASSERT_TRUE(run.wait_for(State::kIdle));
   ASSERT_TRUE(run.step());
   follower.stop(SIGKILL);
@@ -256,7 +259,7 @@ TEST(LockstepEnd, ParticipantWorksFreelyWhenTheDriverLeavesInTheMiddleOfATick) {
     auto& tick = driver.advertise(topics::kTick);
     auto& color = driver.advertise(topics::kColor);
     const auto& acks = driver.collect(topics::kAck);
-    ASSERT_TRUE(driver.wait_until_matched());
+    ASSERT_TRUE(driver.wait_until_matched() && driver.wait_until_known_by("test_echo")) << echo.log();
     lapis_msgs::msg::Tick message;
     message.run_gid(tick.gid());
     message.due({"test_echo"});
@@ -275,7 +278,7 @@ TEST(LockstepEnd, ParticipantWorksFreelyWhenTheDriverLeavesInTheMiddleOfATick) {
   TopicProbe sensor("sensor");
   auto& color = sensor.advertise(topics::kColor);
   const auto& odometry = sensor.collect(topics::kSlamOdometry);
-  ASSERT_TRUE(sensor.wait_until_matched());
+  ASSERT_TRUE(sensor.wait_until_matched() && sensor.wait_until_known_by("test_echo")) << echo.log();
   color.publish({});
   EXPECT_TRUE(sensor.wait_until([&] { return !odometry.empty(); })) << echo.log();
 }
@@ -285,7 +288,7 @@ TEST(LockstepEnd, AnswerThatWasLostIsGivenAgain) {
   TopicProbe driver("driver");
   auto& tick = driver.advertise(topics::kTick);
   const auto& acks = driver.collect(topics::kAck);
-  ASSERT_TRUE(driver.wait_until_matched());
+  ASSERT_TRUE(driver.wait_until_matched() && driver.wait_until_known_by("test_echo")) << echo.log();
   lapis_msgs::msg::Tick message;
   message.run_gid(tick.gid());
   message.due({"test_echo"});

@@ -18,9 +18,11 @@ namespace {
 
 using lapis_msgs::msg::TrackedFrame;
 using nav_msgs::msg::Odometry;
+using ::testing::HasSubstr;
 
 constexpr const char* kSlam = "lapis_slam";
 constexpr auto kTracking = lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
+constexpr auto kLost = lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST;
 
 bool is_finite(const Odometry& message) {
   const auto& covariance = message.pose().covariance();
@@ -38,15 +40,13 @@ class SlamContract : public ::testing::Test {
 
   void SetUp() override {
     ASSERT_TRUE(wait_until_ready(slam)) << slam.log();
-    ASSERT_TRUE(probe.wait_until([&] { return is_connected(); })) << slam.log();
-  }
-  bool is_connected() const {
-    return feed.is_matched_by_slam() && diagnostics_source.matched() > 0 && frames_source.matched() > 0 &&
-           odometry_source.matched() > 0;
+    ASSERT_TRUE(probe.wait_until([&] { return feed.is_matched_by_slam(); })) << slam.log();
+    ASSERT_TRUE(probe.wait_until_known_by("slam")) << slam.log();
   }
   /// Sends a frame and waits for its answer on /slam/frame.
-  bool track(int index) {
-    feed.send(feed.frame(index));
+  bool track(int index) { return answers(feed.frame(index), index); }
+  bool answers(const CameraFrame& frame, int index) {
+    feed.send(frame);
     return probe.wait_until([&] {
       return !frames.empty() && messages::from_message(frames.back().header().stamp()) == CameraFeed::stamp(index);
     });
@@ -58,23 +58,17 @@ class SlamContract : public ::testing::Test {
 
   TopicProbe probe;
   CameraFeed feed{probe};
-  std::vector<TrackedFrame> frames;
-  std::vector<Odometry> odometry;
-  std::vector<diagnostic_msgs::msg::DiagnosticArray> diagnostics;
-  dds::Source& frames_source =
-      probe.listen<TrackedFrame>(topics::kTrackedFrame, [this](auto& m) { frames.push_back(m); });
-  dds::Source& odometry_source =
-      probe.listen<Odometry>(topics::kSlamOdometry, [this](auto& m) { odometry.push_back(m); });
-  dds::Source& diagnostics_source = probe.listen<diagnostic_msgs::msg::DiagnosticArray>(
-      topics::kDiagnostics, [this](auto& m) { diagnostics.push_back(m); });
+  const std::vector<TrackedFrame>& frames = probe.collect(topics::kTrackedFrame);
+  const std::vector<Odometry>& odometry = probe.collect(topics::kSlamOdometry);
+  const std::vector<diagnostic_msgs::msg::DiagnosticArray>& diagnostics = probe.collect(topics::kDiagnostics);
   ChildProcess slam;
 };
 
 TEST_F(SlamContract, TracksWithCopiedStampsRightFramesAndFiniteNumbers) {
   const auto& transforms = probe.collect(topics::kTransforms);
-  ASSERT_TRUE(track(0)) << slam.log();  // also lets /tf match
+  ASSERT_TRUE(probe.wait_until_known_by("slam")) << slam.log();
   constexpr int kFrames = 15;
-  for (int i = 1; i < kFrames; ++i) ASSERT_TRUE(track(i)) << i << slam.log();
+  for (int i = 0; i < kFrames; ++i) ASSERT_TRUE(track(i)) << i << slam.log();
   ASSERT_TRUE(probe.wait_until([&] {
     return odometry.size() == kFrames && !transforms.empty() &&
            messages::from_message(transforms.back().transforms().at(0).header().stamp()) ==
@@ -137,39 +131,54 @@ TEST_F(SlamContract, GarbageIsCountedAndTrackingGoesOn) {
   EXPECT_TRUE(spoil([](auto& f) { f.info->width(64); }));
   EXPECT_TRUE(spoil([](auto& f) { f.info->k({}); }));
   EXPECT_TRUE(spoil([](auto& f) { f.info->d({0.1, 0.0, 0.0, 0.0, 0.0}); }));
-  for (const auto& frame : frames) EXPECT_EQ(frame.state(), kTracking) << frame.reason();
-  for (const char* reason : {"colour encoding", "image has 100 bytes", "larger than 16384", "depth encoding",
-                             "depth image has", "camera info says 64x240", "no valid size", "distortion"}) {
+  ASSERT_EQ(frames.size(), static_cast<std::size_t>(index)) << "bad frames are answered, too";
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    const bool is_spoilt = i >= 3 && i % 2 == 1;
+    EXPECT_EQ(frames[i].state(), is_spoilt ? kLost : kTracking) << i << " " << frames[i].reason();
+    EXPECT_NE(frames[i].reason().empty(), is_spoilt) << i;
+  }
+  for (const char* reason :
+       {"colour encoding", "colour image has not step x height bytes", "larger than 16384", "depth encoding",
+        "depth image has not step x height bytes", "camera info says 64x240", "no valid size", "distortion"}) {
     EXPECT_TRUE(wait_for_count(reason, 1)) << reason << slam.log();
   }
   EXPECT_GE(sum_of(newest_values(diagnostics, "slam"), "frames dropped"), 8);
   EXPECT_TRUE(slam.is_running()) << slam.log();
 }
 
-TEST_F(SlamContract, FrameWithoutAnyMeasuredDepthIsLostWithAReasonAndFoundAgain) {
+TEST_F(SlamContract, FrameWithoutDepthInRangeIsLostWithTheReasonAndFoundAgain) {
+  const auto set_pixels = [](sensor_msgs::msg::Image& depth, auto value) {
+    for (std::size_t i = 0; i + sizeof value <= depth.data().size(); i += sizeof value)
+      std::memcpy(&depth.data()[i], &value, sizeof value);
+  };
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  constexpr std::uint16_t kFar_mm = 60'000;  // a measurement, but beyond slam's range
   int index = 0;
   for (; index < 3; ++index) ASSERT_TRUE(track(index)) << slam.log();
-  for (const std::string kind : {"NaN", "0", "65535"}) {
+  std::size_t tracked = 3;
+  for (const std::string kind : {"NaN", "infinity", "0", "65535", "far"}) {
     SCOPED_TRACE(kind);
     auto frame = feed.frame(index);
-    if (kind == "NaN") {
+    if (kind == "NaN" || kind == "infinity") {
       frame.depth = feed.camera().depth_metres(CameraFeed::stamp(index), slow_motion(index));
-      const float nan = std::numeric_limits<float>::quiet_NaN();
-      for (std::size_t i = 0; i + 4 <= frame.depth->data().size(); i += 4)
-        std::memcpy(&frame.depth->data()[i], &nan, 4);
+      set_pixels(*frame.depth, kind == "NaN" ? nan : std::numeric_limits<float>::infinity());
     } else {
-      std::fill(frame.depth->data().begin(), frame.depth->data().end(), kind == "0" ? 0 : 255);
+      set_pixels(*frame.depth, kind == "far" ? kFar_mm : static_cast<std::uint16_t>(kind == "0" ? 0 : 65535));
     }
-    feed.send(frame);
-    ASSERT_TRUE(probe.wait_until([&] {
-      return messages::from_message(frames.back().header().stamp()) == CameraFeed::stamp(index);
-    })) << slam.log();
-    EXPECT_TRUE(frames.back().state() == kTracking || !frames.back().reason().empty());
+    ASSERT_TRUE(answers(frame, index)) << slam.log();
+    EXPECT_EQ(frames.back().state(), kLost);
+    EXPECT_EQ(frames.back().reason(), "no depth");
     ++index;
     ASSERT_TRUE(track(index)) << slam.log();
     EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
+    ++tracked;
     ++index;
   }
+  ASSERT_TRUE(probe.wait_until([&] {
+    return !odometry.empty() &&
+           messages::from_message(odometry.back().header().stamp()) == CameraFeed::stamp(index - 1);
+  })) << slam.log();
+  EXPECT_EQ(odometry.size(), tracked) << "no pose is told while lost";
   EXPECT_TRUE(std::all_of(odometry.begin(), odometry.end(), is_finite));
 }
 
@@ -190,6 +199,9 @@ TEST_F(SlamContract, FrameWithoutDepthIsCounted) {
   feed.send(blind);
   ASSERT_TRUE(track(4)) << slam.log();
   EXPECT_EQ(frames.back().state(), kTracking);
+  ASSERT_EQ(frames.size(), 5u);
+  EXPECT_EQ(frames[3].state(), kLost);
+  EXPECT_THAT(frames[3].reason(), HasSubstr("no depth image"));
   EXPECT_TRUE(wait_for_count("no depth image", 1)) << slam.log();
 }
 

@@ -19,6 +19,13 @@ std::string text_of(const Bytes& bytes) {
   return std::string(bytes.begin(), bytes.end());
 }
 
+// The last byte of an entity id tells the kind (DDSI-RTPS 2.3, table 9.1).
+bool has_key(const dds::Gid& gid) {
+  constexpr std::uint8_t kWriterWithKey = 0x02;
+  constexpr std::uint8_t kReaderWithKey = 0x07;
+  return gid.back() == kWriterWithKey || gid.back() == kReaderWithKey;
+}
+
 // 2.9 gives proxies with getters, 3.1 plain structs.
 #ifdef LAPIS_FASTDDS_3
 template <class Data>
@@ -28,6 +35,7 @@ SeenEndpoint to_seen(const Data& data, bool is_writer) {
           data.type_name.to_string(),
           data.reliability.kind == compat::fdds::RELIABLE_RELIABILITY_QOS,
           data.durability.kind == compat::fdds::TRANSIENT_LOCAL_DURABILITY_QOS,
+          has_key(dds::to_gid(data.guid)),
           text_of(data.user_data.getValue()),
           dds::to_gid(data.guid)};
 }
@@ -39,6 +47,7 @@ SeenEndpoint to_seen(const Data& data, bool is_writer) {
           data.typeName().to_string(),
           data.m_qos.m_reliability.kind == compat::fdds::RELIABLE_RELIABILITY_QOS,
           data.m_qos.m_durability.kind == compat::fdds::TRANSIENT_LOCAL_DURABILITY_QOS,
+          has_key(dds::to_gid(data.guid())),
           text_of(data.m_qos.m_userData.getValue()),
           dds::to_gid(data.guid())};
 }
@@ -48,6 +57,8 @@ SeenEndpoint to_seen(const Data& data, bool is_writer) {
 
 class EndpointWatcher::Listener : public compat::fdds::DomainParticipantListener {
  public:
+  explicit Listener(const dds::Gid& own) : own_(own) {}
+
 #ifdef LAPIS_FASTDDS_3
   void on_participant_discovery(DomainParticipant*, compat::rtps::ParticipantDiscoveryStatus status,
                                 const compat::fdds::ParticipantBuiltinTopicData& info, bool&) override {
@@ -87,12 +98,17 @@ class EndpointWatcher::Listener : public compat::fdds::DomainParticipantListener
     participants.push_back(std::move(participant));
   }
   void add(SeenEndpoint endpoint) {
+    // DDS tells of the participant's own endpoints, too.
+    if (std::equal(own_.begin(), own_.begin() + dds::kGidPrefixBytes, endpoint.gid.begin())) return;
     const std::lock_guard lock(mutex);
     endpoints.push_back(std::move(endpoint));
   }
+
+  dds::Gid own_;
 };
 
-EndpointWatcher::EndpointWatcher(dds::Participant& participant) : listener_(std::make_unique<Listener>()) {
+EndpointWatcher::EndpointWatcher(dds::Participant& participant)
+    : listener_(std::make_unique<Listener>(participant.gid())) {
   const auto domain = static_cast<std::uint32_t>(dds::discovery_from_environment().domain);
   for (auto* candidate : compat::fdds::DomainParticipantFactory::get_instance()->lookup_participants(domain)) {
     if (dds::to_gid(candidate->guid()) == participant.gid()) participant_ = candidate;

@@ -16,6 +16,7 @@ struct SeenEndpoint {
   std::string type;   ///< DDS name, "nav_msgs::msg::dds_::Odometry_"
   bool is_reliable = false;
   bool is_latched = false;  ///< TRANSIENT_LOCAL
+  bool is_keyed = false;
   std::string user_data;
   dds::Gid gid{};
 };

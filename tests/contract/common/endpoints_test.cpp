@@ -1,0 +1,142 @@
+// What the components show on the wire, all of it: names, types and QoS are those of the topic table, and nobody but
+// the evaluator reads ground truth. History depth is not on the wire; tests/unit/dds checks it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "common/topics.hpp"
+#include "tests/support/child_process.hpp"
+#include "tests/support/endpoint_watcher.hpp"
+#include "tests/support/topic_probe.hpp"
+#include "tests/unit/sensor_replay/synthetic_dataset.hpp"
+
+namespace lapis::test {
+namespace {
+
+using ::testing::StartsWith;
+using Lines = std::vector<std::string>;
+
+// A line per endpoint: GoogleTest shows texts that differ as a list of what is missing and what is too much.
+std::string line(const SeenEndpoint& seen) {
+  return std::string(seen.is_writer ? "writes " : "reads ") + seen.topic + " " + seen.type +
+         (seen.is_reliable ? " reliable" : " best-effort") + (seen.is_latched ? " latched" : "") +
+         (seen.is_keyed ? " keyed " : " ") + seen.user_data;
+}
+
+template <class Message>
+std::string line(bool is_writer, const std::string& dds_name, const dds::Qos& qos) {
+  using Support = idl::TypeSupport<Message>;
+  const std::string user_data = "typehash=" + std::string(Support::kHash) + ";";
+  return line({is_writer, dds_name, Support::kDdsName, true, qos.latched, qos.keyed, user_data, {}});
+}
+
+template <class... Messages>
+Lines writers(const dds::Topic<Messages>&... topics) {
+  return {line<Messages>(true, dds::dds_name(topics, ""), topics.qos)...};
+}
+
+template <class... Messages>
+Lines readers(const dds::Topic<Messages>&... topics) {
+  return {line<Messages>(false, dds::dds_name(topics, ""), topics.qos)...};
+}
+
+template <class Service>
+Lines server(const dds::ServiceTopic<Service>& service) {
+  using Support = idl::ServiceSupport<Service>;
+  return {line<typename Support::Request>(false, dds::request_dds_name(service.name), dds::kService),
+          line<typename Support::Response>(true, dds::reply_dds_name(service.name), dds::kService)};
+}
+
+struct Process {
+  std::string name;
+  std::string component;
+  Lines arguments;  ///< "DATASET" and "FOLDER" stand for a data set and a folder for results
+  std::vector<Lines> endpoints;
+};
+
+void PrintTo(const Process& process, std::ostream* out) { *out << process.name; }
+
+const std::vector<Lines> kReplay = {writers(topics::kColor, topics::kDepth, topics::kColorInfo, topics::kDepthInfo,
+                                            topics::kLabels, topics::kLabelInfo, topics::kStaticTransforms,
+                                            topics::kClock, topics::kGroundTruth)};
+
+const std::vector<Process> kProcesses = {
+    {"slam",
+     "slam",
+     {},
+     {readers(topics::kColor, topics::kDepth, topics::kColorInfo, topics::kStaticTransforms),
+      writers(topics::kSlamOdometry, topics::kTrackedFrame, topics::kTransforms, topics::kKeyframePath,
+              topics::kPoseGraph, topics::kSlamStatus)}},
+    {"semantic_mapper",
+     "semantic_mapper",
+     {},
+     {readers(topics::kTrackedFrame, topics::kDepth, topics::kLabels, topics::kColorInfo, topics::kLabelInfo,
+              topics::kPoseGraph),
+      writers(topics::kVoxelTiles, topics::kMapState, topics::kOctomap, topics::kMapPoints, topics::kOccupancyGrid),
+      server(topics::kSaveMap)}},
+    {"evaluator",
+     "evaluator",
+     {"--set", "evaluator.output_dir=FOLDER"},
+     {readers(topics::kTrackedFrame, topics::kGroundTruth, topics::kDepth, topics::kLabels, topics::kDepthInfo,
+              topics::kStaticTransforms, topics::kPoseGraph, topics::kVoxelTiles, topics::kMapState,
+              topics::kDiagnostics, topics::kLabelInfo)}},
+    {"replay_at_a_rate", "sensor_replay", {"DATASET", "--rate", "1"}, kReplay},
+    {"replay_in_lockstep", "sensor_replay", {"DATASET"}, {kReplay[0], writers(topics::kTick), readers(topics::kAck)}}};
+
+class Endpoints : public ::testing::TestWithParam<Process> {
+ protected:
+  Lines arguments() const {
+    Lines words = GetParam().arguments;
+    for (auto& word : words) {
+      for (const std::string place : {"DATASET", "FOLDER"}) {
+        const auto at = word.find(place);
+        if (at != std::string::npos) word.replace(at, place.size(), folder_.path().string());
+      }
+    }
+    return words;
+  }
+  static Lines expected() {
+    Lines lines = writers(topics::kDiagnostics, topics::kAck, kRosGraph);
+    const Lines tick = readers(topics::kTick);
+    lines.insert(lines.end(), tick.begin(), tick.end());
+    for (const Lines& more : GetParam().endpoints) lines.insert(lines.end(), more.begin(), more.end());
+    return lines;
+  }
+  static std::string sorted_text(Lines lines) {
+    std::sort(lines.begin(), lines.end());
+    std::string text;
+    for (const auto& one : lines) text += one + "\n";
+    return text;
+  }
+
+  sensor_replay::test::TemporaryFolder folder_;
+};
+
+TEST_P(Endpoints, AreThoseOfTheTopicTableAndNoOthers) {
+  sensor_replay::test::write_dataset(folder_.path(), 2);
+  TopicProbe probe;
+  const EndpointWatcher watcher(probe.participant());
+  const auto& graph = probe.collect(kRosGraph);
+  ChildProcess process("lapis_" + GetParam().component, arguments());
+  // The node lists what it has, but for the writer of that list, when all of it exists.
+  const auto is_complete = [&] {
+    if (graph.empty() || graph.back().node_entities_info_seq().empty()) return false;
+    const auto& node = graph.back().node_entities_info_seq()[0];
+    return watcher.endpoints().size() > node.reader_gid_seq().size() + node.writer_gid_seq().size();
+  };
+  ASSERT_TRUE(probe.wait_until(is_complete)) << process.log();
+  EXPECT_EQ(graph.back().node_entities_info_seq()[0].node_name(), GetParam().component);
+  Lines seen;
+  for (const auto& endpoint : watcher.endpoints()) seen.push_back(line(endpoint));
+  EXPECT_EQ(sorted_text(seen), sorted_text(expected()));
+  if (GetParam().component == "evaluator") return;
+  for (const auto& endpoint : seen) EXPECT_THAT(endpoint, Not(StartsWith("reads rt/ground_truth/")));
+}
+
+INSTANTIATE_TEST_SUITE_P(Components, Endpoints, ::testing::ValuesIn(kProcesses),
+                         [](const auto& process) { return process.param.name; });
+
+}  // namespace
+}  // namespace lapis::test

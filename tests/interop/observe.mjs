@@ -1,10 +1,10 @@
 // A ROS 2 node in TypeScript, independent of Fast DDS and of ROS: lists the topics that it discovers with their ROS
 // types and decodes one message of each named topic.
 //
-//   node observe.mjs [--seconds S] [--volatile] TOPIC=TYPE...      for example /slam/odometry=nav_msgs/msg/Odometry
+//   node observe.mjs [--seconds S] [--listed TOPIC=TYPE]... TOPIC=TYPE...  for example /tf=tf2_msgs/msg/TFMessage
 //
 // Prints one JSON object {topics: {name: type}, messages: {name: summary}}. Status 0: every named topic was found with
-// its type and one message of each was decoded; 1: not within the time.
+// its type, and one message was decoded of each that is not just to be --listed; 1: not within the time.
 import { createRequire } from "node:module";
 
 const require = createRequire(process.env.LAPIS_NODE_MODULES ? `${process.env.LAPIS_NODE_MODULES}/` : import.meta.url);
@@ -59,6 +59,10 @@ function summary(message) {
 const parameters = process.argv.slice(2);
 const secondsAt = parameters.indexOf("--seconds");
 const seconds = secondsAt < 0 ? 20 : Number(parameters.splice(secondsAt, 2)[1]);
+const listed = new Map();
+for (let at = parameters.indexOf("--listed"); at >= 0; at = parameters.indexOf("--listed")) {
+  listed.set(...parameters.splice(at, 2)[1].split("="));
+}
 const wanted = new Map(parameters.map((text) => text.split("=")));
 
 const node = new RosNode({ name: "observer", domainId: domain, addresses: [LOOPBACK], udpSocketCreate: loopbackSockets(30) });
@@ -89,7 +93,8 @@ process.stderr.write("observer: ready\n");
 const begin = Date.now();
 const isComplete = () => {
   const topics = new Map(node.getPublishedTopics());
-  return [...wanted].every(([topic, type]) => topics.get(topic) === type && messages[topic]);
+  const isListed = ([topic, type]) => topics.get(topic) === type;
+  return [...listed, ...wanted].every(isListed) && [...wanted.keys()].every((topic) => messages[topic]);
 };
 const timer = setInterval(() => {
   if (!isComplete() && Date.now() - begin < 1000 * seconds) return;

@@ -9,9 +9,11 @@ if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
 fi
 if [ -z "${LAPIS_INTEROP_INSIDE:-}" ]; then
   mkdir -p "$work"
-  cp "$source_dir"/{package.json,package-lock.json,.npmrc} "$work"
-  (cd "$work" && npm ci --ignore-scripts --no-progress) ||
-    { echo "SKIPPED: npm ci failed (is a registry reachable?); ROS 2 visibility was NOT tested"; exit 77; }
+  if [ ! "$work/node_modules/.package-lock.json" -nt "$source_dir/package-lock.json" ]; then # npm writes it at the end
+    cp "$source_dir"/{package.json,package-lock.json,.npmrc} "$work"
+    (cd "$work" && npm ci --ignore-scripts --no-progress) ||
+      { echo "SKIPPED: npm ci failed (is a registry reachable?); ROS 2 visibility was NOT tested"; exit 77; }
+  fi
   LAPIS_INTEROP_INSIDE=1 exec "$bin/lapis_in_private_domain" "$0" "$@"
 fi
 
@@ -27,6 +29,12 @@ for program in lapis_slam lapis_semantic_mapper lapis_test_camera; do
 done
 
 LAPIS_NODE_MODULES=$work node "$source_dir/observe.mjs" --seconds 60 \
+  --listed /tf_static=tf2_msgs/msg/TFMessage \
+  --listed /slam/pose_graph=lapis_msgs/msg/PoseGraph \
+  --listed /slam/path=nav_msgs/msg/Path \
+  --listed /semantic_mapper/points=sensor_msgs/msg/PointCloud2 \
+  --listed /semantic_mapper/octomap=octomap_msgs/msg/Octomap \
+  --listed /semantic_mapper/occupancy_grid=nav_msgs/msg/OccupancyGrid \
   /slam/odometry=nav_msgs/msg/Odometry \
   /camera/color/image_raw=sensor_msgs/msg/Image \
   /camera/depth/camera_info=sensor_msgs/msg/CameraInfo \

@@ -58,9 +58,12 @@ done
 require_build
 out=${out:-$repository/out/$(basename "$dataset")}
 mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another with --out DIR"
-(cd "$out" && rm -f manifest.yaml metrics.json timeline.csv trajectory_{estimate,ground_truth}.txt keyframes.txt \
-  pose_graph.g2o map.{lapis,ot,ply} reference_map.lapis figures/{trajectory,errors,class_iou}.png \
-  logs/{slam,semantic_mapper,evaluator,sensor_replay}.log)
+(
+  cd "$out"
+  rm -f manifest.yaml metrics.json timeline.csv trajectory_{estimate,ground_truth}.txt reference_map.lapis \
+    {keyframes,pose_graph,map}?(.+([0-9])).{txt,g2o,lapis,ot,ply} \
+    figures/{trajectory,errors,class_iou}.png logs/{slam,semantic_mapper,evaluator,sensor_replay}.log
+)
 [ -z "$rate" ] || replay+=(--set sensor_replay.wait_for_readers=3)
 
 # Sets `arguments` to the command line of a component.

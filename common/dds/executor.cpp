@@ -21,6 +21,7 @@ void Executor::at(Clock::time_point due, std::function<void()> action) {
 
 void Executor::spin() {
   while (!stopping_) spin_once(std::chrono::seconds(1));
+  for (Source* source : sources_) source->dispatch();  // what others said before they ended
 }
 
 void Executor::spin_once(Clock::duration timeout) {

@@ -33,7 +33,6 @@ class Executor {
   void stop();
   /// Makes spin() run a cycle soon; any thread.
   void wake();
-  bool is_stopping() const { return stopping_; }
 
  private:
   struct Timer {

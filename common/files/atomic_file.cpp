@@ -104,6 +104,18 @@ void replace_text(const std::filesystem::path& path, std::string_view text) {
   if (const auto problem = replace_file(path.string(), bytes)) throw std::runtime_error(*problem);
 }
 
+std::optional<std::string> set_aside(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::exists(path, error)) return std::nullopt;
+  std::filesystem::path free = path;
+  for (int i = 1; std::filesystem::exists(free, error); ++i) {
+    free.replace_filename(path.stem().string() + "." + std::to_string(i) + path.extension().string());
+  }
+  std::filesystem::rename(path, free, error);
+  if (error) return path.string() + ": cannot be set aside: " + error.message();
+  return std::nullopt;
+}
+
 void require_writable_folder(const std::string& folder, const std::string& key) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);

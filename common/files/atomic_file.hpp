@@ -18,6 +18,10 @@ namespace lapis::files {
 /// The same for text; throws std::runtime_error with the reason.
 void replace_text(const std::filesystem::path& path, std::string_view text);
 
+/// Renames a file to the first name of "<stem>.1<extension>", "<stem>.2<extension>", ... that is free, so that a new
+/// one does not replace it. Nothing happens when it does not exist. Returns the reason when it cannot be renamed.
+[[nodiscard]] std::optional<std::string> set_aside(const std::filesystem::path& path);
+
 /// Content of a file; nothing, with a reason that names the file, when it cannot be read.
 std::optional<std::vector<std::uint8_t>> read_file(const std::string& path, std::string& error);
 

@@ -32,14 +32,13 @@ class LabelList {
   explicit LabelList(std::vector<Label> labels);
   /// Names with default colours.
   static LabelList from_names(const std::vector<std::pair<std::uint16_t, std::string>>& names);
-  /// Text of a CSV file whose header row has the columns "class_id" and "class" (others are ignored), for example
-  /// "class_id,class,instances". Nothing, with a reason that names the line, when the text is malformed.
-  static std::optional<LabelList> from_csv(std::string_view text, std::string& error);
 
   const std::vector<Label>& labels() const { return labels_; }  ///< sorted by id
   std::size_t size() const { return labels_.size(); }
   /// Largest id; 0 for an empty list.
   std::uint16_t max_id() const { return labels_.empty() ? std::uint16_t{0} : labels_.back().id; }
+  /// Largest id that a label image may hold: with an empty list every id is accepted.
+  std::uint16_t largest_accepted_id() const { return labels_.empty() ? std::uint16_t{65535} : max_id(); }
   bool contains(std::uint16_t id) const { return find(id) != nullptr; }
   /// "unlabelled" for 0, "class <id>" for an id that is not listed.
   std::string name(std::uint16_t id) const;

@@ -1,7 +1,5 @@
 #include "common/mapping/map_mirror.hpp"
 
-#include <algorithm>
-
 namespace lapis::mapping {
 
 bool MapMirror::enter_epoch(std::int64_t epoch) {
@@ -44,35 +42,13 @@ void MapMirror::serve_if_complete() {
   if (!newest_ || newest_->epoch != *epoch_ || is_consistent()) return;
   if (newest_->tiles != versions_.size() || newest_->checksum != checksum_) return;
   if (!(newest_->resolution_m >= kMinResolution_m && newest_->resolution_m <= kMaxResolution_m)) return;
-  if (!served_ || served_->epoch != newest_->epoch) replace_map(newest_->resolution_m);
+  if (!served_ || served_->epoch != newest_->epoch) map_.emplace(newest_->resolution_m);
   for (auto& [index, tile] : pending_) {
-    for (const BlockIndex& block : blocks_of(index, tile.blocks_per_edge)) {
-      if (map_->find(block)) changed_.push_back(block);
-      map_->erase_block(block);
-    }
-    for (auto& [block_index, block] : tile.blocks) {
-      changed_.push_back(block_index);
-      map_->set_block(block_index, std::move(block));
-    }
+    for (const BlockIndex& block : blocks_of(index, tile.blocks_per_edge)) map_->erase_block(block);
+    for (auto& [block_index, block] : tile.blocks) map_->set_block(block_index, std::move(block));
   }
   pending_.clear();
   served_ = newest_;
-}
-
-void MapMirror::replace_map(double resolution_m) {
-  if (map_) {
-    const std::vector<BlockIndex> old = map_->sorted_blocks();
-    changed_.insert(changed_.end(), old.begin(), old.end());
-  }
-  map_.emplace(resolution_m);
-}
-
-std::vector<BlockIndex> MapMirror::take_changed_blocks() {
-  std::vector<BlockIndex> changed = std::move(changed_);
-  changed_.clear();
-  std::sort(changed.begin(), changed.end());
-  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
-  return changed;
 }
 
 }  // namespace lapis::mapping

@@ -42,10 +42,6 @@ class MapMirror {
   const std::optional<MapState>& state() const { return served_; }
   /// Newest state that was announced; nothing before the first.
   const std::optional<MapState>& newest_state() const { return newest_; }
-  /// Blocks that may differ from what map() held at the previous call, in canonical order. When a new epoch replaced
-  /// the whole map, all blocks of the old and the new map are in it.
-  std::vector<BlockIndex> take_changed_blocks();
-  std::size_t pending_tiles() const { return pending_.size(); }
 
  private:
   struct PendingTile {
@@ -57,7 +53,6 @@ class MapMirror {
   /// False when `epoch` is over; a newer one starts from nothing.
   bool enter_epoch(std::int64_t epoch);
   void serve_if_complete();
-  void replace_map(double resolution_m);
 
   std::optional<std::int64_t> epoch_;
   std::unordered_map<TileIndex, std::uint64_t, GridIndexHash> versions_;  ///< newest received, of epoch_
@@ -66,7 +61,6 @@ class MapMirror {
   std::optional<MapState> newest_;
   std::optional<MapState> served_;
   std::optional<VoxelMap> map_;
-  std::vector<BlockIndex> changed_;
 };
 
 }  // namespace lapis::mapping

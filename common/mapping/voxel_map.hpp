@@ -41,7 +41,6 @@ class VoxelMap {
   /// Replaces a block; an empty one is removed.
   void set_block(const BlockIndex& index, VoxelBlock block);
   void erase_block(const BlockIndex& index) { blocks_.erase(index); }
-  void clear() { blocks_.clear(); }
 
   std::size_t block_count() const { return blocks_.size(); }
   /// Indices of all blocks in the canonical order (z, y, x).

@@ -18,8 +18,7 @@ std::string layout_problem(const Image& image, std::size_t bytes_per_pixel) {
   if (image.width() > kLargestSide || image.height() > kLargestSide) return "image is larger than 16384 pixels";
   if (image.step() < image.width() * bytes_per_pixel) return "image rows are shorter than their width";
   if (image.data().size() != static_cast<std::size_t>(image.step()) * image.height()) {
-    return "image has " + std::to_string(image.data().size()) + " bytes, " + std::to_string(image.step()) + " x " +
-           std::to_string(image.height()) + " announced";
+    return "image has not step x height bytes";  // no figures: reasons are keys of counters
   }
   if (image.is_bigendian() != 0 && bytes_per_pixel > 1) return "image is big-endian";
   return "";

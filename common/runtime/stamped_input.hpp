@@ -28,6 +28,10 @@ class StampedInput {
   void on_restart(std::function<void()> action) { on_restart_ = std::move(action); }
 
   bool has_publisher() const { return source_.matched() > 0; }
+  /// Messages that were lost before they could be taken.
+  std::uint64_t missed() const { return source_.missed(); }
+  /// True when the next message would push out the oldest.
+  bool is_full() const { return buffer_.is_full(); }
   bool empty() const { return buffer_.empty(); }
   /// Oldest message and its stamp; the input must not be empty.
   std::pair<time::Time, Message>& front() { return buffer_.front(); }

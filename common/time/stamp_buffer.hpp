@@ -52,6 +52,7 @@ class StampBuffer {
   }
 
   bool empty() const { return entries_.empty(); }
+  bool is_full() const { return entries_.size() >= capacity_; }
   /// Oldest message; the buffer must not be empty.
   std::pair<Time, Message>& front() { return entries_.front(); }
   /// Forgets everything up to and including `stamp`.

@@ -2,6 +2,7 @@
 
 #include <spawn.h>
 #include <sys/wait.h>
+#include <csignal>
 
 #include <algorithm>
 #include <charconv>
@@ -12,6 +13,7 @@
 #include "common/files/atomic_file.hpp"
 #include "common/mapping/map_file.hpp"
 #include "common/messages/camera.hpp"
+#include "common/messages/labels.hpp"
 #include "common/messages/time.hpp"
 #include "evaluator/core/coverage.hpp"
 #include "evaluator/core/map_input.hpp"
@@ -20,6 +22,7 @@ namespace lapis::evaluator {
 namespace {
 
 constexpr std::size_t kWaitingFrames = 30;
+constexpr double kMaxDistance_m = 10'000.0;           // the mapper's limit
 constexpr time::Duration kRestartGap{1'000'000'000};  // stamps further back are those of a source that began anew
 constexpr const char* kTimelineHeader =
     "time_s,explored_volume_m3,explored_share,path_length_m,position_error_m,position_sigma_m,state\n";
@@ -73,19 +76,17 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
   mapping::validate(config_.integration);
   info_.on_arrival([this](time::Time stamp) { count_frame(stamp); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
-  context.subscribe(topics::kPoseGraph, [this](auto& m) { graph_ = std::move(m); });
+  context.subscribe(topics::kPoseGraph, [this](auto& m) {
+    if (!session_ || m.session() == *session_) graph_ = std::move(m);
+  });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { on_tile(m); });
   context.subscribe(topics::kMapState, [this](const auto& m) { on_map_state(m); });
   context.subscribe(topics::kDiagnostics, [this](const auto& m) { on_diagnostics(m); });
   context.subscribe(topics::kLabelInfo, [this](const vision_msgs::msg::LabelInfo& m) {
-    std::vector<std::pair<std::uint16_t, std::string>> names;
-    for (const auto& entry : m.class_map()) names.emplace_back(entry.class_id(), entry.class_name());
-    try {
-      label_list_ = mapping::LabelList::from_names(names);
-      config_.frame.max_label = label_list_.max_id();
-    } catch (const std::runtime_error& error) {
-      spdlog::warn("label list refused: {}", error.what());
-    }
+    auto labels = messages::from_message(m);
+    if (!labels) return spdlog::warn("label list refused: {}", labels.reason);
+    label_list_ = std::move(*labels);
+    config_.frame.max_label = label_list_.largest_accepted_id();
   });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
@@ -100,6 +101,7 @@ void EvaluatorComponent::count_frame(time::Time stamp) {
 
 void EvaluatorComponent::on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message) {
   for (const auto& status : message.status()) {
+    if (status.name() != context_.frame(status.hardware_id())) continue;  // another robot's, or no process of Lapis
     auto& figures = processes_[status.hardware_id()];
     for (const auto& pair : status.values()) {
       if (pair.key() == "cpu_s") figures.cpu_s = parse(pair.value());
@@ -180,19 +182,21 @@ void EvaluatorComponent::record(const Tracked& tracked, const Odometry* truth, c
   const time::Time stamp = messages::from_message(tracked.header().stamp());
   newest_ = std::chrono::steady_clock::now();
   if (!began_) began_ = newest_;
-  const bool is_judged = is_of_judged_session(tracked);
-  const bool is_tracking = is_judged && tracked.state() == lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
-  if (!is_tracking && first_stamp_) lost_time_s_ += (stamp - last_stamp_).seconds();
-  if (!first_stamp_) first_stamp_ = stamp;
-  last_stamp_ = stamp;
   ++frames_judged_;
   context_.status().value("frames", static_cast<std::uint64_t>(frames_judged_));
+  const bool is_judged = is_of_judged_session(tracked);
+  const bool is_tracking = is_judged && tracked.state() == lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
+  if (!first_stamp_) first_stamp_ = last_stamp_ = stamp;
+  if (stamp > last_stamp_) {  // a source that began anew goes back
+    if (!is_tracking) lost_time_s_ += (stamp - last_stamp_).seconds();
+    last_stamp_ = stamp;
+  }
 
   std::optional<geometry::Pose> T_world_camera;
   if (truth != nullptr) T_world_camera = true_camera_pose(*truth, tracked.header().frame_id());
   const bool is_new = truth_world_.empty() || truth_world_.back().stamp < stamp;
   if (T_world_camera && is_new) truth_world_.push_back({stamp, *T_world_camera});
-  if (!is_tracking) return;
+  if (!is_tracking) return write_timeline_row(stamp, false);
   const auto T_map_keyframe = messages::from_message(tracked.keyframe_pose());
   const auto T_keyframe_camera = messages::from_message(tracked.pose_in_keyframe());
   if (!T_map_keyframe || !T_keyframe_camera) return context_.status().count("tracked frames without a valid pose");
@@ -203,7 +207,7 @@ void EvaluatorComponent::record(const Tracked& tracked, const Odometry* truth, c
   if (T_world_camera && depth != nullptr && info != nullptr) {
     add_to_references(*T_world_camera, *depth, labels, *info);
   }
-  write_timeline_row(stamp);
+  write_timeline_row(stamp, true);
 }
 
 // The run is judged in the frame of slam's first map: poses of a later session have another origin.
@@ -236,24 +240,27 @@ void EvaluatorComponent::add_to_references(const geometry::Pose& T_world_camera,
   const auto frame = mapping::CompactFrame::make(*camera, *metres, ids.empty() ? nullptr : &ids, config_.frame, error);
   if (!frame) return context_.status().count("frames not in the reference: " + error);
   const geometry::Pose T_map_camera = *T_map_world_ * T_world_camera;
+  if (T_map_camera.translation().norm() > kMaxDistance_m) {
+    return context_.status().count("frames not in the reference: true pose is more than 10 km from the map's origin");
+  }
   reference_.add(mapping::compute_votes(*frame, T_map_camera, config_.integration, config_.resolution_m));
   plain_fusion_.add(*camera, *metres, ids, T_map_camera);
 }
 
-void EvaluatorComponent::write_timeline_row(time::Time stamp) {
+void EvaluatorComponent::write_timeline_row(time::Time stamp, bool is_tracking) {
   if (timeline_stamp_ && (stamp - *timeline_stamp_).seconds() < config_.timeline_period_s) return;
   timeline_stamp_ = stamp;
   std::optional<double> volume;
   if (const auto* map = mirror_.map()) volume = coverage(to_known_space(*map, belief_reader())).explored_volume_m3;
   std::optional<double> error;
-  if (T_map_world_ && !truth_world_.empty() && truth_world_.back().stamp == stamp) {
+  if (is_tracking && T_map_world_ && !truth_world_.empty() && truth_world_.back().stamp == stamp) {
     const geometry::Pose truth = *T_map_world_ * truth_world_.back().T_world_body;
     error = (estimate_.back().T_world_body.translation() - truth.translation()).norm();
   }
   const std::optional<double> path =
       truth_world_.empty() ? std::nullopt : std::optional<double>(path_length_m(truth_world_));
   timeline_ += cell((stamp - *first_stamp_).seconds()) + "," + cell(volume) + ",," + cell(path) + "," + cell(error) +
-               ",,TRACKING\n";
+               ",," + (is_tracking ? "TRACKING" : "LOST") + "\n";
 }
 
 mapping::BeliefReader EvaluatorComponent::belief_reader() const {
@@ -280,8 +287,9 @@ Trajectory EvaluatorComponent::keyframes() const {
 
 RunMetrics EvaluatorComponent::metrics() const {
   RunMetrics m;
-  m.exit_reason = judged_exit_reason(has_ended_ ? "completed" : "stopped", frames_tracked_, frames_total_);
-  m.frames_total = frames_total_;
+  // A camera info that was lost on its way here is a frame, too, and so is a frame that slam answered.
+  m.frames_total = std::max(frames_total_ + static_cast<std::int64_t>(info_.missed()), frames_judged_);
+  m.exit_reason = judged_exit_reason(has_ended_ ? "completed" : "stopped", frames_tracked_, *m.frames_total);
   m.frames_tracked = frames_tracked_;
   m.lost_time_s = lost_time_s_;
   m.loop_closures = std::count_if(graph_.edges().begin(), graph_.edges().end(), [](const auto& edge) {
@@ -352,15 +360,22 @@ void EvaluatorComponent::draw_figures() const {
   char* arguments[] = {script.data(), folder.data(), nullptr};
   pid_t child = 0;
   int status = 0;
-  const bool has_run = posix_spawn(&child, script.c_str(), nullptr, nullptr, arguments, environ) == 0 &&
+  sigset_t none;  // our threads block the signals that end a process; the script must not
+  sigemptyset(&none);
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  posix_spawnattr_setsigmask(&attributes, &none);
+  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
+  const bool has_run = posix_spawn(&child, script.c_str(), nullptr, &attributes, arguments, environ) == 0 &&
                        waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  posix_spawnattr_destroy(&attributes);
   if (!has_run) spdlog::warn("figures were not drawn; try: {} {}", script, folder);
 }
 
 void EvaluatorComponent::finish() {
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
-  if (frames_judged_ == 0) {
-    spdlog::warn("no frame of slam came; nothing is written");
+  if (frames_total_ == 0 && frames_judged_ == 0) {
+    spdlog::warn("no frame came; nothing is written");
     return;
   }
   const RunMetrics m = metrics();

@@ -53,7 +53,7 @@ class EvaluatorComponent {
   std::optional<geometry::Pose> true_camera_pose(const Odometry& truth, const std::string& optical_frame);
   void add_to_references(const geometry::Pose& T_world_camera, const Image& depth, const Image* labels,
                          const Info& info);
-  void write_timeline_row(time::Time stamp);
+  void write_timeline_row(time::Time stamp, bool is_tracking);
   mapping::BeliefReader belief_reader() const;
   Trajectory truth_in_map() const;
   Trajectory keyframes() const;

@@ -61,7 +61,7 @@ void print_table(std::ostream& out, const std::string& name, const ordered_json&
 
 void print_report(std::ostream& out, const ordered_json& result, bool as_json) {
   if (as_json) {
-    out << result.dump(2) << '\n';
+    out << result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
     return;
   }
   for (const auto& [key, value] : result.items()) {

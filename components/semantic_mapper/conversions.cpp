@@ -65,18 +65,6 @@ messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& 
                        std::move(frame)};
 }
 
-messages::Converted<mapping::LabelList> to_core(const vision_msgs::msg::LabelInfo& message) {
-  std::vector<std::pair<std::uint16_t, std::string>> names;
-  for (const auto& entry : message.class_map()) {
-    if (entry.class_id() != 0) names.emplace_back(entry.class_id(), entry.class_name());
-  }
-  try {
-    return mapping::LabelList::from_names(names);
-  } catch (const std::runtime_error& error) {
-    return messages::Converted<mapping::LabelList>::refused(error.what());
-  }
-}
-
 std::vector<KeyframePose> to_core(const lapis_msgs::msg::PoseGraph& graph) {
   std::vector<KeyframePose> poses;
   for (const auto& node : graph.nodes()) {

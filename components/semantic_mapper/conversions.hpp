@@ -24,8 +24,6 @@ messages::Converted<mapping::CompactFrame> to_core(const sensor_msgs::msg::Image
                                                    const mapping::CompactFrameConfig& config);
 /// A tracked frame's anchor around its compact frame; refused when the poses are not valid.
 messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& tracked, mapping::CompactFrame frame);
-/// Refused when an id is 0 or occurs twice.
-messages::Converted<mapping::LabelList> to_core(const vision_msgs::msg::LabelInfo& message);
 /// Valid key-frame poses of a graph.
 std::vector<KeyframePose> to_core(const lapis_msgs::msg::PoseGraph& graph);
 

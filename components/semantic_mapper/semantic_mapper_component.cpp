@@ -4,11 +4,16 @@
 
 #include "common/files/atomic_file.hpp"
 #include "common/mapping/map_file.hpp"
+#include "common/messages/labels.hpp"
 #include "common/messages/time.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {
 
+constexpr const char* kMapFile = "map.lapis";
+constexpr const char* kOctreeFile = "map.ot";
+constexpr const char* kPointsFile = "map.ply";
+constexpr double kFarewell_s = 1.0;
 constexpr std::size_t kWaitingFrames = 30;  // images wait here for slam's pose: one second at 30 Hz
 
 double seconds_since(const std::optional<time::Time>& then, time::Time now) {
@@ -29,18 +34,19 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
+  tracked_.on_restart([this] { end_map(); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
 
 void SemanticMapperComponent::set_labels(const vision_msgs::msg::LabelInfo& message) {
-  auto labels = to_core(message);
+  auto labels = messages::from_message(message);
   if (!labels) {
     context_.status().count("label lists refused: " + labels.reason);
     spdlog::warn("label list refused: {}", labels.reason);
     return;
   }
   label_list_ = std::move(*labels);
-  config_.frame.max_label = label_list_.max_id() > 0 ? label_list_.max_id() : 65535;
+  config_.frame.max_label = label_list_.largest_accepted_id();
 }
 
 void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
@@ -67,7 +73,8 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   Image* depth = nullptr;
   Image* labels = nullptr;
   Info* info = nullptr;
-  const bool no_labels_come = cycle.inputs_complete || !labels_.has_publisher();
+  // Labels are optional: a slow segmentation costs the frames their labels, not the map its frames.
+  const bool no_labels_come = cycle.inputs_complete || !labels_.has_publisher() || tracked_.is_full();
   const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
   const auto label_match = labels_.match(now, tolerance, no_labels_come, labels);
   const auto info_match = info_.match(now, tolerance, cycle.inputs_complete, info);
@@ -91,8 +98,7 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
 void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& depth, const Image* labels,
                                         const Info& info) {
   const time::Time stamp = messages::from_message(tracked.header().stamp());
-  if (mapper_ == nullptr || tracked.session() != session_) start_new_map(tracked.session(), stamp);
-  const bool is_first = mapper_->frames().empty();
+  const bool is_first = mapper_ == nullptr || tracked.session() != session_;
   if (!is_first && (stamp - stamp_).seconds() < config_.frame_interval_s) return;
   auto frame = to_core(depth, labels, info, config_.frame);
   if (!frame) return drop(frame.reason);
@@ -100,6 +106,7 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
   if (above_list > 0) context_.status().count("pixels unlabelled: label not in the list", above_list);
   auto anchored = to_core(tracked, std::move(*frame));
   if (!anchored) return drop(anchored.reason);
+  if (is_first) start_new_map(tracked.session(), stamp);
   const auto report = mapper_->integrate(std::move(*anchored));
   switch (report.status) {
     case IntegrationStatus::kIntegrated: break;
@@ -119,8 +126,24 @@ void SemanticMapperComponent::drop(const std::string& reason) {
   if (context_.rate_limit().pass(reason)) spdlog::warn("frame dropped: {}", reason);
 }
 
+/// The map of a session of slam is over; what there is of it stays on disk.
+void SemanticMapperComponent::end_map() {
+  if (mapper_ == nullptr) return;
+  spdlog::warn("slam began a new map; so does the mapper");
+  if (!config_.output_dir.empty()) {
+    if (const auto problem = save()) spdlog::error("map not saved: {}; mapping goes on", *problem);
+  }
+  mapper_.reset();
+}
+
 void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time stamp) {
-  if (mapper_ != nullptr) spdlog::warn("slam began a new map; so does the mapper");
+  end_map();
+  if (!config_.output_dir.empty()) {
+    for (const char* name : {kMapFile, kOctreeFile, kPointsFile}) {
+      if (const auto problem = files::set_aside(std::filesystem::path(config_.output_dir) / name))
+        spdlog::error(*problem);
+    }
+  }
   for (const auto& [x, y, z] : published_tiles_) {
     lapis_msgs::msg::VoxelTile tile;
     tile.x(x);
@@ -207,16 +230,17 @@ std_srvs::srv::Trigger_Response SemanticMapperComponent::save_on_request() {
     response.message("semantic_mapper.output_dir is not set");
   } else if (mapper_ == nullptr) {
     response.message("there is no map yet");
-  } else if (const auto problem = save()) {
-    response.message(*problem);
   } else {
-    response.success(true);
-    response.message("map saved in " + config_.output_dir);
+    mapper_->flush();
+    const auto problem = save();
+    response.success(!problem);
+    response.message(problem ? *problem : "map saved in " + config_.output_dir);
   }
   return response;
 }
 
-/// Nothing, or why the map could not be saved; the status says so until a later save works.
+/// Saves the map as it is, without moving frames to corrected poses first, which may take long. Nothing, or why it
+/// could not be saved; the status says so until a later save works.
 std::optional<std::string> SemanticMapperComponent::save() {
   auto problem = write_files();
   using Level = runtime::Status::Level;
@@ -225,7 +249,6 @@ std::optional<std::string> SemanticMapperComponent::save() {
 }
 
 std::optional<std::string> SemanticMapperComponent::write_files() {
-  mapper_->flush();
   const auto reader = belief_reader();
   const std::filesystem::path folder(config_.output_dir);
   const mapping::MapFile file{mapper_->map(),
@@ -234,17 +257,24 @@ std::optional<std::string> SemanticMapperComponent::write_files() {
                               {{"frames", std::to_string(mapper_->frames().size())},
                                {"graph_version", std::to_string(mapper_->graph_version())},
                                {"session", std::to_string(session_)}}};
-  if (auto problem = mapping::save_map((folder / "map.lapis").string(), file)) return problem;
+  if (auto problem = mapping::save_map((folder / kMapFile).string(), file)) return problem;
   const auto tree = encode_octree(file.map, reader, label_list_);
-  if (auto problem = files::replace_file((folder / "map.ot").string(), tree.file)) return problem;
+  if (auto problem = files::replace_file((folder / kOctreeFile).string(), tree.file)) return problem;
   const auto ply = encode_ply(occupied_points(file.map, reader, label_list_));
-  return files::replace_file((folder / "map.ply").string(), ply);
+  return files::replace_file((folder / kPointsFile).string(), ply);
 }
 
 void SemanticMapperComponent::finish() {
   spdlog::info("{} frames integrated, {} dropped", frames_integrated_, frames_dropped_);
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
-  if (config_.output_dir.empty() || mapper_ == nullptr) return;
+  if (mapper_ == nullptr) return;
+  if (graph_) follow_graph(*graph_);
+  mapper_->flush();
+  publish_tiles();
+  for (dds::Writer* writer : std::initializer_list<dds::Writer*>{&tiles_, &map_state_}) {
+    writer->wait_until_acknowledged(kFarewell_s);
+  }
+  if (config_.output_dir.empty()) return;
   if (const auto problem = save()) throw std::runtime_error(*problem);
 }
 

@@ -35,6 +35,7 @@ class SemanticMapperComponent {
   void follow_graph(const Graph& graph);
   void drop(const std::string& reason);
   void start_new_map(std::int64_t session, time::Time stamp);
+  void end_map();
   void publish(bool is_final);
   void publish_tiles();
   void publish_views(bool is_due);

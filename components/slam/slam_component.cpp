@@ -13,6 +13,9 @@ namespace lapis::slam {
 namespace {
 
 constexpr std::size_t kWaitingMessages = 8;
+constexpr double kFarewell_s = 1.0;
+constexpr const char* kGraphFile = "pose_graph.g2o";
+constexpr const char* kKeyframesFile = "keyframes.txt";
 constexpr time::Duration kStatusPeriod{1'000'000'000};
 
 }  // namespace
@@ -27,7 +30,7 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
       info_(context, topics::kColorInfo, "camera info", kWaitingMessages) {
   cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "slam.output_dir");
-  color_.on_restart([this] { start_new_map(); });
+  color_.on_restart([this] { end_map(); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
@@ -51,13 +54,15 @@ bool SlamComponent::next_frame(const runtime::Cycle& cycle) {
   const auto info_match = info_.match(now, tolerance, cycle.inputs_complete, info);
   if (depth_match == Match::kWait || info_match == Match::kWait) return false;
   if (depth == nullptr) {
-    drop("no depth image for a colour image");
+    drop(now, "no depth image for a colour image");
   } else if (info == nullptr) {
-    drop("no camera info for a colour image");
+    drop(now, "no camera info for a colour image");
   } else if (prepare(color)) {
     track(color, *depth, *info, now);
   } else if (!cycle.inputs_complete) {
     return false;  // the mount may still come
+  } else {
+    drop(now, "the camera's mount is not known");
   }
   color_.drop_until(now);
   depth_.drop_until(now - tolerance);
@@ -78,6 +83,12 @@ bool SlamComponent::prepare(const Image& color) {
   }
   frame_.T_base_camera = *T_base_camera;
   session_ = std::max(messages::from_message(color.header().stamp()).nanoseconds, session_ + 1);
+  if (!config_.output_dir.empty()) {
+    for (const char* name : {kGraphFile, kKeyframesFile}) {
+      if (const auto problem = files::set_aside(std::filesystem::path(config_.output_dir) / name))
+        spdlog::error(*problem);
+    }
+  }
   frame_.session = session_;
   slam_ = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera);
   graph_version_ = 0;
@@ -85,26 +96,29 @@ bool SlamComponent::prepare(const Image& color) {
 }
 
 void SlamComponent::track(const Image& color, const Image& depth, const Info& info, time::Time stamp) {
-  ++frames_total_;
   const auto frame = to_core(color, depth, info, stamp);
-  if (!frame) {
-    drop(frame.reason);
-    return;
-  }
+  if (!frame) return drop(stamp, frame.reason);
+  ++frames_total_;
   frame_.stamp = stamp;
   const TrackingResult result = slam_->process(*frame);
   if (result.state == TrackingState::kTracking) ++frames_tracked_;
   publish(result);
 }
 
-void SlamComponent::drop(const std::string& reason) {
+/// A frame that cannot be used is a frame without a pose, and those who wait for its pose are told so.
+void SlamComponent::drop(time::Time stamp, const std::string& reason) {
+  ++frames_total_;
   ++frames_dropped_;
   context_.status().count("frames dropped: " + reason);
   if (context_.rate_limit().pass(reason)) spdlog::warn("frame dropped: {}", reason);
+  if (slam_ == nullptr) return;  // no session yet to which it could belong
+  frame_.stamp = stamp;
+  publish(slam_->skip(reason));
 }
 
-void SlamComponent::start_new_map() {
+void SlamComponent::end_map() {
   spdlog::warn("the camera's stamps went back, so it has started anew: a new map begins");
+  write_files();
   slam_.reset();
   last_pose_.reset();
   graph_stamp_.reset();
@@ -157,7 +171,7 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   message.reason(result.reason);
   message.session(session_);
   message.inliers(result.inliers);
-  message.keyframes(static_cast<std::uint32_t>(slam_->pose_graph().nodes.size()));
+  message.keyframes(static_cast<std::uint32_t>(slam_->keyframe_count()));
   message.landmarks(static_cast<std::uint32_t>(slam_->landmark_count()));
   message.frames_total(frames_total_);
   message.frames_tracked(frames_tracked_);
@@ -168,15 +182,22 @@ void SlamComponent::publish_status(const TrackingResult& result) {
 void SlamComponent::finish() {
   spdlog::info("{} of {} frames tracked, {} dropped", frames_tracked_, frames_total_, frames_dropped_);
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
+  if (slam_ == nullptr) return;
+  publish_graph(true);
+  pose_graph_.wait_until_acknowledged(kFarewell_s);
+  write_files();
+}
+
+void SlamComponent::write_files() const {
   if (config_.output_dir.empty() || slam_ == nullptr) return;
   const auto graph = slam_->pose_graph();
   std::ostringstream g2o;
   write_g2o(g2o, graph);
   const std::filesystem::path folder(config_.output_dir);
-  files::replace_text(folder / "pose_graph.g2o", g2o.str());
+  files::replace_text(folder / kGraphFile, g2o.str());
   trajectory::Trajectory keyframes;
   for (const auto& node : graph.nodes) keyframes.push_back({node.stamp, node.T_map_camera});
-  trajectory::write_trajectory(folder / "keyframes.txt", keyframes, "key-frames: camera optical frame in " + ids_.map);
+  trajectory::write_trajectory(folder / kKeyframesFile, keyframes, "key-frames: camera optical frame in " + ids_.map);
 }
 
 }  // namespace lapis::slam

@@ -30,12 +30,13 @@ class SlamComponent {
   bool next_frame(const runtime::Cycle& cycle);
   bool prepare(const Image& color);
   void track(const Image& color, const Image& depth, const Info& info, time::Time stamp);
-  void drop(const std::string& reason);
-  void start_new_map();
+  void drop(time::Time stamp, const std::string& reason);
+  void end_map();
   void publish(const TrackingResult& result);
   void publish_odometry(const TrackingResult& result);
   void publish_graph(bool is_final);
   void publish_status(const TrackingResult& result);
+  void write_files() const;
 
   const Config config_;
   runtime::Context& context_;

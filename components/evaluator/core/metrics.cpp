@@ -33,11 +33,12 @@ ordered_json by_class(const std::vector<NamedClassIou>& classes) {
   if (classes.empty()) return nullptr;
   ordered_json result = ordered_json::object();
   for (const NamedClassIou& c : classes) {
-    result[c.name] = {{"iou", c.figures.iou},
-                      {"tolerant_iou", c.figures.tolerant_iou},
-                      {"reference_voxels", c.figures.reference_voxels},
-                      {"estimate_voxels", c.figures.estimate_voxels},
-                      {"top8", c.figures.is_top}};
+    const std::string key = result.contains(c.name) ? c.name + " (" + std::to_string(c.figures.label) + ")" : c.name;
+    result[key] = {{"iou", c.figures.iou},
+                   {"tolerant_iou", c.figures.tolerant_iou},
+                   {"reference_voxels", c.figures.reference_voxels},
+                   {"estimate_voxels", c.figures.estimate_voxels},
+                   {"top8", c.figures.is_top}};
   }
   return result;
 }
@@ -132,13 +133,6 @@ TrajectoryFigures trajectory_figures(const Trajectory& reference, const Trajecto
   return figures;
 }
 
-std::optional<double> ate_raw_until(const Trajectory& reference, const Trajectory& estimate, time::Time end,
-                                    const AssociationConfig& association) {
-  auto matches = associate(reference, estimate, association);
-  std::erase_if(matches, [end](const Match& match) { return match.stamp > end; });
-  return position_rmse(matches, Alignment::kNone);
-}
-
 MapFigures map_figures(const LabelledVoxels& reference, const LabelledVoxels& estimate,
                        const std::map<std::uint16_t, std::string>& class_names,
                        const std::vector<std::uint16_t>& top_classes) {
@@ -162,7 +156,9 @@ std::string judged_exit_reason(const std::string& reason, std::int64_t frames_tr
   return is_lost ? "lost" : reason;
 }
 
-std::string to_json(const RunMetrics& metrics) { return to_document(metrics).dump(2) + "\n"; }
+std::string to_json(const RunMetrics& metrics) {
+  return to_document(metrics).dump(2, ' ', false, ordered_json::error_handler_t::replace) + "\n";
+}
 
 std::string format_table(const RunMetrics& metrics) {
   const ordered_json document = to_document(metrics);

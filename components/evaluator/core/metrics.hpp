@@ -71,9 +71,6 @@ struct RunMetrics {
 /// Figures of an estimate against a reference already expressed in the estimate's map frame.
 TrajectoryFigures trajectory_figures(const Trajectory& reference, const Trajectory& estimate,
                                      const AssociationConfig& association = {});
-/// Not-aligned position RMSE of the matched poses up to `end`, included; none without such a pose.
-std::optional<double> ate_raw_until(const Trajectory& reference, const Trajectory& estimate, time::Time end,
-                                    const AssociationConfig& association = {});
 /// Figures of a map against a reference on the same grid. Classes without an entry in `class_names` are named by id.
 /// Throws std::invalid_argument when the resolutions differ.
 MapFigures map_figures(const LabelledVoxels& reference, const LabelledVoxels& estimate,

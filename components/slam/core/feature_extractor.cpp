@@ -17,7 +17,9 @@ constexpr int kBorder = kPatchRadius + 4;
 
 struct Level {
   cv::Mat image;
-  double scale = 1.0;  // size of a level pixel in pixels of the full image
+  double scale = 1.0;    // nominal, as cv::ORB computes it
+  double ratio_x = 1.0;  // size of a level pixel in pixels of the full image: the level's size is rounded
+  double ratio_y = 1.0;
 };
 
 // Half widths of the rows of a disc, for the intensity centroid.
@@ -93,12 +95,13 @@ struct FeatureExtractor::Implementation {
   cv::Ptr<cv::ORB> orb;
 
   std::vector<Level> build_pyramid(const cv::Mat& image) const {
-    std::vector<Level> levels{{image, 1.0}};
+    std::vector<Level> levels{{image, 1.0, 1.0, 1.0}};
     for (int i = 1; i < config.levels; ++i) {
       const double scale = std::pow(config.scale_factor, i);
       const cv::Size size(cvRound(image.cols / scale), cvRound(image.rows / scale));
       if (size.width <= 2 * kBorder || size.height <= 2 * kBorder) break;
-      Level level{{}, scale};
+      Level level{
+          {}, scale, static_cast<double>(image.cols) / size.width, static_cast<double>(image.rows) / size.height};
       cv::resize(levels.back().image, level.image, size, 0, 0, cv::INTER_LINEAR_EXACT);
       levels.push_back(level);
     }
@@ -111,7 +114,8 @@ struct FeatureExtractor::Implementation {
     for (const Level& level : levels) area += 1.0 / (level.scale * level.scale);
     std::vector<cv::KeyPoint> points;
     for (std::size_t i = 0; i < levels.size(); ++i) {
-      const auto& [image, scale] = levels[i];
+      const cv::Mat& image = levels[i].image;
+      const double scale = levels[i].scale;
       const int count = static_cast<int>(std::lround(config.max_features / (scale * scale * area)));
       for (const Corner& corner :
            spread_corners(detect_corners(image, config.fast_threshold), image.cols, image.rows, count)) {
@@ -143,10 +147,10 @@ std::vector<Feature> FeatureExtractor::extract(const geometry::GrayImage& image)
 
   std::vector<Feature> features(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const double scale = levels[static_cast<std::size_t>(points[i].octave)].scale;
-    // cv::resize aligns pixel borders, so the centre of a level's pixel lies (scale - 1) / 2 further in.
-    const double shift = 0.5 * (scale - 1.0);
-    features[i].pixel = {points[i].pt.x + shift, points[i].pt.y + shift};
+    const Level& level = levels[static_cast<std::size_t>(points[i].octave)];
+    // cv::resize aligns the borders of the images, and the level's size is rounded.
+    features[i].pixel = {(points[i].pt.x / level.scale + 0.5) * level.ratio_x - 0.5,
+                         (points[i].pt.y / level.scale + 0.5) * level.ratio_y - 0.5};
     features[i].octave = points[i].octave;
     std::memcpy(features[i].descriptor.data(), descriptors.ptr(static_cast<int>(i)), sizeof(Descriptor));
   }

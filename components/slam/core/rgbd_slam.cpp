@@ -74,9 +74,8 @@ class RgbdSlam::Implementation {
   }
 
   std::uint64_t version() const { return version_; }
+  std::size_t keyframe_count() const { return map_.keyframes().size(); }
   std::size_t landmark_count() const { return map_.landmark_count(); }
-
- private:
   TrackingResult without_pose(const std::string& reason, const Frame* frame = nullptr) const {
     TrackingResult result;
     result.state = map_.empty() ? TrackingState::kInitializing : TrackingState::kLost;
@@ -215,8 +214,10 @@ RgbdSlam::RgbdSlam(const SlamConfig& config, const Pose& T_map_first_camera)
 RgbdSlam::~RgbdSlam() = default;
 
 TrackingResult RgbdSlam::process(const RgbdFrame& frame) { return implementation_->process(frame); }
+TrackingResult RgbdSlam::skip(const std::string& reason) const { return implementation_->without_pose(reason); }
 PoseGraphSnapshot RgbdSlam::pose_graph() const { return implementation_->pose_graph(); }
 std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(); }
+std::size_t RgbdSlam::keyframe_count() const { return implementation_->keyframe_count(); }
 std::size_t RgbdSlam::landmark_count() const { return implementation_->landmark_count(); }
 
 }  // namespace lapis::slam

@@ -46,9 +46,12 @@ class RgbdSlam {
   /// Tracks one frame; frames come in the order of their stamps. Bad frames give a result with a reason.
   TrackingResult process(const RgbdFrame& frame);
 
+  /// What to tell of a frame that cannot be processed: it has no pose.
+  TrackingResult skip(const std::string& reason) const;
   PoseGraphSnapshot pose_graph() const;
   /// Grows with every new key-frame and every change of a key-frame's pose.
   std::uint64_t graph_version() const;
+  std::size_t keyframe_count() const;
   std::size_t landmark_count() const;
 
  private:

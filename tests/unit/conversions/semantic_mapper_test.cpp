@@ -77,22 +77,6 @@ TEST(SemanticMapperConversions, InvalidPosesAreRefusedByName) {
   EXPECT_THAT(to_core(tracked, compact_frame()).reason, HasSubstr("pose_in_keyframe"));
 }
 
-TEST(SemanticMapperConversions, LabelListNamesClassesAndRefusesRepetition) {
-  vision_msgs::msg::LabelInfo message;
-  for (const std::uint16_t id : std::initializer_list<std::uint16_t>{0, 2, 1}) {
-    vision_msgs::msg::VisionClass entry;
-    entry.class_id(id);
-    entry.class_name("name " + std::to_string(id));
-    message.class_map().push_back(entry);
-  }
-  const auto labels = to_core(message);
-  ASSERT_TRUE(labels);
-  EXPECT_EQ(labels->name(2), "name 2");
-  EXPECT_EQ(labels->max_id(), 2);
-  message.class_map().push_back(message.class_map().back());
-  EXPECT_FALSE(to_core(message));
-}
-
 TEST(SemanticMapperConversions, PointCloudFieldsReadBack) {
   const LabelledPoint point{{1.0f, 2.0f, 3.0f}, {255, 128, 1}, 9, 0.75f};
   const auto message = to_message(std::vector{point}, std_msgs::msg::Header());

@@ -117,24 +117,6 @@ TEST(MapMirror, AnyOrderRepeatsAndLossEndInTheNewestVersion) {
   }
 }
 
-TEST(MapMirror, ChangedBlocksExplainEveryDifference) {
-  std::mt19937 random(4);
-  Publisher publisher(1);
-  MapMirror mirror;
-  VoxelMap copy(kResolution_m);
-  for (int i = 0; i < 5; ++i) {
-    for (const auto& tile : publisher.publish(test::random_votes(random)))
-      mirror.apply_tile(1, tile.index, tile.version, tile.bytes);
-    mirror.apply_state(publisher.state());
-    for (const BlockIndex& block : mirror.take_changed_blocks()) {
-      copy.erase_block(block);
-      if (const VoxelBlock* content = mirror.map()->find(block)) copy.set_block(block, *content);
-    }
-    EXPECT_EQ(copy, publisher.map());
-  }
-  EXPECT_TRUE(mirror.take_changed_blocks().empty());
-}
-
 TEST(MapMirror, ARestartedMapperReplacesTheMapAndOldSamplesAreDropped) {
   std::mt19937 random(3);
   Publisher before(10), after(11);

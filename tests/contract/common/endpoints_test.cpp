@@ -82,7 +82,10 @@ const std::vector<Process> kProcesses = {
      {readers(topics::kTrackedFrame, topics::kGroundTruth, topics::kDepth, topics::kLabels, topics::kDepthInfo,
               topics::kStaticTransforms, topics::kPoseGraph, topics::kVoxelTiles, topics::kMapState,
               topics::kDiagnostics, topics::kLabelInfo)}},
-    {"replay_at_a_rate", "sensor_replay", {"DATASET", "--rate", "1"}, kReplay},
+    {"replay_at_a_rate",
+     "sensor_replay",
+     {"DATASET", "--rate", "1", "--set", "sensor_replay.wait_for_readers=1"},
+     kReplay},
     {"replay_in_lockstep", "sensor_replay", {"DATASET"}, {kReplay[0], writers(topics::kTick), readers(topics::kAck)}}};
 
 class Endpoints : public ::testing::TestWithParam<Process> {

@@ -70,7 +70,7 @@ inline constexpr Topic<std_msgs::msg::Bool> kCollision{"/ground_truth/collision"
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTransforms{
     "/tf", dds::kTransform, "slam, robot", "camera rate", "map -> odom -> base_link", true};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kStaticTransforms{
-    "/tf_static", dds::kLatched, "camera", "once", "base_link -> camera_link -> optical frame", true};
+    "/tf_static", dds::kLatchedByMany, "camera", "once", "base_link -> camera_link -> optical frame", true};
 
 // slam.
 inline constexpr Topic<nav_msgs::msg::Odometry> kSlamOdometry{
@@ -80,7 +80,7 @@ inline constexpr Topic<lapis_msgs::msg::TrackedFrame> kTrackedFrame{
     "/slam/frame", dds::kFrameState, "slam", "camera rate",
     "state and pose of each frame relative to its reference key-frame"};
 inline constexpr Topic<nav_msgs::msg::Path> kKeyframePath{
-    "/slam/path", dds::kLatched, "slam", "on change, at most 2 Hz", "key-frame trajectory; made only for readers"};
+    "/slam/path", dds::kLatched, "slam", "on change, at most 2 Hz", "key-frame trajectory"};
 inline constexpr Topic<lapis_msgs::msg::PoseGraph> kPoseGraph{"/slam/pose_graph", dds::kLatched, "slam",
                                                               "on change, at most 2 Hz",
                                                               "nodes and edges with information, one version"};

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <fstream>
+#include <optional>
 #include <set>
 #include <sstream>
 
@@ -17,6 +19,10 @@ namespace {
 
 std::string place(const std::string& source, const YAML::Node& node) {
   return node.Mark().is_null() ? source : source + ":" + std::to_string(node.Mark().line + 1);
+}
+
+bool is_inside(const Bound& bound, double number) {
+  return !std::isnan(number) && number >= bound.lowest && number <= bound.highest;
 }
 
 /// Checks and stores one scalar or list; visited with the pointer to the target.
@@ -52,8 +58,7 @@ struct Store {
   template <class T>
   T bounded(const std::string& wanted) const {
     const T value = scalar<T>(wanted);
-    const auto number = static_cast<double>(value);
-    if (std::isnan(number) || number < entry.bound.lowest || number > entry.bound.highest) {
+    if (!is_inside(entry.bound, static_cast<double>(value))) {
       reject(shown() + " is out of range, allowed is " + entry.bound.text());
     }
     return value;
@@ -117,7 +122,9 @@ void apply_node(const Schema& schema, const YAML::Node& node, const std::string&
 
 YAML::Node parse(const std::string& text, const std::string& source) {
   try {
-    return YAML::Load(text);
+    const auto documents = YAML::LoadAll(text);
+    if (documents.size() > 1) throw Error(source + ": holds more than one YAML document");
+    return documents.empty() ? YAML::Node() : documents.front();
   } catch (const YAML::Exception& error) {
     const std::string line = error.mark.is_null() ? "" : ":" + std::to_string(error.mark.line + 1);
     throw Error(source + line + ": not valid YAML: " + error.msg);
@@ -132,7 +139,8 @@ void apply_text(const Schema& schema, const std::string& text, const std::string
 
 void apply_file(const Schema& schema, const std::string& file) {
   std::ifstream in(file);
-  if (!in) throw Error(file + ": cannot be read; give --config the path of an existing YAML file");
+  if (!in || std::filesystem::is_directory(file))
+    throw Error(file + ": cannot be read; give --config the path of an existing YAML file");
   std::ostringstream text;
   text << in.rdbuf();
   apply_text(schema, text.str(), file);
@@ -151,6 +159,20 @@ void apply_override(const Schema& schema, const std::string& assignment) {
   const bool is_text = std::holds_alternative<std::string*>(entry->value);
   const YAML::Node node = is_text ? YAML::Node(value) : parse(value, source);
   std::visit(Store{*entry, node, source}, entry->value);
+}
+
+void check(const Schema& schema) {
+  for (const auto& entry : schema.entries()) {
+    const auto number = std::visit(
+        [](const auto* value) -> std::optional<double> {
+          if constexpr (std::is_convertible_v<decltype(*value), double>) return static_cast<double>(*value);
+          return std::nullopt;
+        },
+        entry.value);
+    if (number && !is_inside(entry.bound, *number)) {
+      throw Error(entry.path + ": " + to_text(entry) + " is out of range, allowed is " + entry.bound.text());
+    }
+  }
 }
 
 std::string to_yaml(const Schema& schema) {

@@ -20,6 +20,8 @@ void apply_file(const Schema& schema, const std::string& file);
 void apply_text(const Schema& schema, const std::string& text, const std::string& source);
 /// Applies one "path=value" as given to --set.
 void apply_override(const Schema& schema, const std::string& assignment);
+/// Throws Error when a number, wherever it came from, is out of its bound.
+void check(const Schema& schema);
 /// The whole configuration as a YAML file with a comment per key; reading it back changes nothing.
 std::string to_yaml(const Schema& schema);
 

@@ -50,6 +50,7 @@ template <class ReaderQos>
 void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
   qos.reliable_reader_qos().times.heartbeat_response_delay = response_delay;
 }
+using Payload = rtps::SerializedPayload_t&;
 inline void announce_no_type_information(fdds::TypeSupport&) {}
 inline void announce_no_type_information(fdds::DomainParticipantQos& qos) {
   qos.properties().properties().emplace_back("fastdds.type_propagation", "disabled");
@@ -76,6 +77,7 @@ template <class ReaderQos>
 void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
   qos.reliable_reader_qos().times.heartbeatResponseDelay = response_delay;
 }
+using Payload = rtps::SerializedPayload_t*;
 inline void announce_no_type_information(fdds::TypeSupport& type) {
   type->auto_fill_type_object(false);
   type->auto_fill_type_information(false);

@@ -42,6 +42,7 @@ DataWriterQos writer_qos(const Qos& wanted, const std::string& type_hash) {
 DataReaderQos reader_qos(const Qos& wanted, const std::string& type_hash) {
   DataReaderQos qos;
   apply_common(wanted, type_hash, qos);
+  if (wanted.reader_depth > 0) qos.history().depth = wanted.reader_depth;
   compat::set_reader_timings(qos, compat::duration(0));
   return qos;
 }

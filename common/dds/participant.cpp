@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/dds/endpoint_qos.hpp"
+#include "common/dds/type_support.hpp"
 #include "idl/rmw_dds_common.hpp"
 
 namespace lapis::dds {
@@ -31,7 +32,9 @@ void apply_transport(const ParticipantOptions& options, compat::fdds::DomainPart
   auto udp = std::make_shared<compat::UDPv4TransportDescriptor>();
   udp->sendBufferSize = udp->receiveBufferSize = static_cast<std::uint32_t>(options.socket_buffer_bytes);
   udp->maxInitialPeersRange = kPeersPerHost;
-  if (options.discovery.range == DiscoveryRange::kLocalhost) udp->interfaceWhiteList.emplace_back("127.0.0.1");
+  // Peers on other hosts are reached over other interfaces.
+  const bool is_local = options.discovery.range == DiscoveryRange::kLocalhost && options.discovery.static_peers.empty();
+  if (is_local) udp->interfaceWhiteList.emplace_back("127.0.0.1");
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
   if (options.transport == Transport::kSharedMemory) {
@@ -89,8 +92,7 @@ Participant::Participant(const ParticipantOptions& options) : options_(options) 
   subscriber_ = participant_->create_subscriber(compat::fdds::SUBSCRIBER_QOS_DEFAULT);
   using Info = rmw_dds_common::msg::ParticipantEntitiesInfo;
   using Support = idl::TypeSupport<Info>;
-  auto& graph_topic = topic("ros_discovery_info", Support::kDdsName,
-                            compat::fdds::TypeSupport(new Support::PubSubType()));  // TypeSupport takes ownership
+  auto& graph_topic = topic("ros_discovery_info", Support::kDdsName, make_type_support<Info>());
   graph_writer_ = publisher_->create_datawriter(&graph_topic, writer_qos(kLatched, Support::kHash));
   if (graph_writer_ == nullptr) throw std::runtime_error("DDS writer of ros_discovery_info could not be created");
 }

@@ -37,7 +37,6 @@ class Participant {
 
   Gid gid() const;
   const std::string& name_space() const { return options_.name_space; }
-  const std::string& node_name() const { return options_.node_name; }
 
   /// Endpoints report themselves, so that the ROS 2 graph can list them.
   void add_reader(const Gid& gid) { readers_.push_back(gid); }

@@ -1,8 +1,8 @@
 #pragma once
 
 #include "common/dds/topic.hpp"
+#include "common/dds/type_support.hpp"
 #include "common/dds/writer.hpp"
-#include "idl/type_support.hpp"
 
 namespace lapis::dds {
 
@@ -12,8 +12,7 @@ class Publisher : public Writer {
  public:
   Publisher(Participant& participant, const Topic<Message>& topic)
       : Writer(participant, lapis::dds::dds_name(topic, participant.name_space()), Support::kDdsName,
-               compat::fdds::TypeSupport(new typename Support::PubSubType()),  // TypeSupport takes ownership
-               Support::kHash, topic.qos) {}
+               make_type_support<Message>(), Support::kHash, topic.qos) {}
 
   /// False (and counted) when DDS refused the sample.
   bool publish(const Message& message) { return write(&message); }

@@ -9,7 +9,9 @@ struct Qos {
   int depth = 10;
   bool latched = false;  ///< TRANSIENT_LOCAL: a late joiner gets the last samples
   bool keyed = false;    ///< one history per key, any number of keys
-  bool urgent = false;   ///< heartbeat period 20 ms instead of 100 ms: frames, /clock, /sim/*
+  int reader_depth =
+      0;  ///< 0: as depth. More for a latched topic that several writers share: a reader keeps one history
+  bool urgent = false;  ///< heartbeat period 20 ms instead of 100 ms: frames, /clock, /sim/*
 
   bool operator==(const Qos&) const = default;
 };
@@ -18,6 +20,7 @@ inline constexpr Qos kSensor{.depth = 5, .urgent = true};
 inline constexpr Qos kState{.depth = 10};
 inline constexpr Qos kFrameState{.depth = 10, .urgent = true};  ///< one sample per camera frame
 inline constexpr Qos kLatched{.depth = 1, .latched = true};
+inline constexpr Qos kLatchedByMany{.depth = 1, .latched = true, .reader_depth = 100};
 inline constexpr Qos kCommand{.depth = 1};
 inline constexpr Qos kTransform{.depth = 100};
 inline constexpr Qos kLockstep{.depth = 100, .urgent = true};

@@ -9,7 +9,7 @@ namespace lapis::dds {
 
 Reader::Reader(Participant& participant, const std::string& dds_name, const std::string& type_name,
                compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos)
-    : participant_(participant), dds_name_(dds_name), counts_gaps_(!qos.latched) {
+    : participant_(participant), dds_name_(dds_name), is_latched_(qos.latched) {
   auto& topic = participant.topic(dds_name, type_name, std::move(type));
   const auto mask = compat::fdds::StatusMask::subscription_matched()
                     << compat::fdds::StatusMask::requested_incompatible_qos();
@@ -27,7 +27,8 @@ Reader::Taken Reader::take(void* sample, compat::fdds::SampleInfo& info) {
   const Gid writer = to_gid(info.sample_identity.writer_guid());
   const std::uint64_t sequence = info.sample_identity.sequence_number().to64long();
   std::uint64_t& newest = newest_[writer];
-  if (counts_gaps_ && newest != 0 && sequence > newest + 1) missed_ += sequence - newest - 1;
+  // Latched (and so all keyed) topics skip sequence numbers by design.
+  if (!is_latched_ && newest != 0 && sequence > newest + 1) missed_ += sequence - newest - 1;
   newest = std::max(newest, sequence);
   return info.valid_data ? Taken::kSample : Taken::kKeyEnded;
 }
@@ -59,7 +60,7 @@ void Reader::on_subscription_matched(compat::fdds::DataReader* /*reader*/,
                                      const compat::fdds::SubscriptionMatchedStatus& status) {
   const Gid writer = to_gid(compat::rtps::iHandle2GUID(status.last_publication_handle));
   const std::lock_guard lock(mutex_);
-  if (status.current_count_change > 0) {
+  if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is the match's
     writers_.insert(writer);
   } else {
     writers_.erase(writer);

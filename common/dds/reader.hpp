@@ -31,6 +31,8 @@ class Reader : private compat::fdds::DataReaderListener {
   std::uint64_t missed() const { return missed_; }
   std::uint64_t incompatible() const { return incompatible_; }
   const std::string& dds_name() const { return dds_name_; }
+  /// True when writers give a late joiner their last samples.
+  bool is_latched() const { return is_latched_; }
   Gid gid() const { return gid_; }
   std::size_t matched() const;
   bool is_matched(const Gid& writer) const;
@@ -47,7 +49,7 @@ class Reader : private compat::fdds::DataReaderListener {
   Participant& participant_;
   std::string dds_name_;
   compat::fdds::DataReader* reader_ = nullptr;
-  bool counts_gaps_ = true;  // keyed and latched topics skip sequence numbers by design
+  bool is_latched_ = false;
   Gid gid_{};
   std::map<Gid, std::uint64_t> newest_;
   std::uint64_t missed_ = 0;

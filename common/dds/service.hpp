@@ -31,13 +31,11 @@ class ServiceServer : public Source {
 
   ServiceServer(Participant& participant, const ServiceTopic<Service>& service, Handler handler)
       : Source(participant, request_dds_name(in_namespace(service.name, participant.name_space())),
-               idl::TypeSupport<Request>::kDdsName,
-               compat::fdds::TypeSupport(new typename idl::TypeSupport<Request>::PubSubType()),
-               idl::TypeSupport<Request>::kHash, kService),
+               idl::TypeSupport<Request>::kDdsName, make_type_support<Request>(), idl::TypeSupport<Request>::kHash,
+               kService),
         reply_(participant, reply_dds_name(in_namespace(service.name, participant.name_space())),
-               idl::TypeSupport<Response>::kDdsName,
-               compat::fdds::TypeSupport(new typename idl::TypeSupport<Response>::PubSubType()),
-               idl::TypeSupport<Response>::kHash, kService),
+               idl::TypeSupport<Response>::kDdsName, make_type_support<Response>(), idl::TypeSupport<Response>::kHash,
+               kService),
         handler_(std::move(handler)) {}
 
   std::size_t dispatch() override {
@@ -98,13 +96,11 @@ class ServiceClient : public Source {
  public:
   ServiceClient(Participant& participant, const ServiceTopic<Service>& service)
       : Source(participant, reply_dds_name(in_namespace(service.name, participant.name_space())),
-               idl::TypeSupport<Response>::kDdsName,
-               compat::fdds::TypeSupport(new typename idl::TypeSupport<Response>::PubSubType()),
-               idl::TypeSupport<Response>::kHash, kService),
+               idl::TypeSupport<Response>::kDdsName, make_type_support<Response>(), idl::TypeSupport<Response>::kHash,
+               kService),
         request_(participant, request_dds_name(in_namespace(service.name, participant.name_space())),
-                 idl::TypeSupport<Request>::kDdsName,
-                 compat::fdds::TypeSupport(new typename idl::TypeSupport<Request>::PubSubType()),
-                 idl::TypeSupport<Request>::kHash, kService) {}
+                 idl::TypeSupport<Request>::kDdsName, make_type_support<Request>(), idl::TypeSupport<Request>::kHash,
+                 kService) {}
 
   /// True when a server's reader and writer are matched.
   bool is_ready() const { return matched() > 0 && request_.matched() > 0; }

@@ -5,7 +5,7 @@
 
 #include "common/dds/reader.hpp"
 #include "common/dds/topic.hpp"
-#include "idl/type_support.hpp"
+#include "common/dds/type_support.hpp"
 
 namespace lapis::dds {
 
@@ -25,8 +25,7 @@ class Subscription : public Source {
 
   Subscription(Participant& participant, const Topic<Message>& topic, Handler handler)
       : Source(participant, lapis::dds::dds_name(topic, participant.name_space()), Support::kDdsName,
-               compat::fdds::TypeSupport(new typename Support::PubSubType()),  // TypeSupport takes ownership
-               Support::kHash, topic.qos),
+               make_type_support<Message>(), Support::kHash, topic.qos),
         handler_(std::move(handler)) {}
 
   std::size_t dispatch() override {

@@ -73,6 +73,15 @@ void Context::run_cycle(const Cycle& cycle) {
   if (status_.take_change()) publish_diagnostics();
 }
 
+template <class Endpoint>
+void Context::add_incompatible(const Endpoint& endpoint, diagnostic_msgs::msg::DiagnosticStatus& entry) {
+  entry.values().push_back(
+      key_value("incompatible QoS " + endpoint.dds_name(), std::to_string(endpoint.incompatible())));
+  if (rate_limit_.pass(endpoint.dds_name())) {
+    spdlog::warn("{}: a peer was refused because of its QoS; docs/topics.md says what is needed", endpoint.dds_name());
+  }
+}
+
 void Context::publish_diagnostics() {
   diagnostic_msgs::msg::DiagnosticStatus entry;
   entry.level(static_cast<std::uint8_t>(status_.level()));
@@ -86,14 +95,20 @@ void Context::publish_diagnostics() {
   for (const auto& [key, value] : status_.values()) entry.values().push_back(key_value(key, value));
   for (const auto& [key, value] : status_.counters()) entry.values().push_back(key_value(key, std::to_string(value)));
   for (const auto& writer : writers_) {
+    if (writer->incompatible() > 0) add_incompatible(*writer, entry);
     if (writer->failed() > 0) {
       entry.values().push_back(key_value("refused writes " + writer->dds_name(), std::to_string(writer->failed())));
     }
   }
   for (const auto& source : sources_) {
+    if (source->incompatible() > 0) add_incompatible(*source, entry);
     if (source->missed() > 0) {
       entry.values().push_back(key_value("missed samples " + source->dds_name(), std::to_string(source->missed())));
     }
+  }
+  if (dds::undecodable_samples > 0) {
+    entry.values().push_back(key_value("samples that cannot be decoded", std::to_string(dds::undecodable_samples)));
+    if (rate_limit_.pass("undecodable")) spdlog::warn("samples that cannot be decoded: {}", dds::undecodable_samples);
   }
   diagnostic_msgs::msg::DiagnosticArray array;
   array.header().stamp(messages::to_message(now()));

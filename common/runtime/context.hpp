@@ -91,6 +91,8 @@ class Context {
   friend class LockstepParticipant;
   void run_cycle(const Cycle& cycle);
   void publish_diagnostics();
+  template <class Endpoint>
+  void add_incompatible(const Endpoint& endpoint, diagnostic_msgs::msg::DiagnosticStatus& entry);
 
   ContextOptions options_;
   time::Clock clock_;

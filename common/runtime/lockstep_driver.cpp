@@ -164,17 +164,17 @@ void LockstepDriver::forget_the_dead() {
 
 void LockstepDriver::check_time() {
   forget_the_dead();
+  const double patience_s =
+      config_.silent_participant == "wait" ? std::max(kLongestWait_s, config_.hard_timeout_s) : config_.hard_timeout_s;
   if (state_ == State::kJoining) {
     advance();
     if (state_ != State::kJoining) return;
     if (seconds_since(tick_published_) >= kJoinRepeat_s) publish_tick();
-    if (seconds_since(tick_began_) > config_.hard_timeout_s) give_up_on(silent(), config_.hard_timeout_s);
+    if (seconds_since(tick_began_) > patience_s) give_up_on(silent(), patience_s);
     return;
   }
   if (state_ != State::kWaiting || stage_ >= config_.stages.size()) return;
   const double silence_s = seconds_since(heard_[config_.stages[stage_]]);
-  const double patience_s =
-      config_.silent_participant == "wait" ? std::max(kLongestWait_s, config_.hard_timeout_s) : config_.hard_timeout_s;
   if (silence_s > patience_s) {
     give_up_on(silent(), silence_s);
   } else if (silence_s > config_.soft_timeout_s && seconds_since(frame_published_) > config_.soft_timeout_s) {
@@ -189,6 +189,11 @@ void LockstepDriver::check_time() {
 }
 
 void LockstepDriver::give_up_on(const std::vector<std::string>& participants, double silence_s) {
+  if (participants.empty()) {  // while joining: all have answered, but not all endpoints are matched
+    failure_ = "lock-step: readers of " + joined(config_.stages) + " were not matched; is a QoS incompatible?";
+    state_ = State::kFailed;
+    return;
+  }
   if (config_.silent_participant == "demote") {
     spdlog::warn("lock-step: going on without {}", joined(participants));
     std::erase_if(config_.stages, [&](const std::string& name) {

@@ -53,6 +53,7 @@ void LockstepParticipant::on_tick(const Tick& tick) {
     run_ = tick.run_gid();
     has_joined_ = false;
     answered_.reset();
+    forgiven_.clear();
   } else if (answered_ && number == *answered_) {
     publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_DONE, "");  // the answer was lost
     return;
@@ -69,9 +70,9 @@ void LockstepParticipant::answer_pending() {
   const Tick& tick = *pending_;
   const bool is_joining = !has_joined_ || tick.tick() == 0;
   if (is_joining && !are_endpoints_matched(tick)) return;
-  const bool is_first = !has_joined_ && tick.tick() > 0;
-  const bool gives_up = is_first && Clock::now() - pending_since_ > kJoiningPatience;
-  if (!are_inputs_received(tick) && !gives_up) return;
+  const bool is_late = !has_joined_ && (tick.tick() == 0 || Clock::now() - pending_since_ > kJoiningPatience);
+  if (is_late) forgive_the_past(tick);
+  if (!are_inputs_received(tick)) return;
   has_joined_ = true;
   if (tick.tick() > 0) context_.run_cycle({.inputs_complete = true, .is_final = tick.is_final()});
   publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_DONE, "");
@@ -91,10 +92,20 @@ bool LockstepParticipant::are_endpoints_matched(const Tick& tick) const {
   return true;
 }
 
+/// What was published before this process matched is nobody's: it will not come, in later ticks neither.
+void LockstepParticipant::forgive_the_past(const Tick& tick) {
+  for (const auto& count : tick.counts()) {
+    const auto source = find_topic(context_.sources(), count.topic());
+    if (source != context_.sources().end() && !(*source)->is_latched()) forgiven_[count.writer_gid()] = count.count();
+  }
+}
+
 bool LockstepParticipant::are_inputs_received(const Tick& tick) const {
   for (const auto& count : tick.counts()) {
     const auto source = find_topic(context_.sources(), count.topic());
     if (source == context_.sources().end()) continue;
+    const auto forgiven = forgiven_.find(count.writer_gid());
+    if (forgiven != forgiven_.end() && count.count() <= forgiven->second) continue;
     if ((*source)->received(count.writer_gid()) < count.count()) return false;
   }
   return true;

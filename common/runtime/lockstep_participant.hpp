@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <map>
 #include <optional>
 
 #include "common/dds/publisher.hpp"
@@ -28,6 +29,7 @@ class LockstepParticipant {
   void answer_pending();
   bool is_active() const;
   bool are_endpoints_matched(const Tick& tick) const;
+  void forgive_the_past(const Tick& tick);
   bool are_inputs_received(const Tick& tick) const;
   void publish_ack(const Tick& tick, std::uint8_t status, const std::string& reason);
   void say_busy();
@@ -40,6 +42,7 @@ class LockstepParticipant {
   std::optional<Tick> pending_;  // received, not answered
   Clock::time_point pending_since_;
   std::optional<std::pair<std::uint64_t, std::uint32_t>> answered_;  // tick and stage
+  std::map<dds::Gid, std::uint64_t> forgiven_;  // by writer: samples up to this one are not waited for
   double cpu_s_at_answer_ = 0.0;
 };
 

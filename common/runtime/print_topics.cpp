@@ -9,7 +9,8 @@ namespace {
 std::string qos_text(const lapis::dds::Qos& qos) {
   std::string text = qos.latched ? "latched" : "reliable";
   if (qos.keyed) return text + ", keyed, 1 per key";
-  return text + " " + std::to_string(qos.depth);
+  text += " " + std::to_string(qos.depth);
+  return qos.reader_depth > 0 ? text + ", readers " + std::to_string(qos.reader_depth) : text;
 }
 
 }  // namespace

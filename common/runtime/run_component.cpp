@@ -161,6 +161,8 @@ int run(ComponentFactory factory, int argc, char** argv) {
     dds::check_namespace(arguments.name_space);
     for (const auto& file : arguments.config_files) config::apply_file(factory.schema, file);
     for (const auto& assignment : arguments.overrides) config::apply_override(factory.schema, assignment);
+    app.parse(argc, argv);  // again: options of the component win over files
+    config::check(factory.schema);
   } catch (const std::exception& error) {
     std::cerr << "lapis_" << factory.name << ": " << error.what() << '\n';
     return kBadSetup;

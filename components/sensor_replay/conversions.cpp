@@ -48,7 +48,7 @@ sensor_msgs::msg::CameraInfo info_message(const CameraFile& file, const std_msgs
   info.width(static_cast<std::uint32_t>(c.width));
   info.height(static_cast<std::uint32_t>(c.height));
   info.distortion_model("plumb_bob");
-  info.d(std::vector<double>(file.distortion.begin(), file.distortion.end()));
+  info.d(std::vector<double>(file.distortion.size(), 0.0));  // the images are rectified
   info.k({c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0});
   info.r({1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
   info.p({c.fx, 0.0, c.cx, 0.0, 0.0, c.fy, c.cy, 0.0, 0.0, 0.0, 1.0, 0.0});

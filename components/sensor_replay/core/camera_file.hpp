@@ -12,7 +12,7 @@ namespace lapis::sensor_replay {
 /// What camera.yaml of a data set says. Colour and depth are registered and share one camera.
 struct CameraFile {
   geometry::PinholeCamera camera;
-  std::array<double, 5> distortion{};  ///< plumb_bob k1 k2 p1 p2 k3, each -10 to 10; absent = all 0
+  std::array<double, 5> distortion{};  ///< plumb_bob k1 k2 p1 p2 k3, of the recorded images, -10 to 10; absent = all 0
   double depth_scale = 0.0;            ///< value of a depth pixel per metre, 1 to 100000 (TUM 5000, millimetres 1000)
   double fps = 0.0;                    ///< nominal rate of the frames [Hz], 0.1 to 1000
   CameraMount mount;                   ///< camera_height [m] and pitch_down_deg; absent = 0

@@ -47,6 +47,7 @@ TumDataset::TumDataset(const TumDatasetConfig& config, const CameraReader& read_
   if (!fs::is_directory(config.folder)) fail(config.folder, "no such folder (expected a TUM RGB-D data set)");
   read_frames();
   camera_ = read_camera(config.folder / "camera.yaml");
+  rectifier_.emplace(camera_);
   const fs::path truth = config.folder / "groundtruth.txt";
   if (fs::exists(truth)) trajectory_ = trajectory::read_trajectory(truth);
   has_labels_ = fs::is_directory(config.folder / "label");
@@ -144,16 +145,19 @@ LoadedFrame TumDataset::load_frame(std::size_t index) const {
   frame.index = index;
   frame.stamp = listed.color.stamp;
   frame.color = std::move(std::get<geometry::ColorImage>(color));
+  rectifier_->rectify(frame.color);
   frame.T_world_camera = ground_truth(index);
   if (listed.depth) {
     frame.depth = take(read_depth(config_.folder / listed.depth->file, image_size(), camera_.depth_scale),
                        ImagePart::kDepth, listed.depth->file, frame.problems);
+    if (frame.depth) rectifier_->rectify(*frame.depth);
   } else {
     frame.problems.push_back({ImagePart::kDepth, ImageFault::kNotListed, {}});
   }
   if (has_labels_) {
     const fs::path file = label_file(index);
     frame.label = take(read_label(config_.folder / file, image_size()), ImagePart::kLabel, file, frame.problems);
+    if (frame.label) rectifier_->rectify(*frame.label);
   }
   return frame;
 }

@@ -14,6 +14,7 @@
 #include "sensor_replay/core/camera_file.hpp"
 #include "sensor_replay/core/class_list.hpp"
 #include "sensor_replay/core/image_file.hpp"
+#include "sensor_replay/core/rectifier.hpp"
 #include "sensor_replay/core/tum_lists.hpp"
 
 namespace lapis::sensor_replay {
@@ -36,7 +37,7 @@ struct ImageProblem {
 /// "depth/00007.png: truncated or not an image".
 std::string to_string(const ImageProblem& problem);
 
-/// A decoded frame. Every image has the size of the camera.
+/// A decoded frame, rectified. Every image has the size of the camera.
 struct ReplayFrame {
   std::size_t index = 0;
   time::Time stamp;  ///< of the colour image; the whole frame goes by it
@@ -107,6 +108,7 @@ class TumDataset {
 
   TumDatasetConfig config_;
   CameraFile camera_;
+  std::optional<Rectifier> rectifier_;  // exists after construction
   std::vector<ListedFrame> frames_;
   trajectory::Trajectory trajectory_;
   std::vector<ClassName> class_list_;

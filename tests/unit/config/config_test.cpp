@@ -113,6 +113,15 @@ TEST_F(ConfigTest, OutOfRangeNamesValueAndBound) {
   EXPECT_THAT(error_of_set("slam.mode=slow"), AllOf(HasSubstr("'slow'"), HasSubstr("fast | exact")));
 }
 
+TEST_F(ConfigTest, ValuesFromElsewhereAreChecked) {
+  EXPECT_NO_THROW(check(schema_));
+  config_.tracker.iterations = 0;
+  EXPECT_THAT(error_of([&] { check(schema_); }), AllOf(HasSubstr("slam.tracker.iterations: 0"), HasSubstr("1 to 100")));
+  config_.tracker.iterations = 1;
+  config_.tracker.max_depth_m = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THAT(error_of([&] { check(schema_); }), HasSubstr("slam.tracker.max_depth_m"));
+}
+
 TEST_F(ConfigTest, WrongTypesAreErrors) {
   EXPECT_THAT(error_of_text("slam: {tracker: {iterations: 2.5}}"), HasSubstr("not a whole number"));
   EXPECT_THAT(error_of_text("slam: {enabled: perhaps}"), HasSubstr("not true or false"));
@@ -125,6 +134,9 @@ TEST_F(ConfigTest, WrongTypesAreErrors) {
 
 TEST_F(ConfigTest, MissingFileAndBrokenYamlNameTheFile) {
   EXPECT_THAT(error_of([&] { apply_file(schema_, "/nonexistent/robot.yaml"); }), HasSubstr("/nonexistent/robot.yaml"));
+  EXPECT_THAT(error_of([&] { apply_file(schema_, std::filesystem::temp_directory_path().string()); }),
+              HasSubstr("cannot be read"));
+  EXPECT_THAT(error_of_text("slam: {seed: 1}\n---\nslam: {seed: 2}\n"), HasSubstr("more than one YAML document"));
   EXPECT_THAT(error_of_text("slam: [unclosed"), AllOf(HasSubstr("robot.yaml"), HasSubstr("not valid YAML")));
 }
 

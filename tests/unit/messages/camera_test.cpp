@@ -175,9 +175,9 @@ TEST(BadImage, EmptyOrHugeOrTruncated) {
   truncated.data().resize(399);
   expect_refused(truncated, "image has not step x height bytes");
   truncated.data().resize(401);
-  expect_refused(truncated, "image has 401 bytes");
+  expect_refused(truncated, "image has not step x height bytes");
   truncated.data().clear();
-  expect_refused(truncated, "image has 0 bytes");
+  expect_refused(truncated, "image has not step x height bytes");
 }
 
 TEST(BadImage, BigEndianIsRefusedWhereItMatters) {

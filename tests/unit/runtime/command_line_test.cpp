@@ -22,6 +22,7 @@ struct ProbeComponent {
   using Config = ProbeConfig;
   static constexpr const char* kName = "probe";
   static constexpr const char* kSummary = "ends at once";
+  static void add_options(CLI::App& app, Config& c) { app.add_option("--speed", c.speed); }
   ProbeComponent(const Config&, Context&) { ADD_FAILURE() << "the tool should have ended the process"; }
   static std::optional<int> run_tool(const Config& c) {
     std::cout << "speed " << c.speed << '\n';
@@ -49,6 +50,13 @@ TEST(CommandLine, ToolSeesTheConfigurationInEffect) {
   EXPECT_EQ(run_probe({}).out, "speed 3\n");
   EXPECT_EQ(run_probe({"--set", "probe.speed=5"}).out, "speed 5\n");
   EXPECT_EQ(run_probe({"--set", "probe.speed=9"}).status, 1);
+}
+
+TEST(CommandLine, OptionsOfTheComponentWinAndAreChecked) {
+  EXPECT_EQ(run_probe({"--speed", "4", "--set", "probe.speed=5"}).out, "speed 4\n");
+  const auto out_of_range = run_probe({"--speed", "99"});
+  EXPECT_EQ(out_of_range.status, 2);
+  EXPECT_THAT(out_of_range.err, HasSubstr("1 to 9"));
 }
 
 TEST(CommandLine, BadSetUpIsStatus2AndOneHelpfulLine) {

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <exception>
+
+#include "common/dds/compat.hpp"
+#include "idl/type_support.hpp"
+
+namespace lapis::dds {
+
+/// Samples of this process that were dropped because their bytes are no message of the topic's type.
+inline std::atomic<std::uint64_t> undecodable_samples{0};
+
+/// Generated type support that survives damaged samples: what Fast CDR throws would otherwise end the process.
+template <class PubSubType>
+class GuardedType : public PubSubType {
+ public:
+  bool deserialize(compat::Payload payload, void* sample) override {
+    try {
+      if (PubSubType::deserialize(payload, sample)) return true;
+    } catch (const std::exception&) {  // Fast CDR's exceptions derive from it
+    }
+    ++undecodable_samples;
+    return false;
+  }
+};
+
+template <class Message>
+compat::fdds::TypeSupport make_type_support() {
+  return compat::fdds::TypeSupport(
+      new GuardedType<typename idl::TypeSupport<Message>::PubSubType>());  // takes ownership
+}
+
+}  // namespace lapis::dds

@@ -79,8 +79,8 @@ inline constexpr Topic<nav_msgs::msg::Odometry> kSlamOdometry{
 inline constexpr Topic<lapis_msgs::msg::TrackedFrame> kTrackedFrame{
     "/slam/frame", dds::kFrameState, "slam", "camera rate",
     "state and pose of each frame relative to its reference key-frame"};
-inline constexpr Topic<nav_msgs::msg::Path> kKeyframePath{
-    "/slam/path", dds::kLatched, "slam", "on change, at most 2 Hz", "key-frame trajectory"};
+inline constexpr Topic<nav_msgs::msg::Path> kKeyframePath{"/slam/path", dds::kLatched, "slam",
+                                                          "on change, at most 2 Hz", "key-frame trajectory"};
 inline constexpr Topic<lapis_msgs::msg::PoseGraph> kPoseGraph{"/slam/pose_graph", dds::kLatched, "slam",
                                                               "on change, at most 2 Hz",
                                                               "nodes and edges with information, one version"};

@@ -21,8 +21,8 @@ trajectory, pose graph, semantic map, metrics.json and figures.
                    enter it goes from semantic_mapper to the evaluator's reference, too. --print-config of each process
                    lists the keys
 
-Results of an earlier run in DIR are removed. Exit status: 0 played to the end, 1 a process failed or no frame was
-judged, 2 bad set-up, 130 and 143 interrupted.
+Results of an earlier run in DIR are removed. Exit status: 0 played to the end, 1 a process failed or no frame came,
+2 bad set-up, 130 and 143 interrupted.
 TEXT
 }
 
@@ -123,5 +123,5 @@ print_metrics
 for name in sensor_replay slam semantic_mapper evaluator; do
   [ "${statuses[$name]}" = 0 ] || fail_with "$name" "failed with status ${statuses[$name]}" "${statuses[$name]}"
 done
-[ -f "$out/metrics.json" ] || fail_with slam "no frame was judged; the reason may be here or in the other logs"
+[ -f "$out/metrics.json" ] || fail_with slam "no frame came; the reason may be here or in the other logs"
 echo "run folder: $out"

@@ -114,7 +114,8 @@ void apply_node(const Schema& schema, const YAML::Node& node, const std::string&
   std::set<std::string> seen;
   for (const auto& item : node) {
     const std::string key = item.first.Scalar();
-    const std::string full = path.empty() ? key : path + "." + key;
+    std::string full = path.empty() ? "" : path + ".";
+    full += key;
     if (!seen.insert(key).second) fail(place(source, item.first), full, "key appears twice");
     apply_node(schema, item.second, full, source);
   }

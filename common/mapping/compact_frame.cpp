@@ -33,7 +33,7 @@ void append_differences(const std::vector<std::uint16_t>& values, std::vector<st
   for (std::size_t i = 0; i < count; ++i) {
     const auto step = static_cast<std::uint16_t>(values[i] - previous);
     // Zigzag keeps the high byte of small negative steps zero.
-    const auto coded = static_cast<std::uint16_t>((step << 1) ^ (step & 0x8000u ? 0xffffu : 0u));
+    const auto coded = static_cast<std::uint16_t>((static_cast<unsigned>(step) << 1) ^ (step & 0x8000u ? 0xffffu : 0u));
     out[begin + i] = static_cast<std::uint8_t>(coded & 0xffu);
     out[begin + count + i] = static_cast<std::uint8_t>(coded >> 8);
     previous = values[i];

@@ -40,7 +40,7 @@ std::optional<std::vector<std::uint8_t>> encode_tile(const VoxelMap& map, const 
 
 /// Inverse of encode_tile for the tile at `tile`. Nothing when the bytes are not exactly what an encoder writes: any
 /// input is safe.
-std::optional<DecodedTile> decode_tile(std::span<const std::uint8_t> bytes, const TileIndex& tile);
+std::optional<DecodedTile> decode_tile(std::span<const std::uint8_t> bytes, const TileIndex& index);
 
 /// Hash of a tile at a map version; the checksum of a map state is the sum over its tiles modulo 2^64.
 std::uint64_t tile_hash(const TileIndex& tile, std::uint64_t version);

@@ -57,10 +57,7 @@ Converted<geometry::Pose> from_message(const geometry_msgs::msg::Transform& mess
 
 std::array<double, 36> to_row_major(const geometry::Matrix6d& covariance) {
   std::array<double, 36> out{};
-  for (int row = 0; row < 6; ++row) {
-    for (int column = 0; column < 6; ++column)
-      out[static_cast<std::size_t>(6 * row + column)] = covariance(row, column);
-  }
+  Eigen::Map<Eigen::Matrix<double, 6, 6, Eigen::RowMajor>>(out.data()) = covariance;
   return out;
 }
 

@@ -81,15 +81,16 @@ void LockstepParticipant::answer_pending() {
 }
 
 bool LockstepParticipant::are_endpoints_matched(const Tick& tick) const {
-  for (const auto& reader : tick.readers()) {
+  const auto is_reader_matched = [this](const auto& reader) {
     const auto writer = find_topic(context_.writers(), reader.topic());
-    if (writer != context_.writers().end() && !(*writer)->is_matched(reader.gid())) return false;
-  }
-  for (const auto& count : tick.counts()) {
+    return writer == context_.writers().end() || (*writer)->is_matched(reader.gid());
+  };
+  const auto is_writer_matched = [this](const auto& count) {
     const auto source = find_topic(context_.sources(), count.topic());
-    if (source != context_.sources().end() && !(*source)->is_matched(count.writer_gid())) return false;
-  }
-  return true;
+    return source == context_.sources().end() || (*source)->is_matched(count.writer_gid());
+  };
+  return std::all_of(tick.readers().begin(), tick.readers().end(), is_reader_matched) &&
+         std::all_of(tick.counts().begin(), tick.counts().end(), is_writer_matched);
 }
 
 /// What was published before this process matched is nobody's: it will not come, in later ticks neither.
@@ -101,14 +102,13 @@ void LockstepParticipant::forgive_the_past(const Tick& tick) {
 }
 
 bool LockstepParticipant::are_inputs_received(const Tick& tick) const {
-  for (const auto& count : tick.counts()) {
+  return std::all_of(tick.counts().begin(), tick.counts().end(), [this](const auto& count) {
     const auto source = find_topic(context_.sources(), count.topic());
-    if (source == context_.sources().end()) continue;
+    if (source == context_.sources().end()) return true;
     const auto forgiven = forgiven_.find(count.writer_gid());
-    if (forgiven != forgiven_.end() && count.count() <= forgiven->second) continue;
-    if ((*source)->received(count.writer_gid()) < count.count()) return false;
-  }
-  return true;
+    if (forgiven != forgiven_.end() && count.count() <= forgiven->second) return true;
+    return (*source)->received(count.writer_gid()) >= count.count();
+  });
 }
 
 void LockstepParticipant::publish_ack(const Tick& tick, std::uint8_t status, const std::string& reason) {

@@ -169,7 +169,8 @@ std::string format_table(const RunMetrics& metrics) {
       table += table_row(key, value);
       continue;
     }
-    for (const auto& [process, figure] : value.items()) table += table_row(key + "." + process, figure);
+    const std::string prefix = key + ".";
+    for (const auto& [process, figure] : value.items()) table += table_row(std::string(prefix).append(process), figure);
   }
   return table;
 }

@@ -81,7 +81,7 @@ class SemanticMapper {
   explicit SemanticMapper(const MapperConfig& config);
 
   /// Puts a frame into the map at its key-frame's newest known pose and stores it.
-  IntegrationReport integrate(AnchoredFrame frame);
+  IntegrationReport integrate(AnchoredFrame input);
   /// Newest poses of the graph. Key-frames that are not listed keep theirs; older versions are ignored. Moves nothing
   /// yet.
   void update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses);

@@ -13,14 +13,15 @@ namespace lapis::sensor_replay {
 /// All functions may be called from several threads.
 class Rectifier {
  public:
-  explicit Rectifier(const CameraFile& camera);
+  explicit Rectifier(const CameraFile& file);
   ~Rectifier();
   Rectifier(const Rectifier&) = delete;
   Rectifier& operator=(const Rectifier&) = delete;
 
   /// The image must have the camera's size. Without distortion it stays as it is.
   void rectify(geometry::ColorImage& image) const;
-  void rectify(geometry::Image<std::uint16_t>& depth_or_labels) const;
+  /// Depth or labels.
+  void rectify(geometry::Image<std::uint16_t>& image) const;
 
  private:
   struct Maps;

@@ -106,9 +106,9 @@ void Context::publish_diagnostics() {
       entry.values().push_back(key_value("missed samples " + source->dds_name(), std::to_string(source->missed())));
     }
   }
-  if (dds::undecodable_samples > 0) {
-    entry.values().push_back(key_value("samples that cannot be decoded", std::to_string(dds::undecodable_samples)));
-    if (rate_limit_.pass("undecodable")) spdlog::warn("samples that cannot be decoded: {}", dds::undecodable_samples);
+  if (const std::uint64_t undecodable = dds::undecodable_samples; undecodable > 0) {
+    entry.values().push_back(key_value("samples that cannot be decoded", std::to_string(undecodable)));
+    if (rate_limit_.pass("undecodable")) spdlog::warn("samples that cannot be decoded: {}", undecodable);
   }
   diagnostic_msgs::msg::DiagnosticArray array;
   array.header().stamp(messages::to_message(now()));

@@ -37,7 +37,8 @@ void FeatureIndex::find(const Eigen::Vector2d& pixel, double radius_px, std::vec
   const int last_row = cell_of(pixel.y() + radius_px, rows_);
   for (int row = cell_of(pixel.y() - radius_px, rows_); row <= last_row; ++row) {
     for (int column = first_column; column <= last_column; ++column) {
-      for (const int i : cells_[static_cast<std::size_t>(row * columns_ + column)]) {
+      const int cell = row * columns_ + column;
+      for (const int i : cells_[static_cast<std::size_t>(cell)]) {
         const Eigen::Vector2d offset = pixels_[static_cast<std::size_t>(i)] - pixel;
         if (offset.cwiseAbs().maxCoeff() <= radius_px) found.push_back(i);
       }

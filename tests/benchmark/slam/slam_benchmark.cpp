@@ -46,7 +46,7 @@ void local_bundle(benchmark::State& state) {
   }
   for (std::size_t k = 0; k < static_cast<std::size_t>(state.range(1)); ++k) {
     const Eigen::Vector3d point(side(random), side(random), away(random));
-    scene.points_map.push_back(point + 0.02 * Eigen::Vector3d(normal(random), normal(random), normal(random)));
+    scene.points_map.emplace_back(point + 0.02 * Eigen::Vector3d(normal(random), normal(random), normal(random)));
     for (std::size_t i = 0; i < scene.cameras.size(); ++i) {
       const Eigen::Vector3d p = scene.cameras[i].T_map_camera.inverse() * point;
       scene.observations.push_back({i, k, camera().project(p), 1.0, p.z()});

@@ -70,7 +70,8 @@ void LockstepParticipant::answer_pending() {
   const Tick& tick = *pending_;
   const bool is_joining = !has_joined_ || tick.tick() == 0;
   if (is_joining && !are_endpoints_matched(tick)) return;
-  const bool is_late = !has_joined_ && (tick.tick() == 0 || Clock::now() - pending_since_ > kJoiningPatience);
+  // Tick 0 carries no data. It comes again with each newcomer's counts, of which nothing has to be there.
+  const bool is_late = tick.tick() == 0 || (!has_joined_ && Clock::now() - pending_since_ > kJoiningPatience);
   if (is_late) forgive_the_past(tick);
   if (!are_inputs_received(tick)) return;
   has_joined_ = true;

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 constexpr const char* kEcho = "lapis_test_echo";
 
 std::filesystem::path temporary_file(const std::string& name, const std::string& text) {
-  const auto path = std::filesystem::path(::testing::TempDir()) / name;
+  auto path = std::filesystem::path(::testing::TempDir()) / name;
   std::ofstream(path) << text;
   return path;
 }

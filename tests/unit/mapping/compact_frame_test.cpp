@@ -29,7 +29,8 @@ TEST(CompactFrame, KeepsSampledDepthInMillimetresAndLabels) {
     ASSERT_EQ(samples.depth_mm.size(), static_cast<std::size_t>(frame->columns() * frame->rows()));
     for (int row = 0; row < frame->rows(); ++row)
       for (int column = 0; column < frame->columns(); ++column) {
-        const auto i = static_cast<std::size_t>(row * frame->columns() + column);
+        const int position = row * frame->columns() + column;
+        const auto i = static_cast<std::size_t>(position);
         const float true_m = depth(column * stride, row * stride);
         EXPECT_NEAR(samples.depth_mm[i] * 1e-3f, std::min(true_m, 65.535f), 0.00051f);
         EXPECT_EQ(samples.labels[i], labels(column * stride, row * stride));

@@ -1,5 +1,6 @@
 #include "common/mapping/map_file.hpp"
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -70,7 +71,7 @@ TEST_F(MapFileTest, EqualMapsGiveEqualBytes) {
   for (int i = 0; i < 20; ++i) all.push_back(test::random_votes(random));
   MapFile a{VoxelMap(0.1), {}, {}, {}}, b = a;
   for (const FrameVotes& votes : all) a.map.add(votes);
-  for (auto it = all.rbegin(); it != all.rend(); ++it) b.map.add(*it);
+  std::for_each(all.rbegin(), all.rend(), [&b](const FrameVotes& votes) { b.map.add(votes); });
   EXPECT_EQ(encode_map(a), encode_map(b));
 }
 

@@ -65,7 +65,7 @@ TEST(TileCodec, EqualContentGivesEqualBytesWhateverItsHistory) {
   for (const FrameVotes& votes : all) a.add(votes);
   const FrameVotes extra = test::random_votes(random);
   b.add(extra);
-  for (auto it = all.rbegin(); it != all.rend(); ++it) b.add(*it);
+  std::for_each(all.rbegin(), all.rend(), [&b](const FrameVotes& votes) { b.add(votes); });
   b.subtract(extra);
   for (const TileIndex& tile : tiles_of(a, 2)) EXPECT_EQ(encode_tile(a, tile, 2), encode_tile(b, tile, 2));
 }

@@ -79,8 +79,10 @@ TEST(Covariance, IsRowMajor) {
     for (int column = 0; column < 6; ++column) covariance(row, column) = 10.0 * row + column;
   }
   const auto out = to_row_major(covariance);
-  for (std::size_t i = 0; i < 36; ++i)
-    EXPECT_EQ(out[i], 10.0 * static_cast<double>(i / 6) + static_cast<double>(i % 6));
+  for (std::size_t i = 0; i < 36; ++i) {
+    const std::size_t row = i / 6, column = i % 6;
+    EXPECT_EQ(out[i], 10.0 * static_cast<double>(row) + static_cast<double>(column));
+  }
 }
 
 TEST(StaticTransforms, MultipliesAlongTheChainOfSeveralWriters) {

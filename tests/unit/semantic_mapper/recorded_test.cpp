@@ -43,7 +43,7 @@ geometry::Image<Pixel> convert(const cv::Mat& image, double scale) {
 TEST(RecordedSequence, CarvingKeepsNineOfTenSeenVoxels) {
   const auto found = lapis::test::find_test_data("rgbd/aws_small_house_loop");
   if (!found) GTEST_SKIP() << lapis::test::missing_test_data("rgbd/aws_small_house_loop");
-  const fs::path folder = *found;
+  const fs::path& folder = *found;
   const geometry::PinholeCamera camera{640, 360, 320, 320, 319.5, 179.5};
   const std::vector<geometry::Pose> poses = read_poses(folder / "groundtruth.txt");
   ASSERT_EQ(poses.size(), 268u);

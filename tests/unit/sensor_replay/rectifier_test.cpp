@@ -51,8 +51,9 @@ TEST(Rectifier, TakesEveryPixelFromWhereTheLensPutIt) {
       largest_shift = std::max(largest_shift, std::hypot(u_d - u, v_d - v));
       ASSERT_NEAR(color(u, v).r, u_d, 0.6) << u << ", " << v;
       ASSERT_NEAR(color(u, v).g, v_d, 0.6) << u << ", " << v;
-      ASSERT_NEAR((depth(u, v) - 1) % kWidth, u_d, 0.55) << u << ", " << v;
-      ASSERT_NEAR((depth(u, v) - 1) / kWidth, v_d, 0.55) << u << ", " << v;
+      const int column = (depth(u, v) - 1) % kWidth, row = (depth(u, v) - 1) / kWidth;
+      ASSERT_NEAR(column, u_d, 0.55) << u << ", " << v;
+      ASSERT_NEAR(row, v_d, 0.55) << u << ", " << v;
     }
   }
   EXPECT_GT(largest_shift, 3.0);

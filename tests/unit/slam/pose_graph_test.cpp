@@ -100,13 +100,11 @@ TEST(PoseGraphFile, InformationMeansTheSameInTheFilesConvention) {
   std::istringstream words(written({0, {}, graph.edges}));
   std::string word;
   for (int i = 0; i < 10; ++i) words >> word;
-  Matrix6d in_file;
+  Matrix6d upper = Matrix6d::Zero();
   for (int row = 0; row < 6; ++row) {
-    for (int column = row; column < 6; ++column) {
-      words >> in_file(row, column);
-      in_file(column, row) = in_file(row, column);
-    }
+    for (int column = row; column < 6; ++column) words >> upper(row, column);
   }
+  const Matrix6d in_file = upper.selfadjointView<Eigen::Upper>();
   const Vector6d xi = 1e-4 * Vector6d(1.0, -2.0, 0.5, 0.7, 1.5, -1.0);
   Vector6d file_error;
   file_error << geometry::se3_exp(xi).translation(), geometry::unit_quaternion(geometry::se3_exp(xi)).vec();

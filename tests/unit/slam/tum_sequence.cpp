@@ -80,7 +80,7 @@ RgbdFrame TumSequence::load(std::size_t index) const {
 std::optional<TumSequence> find_sequence(const std::string& name) {
   const auto found = lapis::test::find_test_data("rgbd/" + name);
   if (!found) return std::nullopt;
-  const fs::path folder = *found;
+  const fs::path& folder = *found;
   std::ifstream associations(folder / "associations.txt");
   TumSequence sequence;
   std::string color_stamp, color, depth_stamp, depth;

@@ -71,7 +71,7 @@ void run_map(const MapOptions& options, std::ostream& out) {
   result["map_completeness_mean_m"] = value_or_null(error.completeness_mean_m);
   result["overlap"] = ordered_json::array();
   for (const Overlap& overlap : error.overlaps) {
-    result["overlap"].push_back({{"tolerance_voxels", overlap.tolerance_voxels},
+    result["overlap"].push_back({{"tolerance_m", overlap.tolerance_m},
                                  {"precision", value_or_null(overlap.precision)},
                                  {"recall", value_or_null(overlap.recall)},
                                  {"f1", value_or_null(overlap.f1)}});
@@ -84,9 +84,14 @@ void run_iou(const MapOptions& options, std::ostream& out) {
   const LoadedMap estimate = load(options.estimate);
   require_same_classes(options, reference, estimate);
   const SemanticIou iou = semantic_iou(reference.space.occupied, estimate.space.occupied, options.top_classes);
+  const CommonSpace common = restrict_to_common(reference.space, estimate.space);
+  const SemanticIou observed = semantic_iou(common.reference, common.estimate, top_classes(iou));
   ordered_json result = describe(options, reference, estimate);
   result["iou_top8_mean"] = value_or_null(iou.top_mean);
   result["iou_mean"] = value_or_null(iou.mean);
+  result["observed_in_both_share"] = value_or_null(common.share);
+  result["observed_iou_top8_mean"] = value_or_null(observed.top_mean);
+  result["observed_iou_mean"] = value_or_null(observed.mean);
   result["classes"] = ordered_json::array();
   for (const ClassIou& c : iou.classes) {
     result["classes"].push_back({{"id", c.label},
@@ -141,7 +146,8 @@ void add_map_tools(CLI::App& app, std::ostream& out) {
                   "ids of the classes in iou_top8_mean; default: the 8 most frequent of the reference")
       ->delimiter(',');
   iou->footer(
-      "Counted are voxels occupied in either map; unlabelled is no class. Example:\n"
+      "Counted are voxels occupied in either map; for observed_iou_*, of these, the voxels that both maps have\n"
+      "observed. Unlabelled is no class. Example:\n"
       "  lapis_evaluator iou --reference run/reference.lapis --estimate run/map.lapis --json");
   iou->callback([iou_options, &out] { run_iou(*iou_options, out); });
 

@@ -1,6 +1,7 @@
 #include "evaluator/core/iou.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
 
 namespace lapis::evaluator {
@@ -37,6 +38,18 @@ bool has_label_near(const LabelledVoxels& map, const LabelledVoxel& voxel) {
     }
   }
   return false;
+}
+
+bool is_observed(const KnownSpace& space, const VoxelIndex& index) {
+  return find(space.occupied, index) != nullptr ||
+         std::binary_search(space.free.begin(), space.free.end(), index, is_before);
+}
+
+LabelledVoxels observed_by(const KnownSpace& space, const LabelledVoxels& map) {
+  LabelledVoxels result{map.resolution_m, {}};
+  std::copy_if(map.voxels.begin(), map.voxels.end(), std::back_inserter(result.voxels),
+               [&space](const LabelledVoxel& voxel) { return is_observed(space, voxel.index); });
+  return result;
 }
 
 CountsByLabel count_labels(const LabelledVoxels& reference, const LabelledVoxels& estimate) {
@@ -107,6 +120,26 @@ SemanticIou semantic_iou(const LabelledVoxels& reference, const LabelledVoxels& 
   result.top_mean = mean_iou(result.classes, [](const ClassIou& c) { return c.is_top; });
   result.mean = mean_iou(result.classes, [](const ClassIou&) { return true; });
   return result;
+}
+
+std::vector<std::uint16_t> top_classes(const SemanticIou& iou) {
+  std::vector<std::uint16_t> labels;
+  for (const ClassIou& c : iou.classes) {
+    if (c.is_top) labels.push_back(c.label);
+  }
+  return labels;
+}
+
+CommonSpace restrict_to_common(const KnownSpace& reference, const KnownSpace& estimate) {
+  require_same_grid(reference.occupied, estimate.occupied);
+  CommonSpace common{observed_by(estimate, reference.occupied), observed_by(reference, estimate.occupied), {}};
+  const std::size_t known_to_reference = reference.occupied.voxels.size() + reference.free.size();
+  const std::size_t known_to_estimate = estimate.occupied.voxels.size() + estimate.free.size();
+  std::size_t both = common.reference.voxels.size();
+  for (const VoxelIndex& index : reference.free) both += is_observed(estimate, index) ? 1 : 0;
+  const std::size_t either = known_to_reference + known_to_estimate - both;
+  if (either > 0) common.share = static_cast<double>(both) / static_cast<double>(either);
+  return common;
 }
 
 }  // namespace lapis::evaluator

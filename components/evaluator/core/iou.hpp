@@ -35,4 +35,17 @@ struct SemanticIou {
 SemanticIou semantic_iou(const LabelledVoxels& reference, const LabelledVoxels& estimate,
                          const std::vector<std::uint16_t>& top_classes = {});
 
+/// Labels of the classes that top_mean is of.
+std::vector<std::uint16_t> top_classes(const SemanticIou& iou);
+
+/// Two maps reduced to the voxels that both have observed, free or occupied.
+struct CommonSpace {
+  LabelledVoxels reference;
+  LabelledVoxels estimate;
+  std::optional<double> share;  ///< of these voxels among those that either has observed; none when both are empty
+};
+
+/// Throws std::invalid_argument when the resolutions differ.
+CommonSpace restrict_to_common(const KnownSpace& reference, const KnownSpace& estimate);
+
 }  // namespace lapis::evaluator

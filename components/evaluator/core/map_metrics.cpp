@@ -1,8 +1,8 @@
 #include "evaluator/core/map_metrics.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <cstdint>
 
 #include "evaluator/core/nearest_voxel.hpp"
 #include "evaluator/core/statistics.hpp"
@@ -10,7 +10,8 @@
 namespace lapis::evaluator {
 namespace {
 
-constexpr int kMaxTolerance = 2;
+constexpr std::array kTolerances_m = {0.0, 0.25, 0.5};
+constexpr double kRounding_m = 1e-9;
 
 std::vector<VoxelIndex> indices(const LabelledVoxels& map) {
   std::vector<VoxelIndex> result;
@@ -19,20 +20,15 @@ std::vector<VoxelIndex> indices(const LabelledVoxels& map) {
   return result;
 }
 
-// Squared distances [voxels^2] from each voxel of `from` to the nearest of `to`; empty when `to` is.
-std::vector<std::int64_t> squared_distances(const LabelledVoxels& from, const LabelledVoxels& to) {
-  std::vector<std::int64_t> result;
+// From the centre of each voxel of `from` to the nearest of `to`; empty when `to` is.
+std::vector<double> distances_m(const LabelledVoxels& from, const LabelledVoxels& to) {
+  std::vector<double> result;
   if (to.voxels.empty()) return result;
   const NearestVoxel nearest(indices(to));
   result.reserve(from.voxels.size());
-  for (const LabelledVoxel& voxel : from.voxels) result.push_back(nearest.squared_distance(voxel.index));
-  return result;
-}
-
-std::vector<double> to_metres(const std::vector<std::int64_t>& squared, double resolution_m) {
-  std::vector<double> result;
-  result.reserve(squared.size());
-  for (const std::int64_t d : squared) result.push_back(std::sqrt(static_cast<double>(d)) * resolution_m);
+  for (const LabelledVoxel& voxel : from.voxels) {
+    result.push_back(std::sqrt(static_cast<double>(nearest.squared_distance(voxel.index))) * from.resolution_m);
+  }
   return result;
 }
 
@@ -42,10 +38,10 @@ std::optional<double> mean(const std::vector<double>& values) {
 }
 
 // Share of `count` voxels whose partner is near enough; without any voxel there is nothing to share.
-std::optional<double> share_within(const std::vector<std::int64_t>& squared, std::size_t count, int tolerance) {
+std::optional<double> share_within(const std::vector<double>& distances_m, std::size_t count, double tolerance_m) {
   if (count == 0) return std::nullopt;
-  const auto hits = std::count_if(squared.begin(), squared.end(),
-                                  [tolerance](std::int64_t d) { return d <= std::int64_t{tolerance} * tolerance; });
+  const auto hits = std::count_if(distances_m.begin(), distances_m.end(),
+                                  [tolerance_m](double d) { return d <= tolerance_m + kRounding_m; });
   return static_cast<double>(hits) / static_cast<double>(count);
 }
 
@@ -60,17 +56,16 @@ std::optional<double> f1_score(std::optional<double> precision, std::optional<do
 
 MapError map_error(const LabelledVoxels& reference, const LabelledVoxels& estimate) {
   require_same_grid(reference, estimate);
-  const auto to_reference = squared_distances(estimate, reference);
-  const auto to_estimate = squared_distances(reference, estimate);
-  const auto accuracy_m = to_metres(to_reference, reference.resolution_m);
+  const auto accuracy_m = distances_m(estimate, reference);
+  const auto completeness_m = distances_m(reference, estimate);
   MapError result;
   result.accuracy_mean_m = mean(accuracy_m);
   result.accuracy_p95_m = quantile(accuracy_m, 0.95);
-  result.completeness_mean_m = mean(to_metres(to_estimate, reference.resolution_m));
-  for (int tolerance = 0; tolerance <= kMaxTolerance; ++tolerance) {
-    const auto precision = share_within(to_reference, estimate.voxels.size(), tolerance);
-    const auto recall = share_within(to_estimate, reference.voxels.size(), tolerance);
-    result.overlaps.push_back({tolerance, precision, recall, f1_score(precision, recall)});
+  result.completeness_mean_m = mean(completeness_m);
+  for (const double tolerance_m : kTolerances_m) {
+    const auto precision = share_within(accuracy_m, estimate.voxels.size(), tolerance_m);
+    const auto recall = share_within(completeness_m, reference.voxels.size(), tolerance_m);
+    result.overlaps.push_back({tolerance_m, precision, recall, f1_score(precision, recall)});
   }
   return result;
 }

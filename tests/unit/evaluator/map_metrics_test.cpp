@@ -87,7 +87,7 @@ TEST(MapErrorTest, AgreesWithBruteForce) {
     EXPECT_NEAR(*error.completeness_mean_m, error_statistics(completeness)->mean, 1e-9);
     ASSERT_EQ(error.overlaps.size(), 3u);
     for (const Overlap& overlap : error.overlaps) {
-      const double limit = overlap.tolerance_voxels * 0.25;
+      const double limit = overlap.tolerance_m;
       const double precision = share_below(accuracy, limit);
       const double recall = share_below(completeness, limit);
       EXPECT_NEAR(*overlap.precision, precision, 1e-12);
@@ -137,6 +137,16 @@ TEST(MapErrorTest, AnEmptyMapScoresNothing) {
 
 // Reference: class 1 at x = 0..3, class 2 at x = 4, 5, unlabelled at 6.
 // Estimate: class 1 at 0, 1; class 2 at 2 and 4; class 3 at 6; unlabelled at 5; nothing at 3; class 1 at 10.
+// At 0.1 m, voxels two and five steps away lie within 0.25 and 0.5 m.
+TEST(MapErrorTest, TolerancesAreMetres) {
+  const auto reference = make_labelled_voxels(0.1, {{{0, 0, 0}, 1}});
+  const auto estimate = make_labelled_voxels(0.1, {{{0, 0, 0}, 1}, {{2, 0, 0}, 1}, {{0, 5, 0}, 1}, {{0, 0, 6}, 1}});
+  const MapError error = map_error(reference, estimate);
+  const std::vector<double> precision = {*error.overlaps[0].precision, *error.overlaps[1].precision,
+                                         *error.overlaps[2].precision};
+  EXPECT_EQ(precision, (std::vector<double>{0.25, 0.5, 0.75}));
+}
+
 TEST(SemanticIouTest, HandExample) {
   const auto reference = make_labelled_voxels(
       0.25,
@@ -182,6 +192,26 @@ TEST(SemanticIouTest, TopClassesAreTheEightMostFrequentOrTheSceneList) {
   EXPECT_EQ(result.classes.size(), 10u);
   const SemanticIou listed = semantic_iou(map, map, {1, 3});
   EXPECT_EQ(std::count_if(listed.classes.begin(), listed.classes.end(), [](const auto& c) { return c.is_top; }), 2);
+}
+
+// Reference: wall at 0 and 1, door at 2, free at 3. Estimate: wall at 0, free at 1, unknown at 2, wall at 3 and 4.
+TEST(SemanticIouTest, OnlyWhatBothHaveObservedIsCommon) {
+  const auto reference = make_known_space(make_labelled_voxels(0.25, {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}, {{2, 0, 0}, 2}}),
+                                          {VoxelIndex(3, 0, 0)});
+  const auto estimate = make_known_space(make_labelled_voxels(0.25, {{{0, 0, 0}, 1}, {{3, 0, 0}, 1}, {{4, 0, 0}, 1}}),
+                                         {VoxelIndex(1, 0, 0)});
+  const CommonSpace common = restrict_to_common(reference, estimate);
+  EXPECT_NEAR(*common.share, 3.0 / 5.0, 1e-12);  // 0, 1, 3 of 0 to 4
+  EXPECT_EQ(common.reference.voxels.size(), 2u);
+  EXPECT_EQ(common.estimate.voxels.size(), 2u);
+  const SemanticIou all = semantic_iou(reference.occupied, estimate.occupied);
+  EXPECT_EQ(top_classes(all), (std::vector<std::uint16_t>{1, 2}));
+  EXPECT_NEAR(all.classes[0].iou, 1.0 / 4.0, 1e-12);
+  const SemanticIou observed = semantic_iou(common.reference, common.estimate, top_classes(all));
+  ASSERT_EQ(observed.classes.size(), 1u);
+  EXPECT_NEAR(observed.classes[0].iou, 1.0 / 3.0, 1e-12);
+  EXPECT_FALSE(restrict_to_common({{0.25, {}}, {}}, {{0.25, {}}, {}}).share);
+  EXPECT_THROW(restrict_to_common(reference, {{0.1, {}}, {}}), std::invalid_argument);
 }
 
 TEST(SemanticIouTest, IsSymmetricAndToleranceOnlyHelps) {

@@ -16,4 +16,17 @@ Converted<mapping::LabelList> from_message(const vision_msgs::msg::LabelInfo& me
   }
 }
 
+vision_msgs::msg::LabelInfo to_message(const mapping::LabelList& labels, time::Time stamp,
+                                       const std::string& frame_id) {
+  vision_msgs::msg::LabelInfo message;
+  message.header(header(stamp, frame_id));
+  for (const auto& label : labels.labels()) {
+    vision_msgs::msg::VisionClass item;
+    item.class_id(label.id);
+    item.class_name(label.name);
+    message.class_map().push_back(item);
+  }
+  return message;
+}
+
 }  // namespace lapis::messages

@@ -2,6 +2,7 @@
 
 #include "common/mapping/label_list.hpp"
 #include "common/messages/converted.hpp"
+#include "common/messages/time.hpp"
 #include "idl/vision_msgs.hpp"
 
 namespace lapis::messages {
@@ -9,5 +10,8 @@ namespace lapis::messages {
 /// The classes that a segmentation announces; an entry for id 0 only says how it calls "unlabelled" and is left out.
 /// Refused when an id occurs twice.
 Converted<mapping::LabelList> from_message(const vision_msgs::msg::LabelInfo& message);
+
+/// The announcement of a camera or a segmentation.
+vision_msgs::msg::LabelInfo to_message(const mapping::LabelList& labels, time::Time stamp, const std::string& frame_id);
 
 }  // namespace lapis::messages

@@ -1,7 +1,10 @@
 #pragma once
 
+#include <string>
+
 #include "common/time/time.hpp"
 #include "idl/builtin_interfaces.hpp"
+#include "idl/std_msgs.hpp"
 
 namespace lapis::messages {
 
@@ -22,6 +25,13 @@ inline builtin_interfaces::msg::Time to_message(time::Time t) {
   stamp.sec(static_cast<std::int32_t>(sec));
   stamp.nanosec(static_cast<std::uint32_t>(nanosec));
   return stamp;
+}
+
+inline std_msgs::msg::Header header(time::Time stamp, const std::string& frame_id) {
+  std_msgs::msg::Header h;
+  h.stamp(to_message(stamp));
+  h.frame_id(frame_id);
+  return h;
 }
 
 }  // namespace lapis::messages

@@ -32,6 +32,11 @@ LockstepDriver::LockstepDriver(Context& context, const LockstepConfig& config, s
   release_stage();
 }
 
+LockstepDriver::State LockstepDriver::state() {
+  advance();
+  return state_;
+}
+
 void LockstepDriver::begin(time::Time stamp, bool is_final) {
   ++number_;
   stage_ = 0;
@@ -95,6 +100,7 @@ void LockstepDriver::on_ack(const Ack& ack) {
   if (is_old) return;
   const bool is_new = known == last_ack_.end() || known->second.participant_gid() != ack.participant_gid();
   last_ack_[participant] = ack;
+  if (is_new || state_ == State::kJoining) outputs_.forgive(ack.counts(), context_.sources());
   if (is_new && state_ == State::kJoining) {
     // All must match the newcomer's endpoints, so all are asked again; a VOLATILE sample from before is nobody's.
     ++stage_;
@@ -125,6 +131,12 @@ bool LockstepDriver::is_everybody_matched() const {
   return true;
 }
 
+bool LockstepDriver::are_outputs_received() const {
+  return std::all_of(last_ack_.begin(), last_ack_.end(), [this](const auto& entry) {
+    return outputs_.are_received(entry.second.counts(), context_.sources());
+  });
+}
+
 void LockstepDriver::advance() {
   if (state_ == State::kJoining) {
     if (silent().empty() && is_everybody_matched()) {
@@ -135,6 +147,7 @@ void LockstepDriver::advance() {
   }
   while (state_ == State::kWaiting) {
     if (stage_ >= config_.stages.size()) {
+      if (!are_outputs_received()) return;
       longest_tick_s_ = std::max(longest_tick_s_, seconds_since(tick_began_));
       state_ = State::kIdle;
       return;

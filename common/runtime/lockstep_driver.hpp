@@ -9,6 +9,7 @@
 
 #include "common/config/schema.hpp"
 #include "common/runtime/context.hpp"
+#include "common/runtime/counted_inputs.hpp"
 
 namespace lapis::runtime {
 
@@ -31,7 +32,8 @@ void describe(Field& field, LockstepConfig& c) {
 }
 
 /// The clock's side of lock-step (design section 6). Its owner publishes frame and /clock, calls begin(), and publishes
-/// the next frame when the driver is idle again; in between the tick is released to one stage after another.
+/// the next frame when the driver is idle again; in between the tick is released to one stage after another. Idle
+/// means, too, that all samples which participants published for the owner (commands) have been received.
 class LockstepDriver {
  public:
   enum class State { kJoining, kIdle, kWaiting, kFailed };
@@ -40,7 +42,8 @@ class LockstepDriver {
   LockstepDriver(Context& context, const LockstepConfig& config, std::function<void()> republish);
 
   void begin(time::Time stamp, bool is_final);
-  State state() const { return state_; }
+  /// As it is now that handlers have run.
+  State state();
   /// Why the state is kFailed: names the silent participants and the remedy.
   const std::string& failure() const { return failure_; }
   /// Longest time that a tick took so far [s].
@@ -58,6 +61,7 @@ class LockstepDriver {
   void advance();
   bool has_answered(const std::string& participant) const;
   bool is_everybody_matched() const;
+  bool are_outputs_received() const;
   std::vector<std::string> silent() const;
   void give_up_on(const std::vector<std::string>& participants, double silence_s);
 
@@ -68,6 +72,7 @@ class LockstepDriver {
   dds::Subscription<Ack> acks_;
   State state_ = State::kJoining;
   std::string failure_;
+  CountedInputs outputs_;
   std::map<std::string, Ack> last_ack_;             // by participant
   std::map<std::string, Clock::time_point> heard_;  // last answer or begin of the stage, by participant
   std::uint64_t number_ = 0;

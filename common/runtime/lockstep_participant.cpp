@@ -53,7 +53,7 @@ void LockstepParticipant::on_tick(const Tick& tick) {
     run_ = tick.run_gid();
     has_joined_ = false;
     answered_.reset();
-    forgiven_.clear();
+    inputs_.clear();
   } else if (answered_ && number == *answered_) {
     publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_DONE, "");  // the answer was lost
     return;
@@ -72,8 +72,8 @@ void LockstepParticipant::answer_pending() {
   if (is_joining && !are_endpoints_matched(tick)) return;
   // Tick 0 carries no data. It comes again with each newcomer's counts, of which nothing has to be there.
   const bool is_late = tick.tick() == 0 || (!has_joined_ && Clock::now() - pending_since_ > kJoiningPatience);
-  if (is_late) forgive_the_past(tick);
-  if (!are_inputs_received(tick)) return;
+  if (is_late) inputs_.forgive(tick.counts(), context_.sources());
+  if (!inputs_.are_received(tick.counts(), context_.sources())) return;
   has_joined_ = true;
   if (tick.tick() > 0) context_.run_cycle({.inputs_complete = true, .is_final = tick.is_final()});
   publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_DONE, "");
@@ -92,24 +92,6 @@ bool LockstepParticipant::are_endpoints_matched(const Tick& tick) const {
   };
   return std::all_of(tick.readers().begin(), tick.readers().end(), is_reader_matched) &&
          std::all_of(tick.counts().begin(), tick.counts().end(), is_writer_matched);
-}
-
-/// What was published before this process matched is nobody's: it will not come, in later ticks neither.
-void LockstepParticipant::forgive_the_past(const Tick& tick) {
-  for (const auto& count : tick.counts()) {
-    const auto source = find_topic(context_.sources(), count.topic());
-    if (source != context_.sources().end() && !(*source)->is_latched()) forgiven_[count.writer_gid()] = count.count();
-  }
-}
-
-bool LockstepParticipant::are_inputs_received(const Tick& tick) const {
-  return std::all_of(tick.counts().begin(), tick.counts().end(), [this](const auto& count) {
-    const auto source = find_topic(context_.sources(), count.topic());
-    if (source == context_.sources().end()) return true;
-    const auto forgiven = forgiven_.find(count.writer_gid());
-    if (forgiven != forgiven_.end() && count.count() <= forgiven->second) return true;
-    return (*source)->received(count.writer_gid()) >= count.count();
-  });
 }
 
 void LockstepParticipant::publish_ack(const Tick& tick, std::uint8_t status, const std::string& reason) {

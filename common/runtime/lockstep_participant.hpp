@@ -1,11 +1,11 @@
 #pragma once
 
 #include <chrono>
-#include <map>
 #include <optional>
 
 #include "common/dds/publisher.hpp"
 #include "common/dds/subscription.hpp"
+#include "common/runtime/counted_inputs.hpp"
 #include "common/topics.hpp"
 
 namespace lapis::runtime {
@@ -29,8 +29,6 @@ class LockstepParticipant {
   void answer_pending();
   bool is_active() const;
   bool are_endpoints_matched(const Tick& tick) const;
-  void forgive_the_past(const Tick& tick);
-  bool are_inputs_received(const Tick& tick) const;
   void publish_ack(const Tick& tick, std::uint8_t status, const std::string& reason);
   void say_busy();
 
@@ -42,7 +40,7 @@ class LockstepParticipant {
   std::optional<Tick> pending_;  // received, not answered
   Clock::time_point pending_since_;
   std::optional<std::pair<std::uint64_t, std::uint32_t>> answered_;  // tick and stage
-  std::map<dds::Gid, std::uint64_t> forgiven_;  // by writer: samples up to this one are not waited for
+  CountedInputs inputs_;
   double cpu_s_at_answer_ = 0.0;
 };
 

@@ -2,7 +2,6 @@
 
 #include <iostream>
 
-#include "common/messages/time.hpp"
 #include "sensor_replay/camera_yaml.hpp"
 #include "sensor_replay/core/dataset_summary.hpp"
 
@@ -51,34 +50,21 @@ std::optional<int> SensorReplayComponent::run_tool(const Config& config) {
 
 SensorReplayComponent::SensorReplayComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), dataset_(dataset_config(config), read_camera_file),
-      range_(selected(dataset_, config)), ids_{context.frame("base_link"), context.frame("camera_link"),
-                                               context.frame("camera_color_optical_frame"), "world"},
+      range_(selected(dataset_, config)),
       frames_([this](std::size_t index) { return dataset_.load_frame(index); }, range_),
-      color_(context.advertise(topics::kColor)), depth_(context.advertise(topics::kDepth)),
-      color_info_(context.advertise(topics::kColorInfo)), depth_info_(context.advertise(topics::kDepthInfo)),
-      static_transforms_(context.advertise(topics::kStaticTransforms)), clock_(context.advertise(topics::kClock)) {
-  if (dataset_.has_labels()) {
-    labels_ = &context.advertise(topics::kLabels);
-    label_info_ = &context.advertise(topics::kLabelInfo);
-  }
-  if (dataset_.has_ground_truth()) ground_truth_ = &context.advertise(topics::kGroundTruth);
-  publish_latched();
+      camera_(context, {dataset_.has_labels(), dataset_.has_ground_truth()}) {
+  const auto labels = dataset_.has_labels() ? to_label_list(dataset_.classes()) : mapping::LabelList();
+  camera_.publish_latched(dataset_.camera().mount, labels, dataset_.stamp(range_.begin));
   spdlog::info("{}: {} frames, {:.1f} s", config_.dataset, range_.size(),
                (dataset_.stamp(range_.end - 1) - dataset_.stamp(range_.begin)).seconds());
   if (config_.rate > 0.0) {
     context.every(kMatchingPeriod_s, [this] { play_by_wall_clock(); });
   } else {
     driver_ = std::make_unique<runtime::LockstepDriver>(context, config_.lockstep, [this] {
-      if (last_) publish(*last_);
+      if (last_) camera_.publish(*last_);
     });
     context.on_cycle([this](const runtime::Cycle&) { work(); });
   }
-}
-
-void SensorReplayComponent::publish_latched() {
-  const time::Time stamp = dataset_.stamp(range_.begin);
-  static_transforms_.publish(to_static_transforms(dataset_.camera().mount, ids_, stamp));
-  if (label_info_ != nullptr) label_info_->publish(to_message(dataset_.classes(), ids_, stamp));
 }
 
 // Lock-step: a frame whenever the last one has been answered by everybody.
@@ -103,7 +89,7 @@ void SensorReplayComponent::work() {
 /// True when the depth topic has had its readers for a moment: their readers of other topics match within that time.
 bool SensorReplayComponent::is_awaited_by_readers() {
   if (config_.wait_for_readers == 0) return true;
-  if (depth_.matched() < static_cast<std::size_t>(config_.wait_for_readers)) {
+  if (camera_.readers() < static_cast<std::size_t>(config_.wait_for_readers)) {
     matched_since_.reset();
     return false;
   }
@@ -140,25 +126,13 @@ bool SensorReplayComponent::publish_next() {
     const auto& frame = std::get<ReplayFrame>(*loaded);
     for (const auto& problem : frame.problems) count(problem);
     stamp_ = frame.stamp;
-    last_ = to_messages(frame, dataset_.camera(), ids_);
-    publish(*last_);
+    last_ = to_messages(frame, dataset_.camera(), camera_.ids());
+    camera_.publish(*last_);
     report_progress(false);
     return true;
   }
   last_.reset();
   return false;
-}
-
-void SensorReplayComponent::publish(const FrameMessages& messages) {
-  if (messages.ground_truth && ground_truth_ != nullptr) ground_truth_->publish(*messages.ground_truth);
-  color_info_.publish(messages.info);
-  depth_info_.publish(messages.info);
-  color_.publish(messages.color);
-  if (messages.depth) depth_.publish(*messages.depth);
-  if (messages.labels && labels_ != nullptr) labels_->publish(*messages.labels);
-  rosgraph_msgs::msg::Clock now;
-  now.clock(messages::to_message(stamp_));
-  clock_.publish(now);
 }
 
 void SensorReplayComponent::count(const SkippedFrame& skipped) {

@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "common/runtime/camera_publisher.hpp"
 #include "common/runtime/context.hpp"
 #include "common/runtime/lockstep_driver.hpp"
 #include "common/runtime/run_component.hpp"
@@ -30,12 +31,10 @@ class SensorReplayComponent {
  private:
   using Clock = std::chrono::steady_clock;
 
-  void publish_latched();
   void work();
   bool is_awaited_by_readers();
   void play_by_wall_clock();
   bool publish_next();
-  void publish(const FrameMessages& messages);
   void count(const SkippedFrame& skipped);
   void count(const ImageProblem& problem);
   void report_progress(bool is_last);
@@ -44,19 +43,10 @@ class SensorReplayComponent {
   runtime::Context& context_;
   TumDataset dataset_;
   FrameRange range_;
-  FrameIds ids_;
   FramePrefetcher frames_;
-  dds::Publisher<sensor_msgs::msg::Image>& color_;
-  dds::Publisher<sensor_msgs::msg::Image>& depth_;
-  dds::Publisher<sensor_msgs::msg::CameraInfo>& color_info_;
-  dds::Publisher<sensor_msgs::msg::CameraInfo>& depth_info_;
-  dds::Publisher<sensor_msgs::msg::Image>* labels_ = nullptr;
-  dds::Publisher<vision_msgs::msg::LabelInfo>* label_info_ = nullptr;
-  dds::Publisher<nav_msgs::msg::Odometry>* ground_truth_ = nullptr;
-  dds::Publisher<tf2_msgs::msg::TFMessage>& static_transforms_;
-  dds::Publisher<rosgraph_msgs::msg::Clock>& clock_;
+  runtime::CameraPublisher camera_;
   std::unique_ptr<runtime::LockstepDriver> driver_;
-  std::optional<FrameMessages> last_;
+  std::optional<messages::CameraMessages> last_;
   time::Time stamp_;
   std::size_t played_ = 0;
   bool has_ended_ = false;

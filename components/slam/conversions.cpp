@@ -7,13 +7,6 @@
 namespace lapis::slam {
 namespace {
 
-std_msgs::msg::Header header(time::Time stamp, const std::string& frame_id) {
-  std_msgs::msg::Header h;
-  h.stamp(messages::to_message(stamp));
-  h.frame_id(frame_id);
-  return h;
-}
-
 std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
 geometry_msgs::msg::TransformStamped stamped_transform(const std_msgs::msg::Header& h, const std::string& child,
@@ -50,7 +43,7 @@ messages::Converted<RgbdFrame> to_core(const sensor_msgs::msg::Image& color, con
 lapis_msgs::msg::TrackedFrame to_tracked_frame(const TrackingResult& result, const FrameContext& context,
                                                const FrameIds& ids) {
   lapis_msgs::msg::TrackedFrame message;
-  message.header(header(context.stamp, context.optical_frame));
+  message.header(messages::header(context.stamp, context.optical_frame));
   message.map_frame_id(ids.map);
   message.session(context.session);
   message.state(static_cast<std::uint8_t>(result.state));
@@ -73,7 +66,7 @@ nav_msgs::msg::Odometry to_odometry(const TrackingResult& result, const FrameCon
   J.bottomRightCorner<3, 3>() = T_map_base.linear();
   J *= geometry::adjoint(context.T_base_camera);
   nav_msgs::msg::Odometry message;
-  message.header(header(context.stamp, ids.map));
+  message.header(messages::header(context.stamp, ids.map));
   message.child_frame_id(ids.base);
   message.pose().pose(messages::to_message(T_map_base));
   message.pose().covariance(messages::to_row_major(J * result.map_covariance * J.transpose()));
@@ -106,7 +99,7 @@ tf2_msgs::msg::TFMessage to_transforms(const nav_msgs::msg::Odometry& odometry, 
 lapis_msgs::msg::PoseGraph to_message(const PoseGraphSnapshot& graph, const FrameContext& context,
                                       const FrameIds& ids) {
   lapis_msgs::msg::PoseGraph message;
-  message.header(header(context.stamp, ids.map));
+  message.header(messages::header(context.stamp, ids.map));
   message.session(context.session);
   message.version(graph.version);
   for (const auto& node : graph.nodes) {
@@ -133,11 +126,11 @@ lapis_msgs::msg::PoseGraph to_message(const PoseGraphSnapshot& graph, const Fram
 
 nav_msgs::msg::Path to_path(const PoseGraphSnapshot& graph, const FrameContext& context, const FrameIds& ids) {
   nav_msgs::msg::Path message;
-  message.header(header(context.stamp, ids.map));
+  message.header(messages::header(context.stamp, ids.map));
   const geometry::Pose T_camera_base = context.T_base_camera.inverse();
   for (const auto& node : graph.nodes) {
     geometry_msgs::msg::PoseStamped pose;
-    pose.header(header(node.stamp, ids.map));
+    pose.header(messages::header(node.stamp, ids.map));
     pose.pose(messages::to_message(node.T_map_camera * T_camera_base));
     message.poses().push_back(pose);
   }

@@ -9,7 +9,7 @@
 namespace lapis::sensor_replay {
 namespace {
 
-const FrameIds kIds{"base_link", "camera_link", "camera_color_optical_frame", "world"};
+const messages::CameraFrameIds kIds{"base_link", "camera_link", "camera_color_optical_frame", "world"};
 
 CameraFile camera_file() {
   CameraFile file;
@@ -76,7 +76,7 @@ TEST(SensorReplayConversions, MissingPartsAreNotPublished) {
 
 TEST(SensorReplayConversions, StaticTransformsGiveTheMount) {
   messages::StaticTransforms transforms;
-  transforms.add(to_static_transforms(camera_file().mount, kIds, time::Time{}));
+  transforms.add(messages::to_static_transforms(camera_file().mount, kIds, time::Time{}));
   const auto T = transforms.find("base_link", "camera_color_optical_frame");
   ASSERT_TRUE(T);
   EXPECT_TRUE(T->isApprox(T_base_camera(camera_file().mount), 1e-12));

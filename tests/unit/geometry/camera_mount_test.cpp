@@ -1,16 +1,16 @@
-#include "sensor_replay/core/camera_mount.hpp"
+#include "common/geometry/camera_mount.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-namespace lapis::sensor_replay {
+namespace lapis::geometry {
 namespace {
 
 constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 
 TEST(CameraMount, LevelMountAtTheOriginOnlyRenamesAxes) {
-  const geometry::Pose T = T_base_camera({});
+  const Pose T = T_base_camera({});
   EXPECT_EQ(T.linear() * Eigen::Vector3d::UnitZ(), Eigen::Vector3d::UnitX()) << "optical forward is base forward";
   EXPECT_EQ(T.linear() * Eigen::Vector3d::UnitX(), -Eigen::Vector3d::UnitY()) << "optical right is base right";
   EXPECT_EQ(T.linear() * Eigen::Vector3d::UnitY(), -Eigen::Vector3d::UnitZ()) << "optical down is base down";
@@ -38,10 +38,10 @@ TEST(CameraMount, PixelOnTheAxisHitsTheFloorWherePitchAndHeightSay) {
 
 TEST(CameraMount, ProductOfItsPartsIsAValidPose) {
   const CameraMount mount{0.4, -0.2};
-  EXPECT_TRUE(geometry::is_valid(T_base_camera(mount)));
+  EXPECT_TRUE(is_valid(T_base_camera(mount)));
   EXPECT_TRUE(T_base_camera(mount).isApprox(T_base_link(mount) * T_link_optical(), 1e-15));
   EXPECT_EQ(T_base_link(mount).translation(), Eigen::Vector3d(0.0, 0.0, 0.4));
 }
 
 }  // namespace
-}  // namespace lapis::sensor_replay
+}  // namespace lapis::geometry

@@ -2,7 +2,7 @@
 
 #include "common/geometry/se3.hpp"
 
-namespace lapis::sensor_replay {
+namespace lapis::geometry {
 
 /// How the camera sits on the robot: straight above base_link's origin, looking forward and down.
 struct CameraMount {
@@ -11,12 +11,12 @@ struct CameraMount {
 };
 
 /// Pose of camera_link in base_link; both x forward, y left, z up [REP 103].
-geometry::Pose T_base_link(const CameraMount& mount);
+Pose T_base_link(const CameraMount& mount);
 
 /// Pose of the optical frame (x right, y down, z forward) in camera_link: roll -pi/2, pitch 0, yaw -pi/2 [REP 103].
-geometry::Pose T_link_optical();
+Pose T_link_optical();
 
 /// Pose of the camera's optical frame in base_link.
-geometry::Pose T_base_camera(const CameraMount& mount);
+Pose T_base_camera(const CameraMount& mount);
 
-}  // namespace lapis::sensor_replay
+}  // namespace lapis::geometry

@@ -1,0 +1,88 @@
+#include "common/messages/camera_frame.hpp"
+
+#include <algorithm>
+#include <cstring>
+
+#include "common/messages/geometry.hpp"
+#include "common/messages/time.hpp"
+
+namespace lapis::messages {
+namespace {
+
+constexpr std::size_t kDistortionCoefficients = 5;  // of plumb_bob
+
+template <class Pixel>
+sensor_msgs::msg::Image image_message(const geometry::Image<Pixel>& image, const std::string& encoding,
+                                      const std_msgs::msg::Header& h) {
+  sensor_msgs::msg::Image message;
+  message.header(h);
+  message.width(static_cast<std::uint32_t>(image.width));
+  message.height(static_cast<std::uint32_t>(image.height));
+  message.encoding(encoding);
+  message.is_bigendian(0);
+  message.step(static_cast<std::uint32_t>(static_cast<std::size_t>(image.width) * sizeof(Pixel)));
+  message.data().resize(image.pixels.size() * sizeof(Pixel));
+  std::memcpy(message.data().data(), image.pixels.data(), message.data().size());
+  return message;
+}
+
+// mono8 where all ids fit: 255 would read as "unlabelled" (vision_msgs).
+sensor_msgs::msg::Image label_message(const geometry::LabelImage& labels, const std_msgs::msg::Header& h) {
+  const bool fits = std::all_of(labels.pixels.begin(), labels.pixels.end(), [](auto id) { return id < 255; });
+  if (!fits) return image_message(labels, "mono16", h);
+  geometry::Image<std::uint8_t> narrow(labels.width, labels.height);
+  std::transform(labels.pixels.begin(), labels.pixels.end(), narrow.pixels.begin(),
+                 [](auto id) { return static_cast<std::uint8_t>(id); });
+  return image_message(narrow, "mono8", h);
+}
+
+sensor_msgs::msg::CameraInfo info_message(const geometry::PinholeCamera& c, const std_msgs::msg::Header& h) {
+  sensor_msgs::msg::CameraInfo info;
+  info.header(h);
+  info.width(static_cast<std::uint32_t>(c.width));
+  info.height(static_cast<std::uint32_t>(c.height));
+  info.distortion_model("plumb_bob");
+  info.d(std::vector<double>(kDistortionCoefficients, 0.0));  // the images are rectified
+  info.k({c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0});
+  info.r({1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
+  info.p({c.fx, 0.0, c.cx, 0.0, 0.0, c.fy, c.cy, 0.0, 0.0, 0.0, 1.0, 0.0});
+  return info;
+}
+
+geometry_msgs::msg::TransformStamped stamped_transform(const geometry::Pose& T_parent_child, const std::string& parent,
+                                                       const std::string& child, time::Time stamp) {
+  geometry_msgs::msg::TransformStamped message;
+  message.header(header(stamp, parent));
+  message.child_frame_id(child);
+  message.transform(to_transform(T_parent_child));
+  return message;
+}
+
+}  // namespace
+
+CameraMessages to_messages(const CameraFrame& frame, const geometry::PinholeCamera& camera, const CameraFrameIds& ids) {
+  const auto h = header(frame.stamp, ids.optical);
+  CameraMessages out;
+  out.color = image_message(frame.color, "rgb8", h);
+  out.info = info_message(camera, h);
+  if (frame.depth_mm != nullptr) out.depth = image_message(*frame.depth_mm, "16UC1", h);
+  if (frame.labels != nullptr) out.labels = label_message(*frame.labels, h);
+  if (frame.T_world_base) {
+    nav_msgs::msg::Odometry truth;
+    truth.header(header(frame.stamp, ids.world));
+    truth.child_frame_id(ids.base);
+    truth.pose().pose(to_message(*frame.T_world_base));
+    out.ground_truth = truth;
+  }
+  return out;
+}
+
+tf2_msgs::msg::TFMessage to_static_transforms(const geometry::CameraMount& mount, const CameraFrameIds& ids,
+                                              time::Time stamp) {
+  tf2_msgs::msg::TFMessage message;
+  message.transforms().push_back(stamped_transform(T_base_link(mount), ids.base, ids.camera, stamp));
+  message.transforms().push_back(stamped_transform(geometry::T_link_optical(), ids.camera, ids.optical, stamp));
+  return message;
+}
+
+}  // namespace lapis::messages

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/geometry/camera_mount.hpp"
+#include "common/geometry/image.hpp"
+#include "common/geometry/pinhole_camera.hpp"
+#include "common/time/time.hpp"
+#include "idl/nav_msgs.hpp"
+#include "idl/sensor_msgs.hpp"
+#include "idl/tf2_msgs.hpp"
+
+namespace lapis::messages {
+
+/// Frame ids as they go on the wire, with the robot's namespace.
+struct CameraFrameIds {
+  std::string base;
+  std::string camera;
+  std::string optical;
+  std::string world;
+};
+
+/// What an RGB-D camera saw at one time, and what is known of it. The images belong to somebody else and have the size
+/// of the camera; null or empty: there is none.
+struct CameraFrame {
+  time::Time stamp;
+  const geometry::ColorImage& color;
+  const geometry::Image<std::uint16_t>* depth_mm = nullptr;
+  const geometry::LabelImage* labels = nullptr;
+  std::optional<geometry::Pose> T_world_base;  ///< ground truth
+};
+
+/// The messages of one frame; they all carry its stamp.
+struct CameraMessages {
+  sensor_msgs::msg::Image color;
+  sensor_msgs::msg::CameraInfo info;
+  std::optional<sensor_msgs::msg::Image> depth;
+  std::optional<sensor_msgs::msg::Image> labels;
+  std::optional<nav_msgs::msg::Odometry> ground_truth;  ///< base_link in the world
+};
+
+CameraMessages to_messages(const CameraFrame& frame, const geometry::PinholeCamera& camera, const CameraFrameIds& ids);
+/// base_link -> camera_link -> optical frame, in one message, as /tf_static wants it.
+tf2_msgs::msg::TFMessage to_static_transforms(const geometry::CameraMount& mount, const CameraFrameIds& ids,
+                                              time::Time stamp);
+
+}  // namespace lapis::messages

@@ -1,0 +1,38 @@
+#include "common/runtime/camera_publisher.hpp"
+
+#include "common/messages/labels.hpp"
+
+namespace lapis::runtime {
+
+CameraPublisher::CameraPublisher(Context& context, const Parts& parts)
+    : ids_{context.frame("base_link"), context.frame("camera_link"), context.frame("camera_color_optical_frame"),
+           "world"},
+      color_(context.advertise(topics::kColor)), depth_(context.advertise(topics::kDepth)),
+      color_info_(context.advertise(topics::kColorInfo)), depth_info_(context.advertise(topics::kDepthInfo)),
+      static_transforms_(context.advertise(topics::kStaticTransforms)), clock_(context.advertise(topics::kClock)) {
+  if (parts.has_labels) {
+    labels_ = &context.advertise(topics::kLabels);
+    label_info_ = &context.advertise(topics::kLabelInfo);
+  }
+  if (parts.has_ground_truth) ground_truth_ = &context.advertise(topics::kGroundTruth);
+}
+
+void CameraPublisher::publish_latched(const geometry::CameraMount& mount, const mapping::LabelList& labels,
+                                      time::Time stamp) {
+  static_transforms_.publish(messages::to_static_transforms(mount, ids_, stamp));
+  if (label_info_ != nullptr) label_info_->publish(messages::to_message(labels, stamp, ids_.optical));
+}
+
+void CameraPublisher::publish(const messages::CameraMessages& messages) {
+  if (messages.ground_truth && ground_truth_ != nullptr) ground_truth_->publish(*messages.ground_truth);
+  color_info_.publish(messages.info);
+  depth_info_.publish(messages.info);
+  color_.publish(messages.color);
+  if (messages.depth) depth_.publish(*messages.depth);
+  if (messages.labels && labels_ != nullptr) labels_->publish(*messages.labels);
+  rosgraph_msgs::msg::Clock now;
+  now.clock(messages.color.header().stamp());
+  clock_.publish(now);
+}
+
+}  // namespace lapis::runtime

@@ -1,0 +1,33 @@
+#include "common/runtime/counted_inputs.hpp"
+
+#include <algorithm>
+
+namespace lapis::runtime {
+namespace {
+
+const dds::Source* find_source(const CountedInputs::Sources& sources, const std::string& dds_name) {
+  const auto it =
+      std::find_if(sources.begin(), sources.end(), [&](const auto& source) { return source->dds_name() == dds_name; });
+  return it == sources.end() ? nullptr : it->get();
+}
+
+}  // namespace
+
+bool CountedInputs::are_received(const Counts& counts, const Sources& sources) const {
+  return std::all_of(counts.begin(), counts.end(), [&](const auto& count) {
+    const dds::Source* source = find_source(sources, count.topic());
+    if (source == nullptr) return true;
+    const auto forgiven = forgiven_.find(count.writer_gid());
+    if (forgiven != forgiven_.end() && count.count() <= forgiven->second) return true;
+    return source->received(count.writer_gid()) >= count.count();
+  });
+}
+
+void CountedInputs::forgive(const Counts& counts, const Sources& sources) {
+  for (const auto& count : counts) {
+    const dds::Source* source = find_source(sources, count.topic());
+    if (source != nullptr && !source->is_latched()) forgiven_[count.writer_gid()] = count.count();
+  }
+}
+
+}  // namespace lapis::runtime

@@ -111,6 +111,13 @@ inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kOccupancyGrid{"/semantic_m
 inline constexpr ServiceTopic<std_srvs::srv::Trigger> kSaveMap{"/semantic_mapper/save", "semantic_mapper",
                                                                "save map.lapis, map.ot and map.ply now"};
 
+// simulator.
+inline constexpr ServiceTopic<std_srvs::srv::Trigger> kPause{"/sim/pause", "simulator", "no further tick", true};
+inline constexpr ServiceTopic<std_srvs::srv::Trigger> kRun{"/sim/run", "simulator", "go on after a pause", true};
+inline constexpr ServiceTopic<std_srvs::srv::Trigger> kStep{"/sim/step", "simulator", "pause, but for one tick", true};
+inline constexpr ServiceTopic<std_srvs::srv::Trigger> kReset{"/sim/reset", "simulator",
+                                                             "back to the start and to time 0: a new run", true};
+
 // planner and controller.
 inline constexpr Topic<nav_msgs::msg::Path> kPlannerPath{"/planner/path", dds::kLatched, "planner", "on change",
                                                          "path to the chosen goal"};
@@ -182,6 +189,10 @@ void for_each(Visitor&& visit) {
 template <class Visitor>
 void for_each_service(Visitor&& visit) {
   visit(kSaveMap);
+  visit(kPause);
+  visit(kRun);
+  visit(kStep);
+  visit(kReset);
 }
 
 }  // namespace lapis::topics

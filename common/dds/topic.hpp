@@ -26,11 +26,18 @@ struct ServiceTopic {
   const char* name;
   const char* from;
   const char* meaning;
+  bool is_global = false;  ///< true: never prefixed by --namespace
 };
 
 template <class Message>
 std::string dds_name(const Topic<Message>& topic, const std::string& name_space) {
   return topic_dds_name(topic.is_global ? topic.name : in_namespace(topic.name, name_space));
+}
+
+/// Name of a service as ROS 2 shows it.
+template <class Service>
+std::string full_name(const ServiceTopic<Service>& service, const std::string& name_space) {
+  return service.is_global ? service.name : in_namespace(service.name, name_space);
 }
 
 }  // namespace lapis::dds

@@ -1,6 +1,7 @@
 #pragma once
 
-// Configuration keys of the map's structs, for every process that builds or reads a map.
+// Configuration keys of the map's structs, for every process that builds or reads a map. The range is the robot's
+// (robot.sensing_range_m).
 
 #include "common/config/schema.hpp"
 #include "common/mapping/compact_frame.hpp"
@@ -12,8 +13,6 @@ namespace lapis::mapping {
 template <class Field>
 void describe(Field& field, IntegrationConfig& c) {
   field("min_range_m", c.min_range_m, config::in_range(0.0, 5.0), "measurements nearer than this say nothing [m]");
-  field("max_range_m", c.max_range_m, config::in_range(0.5, 20.0),
-        "Euclidean; returns beyond carve free space up to here [m]");
   field("min_height_m", c.min_height_m, config::in_range(-1000.0, 1000.0),
         "voxels whose centre is lower in the map frame get no votes [m]");
   field("max_height_m", c.max_height_m, config::in_range(-1000.0, 1000.0),

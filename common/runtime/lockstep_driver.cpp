@@ -24,17 +24,28 @@ std::string joined(const std::vector<std::string>& words) {
 }  // namespace
 
 LockstepDriver::LockstepDriver(Context& context, const LockstepConfig& config, std::function<void()> republish)
-    : context_(context), config_(config), republish_(std::move(republish)), tick_(context.participant(), topics::kTick),
+    : context_(context), config_(config), republish_(std::move(republish)),
       acks_(context.participant(), topics::kAck, [this](Ack& ack) { on_ack(ack); }) {
   context.executor().add(acks_);
   context.every(kJoinRepeat_s / 2, [this] { check_time(); });
-  tick_began_ = Clock::now();
-  release_stage();
+  restart();
 }
 
 LockstepDriver::State LockstepDriver::state() {
   advance();
   return state_;
+}
+
+void LockstepDriver::restart() {
+  tick_.emplace(context_.participant(), topics::kTick);
+  state_ = State::kJoining;
+  last_ack_.clear();
+  outputs_.clear();
+  number_ = 0;
+  stage_ = 0;
+  is_final_ = false;
+  tick_began_ = Clock::now();
+  release_stage();
 }
 
 void LockstepDriver::begin(time::Time stamp, bool is_final) {
@@ -56,7 +67,7 @@ void LockstepDriver::release_stage() {
 
 void LockstepDriver::publish_tick() {
   lapis_msgs::msg::Tick tick;
-  tick.run_gid(tick_.gid());
+  tick.run_gid(tick_->gid());
   tick.tick(number_);
   tick.stamp(messages::to_message(stamp_));
   tick.stage(stage_);
@@ -83,14 +94,14 @@ void LockstepDriver::publish_tick() {
     for (const auto& count : ack.counts()) tick.counts().push_back(count);
     for (const auto& reader : ack.readers()) tick.readers().push_back(reader);
   }
-  tick_.publish(tick);
+  tick_->publish(tick);
   tick_published_ = Clock::now();
 }
 
 void LockstepDriver::on_ack(const Ack& ack) {
   const auto& stages = config_.stages;
   const std::string& participant = ack.participant();
-  if (ack.run_gid() != tick_.gid() || std::find(stages.begin(), stages.end(), participant) == stages.end()) return;
+  if (ack.run_gid() != tick_->gid() || std::find(stages.begin(), stages.end(), participant) == stages.end()) return;
   // BUSY is no sign of life: who waits for an input that cannot come any more would wait for ever.
   if (ack.status() == lapis_msgs::msg::Ack_Constants::STATUS_DONE) heard_[participant] = Clock::now();
   const auto known = last_ack_.find(participant);
@@ -100,6 +111,7 @@ void LockstepDriver::on_ack(const Ack& ack) {
   if (is_old) return;
   const bool is_new = known == last_ack_.end() || known->second.participant_gid() != ack.participant_gid();
   last_ack_[participant] = ack;
+  cpu_ms_[participant] += static_cast<double>(ack.cpu_ms());
   if (is_new || state_ == State::kJoining) outputs_.forgive(ack.counts(), context_.sources());
   if (is_new && state_ == State::kJoining) {
     // All must match the newcomer's endpoints, so all are asked again; a VOLATILE sample from before is nobody's.

@@ -42,12 +42,16 @@ class LockstepDriver {
   LockstepDriver(Context& context, const LockstepConfig& config, std::function<void()> republish);
 
   void begin(time::Time stamp, bool is_final);
+  /// Begins a new run, whose participants join again; answers to the old one are ignored.
+  void restart();
   /// As it is now that handlers have run.
   State state();
   /// Why the state is kFailed: names the silent participants and the remedy.
   const std::string& failure() const { return failure_; }
   /// Longest time that a tick took so far [s].
   double longest_tick_s() const { return longest_tick_s_; }
+  /// CPU time of each participant, from one answer to the next [ms].
+  const std::map<std::string, double>& cpu_ms() const { return cpu_ms_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -68,7 +72,7 @@ class LockstepDriver {
   Context& context_;
   LockstepConfig config_;
   std::function<void()> republish_;
-  dds::Publisher<lapis_msgs::msg::Tick> tick_;
+  std::optional<dds::Publisher<lapis_msgs::msg::Tick>> tick_;  // its GID names the run
   dds::Subscription<Ack> acks_;
   State state_ = State::kJoining;
   std::string failure_;
@@ -83,6 +87,7 @@ class LockstepDriver {
   Clock::time_point tick_published_;
   Clock::time_point frame_published_;
   double longest_tick_s_ = 0.0;
+  std::map<std::string, double> cpu_ms_;
 };
 
 }  // namespace lapis::runtime

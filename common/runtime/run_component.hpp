@@ -52,6 +52,7 @@ int run_component(int argc, char** argv) {
   factory.name = Component::kName;
   factory.summary = Component::kSummary;
   factory.schema(Component::kName, config);
+  if constexpr (requires { &Config::robot; }) factory.schema("robot", config.robot);
   if constexpr (requires { &Config::lockstep; }) factory.schema("lockstep", config.lockstep);
   if constexpr (requires(CLI::App & app) { Component::add_options(app, config); }) {
     factory.add_options = [&config](CLI::App& app) { Component::add_options(app, config); };

@@ -1,9 +1,5 @@
 #include "evaluator/evaluator_component.hpp"
 
-#include <spawn.h>
-#include <sys/wait.h>
-#include <csignal>
-
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -17,6 +13,7 @@
 #include "common/messages/time.hpp"
 #include "evaluator/core/coverage.hpp"
 #include "evaluator/core/map_input.hpp"
+#include "evaluator/figures.hpp"
 
 namespace lapis::evaluator {
 namespace {
@@ -67,12 +64,13 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       info_(context, topics::kDepthInfo, "camera info", kWaitingFrames), reference_(config.resolution_m),
-      plain_fusion_({config.resolution_m, config.integration.min_range_m, config.integration.max_range_m}),
+      plain_fusion_({config.resolution_m, config.integration.min_range_m, config.robot.sensing_range_m}),
       timeline_(kTimelineHeader) {
   if (config_.output_dir.empty()) {
     throw std::runtime_error("evaluator.output_dir is not set; give --set evaluator.output_dir=FOLDER");
   }
   files::require_writable_folder(config_.output_dir, "evaluator.output_dir");
+  config_.integration.max_range_m = config_.robot.sensing_range_m;
   mapping::validate(config_.integration);
   info_.on_arrival([this](time::Time stamp) { count_frame(stamp); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
@@ -88,6 +86,7 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
     label_list_ = std::move(*labels);
     config_.frame.max_label = label_list_.largest_accepted_id();
   });
+  context.subscribe(topics::kCollision, [this](const std_msgs::msg::Bool& m) { count_contact(m.data()); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
 
@@ -97,6 +96,13 @@ void EvaluatorComponent::count_frame(time::Time stamp) {
   if (is_repeated) return;  // lock-step may repeat one
   camera_stamp_ = stamp;
   ++frames_total_;
+}
+
+// Told on change, and lock-step may repeat it: a collision is the beginning of a contact.
+void EvaluatorComponent::count_contact(bool is_in_contact) {
+  if (!collisions_) collisions_ = 0;
+  if (is_in_contact && !is_in_contact_) ++*collisions_;
+  is_in_contact_ = is_in_contact;
 }
 
 void EvaluatorComponent::on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message) {
@@ -203,11 +209,35 @@ void EvaluatorComponent::record(const Tracked& tracked, const Odometry* truth, c
   ++frames_tracked_;
   const geometry::Pose T_map_camera = *T_map_keyframe * *T_keyframe_camera;
   if (estimate_.empty() || estimate_.back().stamp < stamp) estimate_.push_back({stamp, T_map_camera});
-  if (T_world_camera && !T_map_world_) T_map_world_ = T_map_camera * T_world_camera->inverse();
+  if (T_world_camera && !T_map_world_) {
+    T_map_world_ = T_map_camera * T_world_camera->inverse();
+    load_truth();
+  }
   if (T_world_camera && depth != nullptr && info != nullptr) {
     add_to_references(*T_world_camera, *depth, labels, *info);
   }
   write_timeline_row(stamp, true);
+}
+
+std::filesystem::path EvaluatorComponent::truth_folder() const {
+  if (!config_.ground_truth_dir.empty()) return config_.ground_truth_dir;
+  return std::filesystem::path(config_.output_dir) / "ground_truth";
+}
+
+// The simulator writes what it knows of the scene before its first frame.
+void EvaluatorComponent::load_truth() {
+  std::string problem;
+  scene_truth_ = load_ground_truth(truth_folder(), problem);
+  if (!problem.empty()) spdlog::warn("ground truth of the scene is left out: {}", problem);
+  if (!scene_truth_) return;
+  if (scene_truth_->mesh.occupied.resolution_m != config_.resolution_m) {
+    spdlog::warn("ground truth of the scene is left out: its voxels have {} m, evaluator.resolution_m is {}",
+                 scene_truth_->mesh.occupied.resolution_m, config_.resolution_m);
+    scene_truth_.reset();
+  } else if (!is_same_frame(scene_truth_->T_map_world, *T_map_world_)) {
+    spdlog::warn("ground truth of the scene is left out: slam's first pose is not where the run began");
+    scene_truth_.reset();
+  }
 }
 
 // The run is judged in the frame of slam's first map: poses of a later session have another origin.
@@ -250,8 +280,14 @@ void EvaluatorComponent::add_to_references(const geometry::Pose& T_world_camera,
 void EvaluatorComponent::write_timeline_row(time::Time stamp, bool is_tracking) {
   if (timeline_stamp_ && (stamp - *timeline_stamp_).seconds() < config_.timeline_period_s) return;
   timeline_stamp_ = stamp;
-  std::optional<double> volume;
-  if (const auto* map = mirror_.map()) volume = coverage(to_known_space(*map, belief_reader())).explored_volume_m3;
+  const double time_s = (stamp - *first_stamp_).seconds();
+  std::optional<double> volume, share;
+  if (const auto* map = mirror_.map()) {
+    const Coverage figures = explored(to_known_space(*map, belief_reader()));
+    volume = figures.explored_volume_m3;
+    share = figures.explored_share;
+    if (share) shares_.push_back({time_s, *share});
+  }
   std::optional<double> error;
   if (is_tracking && T_map_world_ && !truth_world_.empty() && truth_world_.back().stamp == stamp) {
     const geometry::Pose truth = *T_map_world_ * truth_world_.back().T_world_body;
@@ -259,8 +295,15 @@ void EvaluatorComponent::write_timeline_row(time::Time stamp, bool is_tracking) 
   }
   const std::optional<double> path =
       truth_world_.empty() ? std::nullopt : std::optional<double>(path_length_m(truth_world_));
-  timeline_ += cell((stamp - *first_stamp_).seconds()) + "," + cell(volume) + ",," + cell(path) + "," + cell(error) +
-               ",," + (is_tracking ? "TRACKING" : "LOST") + "\n";
+  timeline_ += cell(time_s) + "," + cell(volume) + "," + cell(share) + "," + cell(path) + "," + cell(error) + ",," +
+               (is_tracking ? "TRACKING" : "LOST") + "\n";
+}
+
+/// A map of slam's first session has the frame of the truth; one with other voxels has no share.
+Coverage EvaluatorComponent::explored(const KnownSpace& map) const {
+  const bool is_comparable =
+      scene_truth_ && map_session_ == session_ && map.occupied.resolution_m == config_.resolution_m;
+  return is_comparable ? coverage(scene_truth_->mesh, map) : coverage(map);
 }
 
 mapping::BeliefReader EvaluatorComponent::belief_reader() const {
@@ -313,6 +356,9 @@ RunMetrics EvaluatorComponent::metrics() const {
     const bool has_rate = figures.cpu_s && figures.frames && *figures.frames > 0.0;
     m.cpu_ms_per_frame[name] = has_rate ? std::optional<double>(1e3 * *figures.cpu_s / *figures.frames) : std::nullopt;
   }
+  m.collisions = collisions_;
+  m.time_to_80_s = time_to_reach(shares_, 0.8);
+  m.time_to_90_s = time_to_reach(shares_, 0.9);
   add_map_figures(m);
   return m;
 }
@@ -326,7 +372,9 @@ void EvaluatorComponent::add_map_figures(RunMetrics& m) const {
   if (!mirror_.is_consistent()) spdlog::warn("the map's last version did not arrive whole; an older one is judged");
   const auto reader = belief_reader();
   const KnownSpace estimate = to_known_space(*mirror_.map(), reader);
-  m.explored_volume_m3 = coverage(estimate).explored_volume_m3;
+  const Coverage figures = explored(estimate);
+  m.explored_volume_m3 = figures.explored_volume_m3;
+  m.explored_share = figures.explored_share;
   if (!T_map_world_) return;
   if (estimate.occupied.resolution_m != config_.resolution_m) {
     spdlog::warn("the map has voxels of {} m, evaluator.resolution_m is {}: no map figures",
@@ -334,8 +382,26 @@ void EvaluatorComponent::add_map_figures(RunMetrics& m) const {
     return;
   }
   const KnownSpace reference = to_known_space(reference_, reader);
-  m.map = map_figures(reference.occupied, estimate.occupied, class_names(label_list_));
+  const auto names = class_names(label_list_);
+  const auto classes = scene_truth_ ? scene_truth_->top_classes : std::vector<std::uint16_t>{};
+  m.map = map_figures(reference.occupied, estimate.occupied, names, classes);
   m.reference_fusion_share = share_of(plain_fusion_.voxels(), reference.occupied);
+  if (!scene_truth_) return;
+  m.mesh_map = map_figures(scene_truth_->mesh.occupied, estimate.occupied, names, classes);
+  if (const auto ideal = load_ideal()) m.ideal_map = map_figures(*ideal, estimate.occupied, names, classes);
+}
+
+/// Occupied voxels of the map without noise, which the simulator writes at its end.
+std::optional<LabelledVoxels> EvaluatorComponent::load_ideal() const {
+  const auto file = truth_folder() / "ideal.lapis";
+  if (!std::filesystem::exists(file)) return std::nullopt;
+  std::string problem;
+  const auto ideal = mapping::load_map(file.string(), problem);
+  if (ideal && ideal->map.resolution_m() == config_.resolution_m) {
+    return to_known_space(ideal->map, belief_reader()).occupied;
+  }
+  spdlog::warn("no figures against the ideal map: {}", ideal ? file.string() + " has other voxels" : problem);
+  return std::nullopt;
 }
 
 void EvaluatorComponent::write_files(const RunMetrics& m) const {
@@ -353,25 +419,6 @@ void EvaluatorComponent::write_files(const RunMetrics& m) const {
   }
 }
 
-void EvaluatorComponent::draw_figures() const {
-  const auto bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  std::string script = (bin / "lapis_evaluator_figures.py").string();
-  std::string folder = config_.output_dir;
-  char* arguments[] = {script.data(), folder.data(), nullptr};
-  pid_t child = 0;
-  int status = 0;
-  sigset_t none;  // our threads block the signals that end a process; the script must not
-  sigemptyset(&none);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  posix_spawnattr_setsigmask(&attributes, &none);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSIGMASK);
-  const bool has_run = posix_spawn(&child, script.c_str(), nullptr, &attributes, arguments, environ) == 0 &&
-                       waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
-  posix_spawnattr_destroy(&attributes);
-  if (!has_run) spdlog::warn("figures were not drawn; try: {} {}", script, folder);
-}
-
 void EvaluatorComponent::finish() {
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
   if (frames_total_ == 0 && frames_judged_ == 0) {
@@ -381,7 +428,7 @@ void EvaluatorComponent::finish() {
   const RunMetrics m = metrics();
   write_files(m);
   std::cout << format_table(m) << std::flush;
-  if (config_.figures) draw_figures();
+  if (config_.figures) draw_figures(config_.output_dir);
 }
 
 }  // namespace lapis::evaluator

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -10,6 +11,8 @@
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
 #include "common/runtime/stamped_input.hpp"
+#include "evaluator/core/coverage.hpp"
+#include "evaluator/core/ground_truth.hpp"
 #include "evaluator/core/metrics.hpp"
 #include "evaluator/core/plain_fusion.hpp"
 #include "evaluator/evaluator_config.hpp"
@@ -42,6 +45,7 @@ class EvaluatorComponent {
   };
 
   void count_frame(time::Time stamp);
+  void count_contact(bool is_in_contact);
   void on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message);
   void on_tile(const lapis_msgs::msg::VoxelTile& message);
   void on_map_state(const lapis_msgs::msg::MapState& message);
@@ -49,18 +53,21 @@ class EvaluatorComponent {
   bool next_frame(const runtime::Cycle& cycle);
   void record(const Tracked& tracked, const Odometry* truth, const Image* depth, const Image* labels, const Info* info);
   bool is_mount_known(const Odometry& truth, const Tracked& tracked);
+  std::filesystem::path truth_folder() const;
+  void load_truth();
   bool is_of_judged_session(const Tracked& tracked);
   std::optional<geometry::Pose> true_camera_pose(const Odometry& truth, const std::string& optical_frame);
   void add_to_references(const geometry::Pose& T_world_camera, const Image& depth, const Image* labels,
                          const Info& info);
   void write_timeline_row(time::Time stamp, bool is_tracking);
+  Coverage explored(const KnownSpace& map) const;
   mapping::BeliefReader belief_reader() const;
   Trajectory truth_in_map() const;
   Trajectory keyframes() const;
   RunMetrics metrics() const;
   void add_map_figures(RunMetrics& metrics) const;
+  std::optional<LabelledVoxels> load_ideal() const;
   void write_files(const RunMetrics& metrics) const;
-  void draw_figures() const;
 
   Config config_;
   runtime::Context& context_;
@@ -80,6 +87,8 @@ class EvaluatorComponent {
   Trajectory estimate_;                        // T_map_camera, as published at its time
   Trajectory truth_world_;                     // T_world_camera
   std::optional<geometry::Pose> T_map_world_;  // from the first frame that has both
+  std::optional<GroundTruth> scene_truth_;     // of a simulated scene
+  std::vector<ShareAt> shares_;                // of the explorable volume, a row of the timeline each
   mapping::VoxelMap reference_;
   PlainFusion plain_fusion_;
   std::string timeline_;
@@ -91,6 +100,8 @@ class EvaluatorComponent {
   std::int64_t frames_judged_ = 0;          // that slam answered, tracked or not
   std::int64_t frames_tracked_ = 0;
   double lost_time_s_ = 0.0;
+  std::optional<std::int64_t> collisions_;  // none when nobody tells contacts
+  bool is_in_contact_ = false;
   bool has_ended_ = false;  // lock-step told that no input follows
   std::optional<std::chrono::steady_clock::time_point> began_;
   std::chrono::steady_clock::time_point newest_;

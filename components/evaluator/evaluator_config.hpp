@@ -3,11 +3,13 @@
 #include <string>
 
 #include "common/mapping/describe.hpp"
+#include "common/robot/robot_description.hpp"
 
 namespace lapis::evaluator {
 
 struct EvaluatorConfig {
   std::string output_dir;
+  std::string ground_truth_dir;
   double resolution_m = 0.25;
   mapping::IntegrationConfig integration;
   mapping::CompactFrameConfig frame;
@@ -15,11 +17,14 @@ struct EvaluatorConfig {
   double max_stamp_difference_s = 0.016;
   double timeline_period_s = 1.0;
   bool figures = true;
+  robot::RobotDescription robot;
 };
 
 template <class Field>
 void describe(Field& field, EvaluatorConfig& c) {
   field("output_dir", c.output_dir, config::anything(), "run folder");
+  field("ground_truth_dir", c.ground_truth_dir, config::anything(),
+        "what the simulator knows of the scene (mesh.lapis, ideal.lapis, ...); empty: ground_truth in the run folder");
   field("resolution_m", c.resolution_m, config::in_range(0.02, 0.5),
         "edge of a voxel of the reference map; as semantic_mapper.resolution_m [m]");
   field("integration", c.integration);

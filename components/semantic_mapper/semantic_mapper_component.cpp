@@ -30,6 +30,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       info_(context, topics::kColorInfo, "camera info", kWaitingFrames) {
+  config_.map.integration.max_range_m = config_.robot.sensing_range_m;
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "semantic_mapper.output_dir");
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });

@@ -3,6 +3,7 @@
 #include <string>
 
 #include "common/mapping/describe.hpp"
+#include "common/robot/robot_description.hpp"
 #include "semantic_mapper/core/export.hpp"
 #include "semantic_mapper/core/semantic_mapper.hpp"
 
@@ -21,6 +22,7 @@ struct SemanticMapperComponentConfig {
   int re_anchored_frames_per_cycle = 20;
   std::string output_dir;
   double save_period_s = 30.0;
+  robot::RobotDescription robot;
 };
 
 template <class Field>

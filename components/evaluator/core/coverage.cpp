@@ -40,4 +40,9 @@ Coverage coverage(const KnownSpace& reference, const KnownSpace& map) {
   return result;
 }
 
+std::optional<double> time_to_reach(const std::vector<ShareAt>& rows, double share) {
+  const auto first = std::find_if(rows.begin(), rows.end(), [share](const ShareAt& row) { return row.share >= share; });
+  return first == rows.end() ? std::nullopt : std::optional(first->time_s);
+}
+
 }  // namespace lapis::evaluator

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "evaluator/core/voxels.hpp"
 
@@ -18,5 +19,14 @@ struct Coverage {
 Coverage coverage(const KnownSpace& map);
 /// Throws std::invalid_argument when the resolutions differ.
 Coverage coverage(const KnownSpace& reference, const KnownSpace& map);
+
+/// Share of the explorable volume that was known at a time of the run.
+struct ShareAt {
+  double time_s = 0.0;
+  double share = 0.0;
+};
+
+/// When the share first reached `share`; none when it never did. The rows are in the order of time.
+std::optional<double> time_to_reach(const std::vector<ShareAt>& rows, double share);
 
 }  // namespace lapis::evaluator

@@ -1,0 +1,63 @@
+#pragma once
+
+#include "common/config/schema.hpp"
+#include "common/geometry/camera_mount.hpp"
+#include "common/geometry/pinhole_camera.hpp"
+
+namespace lapis::robot {
+
+/// The camera as it is built and mounted.
+struct CameraDescription {
+  int width = 640;
+  int height = 360;
+  double horizontal_fov_deg = 90.0;
+  double vertical_fov_deg = 58.7155;  ///< square pixels: 2 atan(height / width tan(horizontal / 2))
+  double rate_hz = 15.0;
+  double height_m = 1.0;
+  double pitch_down_deg = 0.0;
+};
+
+/// What every process may have to know of the robot; config/robot.yaml is the one place where it stands.
+struct RobotDescription {
+  double radius_m = 0.20;
+  double max_speed_m_s = 0.6;
+  double max_turn_rate_rad_s = 0.8;
+  double max_acceleration_m_s2 = 1.5;
+  double max_turn_acceleration_rad_s2 = 4.0;
+  double drive_lag_s = 0.15;
+  double command_timeout_s = 0.5;
+  double sensing_range_m = 5.0;
+  CameraDescription camera;
+};
+
+/// Pinhole model: the principal point is the middle of the image.
+geometry::PinholeCamera pinhole_camera(const CameraDescription& camera);
+geometry::CameraMount camera_mount(const CameraDescription& camera);
+
+template <class Field>
+void describe(Field& field, CameraDescription& c) {
+  field("width", c.width, config::in_range(16, 4096), "[px]");
+  field("height", c.height, config::in_range(16, 4096), "[px]");
+  field("horizontal_fov_deg", c.horizontal_fov_deg, config::in_range(10.0, 170.0), "field of view [deg]");
+  field("vertical_fov_deg", c.vertical_fov_deg, config::in_range(10.0, 170.0), "field of view [deg]");
+  field("rate_hz", c.rate_hz, config::in_range(0.1, 120.0), "frames per second [Hz]");
+  field("height_m", c.height_m, config::in_range(0.0, 10.0), "above base_link [m]");
+  field("pitch_down_deg", c.pitch_down_deg, config::in_range(-90.0, 90.0), "tilt; positive looks at the floor [deg]");
+}
+
+template <class Field>
+void describe(Field& field, RobotDescription& c) {
+  field("radius_m", c.radius_m, config::in_range(0.05, 2.0), "of the disc that the robot fills [m]");
+  field("max_speed_m_s", c.max_speed_m_s, config::in_range(0.01, 5.0), "forwards and backwards [m/s]");
+  field("max_turn_rate_rad_s", c.max_turn_rate_rad_s, config::in_range(0.01, 10.0), "[rad/s]");
+  field("max_acceleration_m_s2", c.max_acceleration_m_s2, config::in_range(0.01, 50.0), "[m/s2]");
+  field("max_turn_acceleration_rad_s2", c.max_turn_acceleration_rad_s2, config::in_range(0.01, 100.0), "[rad/s2]");
+  field("drive_lag_s", c.drive_lag_s, config::in_range(0.001, 5.0), "time constant of the drives [s]");
+  field("command_timeout_s", c.command_timeout_s, config::in_range(0.05, 60.0),
+        "without /cmd_vel for so long the robot stops [s]");
+  field("sensing_range_m", c.sensing_range_m, config::in_range(0.5, 20.0),
+        "Euclidean; for map, information and explorable volume alike: returns beyond carve free space up to here [m]");
+  field("camera", c.camera);
+}
+
+}  // namespace lapis::robot

@@ -1,0 +1,80 @@
+#include "simulator/conversions.hpp"
+
+#include "common/messages/geometry.hpp"
+#include "common/messages/time.hpp"
+
+namespace lapis::simulator {
+namespace {
+
+constexpr double kUnknownVariance = 1e6;  // of what a robot on the floor cannot measure
+
+/// Pose of a robot on the floor.
+geometry::Pose planar_pose(const Eigen::Vector2d& position, double yaw_rad) {
+  return geometry::make_pose({position.x(), position.y(), 0.0},
+                             Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
+}
+
+/// Covariance of (x, y, yaw) among those of the six dimensions of ROS.
+geometry::Matrix6d planar_covariance(const Eigen::Matrix3d& covariance) {
+  geometry::Matrix6d out = geometry::Matrix6d::Zero();
+  for (const int i : {2, 3, 4}) out(i, i) = kUnknownVariance;
+  const std::array<int, 3> index{0, 1, 5};
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) {
+      out(index[static_cast<std::size_t>(row)], index[static_cast<std::size_t>(column)]) = covariance(row, column);
+    }
+  }
+  return out;
+}
+
+nav_msgs::msg::Odometry to_message(const WheelSample& sample, const SimulatorFrameIds& ids) {
+  nav_msgs::msg::Odometry message;
+  message.header(messages::header(sample.stamp, ids.odom));
+  message.child_frame_id(ids.camera.base);
+  message.pose().pose(messages::to_message(planar_pose(sample.position, sample.yaw_rad)));
+  message.pose().covariance(messages::to_row_major(planar_covariance(sample.pose_covariance)));
+  message.twist().twist().linear().x(sample.velocity.speed_m_s);
+  message.twist().twist().angular().z(sample.velocity.turn_rate_rad_s);
+  message.twist().covariance(messages::to_row_major(planar_covariance(sample.velocity_covariance)));
+  return message;
+}
+
+sensor_msgs::msg::Imu to_message(const ImuSample& sample, const SimulatorFrameIds& ids) {
+  sensor_msgs::msg::Imu message;
+  message.header(messages::header(sample.stamp, ids.camera.base));
+  message.orientation_covariance()[0] = -1.0;  // it measures no orientation (sensor_msgs)
+  message.angular_velocity().x(sample.turn_rate_rad_s.x());
+  message.angular_velocity().y(sample.turn_rate_rad_s.y());
+  message.angular_velocity().z(sample.turn_rate_rad_s.z());
+  message.linear_acceleration().x(sample.acceleration_m_s2.x());
+  message.linear_acceleration().y(sample.acceleration_m_s2.y());
+  message.linear_acceleration().z(sample.acceleration_m_s2.z());
+  for (const std::size_t i : {0U, 4U, 8U}) {
+    message.angular_velocity_covariance()[i] = sample.turn_rate_variance;
+    message.linear_acceleration_covariance()[i] = sample.acceleration_variance;
+  }
+  return message;
+}
+
+}  // namespace
+
+SensorMessages to_messages(const SensorFrame& frame, const geometry::PinholeCamera& camera,
+                           const SimulatorFrameIds& ids) {
+  SensorMessages out;
+  const messages::CameraFrame seen{frame.stamp, frame.images.color, &frame.images.depth_mm, &frame.images.labels,
+                                   frame.T_world_base};
+  out.camera = messages::to_messages(seen, camera, ids.camera);
+  auto& twist = out.camera.ground_truth->twist().twist();
+  twist.linear().x(frame.robot.velocity.x());
+  twist.linear().y(frame.robot.velocity.y());
+  twist.angular().z(frame.turn_rate_rad_s);
+  for (const auto& sample : frame.wheels) out.wheels.push_back(to_message(sample, ids));
+  for (const auto& sample : frame.imu) out.imu.push_back(to_message(sample, ids));
+  return out;
+}
+
+DriveCommand from_message(const geometry_msgs::msg::Twist& message) {
+  return {message.linear().x(), message.angular().z()};
+}
+
+}  // namespace lapis::simulator

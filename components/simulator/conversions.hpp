@@ -1,0 +1,28 @@
+#pragma once
+
+#include <vector>
+
+#include "common/messages/camera_frame.hpp"
+#include "idl/geometry_msgs.hpp"
+#include "simulator/core/simulation.hpp"
+
+namespace lapis::simulator {
+
+/// Frame and wheels' frame as they go on the wire, with the robot's namespace.
+struct SimulatorFrameIds {
+  messages::CameraFrameIds camera;
+  std::string odom;
+};
+
+/// The messages of all that was sensed since the last frame.
+struct SensorMessages {
+  messages::CameraMessages camera;
+  std::vector<nav_msgs::msg::Odometry> wheels;
+  std::vector<sensor_msgs::msg::Imu> imu;
+};
+
+SensorMessages to_messages(const SensorFrame& frame, const geometry::PinholeCamera& camera,
+                           const SimulatorFrameIds& ids);
+DriveCommand from_message(const geometry_msgs::msg::Twist& message);
+
+}  // namespace lapis::simulator

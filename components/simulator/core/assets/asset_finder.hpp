@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "simulator/core/assets/asset_store.hpp"
+
+namespace lapis::simulator {
+
+/// Finds the files that a model file names, although the name is often right on its author's machine only.
+class AssetFinder {
+ public:
+  struct Found {
+    std::string name;  ///< in the store
+    std::vector<std::uint8_t> bytes;
+  };
+
+  /// `model` is the model file; names are relative to its folder. The store must outlive the finder.
+  AssetFinder(const AssetStore& store, const std::string& model);
+
+  /// The file of that name; failing that, one whose name differs in upper and lower case only.
+  std::optional<Found> file(std::string_view written);
+  /// As file(); failing that, a file of that base name beside the model; failing that, the only image beside it.
+  std::optional<Found> image(std::string_view written);
+
+ private:
+  std::optional<Found> read_any_case(const std::string& name);
+  std::optional<Found> only_image();
+  const std::vector<std::string>& names();
+
+  const AssetStore& store_;
+  std::string folder_;                             ///< with '/' at its end, or empty
+  std::optional<std::vector<std::string>> names_;  ///< listed when first needed
+};
+
+}  // namespace lapis::simulator

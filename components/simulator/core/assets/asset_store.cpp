@@ -1,0 +1,44 @@
+#include "simulator/core/assets/asset_store.hpp"
+
+#include <algorithm>
+#include <fstream>
+#include <system_error>
+
+namespace lapis::simulator {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool leaves_folder(const fs::path& normal) { return normal.empty() || normal.is_absolute() || *normal.begin() == ".."; }
+
+}  // namespace
+
+std::optional<std::vector<std::uint8_t>> FolderStore::read(const std::string& name) const {
+  const fs::path normal = fs::path(name).lexically_normal();
+  if (leaves_folder(normal)) return std::nullopt;
+  const fs::path file = folder_ / normal;
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return std::nullopt;
+  const auto size = fs::file_size(file, error);
+  std::ifstream stream(file, std::ios::binary);
+  if (error || !stream) return std::nullopt;
+  std::vector<std::uint8_t> bytes(size);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!stream) return std::nullopt;
+  return bytes;
+}
+
+std::vector<std::string> FolderStore::names() const {
+  std::vector<std::string> result;
+  std::error_code error;
+  const auto options = fs::directory_options::skip_permission_denied;
+  for (auto it = fs::recursive_directory_iterator(folder_, options, error);
+       !error && it != fs::recursive_directory_iterator(); it.increment(error)) {
+    std::error_code unreadable;
+    if (it->is_regular_file(unreadable)) result.push_back(it->path().lexically_relative(folder_).generic_string());
+  }
+  std::sort(result.begin(), result.end());
+  return result;
+}
+
+}  // namespace lapis::simulator

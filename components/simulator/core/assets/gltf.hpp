@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "simulator/core/assets/asset_store.hpp"
+#include "simulator/core/assets/model.hpp"
+
+namespace lapis::simulator {
+
+/// A glTF 2.0 scene in the frame of its file (y up, metres, if it keeps to the specification). The groups of the model
+/// are the nodes of the file, with their transforms applied; a node without a name has that of its mesh.
+struct GltfModel {
+  Model model;
+  std::vector<int> parents;                       ///< per group: index of the parent node, or -1
+  std::vector<std::string> classes;               ///< per group: extras.class, or empty
+  std::vector<std::vector<std::uint8_t>> images;  ///< as the file has them (PNG, JPEG); empty: not there
+  std::vector<std::string> image_names;           ///< for messages
+  std::string file;                               ///< for messages
+};
+
+/// Reads geometry and structure of a .gltf or .glb file. Until finish_looks() has run, Material::texture indexes
+/// `images`, and Mesh::colors holds the numbers of COLOR_0 as the file has them. Skins, morph targets, points and lines
+/// are left out, and so are materials that are nearly transparent (alphaMode BLEND, alpha below 0.35), as in
+/// read_obj().
+/// @throws std::runtime_error in one line with the remedy for files that are missing, truncated, or inconsistent; for
+///   compressed or sparse geometry; and when the nodes are no tree.
+GltfModel read_gltf(const AssetStore& store, const std::string& name);
+
+/// Decodes the images and turns vertex colours, which glTF has as linear light, into sRGB. Images that cannot be
+/// decoded leave the material grey, with one warning each, or one for all that are in the Basis format (KTX2).
+void finish_looks(GltfModel& scene, int max_texture_px);
+
+}  // namespace lapis::simulator

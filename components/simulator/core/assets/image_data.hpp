@@ -1,0 +1,19 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+
+#include "simulator/core/scene/mesh.hpp"
+
+namespace lapis::simulator {
+
+/// Decodes PNG, JPEG or BMP with 8 or 16 bits; pixels stay where the file has them, whatever its EXIF tag says.
+/// Shrinks to at most `max_px` on the longer side (averaging). Row 0 is the upper edge of the picture. Null when it is
+/// no such image or has more than 8192 x 8192 pixels.
+std::shared_ptr<const TextureImage> decode_texture(std::span<const std::uint8_t> bytes, int max_px);
+
+/// True when some texel has alpha below 128.
+bool has_holes(const TextureImage& texture);
+
+}  // namespace lapis::simulator

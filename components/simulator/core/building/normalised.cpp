@@ -1,0 +1,170 @@
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "simulator/core/building/floor_plan.hpp"
+#include "simulator/core/building/polygon.hpp"
+#include "simulator/core/building/textures.hpp"
+
+namespace lapis::simulator {
+namespace {
+
+/// Checks a spec and fills in what was left out, list by list.
+class Normaliser {
+ public:
+  explicit Normaliser(SceneSpec& spec) : spec_(spec) {}
+
+  void run() {
+    check_building();
+    for (RoomSpec& room : spec_.rooms) normalise(room);
+    turn_clockwise_rooms();
+    for (std::size_t i = 0; i < spec_.openings.size(); ++i) check(spec_.openings[i], numbered("opening", i));
+    std::set<std::string> ids;
+    for (std::size_t i = 0; i < spec_.furniture.size(); ++i) normalise(spec_.furniture[i], i, ids);
+    normalise_pictures();
+    for (std::size_t i = 0; i < spec_.lamps.size(); ++i) check_inside(spec_.lamps[i].at, numbered("lamp", i));
+    for (std::size_t i = 0; i < spec_.starts.size(); ++i) check_inside(spec_.starts[i].position, numbered("start", i));
+    for (std::size_t i = 0; i < spec_.tour.size(); ++i) check_inside(spec_.tour[i], numbered("tour point", i));
+  }
+
+ private:
+  void check_building() {
+    for (const char* name : {"wall", "floor", "ceiling", "door", "window", "lighting"}) check_class(name, "labels");
+    if (spec_.rooms.empty()) refuse(spec_, "rooms", "there are none");
+    if (!(spec_.wall_thickness_m >= 0.02 && spec_.wall_thickness_m <= 1.0))
+      refuse(spec_, "wall_thickness", "must be from 0.02 to 1");
+    std::set<std::string> ids;
+    for (const RoomSpec& room : spec_.rooms) {
+      if (room.id.empty()) refuse(spec_, "rooms", "a room has no id");
+      if (!ids.insert(room.id).second) refuse(spec_, called(room), "the id occurs twice");
+    }
+  }
+
+  static std::string called(const RoomSpec& room) { return "room \"" + room.id + "\""; }
+
+  void normalise(RoomSpec& room) {
+    if (!is_simple(room.polygon)) refuse(spec_, called(room), "its outline touches or cuts itself");
+    const double height = room.height_m.value_or(spec_.height_m);
+    if (!(height >= 1.5 && height <= 20.0)) refuse(spec_, called(room), "height must be from 1.5 to 20");
+    if (room.floor.texture.empty()) room.floor.texture = "planks";
+    if (room.wall.texture.empty()) room.wall.texture = "plaster";
+    if (room.ceiling.texture.empty()) room.ceiling.texture = "plaster";
+    for (const SurfaceSpec* surface : {&room.floor, &room.wall, &room.ceiling}) {
+      if (!is_texture(surface->texture)) {
+        refuse(spec_, called(room), "no texture is called \"" + surface->texture + "\"");
+      }
+    }
+  }
+
+  /// Reverses the corners, and counts walls and places on them anew.
+  void turn_clockwise_rooms() {
+    std::set<std::string> turned;
+    for (const RoomSpec& room : spec_.rooms) {
+      if (signed_area(room.polygon) < 0.0) turned.insert(room.id);
+    }
+    const auto turn_place = [&](const std::string& id, int& edge, double& along_m, const std::string& item) {
+      if (!turned.contains(id)) return;
+      const RoomSpec& room = room_with_edge(id, edge, item);
+      const auto n = static_cast<int>(room.polygon.size());
+      along_m = wall_length(room, edge) - along_m;
+      edge = (2 * n - 2 - edge) % n;
+    };
+    for (std::size_t i = 0; i < spec_.furniture.size(); ++i) {
+      if (auto* place = std::get_if<AgainstWall>(&spec_.furniture[i].place))
+        turn_place(place->room, place->edge, place->along_m, called(spec_.furniture[i], i));
+    }
+    for (std::size_t i = 0; i < spec_.pictures.size(); ++i) {
+      PictureSpec& picture = spec_.pictures[i];
+      turn_place(picture.room, picture.edge, picture.along_m, numbered("picture", i));
+    }
+    for (RoomSpec& room : spec_.rooms) {
+      if (turned.contains(room.id)) std::reverse(room.polygon.begin(), room.polygon.end());
+    }
+  }
+
+  void check(const OpeningSpec& opening, const std::string& item) const {
+    if (!(opening.width_m > 0.1)) refuse(spec_, item, "width must be more than 0.1");
+    if (!(opening.bottom_m >= 0.0 && opening.top_m > opening.bottom_m + 0.1))
+      refuse(spec_, item, "top must lie above bottom, and bottom not below the floor");
+    if (opening.kind != OpeningKind::kWindow && opening.bottom_m > 0.0)
+      refuse(spec_, item, "only windows may have a bottom above the floor");
+  }
+
+  static std::string called(const FurnitureSpec& item, std::size_t index) {
+    return item.id.empty() ? numbered("furniture", index) + " (" + item.class_name + ")" : "item \"" + item.id + "\"";
+  }
+
+  void normalise(FurnitureSpec& item, std::size_t index, std::set<std::string>& ids) {
+    const std::string name = called(item, index);
+    check_class(item.class_name, name);
+    for (const auto& [part, class_name] : item.parts) check_class(class_name, name);
+    if (item.size_m && !(item.size_m->minCoeff() > 0.0 && item.size_m->maxCoeff() < 50.0))
+      refuse(spec_, name, "sizes must be positive");
+    if (const auto* place = std::get_if<AgainstWall>(&item.place)) {
+      check_along(room_with_edge(place->room, place->edge, name), place->edge, place->along_m, name);
+    }
+    if (const auto* place = std::get_if<OnItem>(&item.place)) {
+      if (!ids.contains(place->item))
+        refuse(spec_, name, "no item \"" + place->item + "\" comes before it to stand on");
+    }
+    if (item.id.empty()) item.id = item.class_name + "#" + std::to_string(index + 1);
+    if (!ids.insert(item.id).second) refuse(spec_, name, "the id occurs twice");
+  }
+
+  void normalise_pictures() {
+    std::set<std::uint64_t> motifs;
+    for (std::size_t i = 0; i < spec_.pictures.size(); ++i) {
+      const auto& motif = spec_.pictures[i].motif;
+      if (motif && !motifs.insert(*motif).second)
+        refuse(spec_, numbered("picture", i), "motif " + std::to_string(*motif) + " occurs twice");
+    }
+    std::uint64_t next = 0;
+    for (std::size_t i = 0; i < spec_.pictures.size(); ++i) {
+      PictureSpec& picture = spec_.pictures[i];
+      const std::string name = numbered("picture", i);
+      check_class(picture.class_name, name);
+      check_along(room_with_edge(picture.room, picture.edge, name), picture.edge, picture.along_m, name);
+      if (!(picture.size_m.minCoeff() >= 0.1)) refuse(spec_, name, "sizes must be at least 0.1");
+      while (!picture.motif && motifs.contains(next)) ++next;
+      if (!picture.motif) picture.motif = next++;
+    }
+  }
+
+  void check_class(const std::string& class_name, const std::string& item) const {
+    if (class_id(spec_.labels, class_name) == 0) refuse(spec_, item, "the labels have no class \"" + class_name + "\"");
+  }
+
+  void check_inside(const Eigen::Vector2d& at, const std::string& item) const {
+    const auto holds = [&](const RoomSpec& room) { return contains(room.polygon, at); };
+    if (std::none_of(spec_.rooms.begin(), spec_.rooms.end(), holds)) refuse(spec_, item, "lies in no room");
+  }
+
+  const RoomSpec& room_with_edge(const std::string& id, int edge, const std::string& item) const {
+    const auto it = std::find_if(spec_.rooms.begin(), spec_.rooms.end(), [&](const RoomSpec& r) { return r.id == id; });
+    if (it == spec_.rooms.end()) refuse(spec_, item, "there is no room \"" + id + "\"");
+    if (edge < 0 || static_cast<std::size_t>(edge) >= it->polygon.size())
+      refuse(spec_, item, "room \"" + id + "\" has no wall " + std::to_string(edge));
+    return *it;
+  }
+
+  static double wall_length(const RoomSpec& room, int edge) {
+    const auto i = static_cast<std::size_t>(edge);
+    return (room.polygon[(i + 1) % room.polygon.size()] - room.polygon[i]).norm();
+  }
+
+  void check_along(const RoomSpec& room, int edge, double along_m, const std::string& item) const {
+    if (!(along_m >= 0.0 && along_m <= wall_length(room, edge)))
+      refuse(spec_, item, "wall " + std::to_string(edge) + " of room \"" + room.id + "\" ends before that place");
+  }
+
+  SceneSpec& spec_;
+};
+
+}  // namespace
+
+SceneSpec normalised(SceneSpec spec) {
+  Normaliser(spec).run();
+  return spec;
+}
+
+}  // namespace lapis::simulator

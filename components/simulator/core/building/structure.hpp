@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "simulator/core/building/floor_plan.hpp"
+#include "simulator/core/building/shapes.hpp"
+#include "simulator/core/building/textures.hpp"
+#include "simulator/core/scene/scene.hpp"
+
+namespace lapis::simulator {
+
+/// Appends an instance and returns its index, which is the `part` of its triangles.
+std::uint32_t add_instance(Scene& scene, const std::string& class_name, const std::string& name);
+
+/// Adds walls, floors, ceilings, doors and windows of all rooms to a scene: one instance per wall, floor, and ceiling
+/// of a room, and one per door and window. Every room has walls of its own, seen from its inside; they are cut into
+/// cells of 0.2 m, so that they can carry light.
+void add_structure(Scene& scene, const SceneSpec& spec, const std::vector<RoomPlan>& plan, TextureLibrary& textures);
+
+}  // namespace lapis::simulator

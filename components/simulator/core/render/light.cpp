@@ -1,0 +1,127 @@
+#include "simulator/core/render/light.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <thread>
+
+namespace lapis::simulator {
+namespace {
+
+constexpr int kDirections = SceneRaycaster::kPacket;
+constexpr float kAmbientRange_m = 1.2F;
+constexpr float kAmbient = 0.42F;
+constexpr float kFloor = 0.06F;
+constexpr float kOffset_m = 0.004F;   // of a ray's origin from its surface
+constexpr float kLampRange_m = 7.0F;  // beyond it a lamp is not asked for
+constexpr float kGamma = 1.0F / 2.2F;
+
+using Directions = std::array<Eigen::Vector3f, kDirections>;
+
+/// Cosine-weighted directions about +z: a Hammersley set.
+Directions hammersley() {
+  Directions out;
+  for (int i = 0; i < kDirections; ++i) {
+    unsigned int bits = static_cast<unsigned int>(i);
+    float radical = 0.0F;
+    for (float digit = 0.5F; bits != 0; bits >>= 1U, digit /= 2.0F) radical += digit * static_cast<float>(bits & 1U);
+    const float squared = (static_cast<float>(i) + 0.5F) / static_cast<float>(kDirections);
+    const float angle = 2.0F * std::numbers::pi_v<float> * radical;
+    out[static_cast<std::size_t>(i)] = {std::sqrt(squared) * std::cos(angle), std::sqrt(squared) * std::sin(angle),
+                                        std::sqrt(1.0F - squared)};
+  }
+  return out;
+}
+
+/// Area-weighted normals; zero for a vertex without a triangle.
+std::vector<Eigen::Vector3f> vertex_normals(const Mesh& mesh) {
+  std::vector<Eigen::Vector3f> normals(mesh.positions.size(), Eigen::Vector3f::Zero());
+  for (const auto& triangle : mesh.triangles) {
+    const auto& [a, b, c] = triangle.vertices;
+    const auto& p = mesh.positions;
+    const Eigen::Vector3f normal = (p[b] - p[a]).cross(p[c] - p[a]);
+    for (const auto v : triangle.vertices) normals[v] += normal;
+  }
+  for (auto& normal : normals) normal.normalize();
+  return normals;
+}
+
+class Baker {
+ public:
+  Baker(const Scene& scene, const SceneRaycaster& raycaster)
+      : scene_(scene), raycaster_(raycaster), directions_(hammersley()) {}
+
+  /// Irradiance on the side that `normal` points to.
+  float irradiance(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) const {
+    const Eigen::Vector3f origin = position + kOffset_m * normal;
+    return kFloor + kAmbient * openness(origin, normal) + from_lamps(origin, normal);
+  }
+
+ private:
+  /// Share of directions in which nothing is near.
+  float openness(const Eigen::Vector3f& origin, const Eigen::Vector3f& normal) const {
+    const Eigen::Vector3f side =
+        normal.cross(std::abs(normal.z()) < 0.9F ? Eigen::Vector3f::UnitZ() : Eigen::Vector3f::UnitX()).normalized();
+    Eigen::Matrix3f frame;
+    frame << side, normal.cross(side), normal;
+    std::array<Ray, kDirections> rays;
+    std::array<float, kDirections> lengths;
+    lengths.fill(kAmbientRange_m);
+    for (std::size_t i = 0; i < rays.size(); ++i) rays[i] = {origin, frame * directions_[i]};
+    const int hidden = std::popcount(raycaster_.occluded(rays, lengths));
+    return 1.0F - static_cast<float>(hidden) / static_cast<float>(kDirections);
+  }
+
+  float from_lamps(const Eigen::Vector3f& origin, const Eigen::Vector3f& normal) const {
+    float sum = 0.0F;
+    std::array<Ray, kDirections> rays;
+    std::array<float, kDirections> lengths{}, light{};
+    std::size_t count = 0;
+    const auto flush = [&] {
+      const unsigned int hidden = raycaster_.occluded({rays.data(), count}, {lengths.data(), count});
+      for (std::size_t i = 0; i < count; ++i) sum += (hidden >> i & 1U) != 0 ? 0.0F : light[i];
+      count = 0;
+    };
+    for (const auto& lamp : scene_.lamps) {
+      const Eigen::Vector3f to_lamp = lamp.position - origin;
+      const float distance = to_lamp.norm(), cosine = normal.dot(to_lamp) / distance;
+      if (distance > kLampRange_m || !(cosine > 0.0F)) continue;
+      rays[count] = {origin, to_lamp};
+      lengths[count] = 1.0F;
+      light[count] = lamp.intensity * cosine / std::max(distance * distance, 0.25F);
+      if (++count == rays.size()) flush();
+    }
+    if (count > 0) flush();
+    return sum;
+  }
+
+  const Scene& scene_;
+  const SceneRaycaster& raycaster_;
+  Directions directions_;
+};
+
+}  // namespace
+
+std::vector<std::uint8_t> bake_light(const Scene& scene, const SceneRaycaster& raycaster, int threads) {
+  if (!scene.is_lit) return {};
+  const auto& positions = scene.mesh.positions;
+  const auto normals = vertex_normals(scene.mesh);
+  const Baker baker(scene, raycaster);
+  std::vector<std::uint8_t> light(positions.size());
+  const auto bake = [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const float brightest =
+          std::max(baker.irradiance(positions[i], normals[i]), baker.irradiance(positions[i], -normals[i]));
+      light[i] = static_cast<std::uint8_t>(std::lround(255.0F * std::pow(std::min(brightest, 1.0F), kGamma)));
+    }
+  };
+  std::vector<std::jthread> workers;
+  const auto count = static_cast<std::size_t>(std::max(threads, 1));
+  for (std::size_t i = 0; i < count; ++i) {
+    workers.emplace_back(bake, positions.size() * i / count, positions.size() * (i + 1) / count);
+  }
+  return workers.clear(), light;
+}
+
+}  // namespace lapis::simulator

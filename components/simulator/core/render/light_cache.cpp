@@ -1,0 +1,114 @@
+#include "simulator/core/render/light_cache.hpp"
+
+#include <cstring>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "common/files/atomic_file.hpp"
+#include "common/mapping/crc32.hpp"
+
+namespace lapis::simulator {
+namespace {
+
+constexpr std::size_t kChecksumBytes = 4;
+
+/// FNV-1a over words of eight bytes.
+class Hash {
+ public:
+  void add(const void* data, std::size_t bytes) {
+    const auto* p = static_cast<const std::uint8_t*>(data);
+    for (; bytes >= 8; bytes -= 8, p += 8) mix(p, 8);
+    if (bytes > 0) mix(p, bytes);
+  }
+  template <class Value>
+  void add(const std::vector<Value>& values) {
+    add(values.data(), values.size() * sizeof(Value));
+  }
+  void add(const std::string& text) { add(text.data(), text.size()); }
+  std::uint64_t value() const { return value_; }
+
+ private:
+  void mix(const std::uint8_t* p, std::size_t bytes) {
+    std::uint64_t word = bytes;
+    std::memcpy(&word, p, bytes);
+    value_ = (value_ ^ word) * 0x100000001B3ULL;
+    value_ ^= value_ >> 32U;
+  }
+  std::uint64_t value_ = 0xCBF29CE484222325ULL;
+};
+
+void add_geometry(Hash& hash, const Scene& scene) {
+  hash.add(scene.mesh.positions);
+  hash.add(scene.mesh.triangles);
+  for (const auto& lamp : scene.lamps) {
+    hash.add(lamp.position.data(), sizeof(float) * 3);
+    hash.add(&lamp.intensity, sizeof lamp.intensity);
+  }
+}
+
+void add_holes(Hash& hash, const Scene& scene) {
+  for (const auto& material : scene.mesh.materials) {
+    if (!material.is_cut_out || material.texture < 0) continue;
+    hash.add(scene.mesh.textures[static_cast<std::size_t>(material.texture)]->pixels);
+  }
+  hash.add(scene.mesh.texture_coordinates);
+}
+
+std::string hexadecimal(std::uint64_t value) {
+  std::string text;
+  for (int shift = 60; shift >= 0; shift -= 4) text += "0123456789abcdef"[value >> static_cast<unsigned>(shift) & 15U];
+  return text;
+}
+
+std::optional<std::vector<std::uint8_t>> read_light(const std::string& file, std::size_t vertices) {
+  std::string reason;
+  auto bytes = files::read_file(file, reason);
+  if (!bytes || bytes->size() != vertices + kChecksumBytes) return std::nullopt;
+  std::uint32_t checksum = 0;
+  std::memcpy(&checksum, bytes->data() + vertices, kChecksumBytes);
+  bytes->resize(vertices);
+  if (mapping::crc32(*bytes) != checksum) return std::nullopt;
+  return bytes;
+}
+
+}  // namespace
+
+std::uint64_t scene_hash(const Scene& scene) {
+  Hash hash;
+  add_geometry(hash, scene);
+  hash.add(scene.mesh.texture_coordinates);
+  hash.add(scene.mesh.colors);
+  for (const auto& material : scene.mesh.materials) {
+    hash.add(&material.color, sizeof material.color);
+    hash.add(&material.texture, sizeof material.texture);
+  }
+  for (const auto& texture : scene.mesh.textures) hash.add(texture->pixels);
+  for (const auto& instance : scene.instances) {
+    hash.add(&instance.id, sizeof instance.id);
+    hash.add(&instance.class_id, sizeof instance.class_id);
+  }
+  for (const auto& label : scene.labels.labels()) hash.add(std::to_string(label.id) + label.name);
+  return hash.value();
+}
+
+std::vector<std::uint8_t> cached_light(const Scene& scene, const SceneRaycaster& raycaster, int threads,
+                                       const std::filesystem::path& folder) {
+  if (folder.empty() || !scene.is_lit) return bake_light(scene, raycaster, threads);
+  Hash hash;
+  add_geometry(hash, scene);
+  add_holes(hash, scene);
+  const auto file = (folder / (hexadecimal(hash.value()) + ".light")).string();
+  if (auto light = read_light(file, scene.mesh.positions.size())) return *light;
+  auto light = bake_light(scene, raycaster, threads);
+  std::error_code ignored;
+  std::filesystem::create_directories(folder, ignored);
+  auto bytes = light;
+  bytes.resize(light.size() + kChecksumBytes);
+  const std::uint32_t checksum = mapping::crc32(light);
+  std::memcpy(bytes.data() + light.size(), &checksum, kChecksumBytes);
+  static_cast<void>(files::replace_file(file, bytes));  // without it the next start takes longer
+  return light;
+}
+
+}  // namespace lapis::simulator

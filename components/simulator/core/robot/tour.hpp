@@ -1,0 +1,44 @@
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "simulator/core/robot/path_planner.hpp"
+
+namespace lapis::simulator {
+
+struct WayPoint {
+  Eigen::Vector2d position{0, 0};  ///< [m]
+  bool look_around = false;        ///< turn once around there
+};
+
+struct TourConfig {
+  PathConfig path;
+  double max_speed_m_s = 0.5;
+  double max_turn_rate_rad_s = 0.6;  ///< slow enough for the camera to see rooms
+  double lookahead_m = 0.40;
+};
+
+/// The way to one way-point.
+struct TourLeg {
+  Path path;
+  bool looks_around = false;  ///< at its end
+  bool stops = false;         ///< at its end: to look around, to turn sharply, or because the tour ends
+};
+
+struct Tour {
+  std::vector<TourLeg> legs;
+  double length_m = 0.0;
+  double duration_s = 0.0;  ///< estimate
+};
+
+/// Plans a tour over all way-points in their order.
+/// @throws std::runtime_error naming the way-point (the first is number 1) that cannot be reached from the one before.
+Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vector<WayPoint>& way_points,
+               const TourConfig& config);
+
+/// Speed that a tour allows itself at this distance from obstacles: slower where it is narrow.
+double speed_limit_m_s(const TourConfig& config, double distance_m);
+
+}  // namespace lapis::simulator

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "simulator/core/robot/robot.hpp"
+#include "simulator/core/robot/tour.hpp"
+
+namespace lapis::simulator {
+
+/// Drives a tour by regulated pure pursuit [Coulter, CMU-RI-TR-92-01; Macenski et al., Autonomous Robots 2023]: it
+/// steers along the arc to a point of the path some way ahead, turns on the spot towards one that is far off its
+/// heading, and slows down in bends, near obstacles, and before it stops.
+class TourFollower {
+ public:
+  /// @param map must outlive the follower.
+  TourFollower(const NavMap& map, Tour tour, const TourConfig& config);
+
+  /// Command for a pose; to be asked regularly (10 Hz or more). Standstill once finished.
+  DriveCommand command(const Eigen::Vector2d& position, double yaw_rad);
+  bool is_finished() const { return leg_ == tour_.legs.size(); }
+  /// Index of the leg (and way-point) that is driven now; the number of legs once finished.
+  std::size_t leg() const { return leg_; }
+
+ private:
+  bool is_at_end() const;
+  void begin_leg(std::size_t leg);
+  DriveCommand look_around(double yaw_rad);
+  DriveCommand pursue(const Eigen::Vector2d& position, double yaw_rad);
+  Eigen::Vector2d target(const Eigen::Vector2d& position) const;
+  bool is_clear(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const;
+  void track(const Eigen::Vector2d& position);
+  Eigen::Vector2d point_at(double along_m) const;
+
+  const NavMap* map_;
+  Tour tour_;
+  TourConfig config_;
+  std::size_t leg_ = 0;
+  std::vector<double> along_m_;     ///< of each point of the leg's path
+  double progress_m_ = 0.0;         ///< along the leg's path
+  bool is_turning_ = false;         ///< on the spot, towards the path
+  double turned_rad_ = 0.0;         ///< while looking around
+  std::optional<double> last_yaw_;  ///< while looking around
+};
+
+}  // namespace lapis::simulator

@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "common/geometry/camera_mount.hpp"
+#include "common/geometry/pinhole_camera.hpp"
+#include "common/time/time.hpp"
+#include "simulator/core/robot/robot.hpp"
+#include "simulator/core/sensors.hpp"
+#include "simulator/core/world.hpp"
+
+namespace lapis::simulator {
+
+struct SimulationConfig {
+  std::uint64_t seed = 1;
+  double camera_rate_hz = 15.0;
+  geometry::PinholeCamera camera;
+  geometry::CameraMount mount;
+  RobotConfig robot;
+  SensorConfig sensors;
+};
+
+/// All that is sensed between two frames, and the truth of it.
+struct SensorFrame {
+  std::uint64_t tick = 0;
+  time::Time stamp;
+  CameraImages images;
+  geometry::DepthImage ideal_depth;  ///< without noise [m]
+  geometry::LabelImage ideal_labels;
+  RobotState robot;
+  geometry::Pose T_world_base;
+  double turn_rate_rad_s = 0.0;  ///< of the base
+  bool is_in_contact = false;
+  std::vector<WheelSample> wheels;
+  std::vector<ImuSample> imu;
+};
+
+/// A robot that drives in a world and senses it. Time goes from frame to frame: frame k is at k / rate. A pure function
+/// of world, configuration, start, and the commands so far.
+class Simulation {
+ public:
+  /// @param world must outlive the simulation.
+  /// @throws std::runtime_error when the robot does not fit at the start.
+  Simulation(const World& world, const SimulationConfig& config, const StartPose& start);
+
+  /// The next frame. `command` was given at the time of the last one; without any the watchdog may stop the robot.
+  SensorFrame next(const std::optional<DriveCommand>& command);
+  /// Commands that were not finite.
+  std::uint64_t commands_refused() const { return commands_refused_; }
+
+ private:
+  time::Time stamp_of(std::uint64_t tick) const;
+  void drive_to(time::Time stamp, SensorFrame& frame);
+  geometry::Pose T_world_base() const;
+
+  const World& world_;
+  SimulationConfig config_;
+  Robot robot_;
+  Sensors sensors_;
+  std::uint64_t tick_ = 0;
+  std::uint64_t commands_refused_ = 0;
+};
+
+}  // namespace lapis::simulator

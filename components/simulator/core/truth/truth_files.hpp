@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+
+#include "common/geometry/se3.hpp"
+#include "simulator/core/robot/nav_map.hpp"
+#include "simulator/core/scene/scene.hpp"
+#include "simulator/core/truth/ideal_map.hpp"
+#include "simulator/core/truth/voxel_truth.hpp"
+
+namespace lapis::simulator {
+
+/// Writes what is known of a scene before the run: mesh.lapis, flood.lapis (map frame), classes.json (names of the
+/// classes, and the most frequent of mesh.lapis), rooms.json (rooms in both frames, T_map_world), navmap.png and
+/// navmap.yaml (world frame, for ROS's map_server). The folder is made when its parent exists.
+/// @throws std::runtime_error naming the file that cannot be written.
+void write_scene_truth(const std::filesystem::path& folder, const Scene& scene, const NavMap& nav_map,
+                       const geometry::Pose& T_world_base, const VoxelTruth& truth);
+
+/// Writes ideal.lapis, of the frames so far.
+/// @throws std::runtime_error naming the file that cannot be written.
+void write_ideal_map(const std::filesystem::path& folder, const Scene& scene, const IdealMap& ideal);
+
+}  // namespace lapis::simulator

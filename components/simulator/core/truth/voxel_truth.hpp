@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/geometry/camera_mount.hpp"
+#include "common/geometry/pinhole_camera.hpp"
+#include "common/geometry/se3.hpp"
+#include "common/mapping/voxel_map.hpp"
+#include "simulator/core/render/raycaster.hpp"
+#include "simulator/core/robot/nav_map.hpp"
+#include "simulator/core/scene/scene.hpp"
+
+namespace lapis::simulator {
+
+struct TruthConfig {
+  double resolution_m = 0.25;      ///< edge of a voxel; the mapper's, so that grids coincide
+  double sensing_range_m = 5.0;    ///< Euclidean
+  double robot_radius_m = 0.2;     ///< of the disc that has to fit
+  double view_spacing_m = 0.25;    ///< between the places that stand for all reachable ones
+  geometry::PinholeCamera camera;  ///< sees up and down; it turns to any heading
+  geometry::CameraMount mount;
+  int threads = 1;  ///< the result does not depend on it
+};
+
+/// What can be known of a scene, in the run's map frame. Known voxels with surface are occupied, with their class; the
+/// others are free.
+struct VoxelTruth {
+  mapping::VoxelMap mesh;   ///< known: what the mounted camera can see from some reachable place
+  mapping::VoxelMap flood;  ///< known: what can be flooded from there, and surface next to it
+};
+
+/// Map frame of a run: base_link where it starts. slam puts the origin of `map` there, and the evaluator's own fixed
+/// transform, from the first estimate and true pose, is this one, too, up to rounding: in the first frame slam's pose
+/// of the camera is its mount, T_base_camera, so T_map_camera * T_world_camera^-1 = T_world_base^-1.
+inline geometry::Pose T_map_world(const geometry::Pose& T_world_base) { return T_world_base.inverse(); }
+
+/// Both volumes of a scene for a robot that starts at T_world_base. The raycaster is of the scene's mesh.
+/// @throws std::runtime_error when the robot does not fit at the start or the scene is too large for the resolution.
+VoxelTruth make_voxel_truth(const Scene& scene, const SceneRaycaster& raycaster, const NavMap& nav_map,
+                            const geometry::Pose& T_world_base, const TruthConfig& config);
+
+/// The classes with most occupied voxels, at most `count`; ties go to the smaller id, unlabelled is no class.
+std::vector<std::uint16_t> most_frequent_classes(const mapping::VoxelMap& mesh, std::size_t count = 8);
+
+}  // namespace lapis::simulator

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "common/geometry/camera_mount.hpp"
+#include "common/geometry/pinhole_camera.hpp"
+#include "simulator/core/world.hpp"
+
+namespace lapis::simulator {
+
+/// A place to look from.
+struct ViewPoint {
+  std::string name;  ///< room and number: "kitchen_1"
+  Eigen::Vector2d position{0, 0};
+  double yaw_rad = 0.0;
+};
+
+/// Views from which much of every room is seen, `per_room` each: where the robot can stand, those that have the most
+/// in sight among a fixed set of candidates. A scene without rooms is one room. Deterministic.
+std::vector<ViewPoint> choose_views(const World& world, const geometry::PinholeCamera& camera,
+                                    const geometry::CameraMount& mount, double robot_radius_m, int per_room);
+
+/// Pose of the camera of a robot that stands there.
+geometry::Pose T_world_camera(const World& world, const geometry::CameraMount& mount, const Eigen::Vector2d& position,
+                              double yaw_rad);
+
+}  // namespace lapis::simulator

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+
+#include "common/mapping/label_list.hpp"
+#include "simulator/core/scene/scene_spec.hpp"
+
+namespace lapis::simulator {
+
+/// Reads a scene file; docs/scenes.md describes it. Its labels come from the file that it names, by default
+/// ../labels/mpcat40.yaml beside its own folder.
+/// @throws std::runtime_error naming file and line for what is missing, unknown, or of the wrong kind. Whether the
+///   building makes sense is checked by build_scene.
+SceneSpec read_scene_yaml(const std::filesystem::path& file);
+
+/// Reads the way-points of a tour: "tour: [[x, y], ...]".
+/// @throws std::runtime_error naming file and line
+std::vector<Eigen::Vector2d> read_tour_yaml(const std::filesystem::path& file);
+
+/// Reads a list of classes: "labels: [{id: 1, name: wall, color: [r, g, b]}, ...]"; the colour may be left out.
+/// @throws std::runtime_error naming file and line
+mapping::LabelList read_label_list(const std::filesystem::path& file);
+
+}  // namespace lapis::simulator

@@ -1,0 +1,154 @@
+#include "simulator/set_up.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <numbers>
+#include <sstream>
+#include <stdexcept>
+
+#include "simulator/core/assets/load_scene.hpp"
+#include "simulator/furniture.hpp"
+#include "simulator/scene_yaml.hpp"
+
+namespace lapis::simulator {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string joined(const std::vector<std::string>& words) {
+  std::string out;
+  for (const auto& word : words) out += (out.empty() ? "" : ", ") + word;
+  return out;
+}
+
+/// A file of its own, or a bundled scene by its name.
+fs::path find_scene(const std::string& name) {
+  if (name.empty()) {
+    throw std::runtime_error("no scene given; call: lapis_simulator SCENE (bundled: " + joined(bundled_scenes()) + ")");
+  }
+  if (fs::exists(name)) return name;
+  const fs::path bundled = config_folder() / "scenes" / (name + ".yaml");
+  if (name.find('/') == std::string::npos && fs::exists(bundled)) return bundled;
+  throw std::runtime_error("scene " + name + ": no such file, and no bundled scene (" + joined(bundled_scenes()) + ")");
+}
+
+Scene build(const fs::path& file, const SimulatorConfig& config) {
+  const SceneSpec spec = read_scene_yaml(file);
+  const auto catalog = std::make_shared<FurnitureCatalog>(config.world.furniture_folder);
+  BuildOptions options;
+  options.seed = static_cast<std::uint64_t>(config.seed);
+  options.with_jitter = config.world.jitter;
+  options.texture_richness = config.world.texture_richness;
+  options.pictures_density = config.world.picture_density;
+  return build_scene(spec, furniture_from(catalog), options);
+}
+
+/// Where baked light is kept: the configured folder, else lapis/light in the user's cache folder; empty without one.
+fs::path light_folder(const SimulatorConfig& config) {
+  if (!config.world.light_folder.empty()) return config.world.light_folder;
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0') {
+    return fs::path(cache) / "lapis/light";
+  }
+  const char* home = std::getenv("HOME");
+  return home != nullptr && *home != '\0' ? fs::path(home) / ".cache/lapis/light" : fs::path();
+}
+
+std::uint16_t class_id(const Scene& scene, const std::string& name) {
+  for (const auto& label : scene.labels.labels()) {
+    if (label.name == name) return label.id;
+  }
+  throw std::runtime_error("simulator.world.passable_classes: scene " + scene.name + " has no class " + name);
+}
+
+RobotConfig robot_config(const robot::RobotDescription& robot) {
+  RobotConfig out;
+  out.radius_m = robot.radius_m;
+  out.max_speed_m_s = robot.max_speed_m_s;
+  out.max_turn_rate_rad_s = robot.max_turn_rate_rad_s;
+  out.lag_s = robot.drive_lag_s;
+  out.max_acceleration_m_s2 = robot.max_acceleration_m_s2;
+  out.max_turn_acceleration_rad_s2 = robot.max_turn_acceleration_rad_s2;
+  out.command_timeout = time::Duration::from_seconds(robot.command_timeout_s);
+  return out;
+}
+
+}  // namespace
+
+fs::path config_folder() {
+  const fs::path bin = fs::read_symlink("/proc/self/exe").parent_path();
+  for (const fs::path& folder : {bin / "../../../config", bin / "../share/lapis/config"}) {
+    if (fs::exists(folder / "scenes")) return fs::canonical(folder);
+  }
+  throw std::runtime_error("no folder config/scenes belongs to " + bin.string() + "; name a scene by its file");
+}
+
+std::vector<std::string> bundled_scenes() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(config_folder() / "scenes")) {
+    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+Scene open_scene(const SimulatorConfig& config) {
+  const fs::path file = find_scene(config.scene);
+  if (file.extension() == ".yaml") return build(file, config);
+  LoadOptions options;
+  options.labels = read_label_list(config_folder() / "labels" / "mpcat40.yaml");
+  return load_scene(file, options);
+}
+
+WorldConfig world_config(const Scene& scene, const SimulatorConfig& config) {
+  WorldConfig out;
+  out.threads = config.render_threads;
+  out.light_folder = light_folder(config);
+  for (const auto& name : config.world.passable_classes) out.passable_classes.push_back(class_id(scene, name));
+  return out;
+}
+
+World open_world(const SimulatorConfig& config) {
+  Scene scene = open_scene(config);
+  const WorldConfig setting = world_config(scene, config);
+  return World(std::move(scene), setting);
+}
+
+SimulationConfig simulation_config(const SimulatorConfig& config) {
+  const auto& robot = config.robot;
+  SimulationConfig out;
+  out.seed = static_cast<std::uint64_t>(config.seed);
+  out.camera_rate_hz = robot.camera.rate_hz;
+  out.camera = pinhole_camera(robot.camera);
+  out.mount = camera_mount(robot.camera);
+  out.robot = robot_config(robot);
+  out.sensors.has_imu = config.imu;
+  return out;
+}
+
+StartPose start_pose(const World& world, const SimulatorConfig& config) {
+  if (config.start.empty()) return draw_start(world, config.robot.radius_m, static_cast<std::uint64_t>(config.seed));
+  std::istringstream text(config.start);
+  double x = 0.0, y = 0.0, yaw_deg = 0.0;
+  std::string rest;
+  if (!(text >> x >> y >> yaw_deg) || text >> rest) {
+    throw std::runtime_error("simulator.start: must be \"x y yaw_deg\", not \"" + config.start + "\"");
+  }
+  return {{x, y}, yaw_deg * std::numbers::pi / 180.0};
+}
+
+std::optional<TourFollower> plan_tour(const World& world, const StartPose& start, const SimulatorConfig& config) {
+  if (config.tour.empty()) return std::nullopt;
+  const auto way_points = config.tour == "bundled" ? world.scene().tour : read_tour_yaml(config.tour);
+  if (way_points.empty()) {
+    throw std::runtime_error("scene " + world.scene().name + " has no tour; give a file with --tour FILE");
+  }
+  TourConfig tour;
+  tour.path.radius_m = config.robot.radius_m;
+  tour.max_speed_m_s = std::min(tour.max_speed_m_s, config.robot.max_speed_m_s);
+  tour.max_turn_rate_rad_s = std::min(tour.max_turn_rate_rad_s, config.robot.max_turn_rate_rad_s);
+  std::vector<WayPoint> stops;
+  for (const auto& p : way_points) stops.push_back({p, false});
+  return TourFollower(world.nav_map(), plan_tour(world.nav_map(), start.position, stops, tour), tour);
+}
+
+}  // namespace lapis::simulator

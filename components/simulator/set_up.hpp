@@ -1,0 +1,36 @@
+#pragma once
+
+// From the configuration to what the core works with.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "simulator/core/robot/tour_follower.hpp"
+#include "simulator/core/simulation.hpp"
+#include "simulator/core/world.hpp"
+#include "simulator/simulator_config.hpp"
+
+namespace lapis::simulator {
+
+/// The folder config/ that belongs to this executable: of the source tree it was built in, or share/lapis/config beside
+/// an installed bin/.
+/// @throws std::runtime_error when there is none.
+std::filesystem::path config_folder();
+
+/// Names of the bundled scenes, sorted.
+std::vector<std::string> bundled_scenes();
+
+/// Opens the scene that the configuration names, furnished for its seed. All of these functions throw
+/// std::runtime_error with one line that names the file or key and the remedy.
+Scene open_scene(const SimulatorConfig& config);
+WorldConfig world_config(const Scene& scene, const SimulatorConfig& config);
+World open_world(const SimulatorConfig& config);
+SimulationConfig simulation_config(const SimulatorConfig& config);
+/// The configured start, else one that the seed draws.
+StartPose start_pose(const World& world, const SimulatorConfig& config);
+/// The tour that the robot drives by itself; nothing when none is configured.
+std::optional<TourFollower> plan_tour(const World& world, const StartPose& start, const SimulatorConfig& config);
+
+}  // namespace lapis::simulator

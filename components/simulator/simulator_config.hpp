@@ -1,0 +1,115 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "common/mapping/describe.hpp"
+#include "common/robot/robot_description.hpp"
+#include "common/runtime/lockstep_driver.hpp"
+
+namespace lapis::simulator {
+
+struct NoiseConfig {
+  std::string depth = "kinect";
+  double depth_multiplier = 1.0;
+  std::string labels = "default";
+  bool color = true;
+  bool wheels = true;
+  std::string drift = "nominal";
+};
+
+struct SceneConfig {
+  std::string furniture_folder = "/usr/share/sweethome3d/furniture";
+  bool jitter = true;
+  double texture_richness = 1.0;
+  double picture_density = 1.0;
+  config::Words passable_classes;
+  std::string light_folder;
+};
+
+/// What the ground truth maps are built with: as the mapper's, so that the maps can be compared.
+struct TruthConfig {
+  double resolution_m = 0.25;
+  mapping::IntegrationConfig integration;
+  mapping::CompactFrameConfig frame;
+};
+
+struct SimulatorConfig {
+  std::string scene;
+  std::int64_t seed = 1;
+  std::string mode = "lockstep";
+  double max_real_time_factor = 0.0;
+  double duration_s = 0.0;
+  std::string tour;
+  std::string start;
+  std::string output_dir;
+  int render_threads = 1;
+  bool imu = false;
+  SceneConfig world;
+  NoiseConfig noise;
+  TruthConfig truth;
+  robot::RobotDescription robot;
+  runtime::LockstepConfig lockstep;
+  // command line only
+  bool validate = false;
+  bool credits = false;
+  std::string snapshot_dir;
+  std::string export_dir;
+};
+
+template <class Field>
+void describe(Field& field, NoiseConfig& c) {
+  field("depth", c.depth, config::one_of({"none", "kinect", "redwood", "realsense"}), "model of the depth camera");
+  field("depth_multiplier", c.depth_multiplier, config::in_range(0.0, 10.0), "scales its standard deviations");
+  field("labels", c.labels, config::one_of({"none", "default"}), "model of the segmentation");
+  field("color", c.color, config::anything(), "noise of the colour camera");
+  field("wheels", c.wheels, config::anything(), "noise and systematic errors of wheel odometry");
+  field("drift", c.drift, config::one_of({"nominal", "hard"}),
+        "how hard localisation is: texture, dropouts, blur, and wheel noise together");
+}
+
+template <class Field>
+void describe(Field& field, SceneConfig& c) {
+  field("furniture_folder", c.furniture_folder, config::anything(),
+        "libraries of the Debian package sweethome3d-furniture; without them parametric furniture stands in");
+  field("jitter", c.jitter, config::anything(), "the seed moves what is movable, and pictures, a little");
+  field("texture_richness", c.texture_richness, config::in_range(0.0, 2.0), "scales the contrast of textures");
+  field("picture_density", c.picture_density, config::in_range(0.0, 1.0), "share of the pictures that hang");
+  field("passable_classes", c.passable_classes, config::anything(),
+        "names of classes that the robot drives through, such as closed doors of a scan");
+  field("light_folder", c.light_folder, config::anything(),
+        "where baked light is kept; empty: lapis/light in the user's cache folder");
+}
+
+template <class Field>
+void describe(Field& field, TruthConfig& c) {
+  field("resolution_m", c.resolution_m, config::in_range(0.02, 0.5),
+        "edge of a voxel; as semantic_mapper.resolution_m [m]");
+  field("integration", c.integration);
+  field("frame", c.frame);
+}
+
+template <class Field>
+void describe(Field& field, SimulatorConfig& c) {
+  field("scene", c.scene, config::anything(),
+        "name of a bundled scene, a scene file (.yaml), or a file or folder of another format (docs/scenes.md)");
+  field("seed", c.seed, config::at_least(0), "draws start, noise, systematic errors, label confusion, jitter");
+  field("mode", c.mode, config::one_of({"lockstep", "freerun"}),
+        "lockstep: every frame is answered by all before the next; freerun: by the wall clock, frames may be lost");
+  field("max_real_time_factor", c.max_real_time_factor, config::in_range(0.0, 100.0),
+        "lock-step is not faster than this; 0: as fast as the machine");
+  field("duration_s", c.duration_s, config::in_range(0.0, 1e6),
+        "simulated time after which the run ends [s]; 0: never");
+  field("tour", c.tour, config::anything(),
+        "\"bundled\", or a file with way-points, that the robot drives by itself; empty: it obeys /cmd_vel");
+  field("start", c.start, config::anything(), "\"x y yaw_deg\" [m, m, deg]; empty: drawn by the seed");
+  field("output_dir", c.output_dir, config::anything(),
+        "run folder for simulation.yaml and ground_truth/; empty: none");
+  field("render_threads", c.render_threads, config::in_range(1, 64), "images do not depend on it");
+  field("imu", c.imu, config::anything(), "publish /imu at 200 Hz");
+  field("world", c.world);
+  field("noise", c.noise);
+  field("truth", c.truth);
+}
+
+}  // namespace lapis::simulator

@@ -5,15 +5,6 @@
 #include <sstream>
 
 namespace lapis::config {
-namespace {
-
-std::string number_text(double value) {
-  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
-  char text[32];
-  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
-  return {text, end};
-}
-
 std::string quoted(const std::string& text) {
   std::string out = "\"";
   for (const char c : text) {
@@ -21,6 +12,15 @@ std::string quoted(const std::string& text) {
     out += c;
   }
   return out + '"';
+}
+
+namespace {
+
+std::string number_text(double value) {
+  if (std::isinf(value)) return value > 0 ? ".inf" : "-.inf";
+  char text[32];
+  const auto end = std::to_chars(text, text + sizeof text, value).ptr;
+  return {text, end};
 }
 
 struct ValueText {

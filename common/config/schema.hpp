@@ -64,6 +64,8 @@ class Schema {
   std::vector<Entry> entries_;
 };
 
+/// Text as a double-quoted YAML scalar.
+std::string quoted(const std::string& text);
 /// The entry's current value as YAML text.
 std::string to_text(const Entry& entry);
 /// A README table: key, default, allowed, meaning.

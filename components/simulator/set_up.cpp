@@ -72,6 +72,25 @@ RobotConfig robot_config(const robot::RobotDescription& robot) {
   return out;
 }
 
+DepthModel depth_model(const std::string& name) {
+  if (name == "kinect") return DepthModel::kKinect;
+  if (name == "redwood") return DepthModel::kRedwood;
+  return name == "realsense" ? DepthModel::kRealsense : DepthModel::kNone;
+}
+
+SensorConfig sensor_config(const SimulatorConfig& config) {
+  const NoiseConfig& noise = config.noise;
+  SensorConfig out;
+  out.depth.model = depth_model(noise.depth);
+  out.depth.noise_multiplier = noise.depth_multiplier;
+  out.labels.model = noise.labels == "none" ? LabelModel::kNone : LabelModel::kDefault;
+  if (!noise.color) out.color.sigma = 0.0;
+  if (!noise.wheels) out.wheels.scale = 0.0;
+  out.has_imu = config.imu;
+  apply_drift(noise.drift == "hard" ? DriftPreset::kHard : DriftPreset::kNominal, out);
+  return out;
+}
+
 }  // namespace
 
 fs::path config_folder() {
@@ -121,7 +140,7 @@ SimulationConfig simulation_config(const SimulatorConfig& config) {
   out.camera = pinhole_camera(robot.camera);
   out.mount = camera_mount(robot.camera);
   out.robot = robot_config(robot);
-  out.sensors.has_imu = config.imu;
+  out.sensors = sensor_config(config);
   return out;
 }
 

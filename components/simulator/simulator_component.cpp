@@ -1,6 +1,8 @@
 #include "simulator/simulator_component.hpp"
 
 #include "common/files/atomic_file.hpp"
+#include "simulator/core/truth/truth_files.hpp"
+#include "simulator/run_files.hpp"
 #include "simulator/set_up.hpp"
 #include "simulator/tools.hpp"
 
@@ -42,6 +44,7 @@ SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& c
       wheels_(context.advertise(topics::kWheelOdometry)), collision_(context.advertise(topics::kCollision)) {
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "simulator.output_dir");
   describe_scene(world_);
+  if (!config_.output_dir.empty()) make_truth();
   if (config_.imu) imu_ = &context.advertise(topics::kImu);
   context.subscribe(topics::kCommand, [this](const auto& m) { command_ = from_message(m); });
   serve();
@@ -88,6 +91,7 @@ void SimulatorComponent::serve() {
 void SimulatorComponent::begin() {
   if (next_.valid()) next_.wait();
   simulation_ = std::make_unique<Simulation>(world_, simulation_config(config_), start_);
+  if (!config_.output_dir.empty()) ideal_.emplace(truth_config(config_));
   tour_ = simulator::plan_tour(world_, start_, config_);
   command_.reset();
   last_.reset();
@@ -112,7 +116,10 @@ void SimulatorComponent::work() {
       tick();
     }
   }
-  if (driver_ && driver_->state() == State::kFailed) context_.fail(driver_->failure());
+  if (driver_ && driver_->state() == State::kFailed && failure_.empty()) {
+    failure_ = driver_->failure();
+    context_.fail(failure_);
+  }
 }
 
 /// False while paused, or before the wall-clock time of the next tick, at which it wakes the executor.
@@ -179,6 +186,7 @@ void SimulatorComponent::simulate_next() {
   next_ = std::async(std::launch::async, [this, command = std::exchange(command_, std::nullopt)] {
     Step step;
     step.frame = simulation_->next(command);
+    if (ideal_) add_to(*ideal_, step.frame, world_, start_, config_);
     step.messages =
         to_messages(step.frame, pinhole_camera(config_.robot.camera), {camera_.ids(), context_.frame("odom")});
     return step;
@@ -193,8 +201,32 @@ void SimulatorComponent::report_progress(bool is_last) {
   spdlog::info("{:.1f} s simulated, real-time factor {:.2f}", stamp_.seconds(), stamp_.seconds() / elapsed_s);
 }
 
+/// The ground truth of the scene, in a thread of its own: the run does not wait for it.
+void SimulatorComponent::make_truth() {
+  truth_ = std::async(std::launch::async, [this] { write_truth(world_, start_, config_); });
+}
+
 void SimulatorComponent::finish() {
+  if (next_.valid()) next_.wait();
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
+  if (simulation_->commands_refused() > 0) {
+    spdlog::warn("commands refused, because they are not finite: {}", simulation_->commands_refused());
+  }
+  if (!config_.output_dir.empty()) write_files();
+}
+
+void SimulatorComponent::write_files() {
+  RunSummary summary;
+  summary.exit_reason = !failure_.empty() ? failure_ : has_ended_ ? "completed" : "stopped";
+  summary.frames = ticks_;
+  summary.simulated_s = stamp_.seconds();
+  if (began_) summary.wall_s = seconds_between(*began_, Clock::now());
+  summary.collisions = collisions_;
+  if (driver_) summary.cpu_ms = driver_->cpu_ms();
+  files::replace_text(std::filesystem::path(config_.output_dir) / "simulation.yaml",
+                      to_yaml(summary, world_, start_, config_));
+  write_ideal_map(truth_folder(config_), world_.scene(), *ideal_);
+  truth_.get();
 }
 
 }  // namespace lapis::simulator

@@ -13,6 +13,7 @@
 #include "simulator/conversions.hpp"
 #include "simulator/core/robot/tour_follower.hpp"
 #include "simulator/core/simulation.hpp"
+#include "simulator/core/truth/ideal_map.hpp"
 #include "simulator/core/world.hpp"
 #include "simulator/simulator_config.hpp"
 
@@ -53,7 +54,8 @@ class SimulatorComponent {
   void publish_contact(bool is_in_contact);
   void simulate_next();
   void report_progress(bool is_last);
-  void write_summary() const;
+  void make_truth();
+  void write_files();
 
   const Config config_;
   runtime::Context& context_;
@@ -68,10 +70,13 @@ class SimulatorComponent {
   std::optional<TourFollower> tour_;
   std::optional<DriveCommand> command_;  // newest, not yet obeyed
   std::future<Step> next_;
+  std::future<void> truth_;  // ground truth of the scene is being written
+  std::optional<IdealMap> ideal_;
   std::optional<SensorMessages> last_;  // lock-step may want them again
   time::Time stamp_;
   std::uint64_t ticks_ = 0;
   std::uint64_t collisions_ = 0;
+  std::string failure_;
   bool is_in_contact_ = false;
   bool is_over_ = false;    // no further frame
   bool has_ended_ = false;  // and the others know

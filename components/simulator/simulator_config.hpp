@@ -6,6 +6,7 @@
 #include "common/mapping/describe.hpp"
 #include "common/robot/robot_description.hpp"
 #include "common/runtime/lockstep_driver.hpp"
+#include "simulator/core/truth/ideal_map.hpp"
 
 namespace lapis::simulator {
 
@@ -27,13 +28,6 @@ struct SceneConfig {
   std::string light_folder;
 };
 
-/// What the ground truth maps are built with: as the mapper's, so that the maps can be compared.
-struct TruthConfig {
-  double resolution_m = 0.25;
-  mapping::IntegrationConfig integration;
-  mapping::CompactFrameConfig frame;
-};
-
 struct SimulatorConfig {
   std::string scene;
   std::int64_t seed = 1;
@@ -47,7 +41,7 @@ struct SimulatorConfig {
   bool imu = false;
   SceneConfig world;
   NoiseConfig noise;
-  TruthConfig truth;
+  IdealMapConfig truth;  ///< ground truth maps: as the mapper's, so that they can be compared
   robot::RobotDescription robot;
   runtime::LockstepConfig lockstep;
   // command line only
@@ -82,7 +76,7 @@ void describe(Field& field, SceneConfig& c) {
 }
 
 template <class Field>
-void describe(Field& field, TruthConfig& c) {
+void describe(Field& field, IdealMapConfig& c) {
   field("resolution_m", c.resolution_m, config::in_range(0.02, 0.5),
         "edge of a voxel; as semantic_mapper.resolution_m [m]");
   field("integration", c.integration);

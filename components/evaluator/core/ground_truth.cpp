@@ -54,10 +54,9 @@ std::optional<GroundTruth> load_ground_truth(const std::filesystem::path& folder
 }
 
 bool is_same_frame(const geometry::Pose& T_map_world, const geometry::Pose& other) {
-  const geometry::Pose difference = T_map_world.inverse() * other;
-  // Of the origins of the map, where the run takes place; that of the world may be far away.
-  const double offset_m = (T_map_world * other.inverse()).translation().norm();
-  return offset_m <= kMaxOffset_m && geometry::rotation_angle(difference.linear()) <= kMaxTurn_rad;
+  const geometry::Pose difference = T_map_world * other.inverse();  // between two maps, near whose origins the run is
+  return difference.translation().norm() <= kMaxOffset_m &&
+         geometry::rotation_angle(difference.linear()) <= kMaxTurn_rad;
 }
 
 }  // namespace lapis::evaluator

@@ -1,23 +1,57 @@
 #include "simulator/core/sensors.hpp"
 
-#include <cmath>
-
 namespace lapis::simulator {
+namespace {
 
-Sensors::Sensors(const SensorConfig& config, const geometry::PinholeCamera&, std::uint64_t) : config_(config) {}
+constexpr double kGravity_m_s2 = 9.80665;
 
-CameraImages Sensors::see(const RenderedFrame& ideal, const View&) const {
-  CameraImages out{ideal.color, {ideal.depth.width, ideal.depth.height}, ideal.labels};
-  for (std::size_t i = 0; i < ideal.depth.pixels.size(); ++i) {
-    out.depth_mm.pixels[i] = static_cast<std::uint16_t>(std::lround(std::min(ideal.depth.pixels[i], 65.0F) * 1000.0F));
-  }
+}  // namespace
+
+void apply_drift(DriftPreset preset, SensorConfig& config) {
+  const DriftScales scales = drift_scales(preset);
+  config.color.contrast *= scales.texture;
+  config.color.shutter += scales.blur;
+  config.depth.extra_dropout += scales.dropout;
+  config.wheels.scale *= scales.wheel;
+}
+
+Sensors::Sensors(const SensorConfig& config, const geometry::PinholeCamera& camera, const mapping::LabelList& labels,
+                 std::uint64_t seed)
+    : focal_px_(camera.fx), color_(config.color, seed), depth_(config.depth, seed),
+      labels_(config.labels, labels, seed), wheels_(config.wheels, seed), imu_(config.imu, seed) {}
+
+CameraImages Sensors::see(const RenderedFrame& ideal, const View& view) const {
+  // A camera that turns left sees the world move right; what driving adds is small and differs from pixel to pixel.
+  const Eigen::Vector2d flow_px(focal_px_ * view.turn_rad, 0.0);
+  return {color_.apply(ideal.color, view.tick, flow_px), depth_.apply(ideal.depth, ideal.cosines, focal_px_, view.tick),
+          labels_.apply(ideal.labels, ideal.instances, ideal.depth, view.T_world_camera, view.tick)};
+}
+
+void Sensors::roll(const Motion& motion) {
+  rolled_m_ += motion.distance_m;
+  turned_rad_ += motion.turn_rad;
+}
+
+WheelSample Sensors::read_wheels(time::Time stamp, time::Duration period) {
+  const WheelStep step = wheels_.step(rolled_m_, turned_rad_);
+  rolled_m_ = turned_rad_ = 0.0;
+  const double period_s = period.seconds();
+  WheelSample out;
+  out.stamp = stamp;
+  out.position = wheels_.position();
+  out.yaw_rad = wheels_.yaw_rad();
+  out.pose_covariance = wheels_.covariance();
+  out.velocity = {step.distance_m / period_s, step.turn_rad / period_s};
+  out.velocity_covariance.diagonal() << step.distance_variance, 0.0, step.turn_variance;
+  out.velocity_covariance /= period_s * period_s;
   return out;
 }
-void Sensors::roll(const Motion&) {}
-WheelSample Sensors::wheels(time::Time stamp) {
-  pose_.stamp = stamp;
-  return pose_;
+
+ImuSample Sensors::read_imu(const Motion& motion, time::Time stamp, time::Duration period) {
+  const Eigen::Vector3d acceleration(motion.acceleration.x(), motion.acceleration.y(), kGravity_m_s2);
+  const ImuReading reading = imu_.read({0.0, 0.0, motion.turn_rate_rad_s}, acceleration, period.seconds());
+  return {stamp, reading.turn_rate_rad_s, reading.acceleration_m_s2, reading.turn_rate_variance,
+          reading.acceleration_variance};
 }
-ImuSample Sensors::imu(const Motion&, time::Time stamp) { return {stamp}; }
 
 }  // namespace lapis::simulator

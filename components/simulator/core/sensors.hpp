@@ -8,14 +8,28 @@
 #include "common/geometry/pinhole_camera.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
+#include "simulator/core/noise/color_noise.hpp"
+#include "simulator/core/noise/depth_noise.hpp"
+#include "simulator/core/noise/drift.hpp"
+#include "simulator/core/noise/imu_noise.hpp"
+#include "simulator/core/noise/label_noise.hpp"
+#include "simulator/core/noise/wheel_odometry.hpp"
 #include "simulator/core/render/renderer.hpp"
 #include "simulator/core/robot/robot.hpp"
 
 namespace lapis::simulator {
 
 struct SensorConfig {
+  ColorNoiseConfig color;
+  DepthNoiseConfig depth;
+  LabelNoiseConfig labels;
+  WheelNoiseConfig wheels;
+  ImuNoiseConfig imu;
   bool has_imu = false;
 };
+
+/// Makes localisation as hard as the preset says: visual difficulty and wheel noise together.
+void apply_drift(DriftPreset preset, SensorConfig& config);
 
 /// What the camera and a segmentation of its images give.
 struct CameraImages {
@@ -42,28 +56,37 @@ struct ImuSample {
   double acceleration_variance = 0.0;
 };
 
-/// When and where a frame was seen.
+/// When and from where a frame was seen.
 struct View {
   std::uint64_t tick = 0;
   geometry::Pose T_world_camera;
+  double turn_rad = 0.0;  ///< of the camera about its vertical axis since the last frame, to the left
 };
 
-/// The robot's sensors with their noise.
+/// The robot's sensors with their noise. Images depend on their own frame only; odometry and IMU drift.
 class Sensors {
  public:
-  Sensors(const SensorConfig& config, const geometry::PinholeCamera& camera, std::uint64_t seed);
+  /// @param labels the classes that the segmentation knows
+  Sensors(const SensorConfig& config, const geometry::PinholeCamera& camera, const mapping::LabelList& labels,
+          std::uint64_t seed);
 
   CameraImages see(const RenderedFrame& ideal, const View& view) const;
-  /// The wheels have turned.
+  /// The wheels have turned: counted until odometry is read.
   void roll(const Motion& motion);
-  /// Odometry now.
-  WheelSample wheels(time::Time stamp);
-  /// Mean over a motion.
-  ImuSample imu(const Motion& motion, time::Time stamp);
+  /// Odometry of what the wheels rolled in the period that ends now.
+  WheelSample read_wheels(time::Time stamp, time::Duration period);
+  /// Mean over a motion that took `period`.
+  ImuSample read_imu(const Motion& motion, time::Time stamp, time::Duration period);
 
  private:
-  SensorConfig config_;
-  WheelSample pose_;
+  double focal_px_;
+  ColorNoise color_;
+  DepthNoise depth_;
+  LabelNoise labels_;
+  WheelOdometry wheels_;
+  ImuNoise imu_;
+  double rolled_m_ = 0.0;
+  double turned_rad_ = 0.0;
 };
 
 }  // namespace lapis::simulator

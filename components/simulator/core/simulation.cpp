@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 namespace lapis::simulator {
 namespace {
@@ -25,7 +26,7 @@ RobotState at_rest(const StartPose& start) {
 
 Simulation::Simulation(const World& world, const SimulationConfig& config, const StartPose& start)
     : world_(world), config_(config), robot_(world.nav_map(), config.robot, at_rest(start)),
-      sensors_(config.sensors, config.camera, config.seed) {}
+      sensors_(config.sensors, config.camera, world.scene().labels, config.seed) {}
 
 /// Whole nanoseconds, computed from the number of the frame alone.
 time::Time Simulation::stamp_of(std::uint64_t tick) const {
@@ -37,12 +38,14 @@ SensorFrame Simulation::next(const std::optional<DriveCommand>& command) {
   SensorFrame frame;
   frame.tick = ++tick_;
   frame.stamp = stamp_of(tick_);
+  const double yaw_before_rad = robot_.state().yaw_rad;
   drive_to(frame.stamp, frame);
   frame.T_world_base = T_world_base();
   frame.robot = robot_.state();
   const geometry::Pose T_world_camera = frame.T_world_base * T_base_camera(config_.mount);
   RenderedFrame ideal = world_.renderer().render(config_.camera, T_world_camera);
-  frame.images = sensors_.see(ideal, {frame.tick, T_world_camera});
+  const double turn_rad = std::remainder(frame.robot.yaw_rad - yaw_before_rad, 2.0 * std::numbers::pi);
+  frame.images = sensors_.see(ideal, {frame.tick, T_world_camera, turn_rad});
   frame.ideal_depth = std::move(ideal.depth);
   frame.ideal_labels = std::move(ideal.labels);
   return frame;
@@ -58,8 +61,8 @@ void Simulation::drive_to(time::Time stamp, SensorFrame& frame) {
     frame.is_in_contact |= motion.is_in_contact;
     frame.turn_rate_rad_s = motion.turn_rate_rad_s;
     sensors_.roll(motion);
-    if (until == next_multiple(now, kWheelPeriod)) frame.wheels.push_back(sensors_.wheels(until));
-    if (config_.sensors.has_imu && until == imu_due) frame.imu.push_back(sensors_.imu(motion, until));
+    if (until == next_multiple(now, kWheelPeriod)) frame.wheels.push_back(sensors_.read_wheels(until, kWheelPeriod));
+    if (config_.sensors.has_imu && until == imu_due) frame.imu.push_back(sensors_.read_imu(motion, until, kImuPeriod));
   }
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulator/core/robot/reachability.hpp"
+
 namespace lapis::simulator {
 namespace {
 
@@ -12,16 +14,6 @@ constexpr int kHeadings = 12;
 constexpr double kRoomAround_m = 0.15;
 constexpr int kThumbnail_px = 48;
 constexpr float kFar_m = 8.0F;  // seeing farther is not seeing more
-
-bool is_inside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p) {
-  bool is_in = false;
-  for (std::size_t i = 0, j = polygon.size() - 1; i < polygon.size(); j = i++) {
-    const auto &a = polygon[i], &b = polygon[j];
-    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-    if (p.x() < (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y()) + a.x()) is_in = !is_in;
-  }
-  return is_in;
-}
 
 /// How much a view has in sight: different things, each weighted by the root of its pixels.
 double interest(const RenderedFrame& frame) {

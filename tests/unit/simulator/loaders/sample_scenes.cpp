@@ -223,8 +223,8 @@ std::size_t GltfBuilder::add_view(const Bytes& bytes, std::size_t stride) {
 
 std::size_t GltfBuilder::add_accessor(const Bytes& bytes, std::size_t component_type, const std::string& type,
                                       std::size_t count, std::size_t stride, bool is_normalized) {
-  json accessor{{"bufferView", add_view(bytes, stride)}, {"componentType", component_type}, {"type", type},
-                {"count", count}};
+  json accessor{
+      {"bufferView", add_view(bytes, stride)}, {"componentType", component_type}, {"type", type}, {"count", count}};
   if (is_normalized) accessor["normalized"] = true;
   root["accessors"].push_back(accessor);
   return root["accessors"].size() - 1;

@@ -22,11 +22,11 @@ enum class PlyFormat { kAscii, kLittleEndian, kBigEndian };
 /// What a PLY file is written from.
 struct PlySource {
   std::vector<Eigen::Vector3f> positions;
-  std::vector<geometry::Rgb8> vertex_colors;          ///< empty: none
+  std::vector<geometry::Rgb8> vertex_colors;  ///< empty: none
   std::vector<std::vector<std::uint32_t>> polygons;
-  std::vector<std::string> labels;                    ///< names of int properties of the faces
+  std::vector<std::string> labels;                      ///< names of int properties of the faces
   std::vector<std::vector<std::int32_t>> label_values;  ///< [label][polygon]
-  std::vector<geometry::Rgb8> face_colors;            ///< empty: none
+  std::vector<geometry::Rgb8> face_colors;              ///< empty: none
 };
 
 Bytes write_ply(const PlySource& source, PlyFormat format);

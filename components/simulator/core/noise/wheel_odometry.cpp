@@ -1,0 +1,53 @@
+#include "simulator/core/noise/wheel_odometry.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "simulator/core/noise/random.hpp"
+
+namespace lapis::simulator {
+
+WheelOdometry::WheelOdometry(const WheelNoiseConfig& config, std::uint64_t seed) : config_(config), seed_(seed) {
+  const Random random(seed, RandomStream::kWheelSystematic);
+  const double wheel_sigma = config.scale * config.wheel_sigma, base_sigma = config.scale * config.base_sigma;
+  wheel_ = 1.0 + wheel_sigma * random.normal(0);
+  base_ = 1.0 + base_sigma * random.normal(1);
+  covariance_(3, 3) = wheel_sigma * wheel_sigma;
+  covariance_(4, 4) = base_sigma * base_sigma;
+}
+
+WheelStep WheelOdometry::step(double distance_m, double turn_rad) {
+  const double way = std::abs(distance_m), turn = std::abs(turn_rad), scale2 = config_.scale * config_.scale;
+  WheelStep step;
+  step.distance_variance = scale2 * (config_.distance_per_metre * way + config_.distance_per_turn * turn);
+  step.turn_variance = scale2 * (config_.turn_per_turn * turn + config_.turn_per_metre * way);
+  const Random random(seed_, RandomStream::kWheel, steps_++);
+  step.distance_m = wheel_ * distance_m + std::sqrt(step.distance_variance) * random.normal(0);
+  step.turn_rad = wheel_ / base_ * turn_rad + std::sqrt(step.turn_variance) * random.normal(1);
+
+  const double half = 0.5 * step.turn_rad;
+  const double middle = yaw_rad_ + half;
+  const double chord = std::abs(half) < 1e-6 ? step.distance_m : step.distance_m * std::sin(half) / half;
+  propagate(step, middle);
+  position_ += chord * Eigen::Vector2d(std::cos(middle), std::sin(middle));
+  yaw_rad_ = std::remainder(yaw_rad_ + step.turn_rad, 2 * std::numbers::pi);
+  return step;
+}
+
+/// P <- F P F' + G Q G', with the pose's derivatives by itself and the parameters in F, by the step in G.
+void WheelOdometry::propagate(const WheelStep& step, double middle_yaw_rad) {
+  const double c = std::cos(middle_yaw_rad), s = std::sin(middle_yaw_rad), ds = step.distance_m;
+  Eigen::Matrix<double, 3, 2> G;
+  G << c, -0.5 * ds * s, s, 0.5 * ds * c, 0, 1;
+  Eigen::Matrix2d by_parameters;  // of the measured step, by wheel and base
+  by_parameters << ds, 0, step.turn_rad, -step.turn_rad;
+  Matrix5d F = Matrix5d::Identity();
+  F(0, 2) = -ds * s;
+  F(1, 2) = ds * c;
+  F.block<3, 2>(0, 3) = G * by_parameters;
+  const Eigen::Matrix2d Q = Eigen::Vector2d(step.distance_variance, step.turn_variance).asDiagonal();
+  covariance_ = F * covariance_ * F.transpose();
+  covariance_.topLeftCorner<3, 3>() += G * Q * G.transpose();
+}
+
+}  // namespace lapis::simulator

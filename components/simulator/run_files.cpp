@@ -1,0 +1,84 @@
+#include "simulator/run_files.hpp"
+
+#include <cstdio>
+#include <numbers>
+
+#include "common/config/yaml.hpp"
+#include "simulator/core/truth/truth_files.hpp"
+#include "simulator/core/truth/voxel_truth.hpp"
+#include "simulator/core/views.hpp"
+
+namespace lapis::simulator {
+namespace {
+
+/// Pose of base_link at the start, which is the origin of the run's map.
+geometry::Pose T_world_start(const World& world, const StartPose& start) {
+  const Eigen::Quaterniond rotation(Eigen::AngleAxisd(start.yaw_rad, Eigen::Vector3d::UnitZ()));
+  return geometry::make_pose({start.position.x(), start.position.y(), world.scene().floor_z_m}, rotation);
+}
+
+std::string number(double value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6g", value);
+  return text;
+}
+
+std::string hexadecimal(std::uint64_t value) {
+  char text[40];
+  std::snprintf(text, sizeof text, "\"%016llx\"", static_cast<unsigned long long>(value));
+  return text;
+}
+
+}  // namespace
+
+std::string to_yaml(const RunSummary& summary, const World& world, const StartPose& start,
+                    const SimulatorConfig& config) {
+  std::string text = "scene: " + config::quoted(world.scene().name) + "\n";
+  text += "scene_hash: " + hexadecimal(world.hash()) + "\n";
+  text += "seed: " + std::to_string(config.seed) + "\n";
+  text += "start: [" + number(start.position.x()) + ", " + number(start.position.y()) + ", " +
+          number(start.yaw_rad * 180.0 / std::numbers::pi) + "]  # x y [m] yaw [deg]\n";
+  text += std::string("instruction_set: ") + world.raycaster().instruction_set() + "\n";
+  text += "mode: " + config.mode + "\n";
+  text += "exit_reason: " + config::quoted(summary.exit_reason) + "\n";
+  text += "frames: " + std::to_string(summary.frames) + "\n";
+  text += "simulated_s: " + number(summary.simulated_s) + "\n";
+  text += "wall_s: " + number(summary.wall_s) + "\n";
+  text += "real_time_factor: " + number(summary.simulated_s / std::max(summary.wall_s, 1e-3)) + "\n";
+  text += "collisions: " + std::to_string(summary.collisions) + "\n";
+  text += "participants:  # CPU time [ms]\n";
+  for (const auto& [name, cpu_ms] : summary.cpu_ms) text += "  " + name + ": " + number(cpu_ms) + "\n";
+  return text;
+}
+
+std::filesystem::path truth_folder(const SimulatorConfig& config) {
+  return std::filesystem::path(config.output_dir) / "ground_truth";
+}
+
+IdealMapConfig truth_config(const SimulatorConfig& config) {
+  IdealMapConfig out = config.truth;
+  out.integration.max_range_m = config.robot.sensing_range_m;
+  return out;
+}
+
+void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const StartPose& start,
+            const SimulatorConfig& config) {
+  const geometry::Pose T_map_base = T_map_world(T_world_start(world, start)) * frame.T_world_base;
+  ideal.add(pinhole_camera(config.robot.camera), T_map_base * T_base_camera(camera_mount(config.robot.camera)),
+            frame.ideal_depth, frame.ideal_labels);
+}
+
+void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config) {
+  TruthConfig truth;
+  truth.resolution_m = config.truth.resolution_m;
+  truth.sensing_range_m = config.robot.sensing_range_m;
+  truth.robot_radius_m = config.robot.radius_m;
+  truth.camera = pinhole_camera(config.robot.camera);
+  truth.mount = camera_mount(config.robot.camera);
+  truth.threads = config.render_threads;
+  const auto T = T_world_start(world, start);
+  const auto volumes = make_voxel_truth(world.scene(), world.raycaster(), world.nav_map(), T, truth);
+  write_scene_truth(truth_folder(config), world.scene(), world.nav_map(), T, volumes);
+}
+
+}  // namespace lapis::simulator

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <string>
+
+#include "simulator/core/simulation.hpp"
+#include "simulator/core/truth/ideal_map.hpp"
+#include "simulator/core/world.hpp"
+#include "simulator/simulator_config.hpp"
+
+namespace lapis::simulator {
+
+/// How a run went.
+struct RunSummary {
+  std::string exit_reason;
+  std::uint64_t frames = 0;
+  double simulated_s = 0.0;
+  double wall_s = 0.0;
+  std::uint64_t collisions = 0;
+  std::map<std::string, double> cpu_ms;  ///< by participant of lock-step
+};
+
+/// simulation.yaml of the run folder: what is needed to repeat the run, and how it went.
+std::string to_yaml(const RunSummary& summary, const World& world, const StartPose& start,
+                    const SimulatorConfig& config);
+
+std::filesystem::path truth_folder(const SimulatorConfig& config);
+/// The mapper's settings, for a map without errors.
+IdealMapConfig truth_config(const SimulatorConfig& config);
+void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const StartPose& start,
+            const SimulatorConfig& config);
+/// Writes the ground truth of a scene, as far as it does not depend on the run's way, into the run folder.
+/// @throws std::runtime_error naming the file that cannot be written
+void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config);
+
+}  // namespace lapis::simulator

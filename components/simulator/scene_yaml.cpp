@@ -279,6 +279,7 @@ SceneSpec read_scene_yaml(const std::filesystem::path& file) {
   for (auto& entry : root.entries("lamps", "lamp")) scene.lamps.push_back(lamp(entry));
   for (auto& entry : root.entries("starts", "start")) scene.starts.push_back(start(entry));
   if (root.has("tour")) scene.tour = polygon(root, "tour");
+  scene.is_stress = root.flag("stress", false);
   root.done();
   return scene;
 }

@@ -155,16 +155,21 @@ StartPose start_pose(const World& world, const SimulatorConfig& config) {
   return {{x, y}, yaw_deg * std::numbers::pi / 180.0};
 }
 
+TourConfig tour_config(const SimulatorConfig& config) {
+  TourConfig tour;
+  tour.path.radius_m = config.robot.radius_m;
+  tour.max_speed_m_s = std::min(tour.max_speed_m_s, config.robot.max_speed_m_s);
+  tour.max_turn_rate_rad_s = std::min(tour.max_turn_rate_rad_s, config.robot.max_turn_rate_rad_s);
+  return tour;
+}
+
 std::optional<TourFollower> plan_tour(const World& world, const StartPose& start, const SimulatorConfig& config) {
   if (config.tour.empty()) return std::nullopt;
   const auto way_points = config.tour == "bundled" ? world.scene().tour : read_tour_yaml(config.tour);
   if (way_points.empty()) {
     throw std::runtime_error("scene " + world.scene().name + " has no tour; give a file with --tour FILE");
   }
-  TourConfig tour;
-  tour.path.radius_m = config.robot.radius_m;
-  tour.max_speed_m_s = std::min(tour.max_speed_m_s, config.robot.max_speed_m_s);
-  tour.max_turn_rate_rad_s = std::min(tour.max_turn_rate_rad_s, config.robot.max_turn_rate_rad_s);
+  const TourConfig tour = tour_config(config);
   std::vector<WayPoint> stops;
   for (const auto& p : way_points) stops.push_back({p, false});
   return TourFollower(world.nav_map(), plan_tour(world.nav_map(), start.position, stops, tour), tour);

@@ -30,6 +30,8 @@ World open_world(const SimulatorConfig& config);
 SimulationConfig simulation_config(const SimulatorConfig& config);
 /// The configured start, else one that the seed draws.
 StartPose start_pose(const World& world, const SimulatorConfig& config);
+/// How this robot drives a tour.
+TourConfig tour_config(const SimulatorConfig& config);
 /// The tour that the robot drives by itself; nothing when none is configured.
 std::optional<TourFollower> plan_tour(const World& world, const StartPose& start, const SimulatorConfig& config);
 

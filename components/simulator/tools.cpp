@@ -7,6 +7,7 @@
 #include "simulator/core/views.hpp"
 #include "simulator/set_up.hpp"
 #include "simulator/tum_export.hpp"
+#include "simulator/validate_tool.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -60,6 +61,7 @@ int print_credits(const SimulatorConfig& config) {
 }  // namespace
 
 std::optional<int> run_scene_tool(const SimulatorConfig& config) {
+  if (config.validate) return validate_scene(config);
   if (config.credits) return print_credits(config);
   if (!config.snapshot_dir.empty()) return write_snapshots(config);
   if (!config.export_dir.empty()) return export_tum(config);

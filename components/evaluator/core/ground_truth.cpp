@@ -31,7 +31,7 @@ KnownSpace read_mesh(const std::filesystem::path& file) {
 /// @param numbers translation, quaternion x y z w
 geometry::Pose to_pose(const std::array<double, 7>& numbers) {
   const auto& [x, y, z, qx, qy, qz, qw] = numbers;
-  const geometry::Pose T = geometry::make_pose({x, y, z}, Eigen::Quaterniond(qw, qx, qy, qz));
+  geometry::Pose T = geometry::make_pose({x, y, z}, Eigen::Quaterniond(qw, qx, qy, qz));
   if (!geometry::is_valid(T)) throw std::runtime_error("T_map_world is no pose");
   return T;
 }

@@ -47,14 +47,6 @@ cv::Mat gray_image(int frame, std::uint16_t (*formula)(int, int, int)) {
 
 }  // namespace
 
-TemporaryFolder::TemporaryFolder() {
-  std::string name = (fs::temp_directory_path() / "lapis_sensor_replay_XXXXXX").string();
-  if (!mkdtemp(name.data())) throw std::runtime_error("cannot make a temporary folder");
-  path_ = name;
-}
-
-TemporaryFolder::~TemporaryFolder() { fs::remove_all(path_); }
-
 geometry::Rgb8 synthetic_color(int frame, int column, int row) {
   return {static_cast<std::uint8_t>(column), static_cast<std::uint8_t>(100 + row),
           static_cast<std::uint8_t>(200 + frame)};

@@ -7,21 +7,11 @@
 #include <string>
 
 #include "common/geometry/image.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lapis::sensor_replay::test {
 
-/// A folder that exists as long as this object.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using lapis::test::TemporaryFolder;
 
 inline constexpr int kWidth = 32;
 inline constexpr int kHeight = 24;

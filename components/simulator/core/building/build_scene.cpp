@@ -44,6 +44,7 @@ class SceneBuilder {
     scene_.labels = spec_.labels;
     scene_.starts = spec_.starts;
     scene_.tour = spec_.tour;
+    scene_.is_stress = spec_.is_stress;
     for (std::size_t i = 0; i < spec_.rooms.size(); ++i) {
       const RoomSpec& room = spec_.rooms[i];
       scene_.rooms.push_back({room.id, room.type, room.polygon, plan_[i].height_m});

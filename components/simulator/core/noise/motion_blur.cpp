@@ -11,8 +11,8 @@ namespace {
 using geometry::ColorImage;
 using geometry::Rgb8;
 
-constexpr int kMaxLength_px = 64;
-constexpr int kPadding = kMaxLength_px / 2 + 1;  // columns that continue a row on either side
+constexpr int kMaxHalf_px = 32;
+constexpr int kPadding = kMaxHalf_px + 1;  // columns that continue a row on either side
 
 // Sums of the three channels in one number; a row of 8000 pixels fits.
 constexpr unsigned kChannelBits = 21;
@@ -27,12 +27,12 @@ struct Run {
   int row, first, last;
 };
 
-std::vector<Run> runs_of(const Eigen::Vector2d& line_px, int length) {
+/// The pixels nearest to the points of a line at -half, ..., half steps of one pixel along its longer axis.
+std::vector<Run> runs_of(const Eigen::Vector2d& line_px, int half) {
   const Eigen::Vector2d step = line_px / line_px.lpNorm<Eigen::Infinity>();
   std::vector<Run> runs;
-  for (int i = 0; i <= length; ++i) {
-    const Eigen::Vector2d p = (i - 0.5 * length) * step;
-    const int column = static_cast<int>(std::floor(p.x() + 0.5)), row = static_cast<int>(std::floor(p.y() + 0.5));
+  for (int i = -half; i <= half; ++i) {
+    const int column = static_cast<int>(std::lround(i * step.x())), row = static_cast<int>(std::lround(i * step.y()));
     if (runs.empty() || runs.back().row != row) {
       runs.push_back({row, column, column});
     } else {
@@ -89,12 +89,12 @@ class Mean {
 
 ColorImage motion_blurred(const ColorImage& image, const Eigen::Vector2d& line_px) {
   if (image.empty() || !line_px.allFinite()) return image;
-  const double wanted_px = std::min(line_px.lpNorm<Eigen::Infinity>(), static_cast<double>(kMaxLength_px));
-  const int length = static_cast<int>(std::lround(wanted_px));
-  if (length == 0) return image;
-  const std::vector<Run> runs = runs_of(line_px, length);
+  const double length_px = std::min(line_px.lpNorm<Eigen::Infinity>(), 2.0 * kMaxHalf_px);
+  const int half = static_cast<int>(std::lround(length_px / 2));
+  if (half == 0) return image;
+  const std::vector<Run> runs = runs_of(line_px, half);
   const RowSums row_sums(image);
-  const Mean mean(length + 1);
+  const Mean mean(2 * half + 1);
   ColorImage result(image.width, image.height);
   std::vector<std::uint64_t> sums(static_cast<std::size_t>(image.width));
   for (int row = 0; row < image.height; ++row) {

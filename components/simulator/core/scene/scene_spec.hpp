@@ -112,6 +112,7 @@ struct SceneSpec {
   std::vector<LampSpec> lamps;  ///< empty: one per 12 m2 of every room
   std::vector<StartPose> starts;
   std::vector<Eigen::Vector2d> tour;
+  bool is_stress = false;  ///< made to be hard: views without features are on purpose
 };
 
 }  // namespace lapis::simulator

@@ -28,7 +28,7 @@ std::vector<Eigen::Vector3f> directions(const ElevationRange& elevation, double 
     for (int column = 0; column < columns; ++column) {
       const double around = 2.0 * kPi * column / columns;
       const Eigen::Vector3d d(std::cos(up) * std::cos(around), std::cos(up) * std::sin(around), std::sin(up));
-      out.push_back(d.cast<float>());
+      out.emplace_back(d.cast<float>());
     }
   }
   return out;

@@ -20,7 +20,7 @@ struct Item {
 
 /// What a scene is made of.
 struct Inventory {
-  std::vector<Item> items;                ///< in the order of Scene::instances
+  std::vector<Item> items;               ///< in the order of Scene::instances
   std::vector<std::uint32_t> structure;  ///< triangles of the building
 };
 

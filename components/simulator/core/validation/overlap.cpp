@@ -9,10 +9,11 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr int kContact_voxels = 4;     // 8 cm: what is pressed in by 6 cm is not more, however the grid lies
+constexpr int kContact_voxels = 4;  // 8 cm: what is pressed in by 6 cm is not more, however the grid lies
 constexpr double kOverlapShare = 0.02;
 constexpr double kOutside_m = 0.03, kOutsideShare = 0.01;
 constexpr float kSpacing_m = 0.03F;
+constexpr float kLargest_m3 = 500.0F;  // what is larger is no furniture, and its voxels are too many
 
 /// The voxels of two solids.
 class Pair {
@@ -92,6 +93,7 @@ std::vector<Overlap> find_overlaps(const Scene& scene, const Inventory& inventor
   std::vector<Overlap> found;
   for (std::size_t i = 0; i < items.size(); ++i) {
     for (std::size_t k = i + 1; k < items.size(); ++k) {
+      if (std::max(items[i].box.volume(), items[k].box.volume()) > kLargest_m3) continue;
       if (!items[i].box.intersects(items[k].box)) continue;
       Overlap overlap = Pair(solid(i), solid(k)).compare();
       overlap.first = i;

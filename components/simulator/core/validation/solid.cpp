@@ -9,9 +9,7 @@ namespace {
 constexpr float kSpacing_m = 0.4F * Solid::kVoxel_m;  // so close that a surface has no holes
 constexpr std::uint8_t kSurface = 1, kOutside = 2;
 
-Eigen::Vector3i voxel_of(const Eigen::Vector3f& p) {
-  return (p / Solid::kVoxel_m).array().floor().cast<int>();
-}
+Eigen::Vector3i voxel_of(const Eigen::Vector3f& p) { return (p / Solid::kVoxel_m).array().floor().cast<int>(); }
 
 }  // namespace
 

@@ -18,7 +18,7 @@ class Solid {
 
   Solid(const Scene& scene, const Item& item);
 
-  const Eigen::Vector3i& low() const { return low_; }               ///< lowest voxel
+  const Eigen::Vector3i& low() const { return low_; }                  ///< lowest voxel
   Eigen::Vector3i high() const { return (low_ + size_).array() - 1; }  ///< highest voxel
   std::size_t count() const { return count_; }
   bool contains(const Eigen::Vector3i& voxel) const {
@@ -27,9 +27,7 @@ class Solid {
   }
 
  private:
-  bool is_in_box(const Eigen::Vector3i& v) const {
-    return (v.array() >= 0).all() && (v.array() < size_.array()).all();
-  }
+  bool is_in_box(const Eigen::Vector3i& v) const { return (v.array() >= 0).all() && (v.array() < size_.array()).all(); }
   std::size_t index(const Eigen::Vector3i& v) const {
     return (static_cast<std::size_t>(v.z()) * static_cast<std::size_t>(size_.y()) + static_cast<std::size_t>(v.y())) *
                static_cast<std::size_t>(size_.x()) +

@@ -12,6 +12,7 @@
 
 #include "simulator/core/assets/asset_store.hpp"
 #include "simulator/core/scene/mesh.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lapis::simulator::test {
 
@@ -20,18 +21,7 @@ using Files = std::map<std::string, Bytes>;
 
 Bytes to_bytes(std::string_view text);
 
-/// A folder of its own that is gone afterwards.
-class TemporaryFolder {
- public:
-  TemporaryFolder();
-  ~TemporaryFolder();
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-  const std::filesystem::path& path() const { return path_; }
-
- private:
-  std::filesystem::path path_;
-};
+using lapis::test::TemporaryFolder;
 
 void write_file(const std::filesystem::path& file, const Bytes& bytes);
 Bytes read_file(const std::filesystem::path& file);

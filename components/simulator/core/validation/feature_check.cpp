@@ -1,0 +1,112 @@
+#include "simulator/core/validation/feature_check.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <numeric>
+#include <opencv2/core.hpp>
+#include <opencv2/features2d.hpp>
+#include <opencv2/imgproc.hpp>
+
+#include "simulator/core/noise/color_noise.hpp"
+#include "simulator/core/noise/random.hpp"
+#include "simulator/core/robot/reachability.hpp"
+#include "simulator/core/validation/drive_checks.hpp"
+
+namespace lapis::simulator {
+namespace {
+
+constexpr double kSpacing_m = 0.5;
+constexpr int kHeadings = 8;
+constexpr int kMaxFeatures = 1000, kFewFeatures = 100;
+constexpr double kMostPoor = 0.04, kLeastPoor = 0.005;
+constexpr std::size_t kWorstShown = 8;
+constexpr std::size_t kProgressEvery = 200;
+constexpr std::uint64_t kSeed = 1;
+
+std::vector<FeatureView> reachable_views(const World& world, double radius_m) {
+  const NavMap& map = world.nav_map();
+  std::vector<geometry::GrayImage> reachable;
+  for (const StartPose& start : starts_of(world.scene(), map))
+    reachable.push_back(map.reachable(start.position, radius_m));
+  const Grid& grid = map.grid();
+  const int step = std::max(1, static_cast<int>(std::lround(kSpacing_m / grid.resolution_m)));
+  std::vector<FeatureView> views;
+  for (int row = step / 2; row < grid.height; row += step) {
+    for (int column = step / 2; column < grid.width; column += step) {
+      if (std::none_of(reachable.begin(), reachable.end(), [&](const auto& cells) { return cells(column, row) != 0; }))
+        continue;
+      for (int i = 0; i < kHeadings; ++i)
+        views.push_back({grid.center({column, row}), 2.0 * std::numbers::pi * i / kHeadings, 0});
+    }
+  }
+  return views;
+}
+
+/// A fixed choice, in the order of the views.
+std::vector<FeatureView> chosen(const std::vector<FeatureView>& views, std::size_t count) {
+  if (views.size() <= count) return views;
+  const Random random(kSeed, RandomStream::kTruth);
+  std::vector<std::size_t> order(views.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return random.bits(a) < random.bits(b); });
+  order.resize(count);
+  std::sort(order.begin(), order.end());
+  std::vector<FeatureView> out;
+  for (const std::size_t i : order) out.push_back(views[i]);
+  return out;
+}
+
+int count_features(cv::ORB& orb, geometry::ColorImage image) {
+  cv::Mat gray;
+  cv::cvtColor(cv::Mat(image.height, image.width, CV_8UC3, image.pixels.data()), gray, cv::COLOR_RGB2GRAY);
+  std::vector<cv::KeyPoint> keypoints;
+  orb.detect(gray, keypoints);
+  return static_cast<int>(keypoints.size());
+}
+
+std::string describe(const Scene& scene, const FeatureView& view) {
+  const auto room = std::find_if(scene.rooms.begin(), scene.rooms.end(),
+                                 [&](const Room& candidate) { return is_inside(candidate.polygon, view.position); });
+  const std::string where = room == scene.rooms.end() ? "" : room->id + " ";
+  return where + "(" + decimal(view.position.x(), 2) + ", " + decimal(view.position.y(), 2) + ") at " +
+         decimal(view.yaw_rad * 180.0 / std::numbers::pi, 0) + " deg: " + std::to_string(view.features) + " features";
+}
+
+}  // namespace
+
+std::vector<FeatureView> measure_features(const World& world, const FeatureConfig& config, const Progress& progress) {
+  auto views = chosen(reachable_views(world, config.robot_radius_m), config.max_views);
+  const ColorNoise noise({}, kSeed);
+  const auto orb = cv::ORB::create(kMaxFeatures);
+  orb->setFastThreshold(20);
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    if (i % kProgressEvery == 0)
+      progress("features: view " + std::to_string(i) + " of " + std::to_string(views.size()));
+    FeatureView& view = views[i];
+    const auto T = T_world_camera(world, config.mount, view.position, view.yaw_rad);
+    view.features = count_features(*orb, noise.apply(world.renderer().render(config.camera, T).color, i));
+  }
+  return views;
+}
+
+Check check_features(const Scene& scene, std::vector<FeatureView> views) {
+  if (views.empty()) return {"features", Verdict::kNote, "no view can be reached", {}};
+  std::stable_sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.features < b.features; });
+  const auto count = static_cast<double>(views.size());
+  const auto poor = std::count_if(views.begin(), views.end(), [](const auto& v) { return v.features < kFewFeatures; });
+  const double share = static_cast<double>(poor) / count;
+  const double sum = std::accumulate(views.begin(), views.end(), 0.0,
+                                     [](double total, const FeatureView& v) { return total + v.features; });
+  Check check{"features"};
+  check.figures = decimal(100.0 * share, 2) + " % of " + std::to_string(views.size()) + " views have fewer than " +
+                  std::to_string(kFewFeatures) + " ORB features; mean " + decimal(sum / count, 0) +
+                  ", 5th percentile " + std::to_string(views[views.size() / 20].features);
+  if (share > kMostPoor) check.verdict = scene.is_stress ? Verdict::kNote : Verdict::kFail;
+  if (share < kLeastPoor) check.verdict = Verdict::kNote;
+  for (std::size_t i = 0; i < std::min(kWorstShown, views.size()); ++i)
+    check.details.push_back(describe(scene, views[i]));
+  return check;
+}
+
+}  // namespace lapis::simulator

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "simulator/core/validation/report.hpp"
+#include "simulator/core/views.hpp"
+#include "simulator/core/world.hpp"
+
+namespace lapis::simulator {
+
+struct FeatureConfig {
+  geometry::PinholeCamera camera;
+  geometry::CameraMount mount;
+  double robot_radius_m = 0.2;
+  std::size_t max_views = 1000;
+};
+
+/// A view and how many ORB features (at most 1000, FAST threshold 20) its image with the default noise has.
+struct FeatureView {
+  Eigen::Vector2d position{0, 0};
+  double yaw_rad = 0.0;
+  int features = 0;
+};
+
+/// Views from where the robot gets to from the starts: places 0.5 m apart, 8 headings each; when there are more than
+/// max_views, a fixed choice of them.
+std::vector<FeatureView> measure_features(const World& world, const FeatureConfig& config, const Progress& progress);
+
+/// Judges measure_features: fails when more than 4 % of the views have fewer than 100 features, with a note below
+/// 0.5 % (the robot cannot get lost) and for stress scenes.
+Check check_features(const Scene& scene, std::vector<FeatureView> views);
+
+}  // namespace lapis::simulator

@@ -1,0 +1,302 @@
+// lapis_simulator alone in a small flat; participants of lock-step are the test echo, or the test itself.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <csignal>
+#include <fstream>
+#include <set>
+
+#include "common/messages/camera.hpp"
+#include "common/messages/time.hpp"
+#include "common/topics.hpp"
+#include "tests/support/child_process.hpp"
+#include "tests/support/small_scene.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/support/topic_probe.hpp"
+
+namespace lapis::test {
+namespace {
+
+using lapis_msgs::msg::Ack;
+using lapis_msgs::msg::Tick;
+using ::testing::HasSubstr;
+
+constexpr const char* kSimulator = "lapis_simulator";
+constexpr const char* kEcho = "lapis_test_echo";
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream stream(file);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// Stamps in order of arrival, without the repetitions that lock-step allows itself.
+template <class Message>
+std::vector<time::Time> stamps_of(const std::vector<Message>& messages) {
+  std::vector<time::Time> out;
+  for (const auto& message : messages) {
+    const auto stamp = messages::from_message(message.header().stamp());
+    if (out.empty() || stamp != out.back()) out.push_back(stamp);
+  }
+  return out;
+}
+
+/// Frames 1, 2, 3, ... at 15 Hz.
+void expect_every_frame_once(const std::vector<time::Time>& stamps) {
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    ASSERT_NEAR(stamps[i].seconds(), static_cast<double>(i + 1) / 15.0, 1e-8) << "frame " << i;
+  }
+}
+
+class SimulatorContract : public ::testing::Test {
+ protected:
+  std::vector<std::string> arguments(const std::vector<std::string>& more) const {
+    std::vector<std::string> all = {write_small_scene(folder.path()).string(), "--set",
+                                    "simulator.output_dir=" + (folder.path()).string(), "--set",
+                                    "simulator.world.light_folder=" + (folder.path() / "light").string()};
+    all.insert(all.end(), more.begin(), more.end());
+    return all;
+  }
+  std::vector<std::string> with_stages(const std::string& stages, const std::vector<std::string>& more = {}) const {
+    std::vector<std::string> all = {"--set", "lockstep.stages=" + stages};
+    all.insert(all.end(), more.begin(), more.end());
+    return arguments(all);
+  }
+  std::string summary() const { return text_of(folder.path() / "simulation.yaml"); }
+
+  TemporaryFolder folder;
+};
+
+/// A participant of lock-step whose answers the test decides on.
+class HandMadeParticipant {
+ public:
+  explicit HandMadeParticipant(TopicProbe& probe)
+      : probe_(probe), ticks(probe.collect(topics::kTick)), acks_(probe.advertise(topics::kAck)) {}
+
+  bool wait_for_tick(std::uint64_t number) {
+    return probe_.wait_until([&] {
+      // Tick 0 invites; joining is answered as often as asked.
+      if (!ticks.empty() && ticks.back().tick() == 0 && number > 0) answer(ticks.back());
+      return !ticks.empty() && ticks.back().tick() >= number;
+    });
+  }
+  void answer(const Tick& tick, std::uint8_t status = lapis_msgs::msg::Ack_Constants::STATUS_DONE) {
+    Ack ack;
+    ack.run_gid(tick.run_gid());
+    ack.tick(tick.tick());
+    ack.stage(tick.stage());
+    ack.participant("slam");
+    ack.participant_gid(probe_.participant().gid());
+    ack.status(status);
+    acks_.publish(ack);
+  }
+
+ private:
+  TopicProbe& probe_;
+
+ public:
+  const std::vector<Tick>& ticks;
+
+ private:
+  dds::Publisher<Ack>& acks_;
+};
+
+TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
+  TopicProbe probe;
+  const auto& color = probe.collect(topics::kColor);
+  const auto& depth = probe.collect(topics::kDepth);
+  const auto& labels = probe.collect(topics::kLabels);
+  const auto& info = probe.collect(topics::kColorInfo);
+  const auto& truth = probe.collect(topics::kGroundTruth);
+  const auto& wheels = probe.collect(topics::kWheelOdometry);
+  const auto& mount = probe.collect(topics::kStaticTransforms);
+  const auto& names = probe.collect(topics::kLabelInfo);
+  ChildProcess simulator(kSimulator, arguments({"--mode", "freerun"}));
+  ASSERT_TRUE(probe.wait_until([&] { return labels.size() > 5 && truth.size() > 5 && wheels.size() > 20; }))
+      << simulator.log();
+  ASSERT_TRUE(probe.wait_until([&] { return !mount.empty() && !names.empty() && !info.empty(); }));
+  EXPECT_EQ(names[0].class_map().size(), 10U);
+  const auto camera = messages::from_message(info[0]);
+  ASSERT_TRUE(camera);
+  EXPECT_NEAR(camera->fx, 320.0, 1e-9);
+  EXPECT_NEAR(camera->fy, 320.0, 0.01);
+  const auto metres = messages::to_depth(depth.back());
+  ASSERT_TRUE(metres);
+  EXPECT_GT((*metres)(320, 180), 1.0F) << "the start looks at the far wall";
+  EXPECT_LT((*metres)(320, 180), 2.5F);
+  EXPECT_EQ(color.back().header().frame_id(), "camera_color_optical_frame");
+  EXPECT_EQ(truth.back().child_frame_id(), "base_link");
+  EXPECT_EQ(wheels.back().header().frame_id(), "odom");
+  for (std::size_t i = 1; i < wheels.size(); ++i) {
+    const auto step =
+        messages::from_message(wheels[i].header().stamp()) - messages::from_message(wheels[i - 1].header().stamp());
+    EXPECT_EQ(step.nanoseconds, 20'000'000);
+  }
+  EXPECT_EQ(simulator.stop(SIGTERM), 0) << simulator.log();
+  EXPECT_THAT(summary(), HasSubstr("exit_reason: \"stopped\""));
+}
+
+TEST_F(SimulatorContract, ACommandActsFromTheNextFrameOnAndTheWatchdogStopsTheRobot) {
+  TopicProbe probe;
+  HandMadeParticipant slam(probe);
+  auto& command = probe.advertise(topics::kCommand);
+  const auto& truth = probe.collect(topics::kGroundTruth);
+  ChildProcess simulator(kSimulator, with_stages("[slam]"));
+  const auto step = [&](std::uint64_t tick) {
+    ASSERT_TRUE(slam.wait_for_tick(tick)) << simulator.log();
+    slam.answer(slam.ticks.back());
+  };
+  const auto position = [&](std::size_t frame) {
+    probe.wait_until([&] { return stamps_of(truth).size() >= frame; });
+    return truth.back().pose().pose().position();
+  };
+  ASSERT_TRUE(probe.wait_until_matched()) << simulator.log();
+  for (std::uint64_t tick = 1; tick <= 3; ++tick) step(tick);
+  ASSERT_TRUE(slam.wait_for_tick(4));
+  const auto at_rest = position(4);
+  geometry_msgs::msg::Twist ahead;
+  ahead.linear().x(-0.3);  // the wall is in front
+  command.publish(ahead);
+  // The count of the command is not in this participant's answers, so it waits until the simulator must have it.
+  ASSERT_TRUE(probe.wait_until([&] { return command.matched() > 0; }));
+  command.wait_until_acknowledged(2.0);
+  slam.answer(slam.ticks.back());
+  for (std::uint64_t tick = 5; tick <= 9; ++tick) step(tick);
+  const auto moved = position(9);
+  EXPECT_LT(moved.y(), at_rest.y() - 0.03);
+  for (std::uint64_t tick = 10; tick <= 30; ++tick) step(tick);
+  ASSERT_TRUE(slam.wait_for_tick(31));
+  EXPECT_NEAR(truth.back().twist().twist().linear().x(), 0.0, 1e-3) << "no command for more than half a second";
+  EXPECT_GT(truth.back().pose().pose().position().y(), 0.2) << "and never in a wall";
+}
+
+TEST_F(SimulatorContract, AKilledParticipantEndsTheRunWhichNamesIt) {
+  ChildProcess echo(kEcho);
+  ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
+  ChildProcess simulator(kSimulator, with_stages("[test_echo]", {"--set", "lockstep.hard_timeout_s=3", "--set",
+                                                                 "lockstep.soft_timeout_s=0.5"}));
+  ASSERT_TRUE(simulator.wait_for_line("real-time factor")) << simulator.log();
+  echo.stop(SIGKILL);
+  EXPECT_EQ(simulator.wait(Seconds(15)), 1) << simulator.log();
+  EXPECT_THAT(simulator.log(), HasSubstr("no answer of test_echo"));
+  EXPECT_THAT(summary(), HasSubstr("no answer of test_echo"));
+}
+
+TEST_F(SimulatorContract, ARestartedParticipantMissesNoFrame) {
+  TopicProbe probe;
+  const auto& truth = probe.collect(topics::kGroundTruth);
+  auto echo = std::make_unique<ChildProcess>(kEcho);
+  ASSERT_TRUE(wait_until_ready(*echo)) << echo->log();
+  ChildProcess simulator(kSimulator, with_stages("[test_echo]", {"--set", "lockstep.silent_participant=wait", "--set",
+                                                                 "simulator.max_real_time_factor=1"}));
+  ASSERT_TRUE(probe.wait_until([&] { return truth.size() > 5; })) << simulator.log();
+  echo->stop(SIGKILL);
+  echo = std::make_unique<ChildProcess>(kEcho);
+  const auto before = stamps_of(truth).size();
+  ASSERT_TRUE(probe.wait_until([&] { return stamps_of(truth).size() > before + 10; }, Seconds(20))) << simulator.log();
+  const auto stamps = stamps_of(truth);
+  for (std::size_t i = 1; i < stamps.size(); ++i) {
+    ASSERT_NEAR((stamps[i] - stamps[i - 1]).seconds(), 1.0 / 15.0, 1e-8) << "a frame was skipped or counted twice";
+  }
+  EXPECT_EQ(simulator.stop(SIGTERM), 0) << simulator.log();
+}
+
+TEST_F(SimulatorContract, SlowLateAndWrongAnswersDoNotMoveTheClock) {
+  TopicProbe probe;
+  HandMadeParticipant slam(probe);
+  const auto& truth = probe.collect(topics::kGroundTruth);
+  ChildProcess simulator(kSimulator, with_stages("[slam]", {"--set", "lockstep.soft_timeout_s=0.5"}));
+  ASSERT_TRUE(slam.wait_for_tick(1)) << simulator.log();
+  Tick wrong = slam.ticks.back();
+  wrong.tick(7);
+  slam.answer(wrong);
+  Tick foreign = slam.ticks.back();
+  foreign.run_gid()[0] ^= 0xFF;
+  slam.answer(foreign);
+  slam.answer(slam.ticks.back(), lapis_msgs::msg::Ack_Constants::STATUS_BUSY);
+  // Late: the tick is published again, and the frame with it.
+  const auto repetitions = [&] {
+    return std::count_if(slam.ticks.begin(), slam.ticks.end(), [](const Tick& tick) { return tick.tick() == 1; });
+  };
+  ASSERT_TRUE(probe.wait_until([&] { return repetitions() >= 2 && truth.size() >= 2; })) << simulator.log();
+  EXPECT_EQ(slam.ticks.back().tick(), 1U);
+  EXPECT_EQ(stamps_of(truth).size(), 1U) << "the frame that came again is the same";
+  slam.answer(slam.ticks.back());
+  slam.answer(slam.ticks.back());  // twice
+  ASSERT_TRUE(slam.wait_for_tick(2)) << simulator.log();
+  EXPECT_EQ(slam.ticks.back().tick(), 2U);
+  slam.answer(slam.ticks.back());
+  ASSERT_TRUE(slam.wait_for_tick(3));
+  ASSERT_TRUE(probe.wait_until([&] { return stamps_of(truth).size() == 3; }));
+  expect_every_frame_once(stamps_of(truth));
+}
+
+TEST_F(SimulatorContract, PauseStepRunAndReset) {
+  TopicProbe probe;
+  const auto& truth = probe.collect(topics::kGroundTruth);
+  auto& pause = probe.client(topics::kPause);
+  auto& step = probe.client(topics::kStep);
+  auto& run = probe.client(topics::kRun);
+  auto& reset = probe.client(topics::kReset);
+  ChildProcess echo(kEcho);
+  ChildProcess simulator(kSimulator, with_stages("[test_echo]", {"--set", "simulator.max_real_time_factor=1"}));
+  ASSERT_TRUE(probe.wait_until([&] {
+    return pause.is_ready() && step.is_ready() && run.is_ready() && reset.is_ready() && truth.size() > 3;
+  })) << simulator.log();
+  const auto call = [&](auto& client) {
+    const auto number = client.call({});
+    std::optional<std_srvs::srv::Trigger_Response> reply;
+    ASSERT_TRUE(probe.wait_until([&] { return (reply = client.take_reply(*number)).has_value(); })) << simulator.log();
+    EXPECT_TRUE(reply->success());
+    EXPECT_THAT(reply->message(), ::testing::Not(::testing::IsEmpty()));
+  };
+  call(pause);
+  probe.wait_until([] { return false; }, Seconds(0.3));  // a frame that was under way when the pause came
+  const auto paused = truth.size();
+  EXPECT_FALSE(probe.wait_until([&] { return truth.size() > paused; }, Seconds(0.5)));
+  call(step);
+  EXPECT_TRUE(probe.wait_until([&] { return truth.size() == paused + 1; }));
+  EXPECT_FALSE(probe.wait_until([&] { return truth.size() > paused + 1; }, Seconds(0.5)));
+  call(run);
+  EXPECT_TRUE(probe.wait_until([&] { return truth.size() > paused + 5; })) << simulator.log();
+  const auto before = messages::from_message(truth.back().header().stamp());
+  call(reset);
+  ASSERT_TRUE(probe.wait_until([&] { return messages::from_message(truth.back().header().stamp()) < before; }))
+      << simulator.log() << echo.log();
+  const auto again = truth.size();
+  EXPECT_TRUE(probe.wait_until([&] { return truth.size() > again + 5; })) << simulator.log() << echo.log();
+}
+
+TEST_F(SimulatorContract, BadScenesAreNamedBeforeAnythingIsPublished) {
+  const auto error_of = [](const std::vector<std::string>& words) {
+    ChildProcess simulator(kSimulator, words);
+    EXPECT_EQ(simulator.wait(), 2) << simulator.log();
+    return simulator.log();
+  };
+  EXPECT_THAT(error_of({"no_such_scene"}), HasSubstr("scene no_such_scene: no such file"));
+  EXPECT_THAT(error_of({}), HasSubstr("no scene given"));
+  EXPECT_THAT(error_of(arguments({"--set", "simulator.start=0.05 0.05 0"})), HasSubstr("start"));
+  EXPECT_THAT(error_of(arguments({"--set", "simulator.start=here"})), HasSubstr("simulator.start"));
+  EXPECT_THAT(error_of(arguments({"--tour", "/no/such/tour.yaml"})), HasSubstr("/no/such/tour.yaml"));
+}
+
+TEST_F(SimulatorContract, OneSeedGivesTheSameFilesWithAnyNumberOfThreads) {
+  const auto exported = [&](const std::string& name, const std::string& threads, const std::string& seed) {
+    const auto out = folder.path() / name;
+    ChildProcess simulator(kSimulator, arguments({"--export-tum", out.string(), "--duration", "1", "--seed", seed,
+                                                  "--set", "simulator.render_threads=" + threads}));
+    EXPECT_EQ(simulator.wait(Seconds(60)), 0) << simulator.log();
+    std::map<std::string, std::string> files;
+    for (const auto& entry : std::filesystem::recursive_directory_iterator(out)) {
+      if (entry.is_regular_file()) files[std::filesystem::relative(entry.path(), out).string()] = text_of(entry.path());
+    }
+    return files;
+  };
+  const auto first = exported("first", "1", "5");
+  EXPECT_EQ(first.size(), 15U * 3 + 6) << "rgb, depth and label of 15 frames, three lists, truth, camera, classes";
+  EXPECT_EQ(first, exported("second", "2", "5"));
+  EXPECT_NE(first.at("rgb/000001.png"), exported("third", "1", "6").at("rgb/000001.png"));
+}
+
+}  // namespace
+}  // namespace lapis::test

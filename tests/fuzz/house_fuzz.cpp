@@ -1,0 +1,11 @@
+#include "simulator/core/assets/matterport.hpp"
+
+#include "check_scene.hpp"
+#include "fuzz_files.hpp"
+
+using lapis::simulator::fuzz::FuzzStore;
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  const FuzzStore store(data, size, {"a.house", "a_semantic.ply"});
+  return lapis::simulator::fuzz::check_loading([&] { return load_matterport(store, "a", {}); });
+}

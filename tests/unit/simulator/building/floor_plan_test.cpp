@@ -1,0 +1,165 @@
+#include "simulator/core/building/floor_plan.hpp"
+
+#include <gtest/gtest.h>
+
+#include "simulator/core/building/build_scene.hpp"
+#include "simulator/core/building/polygon.hpp"
+#include "small_building.hpp"
+
+namespace lapis::simulator {
+namespace {
+
+using Change = std::function<void(SceneSpec&)>;
+
+FurnitureSpec item(const std::string& id, const std::string& class_name, const Eigen::Vector2d& at) {
+  FurnitureSpec spec;
+  spec.id = id;
+  spec.class_name = class_name;
+  spec.place = AtPoint{at, 0.0};
+  return spec;
+}
+
+TEST(FloorPlan, OpeningsAreCutIntoBothWalls) {
+  const auto plan = plan_walls(normalised(test::two_rooms()));
+  const Wall &left = plan[0].walls[1], &right = plan[1].walls[3];
+  ASSERT_EQ(left.openings.size(), 1U);
+  ASSERT_EQ(right.openings.size(), 1U);
+  EXPECT_NEAR(left.openings[0].depth_m, 0.06, 1e-9);
+  // Seen from both sides it is the same hole.
+  EXPECT_TRUE(left.at(left.openings[0].from_m, -0.06).isApprox(right.at(right.openings[0].to_m, -0.06), 1e-9));
+  ASSERT_EQ(plan[0].walls[0].openings.size(), 1U);
+  EXPECT_NEAR(plan[0].walls[0].openings[0].depth_m, 0.12, 1e-9);
+}
+
+TEST(FloorPlan, ClockwiseRoomsKeepTheMeaningOfTheirWalls) {
+  SceneSpec spec = test::two_rooms();
+  FurnitureSpec table;
+  table.class_name = "table";
+  table.place = AgainstWall{"left", 1, 0.8, 0.02, 0.0};
+  spec.furniture = {table};
+  SceneSpec clockwise = spec;
+  clockwise.rooms[0].polygon = {{0, 3}, {4, 3}, {4, 0}, {0, 0}};  // wall 1 still is the eastern one, from the north
+  std::get<AgainstWall>(clockwise.furniture[0].place).along_m = 3.0 - 0.8;
+  const SceneSpec a = normalised(spec), b = normalised(clockwise);
+  EXPECT_GT(signed_area(b.rooms[0].polygon), 0.0);
+  const auto where = [](const SceneSpec& s) {
+    const auto& place = std::get<AgainstWall>(s.furniture[0].place);
+    return plan_walls(s)[0].walls[static_cast<std::size_t>(place.edge)].at(place.along_m, 0.0);
+  };
+  EXPECT_TRUE(where(a).isApprox(where(b), 1e-9)) << where(a).transpose() << " / " << where(b).transpose();
+}
+
+TEST(FloorPlan, MotifsThatAreLeftOutAreFreeNumbers) {
+  SceneSpec spec = test::two_rooms();
+  PictureSpec picture;
+  picture.room = "right";
+  picture.edge = 2;
+  picture.along_m = 1.0;
+  spec.pictures = {picture, picture, picture};
+  spec.pictures[1].motif = 0;
+  const SceneSpec result = normalised(spec);
+  EXPECT_EQ(result.pictures[0].motif, 1U);
+  EXPECT_EQ(result.pictures[1].motif, 0U);
+  EXPECT_EQ(result.pictures[2].motif, 2U);
+}
+
+/// What is wrong, and what the message has to name.
+struct Mistake {
+  std::string named;
+  Change make;
+};
+
+void against(SceneSpec& spec, const std::string& room, int edge, double along) {
+  spec.furniture = {item("desk", "table", {1, 1})};
+  spec.furniture[0].place = AgainstWall{room, edge, along, 0.02, 0.0};
+}
+
+void add_picture(SceneSpec& spec, int edge, double along) {
+  PictureSpec picture;
+  picture.room = "left";
+  picture.edge = edge;
+  picture.along_m = along;
+  spec.pictures.push_back(picture);
+}
+
+std::vector<Mistake> mistakes() {
+  return {
+      {"room \"left\": its outline",
+       [](SceneSpec& s) {
+         s.rooms[0].polygon = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
+       }},
+      {"room \"left\": the id occurs twice", [](SceneSpec& s) { s.rooms[1].id = "left"; }},
+      {"no texture is called \"marble\"", [](SceneSpec& s) { s.rooms[1].floor.texture = "marble"; }},
+      {"room \"right\": height", [](SceneSpec& s) { s.rooms[1].height_m = 0.5; }},
+      {"rooms: there are none", [](SceneSpec& s) { s.rooms.clear(); }},
+      {"no class \"wall\"",
+       [](SceneSpec& s) {
+         s.labels = mapping::LabelList::from_names({{1, "chair"}});
+       }},
+      {"opening 1: no wall",
+       [](SceneSpec& s) {
+         s.openings[0].at = {2, 1.5};
+       }},
+      {"opening 1: leaves",
+       [](SceneSpec& s) {
+         s.openings[0].at = {4.06, 0.2};
+       }},
+      {"opening 1: is wider", [](SceneSpec& s) { s.openings[0].width_m = 3.5; }},
+      {"opening 1: leads outside",
+       [](SceneSpec& s) {
+         s.openings[0].at = {2, 3};
+       }},
+      {"opening 1: is higher", [](SceneSpec& s) { s.openings[0].top_m = 2.7; }},
+      {"opening 4: meets opening 1", [](SceneSpec& s) { s.openings.push_back(s.openings[0]); }},
+      {"opening 2: top", [](SceneSpec& s) { s.openings[1].top_m = 0.5; }},
+      {"no room \"attic\"", [](SceneSpec& s) { against(s, "attic", 0, 1); }},
+      {"item \"desk\": room \"left\" has no wall 4", [](SceneSpec& s) { against(s, "left", 4, 1); }},
+      {"item \"desk\": wall 0", [](SceneSpec& s) { against(s, "left", 0, 4.5); }},
+      {"no class \"throne\"",
+       [](SceneSpec& s) {
+         s.furniture = {item("a", "throne", {1, 1})};
+       }},
+      {"item \"a\": the id occurs twice",
+       [](SceneSpec& s) {
+         s.furniture = {item("a", "chair", {1, 1}), item("a", "chair", {2, 2})};
+       }},
+      {"no item \"desk\"",
+       [](SceneSpec& s) {
+         s.furniture = {item("lamp", "lighting", {1, 1})};
+         s.furniture[0].place = OnItem{"desk", {0, 0}, 0.0};
+       }},
+      {"picture 1: meets opening 1", [](SceneSpec& s) { add_picture(s, 1, 1.0); }},
+      {"picture 1: leaves its wall", [](SceneSpec& s) { add_picture(s, 2, 0.1); }},
+      {"picture 1: meets picture 2",
+       [](SceneSpec& s) {
+         add_picture(s, 2, 2.0);
+         add_picture(s, 2, 2.2);
+       }},
+      {"start 1: lies in no room",
+       [](SceneSpec& s) {
+         s.starts = {{{4.06, 1.0}, 0.0}};
+       }},
+      {"tour point 2",
+       [](SceneSpec& s) {
+         s.tour = {{1, 1}, {9, 9}};
+       }},
+      {"lamp 1",
+       [](SceneSpec& s) {
+         s.lamps = {{{9, 9}, {}, 1.0}};
+       }},
+  };
+}
+
+TEST(FloorPlan, MistakesAreNamedInOneLine) {
+  for (const Mistake& mistake : mistakes()) {
+    SceneSpec spec = test::two_rooms();
+    mistake.make(spec);
+    const std::string error = test::error_of([&] { build_scene(spec, {}); });
+    EXPECT_EQ(error.rfind("two_rooms.yaml: ", 0), 0U) << error;
+    EXPECT_NE(error.find(mistake.named), std::string::npos) << "expected \"" << mistake.named << "\" in: " << error;
+    EXPECT_EQ(error.find('\n'), std::string::npos) << error;
+  }
+}
+
+}  // namespace
+}  // namespace lapis::simulator

@@ -1,0 +1,175 @@
+#include "simulator/core/noise/wheel_odometry.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+#include <Eigen/Dense>
+
+#include "simulator/core/noise/drift.hpp"
+#include "statistics.hpp"
+
+namespace lapis::simulator {
+namespace {
+
+constexpr std::size_t kRuns = 4000;
+
+WheelNoiseConfig random_only() {
+  WheelNoiseConfig config;
+  config.wheel_sigma = config.base_sigma = 0.0;
+  return config;
+}
+WheelNoiseConfig systematic_only() {
+  WheelNoiseConfig config;
+  config.turn_per_turn = config.turn_per_metre = config.distance_per_metre = config.distance_per_turn = 0.0;
+  return config;
+}
+
+struct Sums {
+  std::vector<double> distances, turns;  // one per run
+};
+
+/// Many runs over one way, in equal steps; what the steps of each add up to.
+Sums drive(const WheelNoiseConfig& config, double distance_m, double turn_rad, int steps) {
+  Sums sums;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    WheelOdometry odometry(config, seed);
+    double distance = 0, turn = 0;
+    for (int i = 0; i < steps; ++i) {
+      const WheelStep step = odometry.step(distance_m / steps, turn_rad / steps);
+      distance += step.distance_m;
+      turn += step.turn_rad;
+    }
+    sums.distances.push_back(distance);
+    sums.turns.push_back(turn);
+  }
+  return sums;
+}
+
+TEST(WheelOdometry, WithoutErrorsIsTheTruth) {
+  WheelNoiseConfig config;
+  config.scale = 0.0;
+  WheelOdometry odometry(config, 3);
+  const double radius = 0.8;
+  for (int i = 1; i <= 500; ++i) {
+    odometry.step(0.01, 0.01 / radius);
+    const double angle = 0.01 * i / radius;
+    ASSERT_NEAR((odometry.position() - radius * Eigen::Vector2d(std::sin(angle), 1 - std::cos(angle))).norm(), 0, 1e-9);
+    ASSERT_NEAR(std::remainder(odometry.yaw_rad() - angle, 2 * std::numbers::pi), 0, 1e-9);
+    ASSERT_LE(std::abs(odometry.yaw_rad()), std::numbers::pi);
+  }
+  EXPECT_TRUE(odometry.covariance().isZero());
+}
+
+TEST(WheelOdometry, VarianceIsProportionalToMotionWhateverTheStep) {
+  const WheelNoiseConfig c = random_only();
+  struct Way {
+    double distance_m, turn_rad;
+  };
+  for (const Way way : {Way{1, 0}, Way{4, 0}, Way{-2, 0}, Way{0, 2}, Way{0, -6}, Way{3, 1.5}}) {
+    const double s = std::abs(way.distance_m), t = std::abs(way.turn_rad);
+    for (const int steps : {1, 10, 150}) {
+      const Sums sums = drive(c, way.distance_m, way.turn_rad, steps);
+      EXPECT_NEAR(variance_of(sums.distances) / (4e-4 * s + 1e-5 * t), 1.0, variance_bound(kRuns)) << s << t << steps;
+      EXPECT_NEAR(variance_of(sums.turns) / (4e-4 * t + 1e-4 * s), 1.0, variance_bound(kRuns)) << s << t << steps;
+      const double root_n = std::sqrt(static_cast<double>(kRuns));
+      EXPECT_NEAR(mean_of(sums.distances), way.distance_m, kSigmas * std::sqrt(4e-4 * s + 1e-5 * t) / root_n);
+      EXPECT_NEAR(mean_of(sums.turns), way.turn_rad, kSigmas * std::sqrt(4e-4 * t + 1e-4 * s) / root_n);
+      EXPECT_LT(std::abs(correlation_of(sums.distances, sums.turns)), kSigmas / root_n);
+    }
+  }
+}
+
+TEST(WheelOdometry, SystematicErrorsAreConstantInARun) {
+  std::vector<double> wheels, turns;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    WheelOdometry odometry(systematic_only(), seed);
+    const WheelStep first = odometry.step(0.5, 0.3), second = odometry.step(-1.5, 2.0);
+    ASSERT_NEAR(first.distance_m / 0.5, second.distance_m / -1.5, 1e-12);
+    ASSERT_NEAR(first.turn_rad / 0.3, second.turn_rad / 2.0, 1e-12);
+    wheels.push_back(std::log(first.distance_m / 0.5));
+    turns.push_back(std::log(first.turn_rad / 0.3));
+  }
+  EXPECT_NEAR(variance_of(wheels) / 1e-4, 1.0, variance_bound(kRuns));
+  EXPECT_NEAR(variance_of(turns) / 2e-4, 1.0, variance_bound(kRuns));  // of wheel and base
+  EXPECT_NEAR(correlation_of(wheels, turns), std::sqrt(0.5), 0.05);
+}
+
+/// Normalised squared error of the pose after a winding way of 8 m.
+double normalised_error(const WheelNoiseConfig& config, std::uint64_t seed) {
+  WheelNoiseConfig perfect;
+  perfect.scale = 0.0;
+  WheelOdometry odometry(config, seed), truth(perfect, seed);
+  for (int i = 0; i < 400; ++i) {
+    const double turn = 0.02 * std::sin(0.02 * i) + 0.004;
+    odometry.step(0.02, turn);
+    truth.step(0.02, turn);
+  }
+  Eigen::Vector3d error;
+  error << odometry.position() - truth.position(),
+      std::remainder(odometry.yaw_rad() - truth.yaw_rad(), 2 * std::numbers::pi);
+  return error.dot(odometry.covariance().inverse() * error);
+}
+
+TEST(WheelOdometry, CovarianceIsWhatErrorsReallyAre) {
+  for (const WheelNoiseConfig& config : {WheelNoiseConfig(), random_only()}) {
+    std::vector<double> errors;
+    for (std::uint64_t seed = 0; seed < 2000; ++seed) errors.push_back(normalised_error(config, seed));
+    // Chi-squared with 3 degrees of freedom has mean 3 and variance 6; the covariance is right to first order.
+    EXPECT_NEAR(mean_of(errors), 3.0, kSigmas * std::sqrt(6.0 / 2000) + 0.1);
+  }
+}
+
+TEST(WheelOdometry, CovarianceGrows) {
+  WheelOdometry odometry({}, 3);
+  double last = 0.0;
+  for (int i = 0; i < 100; ++i) {
+    odometry.step(0.02, 0.01);
+    ASSERT_GT(odometry.covariance().trace(), last);
+    ASSERT_GE(Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(odometry.covariance()).eigenvalues().minCoeff(), -1e-12);
+    last = odometry.covariance().trace();
+  }
+}
+
+TEST(WheelOdometry, ScaleMultipliesStandardDeviations) {
+  WheelNoiseConfig config;
+  const Sums nominal = drive(config, 2, 1, 5);
+  config.scale = 3.0;
+  const Sums scaled = drive(config, 2, 1, 5);
+  EXPECT_NEAR(variance_of(scaled.distances) / variance_of(nominal.distances), 9.0, 0.01);  // the same draws
+  EXPECT_NEAR(variance_of(scaled.turns) / variance_of(nominal.turns), 9.0, 0.1);
+}
+
+TEST(WheelOdometry, StandingStillDoesNotDrift) {
+  WheelOdometry odometry({}, 3);
+  for (int i = 0; i < 1000; ++i) odometry.step(0, 0);
+  EXPECT_TRUE(odometry.position().isZero());
+  EXPECT_EQ(odometry.yaw_rad(), 0.0);
+  EXPECT_TRUE(odometry.covariance().isZero());
+}
+
+TEST(WheelOdometry, NoiseDependsOnSeedAndStepNumber) {
+  WheelOdometry a(random_only(), 3), b(random_only(), 3), c(random_only(), 4);
+  a.step(0.02, 0.01);
+  b.step(0.05, -0.2);  // another way, the same number of steps
+  const WheelStep from_a = a.step(0.02, 0.01), from_b = b.step(0.02, 0.01);
+  c.step(0.02, 0.01);
+  EXPECT_EQ(from_a.distance_m, from_b.distance_m);
+  EXPECT_EQ(from_a.turn_rad, from_b.turn_rad);
+  EXPECT_NE(c.step(0.02, 0.01).turn_rad, from_a.turn_rad);
+}
+
+TEST(DriftPreset, NominalChangesNothingAndHardIsHarderInEveryRespect) {
+  const DriftScales nominal = drift_scales(DriftPreset::kNominal), hard = drift_scales(DriftPreset::kHard);
+  EXPECT_EQ(nominal.texture, 1.0);
+  EXPECT_EQ(nominal.dropout, 0.0);
+  EXPECT_EQ(nominal.blur, 0.0);
+  EXPECT_EQ(nominal.wheel, 1.0);
+  EXPECT_LT(hard.texture, nominal.texture);
+  EXPECT_GT(hard.dropout, nominal.dropout);
+  EXPECT_GT(hard.blur, nominal.blur);
+  EXPECT_GT(hard.wheel, nominal.wheel);
+}
+
+}  // namespace
+}  // namespace lapis::simulator

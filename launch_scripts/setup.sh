@@ -7,8 +7,9 @@ socket_buffer_bytes=8388608
 
 usage() {
   cat <<TEXT
-usage: launch_scripts/setup.sh [--no-build] [--sysctl]
+usage: launch_scripts/setup.sh [--no-build] [--minimal] [--sysctl]
   --no-build  only install packages (launch_scripts/packages.txt)
+  --minimal   without the furniture of the simulator's scenes; simple shapes stand in
   --sysctl    also install $sysctl_file (socket buffers of up to 8 MiB)
 Needs root or sudo when something is missing. Exit status 2: the machine is not ready; the message says why.
 TEXT
@@ -34,7 +35,9 @@ first_of() {
 
 install_packages() {
   local entries entry name missing=() names=()
-  mapfile -t entries < <(grep -Ev '^[[:space:]]*(#|$)' "$root/launch_scripts/packages.txt")
+  local unwanted='#|$'
+  [[ "$extent" == minimal ]] && unwanted+='|[?]'
+  mapfile -t entries < <(grep -Ev "^[[:space:]]*($unwanted)" "$root/launch_scripts/packages.txt" | sed 's/^?//')
   if ! grep -Eqs '^ID(_LIKE)?=.*debian' /etc/os-release || ! type apt-get dpkg-query >/dev/null 2>&1; then
     stop "this is not Debian; install what your distribution has of these and build with cmake --preset release:" \
       $'\n'"${entries[*]}"
@@ -65,10 +68,11 @@ set_socket_buffers() {
   fi
 }
 
-build=yes sysctl=hint
+build=yes extent=full sysctl=hint
 for argument in "$@"; do
   case "$argument" in
     --no-build) build=no ;;
+    --minimal) extent=minimal ;;
     --sysctl) sysctl=install ;;
     --help | -h) usage; exit 0 ;;
     *) usage >&2; stop "unknown argument $argument" ;;

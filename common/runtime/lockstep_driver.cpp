@@ -102,6 +102,7 @@ void LockstepDriver::on_ack(const Ack& ack) {
   const auto& stages = config_.stages;
   const std::string& participant = ack.participant();
   if (ack.run_gid() != tick_->gid() || std::find(stages.begin(), stages.end(), participant) == stages.end()) return;
+  if (std::make_pair(ack.tick(), ack.stage()) > std::make_pair(number_, stage_)) return;  // was never released
   // BUSY is no sign of life: who waits for an input that cannot come any more would wait for ever.
   if (ack.status() == lapis_msgs::msg::Ack_Constants::STATUS_DONE) heard_[participant] = Clock::now();
   const auto known = last_ack_.find(participant);

@@ -21,21 +21,12 @@ namespace {
 constexpr std::size_t kWaitingFrames = 30;
 constexpr double kMaxDistance_m = 10'000.0;           // the mapper's limit
 constexpr time::Duration kRestartGap{1'000'000'000};  // stamps further back are those of a source that began anew
-constexpr const char* kTimelineHeader =
-    "time_s,explored_volume_m3,explored_share,path_length_m,position_error_m,position_sigma_m,state\n";
 
 std::optional<double> parse(const std::string& text) {
   double value = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
   return value;
-}
-
-std::string cell(const std::optional<double>& value) {
-  if (!value) return "";
-  char text[40];
-  std::snprintf(text, sizeof text, "%.6f", *value);
-  return text;
 }
 
 std::map<std::uint16_t, std::string> class_names(const mapping::LabelList& labels) {
@@ -64,8 +55,7 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       info_(context, topics::kDepthInfo, "camera info", kWaitingFrames), reference_(config.resolution_m),
-      plain_fusion_({config.resolution_m, config.integration.min_range_m, config.robot.sensing_range_m}),
-      timeline_(kTimelineHeader) {
+      plain_fusion_({config.resolution_m, config.integration.min_range_m, config.robot.sensing_range_m}) {
   if (config_.output_dir.empty()) {
     throw std::runtime_error("evaluator.output_dir is not set; give --set evaluator.output_dir=FOLDER");
   }
@@ -103,6 +93,7 @@ void EvaluatorComponent::count_contact(bool is_in_contact) {
   if (!collisions_) collisions_ = 0;
   if (is_in_contact && !is_in_contact_) ++*collisions_;
   is_in_contact_ = is_in_contact;
+  context_.status().value("collisions", static_cast<std::uint64_t>(*collisions_));
 }
 
 void EvaluatorComponent::on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message) {
@@ -202,21 +193,18 @@ void EvaluatorComponent::record(const Tracked& tracked, const Odometry* truth, c
   if (truth != nullptr) T_world_camera = true_camera_pose(*truth, tracked.header().frame_id());
   const bool is_new = truth_world_.empty() || truth_world_.back().stamp < stamp;
   if (T_world_camera && is_new) truth_world_.push_back({stamp, *T_world_camera});
-  if (!is_tracking) return write_timeline_row(stamp, false);
+  if (!is_tracking) return add_timeline_row(stamp, false);
   const auto T_map_keyframe = messages::from_message(tracked.keyframe_pose());
   const auto T_keyframe_camera = messages::from_message(tracked.pose_in_keyframe());
   if (!T_map_keyframe || !T_keyframe_camera) return context_.status().count("tracked frames without a valid pose");
   ++frames_tracked_;
   const geometry::Pose T_map_camera = *T_map_keyframe * *T_keyframe_camera;
   if (estimate_.empty() || estimate_.back().stamp < stamp) estimate_.push_back({stamp, T_map_camera});
-  if (T_world_camera && !T_map_world_) {
-    T_map_world_ = T_map_camera * T_world_camera->inverse();
-    load_truth();
-  }
+  if (T_world_camera && !T_map_world_) T_map_world_ = T_map_camera * T_world_camera->inverse();
   if (T_world_camera && depth != nullptr && info != nullptr) {
     add_to_references(*T_world_camera, *depth, labels, *info);
   }
-  write_timeline_row(stamp, true);
+  add_timeline_row(stamp, true);
 }
 
 std::filesystem::path EvaluatorComponent::truth_folder() const {
@@ -224,8 +212,9 @@ std::filesystem::path EvaluatorComponent::truth_folder() const {
   return std::filesystem::path(config_.output_dir) / "ground_truth";
 }
 
-// The simulator writes what it knows of the scene before its first frame.
+// At the end of the run: the simulator writes while it goes on.
 void EvaluatorComponent::load_truth() {
+  if (!T_map_world_) return;
   std::string problem;
   scene_truth_ = load_ground_truth(truth_folder(), problem);
   if (!problem.empty()) spdlog::warn("ground truth of the scene is left out: {}", problem);
@@ -277,33 +266,39 @@ void EvaluatorComponent::add_to_references(const geometry::Pose& T_world_camera,
   plain_fusion_.add(*camera, *metres, ids, T_map_camera);
 }
 
-void EvaluatorComponent::write_timeline_row(time::Time stamp, bool is_tracking) {
+void EvaluatorComponent::add_timeline_row(time::Time stamp, bool is_tracking) {
   if (timeline_stamp_ && (stamp - *timeline_stamp_).seconds() < config_.timeline_period_s) return;
   timeline_stamp_ = stamp;
-  const double time_s = (stamp - *first_stamp_).seconds();
-  std::optional<double> volume, share;
+  TimelineRow row;
+  row.time_s = (stamp - *first_stamp_).seconds();
+  row.is_tracking = is_tracking;
   if (const auto* map = mirror_.map()) {
-    const Coverage figures = explored(to_known_space(*map, belief_reader()));
-    volume = figures.explored_volume_m3;
-    share = figures.explored_share;
-    if (share) shares_.push_back({time_s, *share});
+    const KnownSpace space = to_known_space(*map, belief_reader());
+    row.explored_volume_m3 = coverage(space).explored_volume_m3;
+    row.is_comparable = is_comparable(space);
+    if (row.is_comparable) known_.add(space);
   }
-  std::optional<double> error;
   if (is_tracking && T_map_world_ && !truth_world_.empty() && truth_world_.back().stamp == stamp) {
     const geometry::Pose truth = *T_map_world_ * truth_world_.back().T_world_body;
-    error = (estimate_.back().T_world_body.translation() - truth.translation()).norm();
+    row.position_error_m = (estimate_.back().T_world_body.translation() - truth.translation()).norm();
   }
-  const std::optional<double> path =
-      truth_world_.empty() ? std::nullopt : std::optional<double>(path_length_m(truth_world_));
-  timeline_ += cell(time_s) + "," + cell(volume) + "," + cell(share) + "," + cell(path) + "," + cell(error) + ",," +
-               (is_tracking ? "TRACKING" : "LOST") + "\n";
+  if (!truth_world_.empty()) row.path_length_m = path_length_m(truth_world_);
+  timeline_.push_back(row);
 }
 
-/// A map of slam's first session has the frame of the truth; one with other voxels has no share.
-Coverage EvaluatorComponent::explored(const KnownSpace& map) const {
-  const bool is_comparable =
-      scene_truth_ && map_session_ == session_ && map.occupied.resolution_m == config_.resolution_m;
-  return is_comparable ? coverage(scene_truth_->mesh, map) : coverage(map);
+/// Only slam's first map has the frame of the truth.
+bool EvaluatorComponent::is_comparable(const KnownSpace& map) const {
+  return map_session_ == session_ && map.occupied.resolution_m == config_.resolution_m;
+}
+
+/// Explored shares of the rows of the timeline.
+void EvaluatorComponent::add_shares() {
+  if (!scene_truth_) return;
+  const auto shares = known_.shares(scene_truth_->mesh);
+  auto next = shares.begin();
+  for (TimelineRow& row : timeline_) {
+    if (row.is_comparable && next != shares.end()) row.explored_share = *next++;
+  }
 }
 
 mapping::BeliefReader EvaluatorComponent::belief_reader() const {
@@ -357,8 +352,8 @@ RunMetrics EvaluatorComponent::metrics() const {
     m.cpu_ms_per_frame[name] = has_rate ? std::optional<double>(1e3 * *figures.cpu_s / *figures.frames) : std::nullopt;
   }
   m.collisions = collisions_;
-  m.time_to_80_s = time_to_reach(shares_, 0.8);
-  m.time_to_90_s = time_to_reach(shares_, 0.9);
+  m.time_to_80_s = time_to_reach(timeline_, 0.8);
+  m.time_to_90_s = time_to_reach(timeline_, 0.9);
   add_map_figures(m);
   return m;
 }
@@ -372,9 +367,7 @@ void EvaluatorComponent::add_map_figures(RunMetrics& m) const {
   if (!mirror_.is_consistent()) spdlog::warn("the map's last version did not arrive whole; an older one is judged");
   const auto reader = belief_reader();
   const KnownSpace estimate = to_known_space(*mirror_.map(), reader);
-  const Coverage figures = explored(estimate);
-  m.explored_volume_m3 = figures.explored_volume_m3;
-  m.explored_share = figures.explored_share;
+  m.explored_volume_m3 = coverage(estimate).explored_volume_m3;
   if (!T_map_world_) return;
   if (estimate.occupied.resolution_m != config_.resolution_m) {
     spdlog::warn("the map has voxels of {} m, evaluator.resolution_m is {}: no map figures",
@@ -387,6 +380,7 @@ void EvaluatorComponent::add_map_figures(RunMetrics& m) const {
   m.map = map_figures(reference.occupied, estimate.occupied, names, classes);
   m.reference_fusion_share = share_of(plain_fusion_.voxels(), reference.occupied);
   if (!scene_truth_) return;
+  m.explored_share = coverage(scene_truth_->mesh, estimate).explored_share;
   m.mesh_map = map_figures(scene_truth_->mesh.occupied, estimate.occupied, names, classes);
   if (const auto ideal = load_ideal()) m.ideal_map = map_figures(*ideal, estimate.occupied, names, classes);
 }
@@ -410,7 +404,7 @@ void EvaluatorComponent::write_files(const RunMetrics& m) const {
                                "camera optical frame in the map, as published");
   trajectory::write_trajectory(folder / "trajectory_ground_truth.txt", truth_in_map(),
                                "true camera optical frame, in the map by the first true pose");
-  files::replace_text(folder / "timeline.csv", timeline_);
+  files::replace_text(folder / "timeline.csv", to_csv(timeline_));
   files::replace_text(folder / "metrics.json", to_json(m));
   if (!T_map_world_) return;
   const mapping::MapFile reference{reference_, belief_reader().model(), label_list_, {{"source", "true poses"}}};
@@ -425,6 +419,8 @@ void EvaluatorComponent::finish() {
     spdlog::warn("no frame came; nothing is written");
     return;
   }
+  load_truth();
+  add_shares();
   const RunMetrics m = metrics();
   write_files(m);
   std::cout << format_table(m) << std::flush;

@@ -15,6 +15,7 @@
 #include "evaluator/core/ground_truth.hpp"
 #include "evaluator/core/metrics.hpp"
 #include "evaluator/core/plain_fusion.hpp"
+#include "evaluator/core/timeline.hpp"
 #include "evaluator/evaluator_config.hpp"
 
 namespace lapis::evaluator {
@@ -59,8 +60,9 @@ class EvaluatorComponent {
   std::optional<geometry::Pose> true_camera_pose(const Odometry& truth, const std::string& optical_frame);
   void add_to_references(const geometry::Pose& T_world_camera, const Image& depth, const Image* labels,
                          const Info& info);
-  void write_timeline_row(time::Time stamp, bool is_tracking);
-  Coverage explored(const KnownSpace& map) const;
+  void add_timeline_row(time::Time stamp, bool is_tracking);
+  bool is_comparable(const KnownSpace& map) const;
+  void add_shares();
   mapping::BeliefReader belief_reader() const;
   Trajectory truth_in_map() const;
   Trajectory keyframes() const;
@@ -88,10 +90,10 @@ class EvaluatorComponent {
   Trajectory truth_world_;                     // T_world_camera
   std::optional<geometry::Pose> T_map_world_;  // from the first frame that has both
   std::optional<GroundTruth> scene_truth_;     // of a simulated scene
-  std::vector<ShareAt> shares_;                // of the explorable volume, a row of the timeline each
   mapping::VoxelMap reference_;
   PlainFusion plain_fusion_;
-  std::string timeline_;
+  std::vector<TimelineRow> timeline_;
+  KnownHistory known_;  // of the rows that have a comparable map
   std::optional<time::Time> timeline_stamp_;
   std::optional<time::Time> first_stamp_;
   time::Time last_stamp_;

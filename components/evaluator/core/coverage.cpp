@@ -40,9 +40,32 @@ Coverage coverage(const KnownSpace& reference, const KnownSpace& map) {
   return result;
 }
 
-std::optional<double> time_to_reach(const std::vector<ShareAt>& rows, double share) {
-  const auto first = std::find_if(rows.begin(), rows.end(), [share](const ShareAt& row) { return row.share >= share; });
-  return first == rows.end() ? std::nullopt : std::optional(first->time_s);
+void KnownHistory::add(const KnownSpace& map) {
+  auto known = known_voxels(map);
+  Change change;
+  std::set_difference(known.begin(), known.end(), known_.begin(), known_.end(), std::back_inserter(change.added),
+                      is_before);
+  std::set_difference(known_.begin(), known_.end(), known.begin(), known.end(), std::back_inserter(change.removed),
+                      is_before);
+  changes_.push_back(std::move(change));
+  known_ = std::move(known);
+}
+
+std::vector<double> KnownHistory::shares(const KnownSpace& reference) const {
+  const auto wanted = known_voxels(reference);
+  if (wanted.empty()) return {};
+  const auto count_wanted = [&wanted](const std::vector<VoxelIndex>& voxels) {
+    return std::count_if(voxels.begin(), voxels.end(), [&wanted](const VoxelIndex& voxel) {
+      return std::binary_search(wanted.begin(), wanted.end(), voxel, is_before);
+    });
+  };
+  std::vector<double> shares;
+  std::ptrdiff_t common = 0;
+  for (const Change& change : changes_) {
+    common += count_wanted(change.added) - count_wanted(change.removed);
+    shares.push_back(static_cast<double>(common) / static_cast<double>(wanted.size()));
+  }
+  return shares;
 }
 
 }  // namespace lapis::evaluator

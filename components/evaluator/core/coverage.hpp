@@ -20,13 +20,19 @@ Coverage coverage(const KnownSpace& map);
 /// Throws std::invalid_argument when the resolutions differ.
 Coverage coverage(const KnownSpace& reference, const KnownSpace& map);
 
-/// Share of the explorable volume that was known at a time of the run.
-struct ShareAt {
-  double time_s = 0.0;
-  double share = 0.0;
-};
+/// What a map knew at several times, kept as changes, so that it can be compared when the run is over.
+class KnownHistory {
+ public:
+  void add(const KnownSpace& map);
+  /// For each map added, its coverage().explored_share; empty for an empty reference. The grids must coincide.
+  std::vector<double> shares(const KnownSpace& reference) const;
 
-/// When the share first reached `share`; none when it never did. The rows are in the order of time.
-std::optional<double> time_to_reach(const std::vector<ShareAt>& rows, double share);
+ private:
+  struct Change {
+    std::vector<VoxelIndex> added, removed;
+  };
+  std::vector<VoxelIndex> known_;  ///< by the newest map, sorted
+  std::vector<Change> changes_;
+};
 
 }  // namespace lapis::evaluator

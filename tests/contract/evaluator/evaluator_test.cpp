@@ -36,7 +36,7 @@ class EvaluatorContract : public ::testing::Test {
   void SetUp() override {
     ASSERT_TRUE(wait_until_ready(evaluator)) << evaluator.log();
     ASSERT_TRUE(probe.wait_until([&] {
-      return truth.matched() > 0 && slam.matched() > 0 && feed.is_matched_by_evaluator();
+      return truth.matched() > 0 && slam.matched() > 0 && contact.matched() > 0 && feed.is_matched_by_evaluator();
     })) << evaluator.log();
   }
   nav_msgs::msg::Odometry true_pose(int index) const {
@@ -69,6 +69,7 @@ class EvaluatorContract : public ::testing::Test {
   CameraFeed feed{probe};
   dds::Publisher<nav_msgs::msg::Odometry>& truth = probe.advertise(topics::kGroundTruth);
   dds::Publisher<lapis_msgs::msg::TrackedFrame>& slam = probe.advertise(topics::kTrackedFrame);
+  dds::Publisher<std_msgs::msg::Bool>& contact = probe.advertise(topics::kCollision);
   const std::vector<diagnostic_msgs::msg::DiagnosticArray>& diagnostics = probe.collect(topics::kDiagnostics);
   ChildProcess evaluator{kEvaluator, {"--set", "evaluator.output_dir=" + folder, "--set", "evaluator.figures=false"}};
 };
@@ -83,9 +84,23 @@ TEST_F(EvaluatorContract, WritesTheRunFolderWhenItIsStopped) {
   EXPECT_THAT(metrics, HasSubstr("\"frames_total\": 4"));
   EXPECT_THAT(metrics, HasSubstr("\"frames_tracked\": 4"));
   EXPECT_THAT(metrics, Not(HasSubstr("nan")));
+  EXPECT_THAT(metrics, HasSubstr("\"collisions\": null"));  // nobody told of contacts
   for (const char* file : {"trajectory_estimate.txt", "trajectory_ground_truth.txt", "timeline.csv"}) {
     EXPECT_FALSE(read(std::filesystem::path(folder) / file).empty()) << file;
   }
+}
+
+TEST_F(EvaluatorContract, ACollisionIsTheBeginningOfAContact) {
+  for (const bool is_in_contact : {false, true, true, false, true}) {
+    std_msgs::msg::Bool message;
+    message.data(is_in_contact);
+    contact.publish(message);
+  }
+  send(feed.frame(0), 0);
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["collisions"] == "2"; }))
+      << evaluator.log();
+  EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
+  EXPECT_THAT(read(std::filesystem::path(folder) / "metrics.json"), HasSubstr("\"collisions\": 2"));
 }
 
 TEST_F(EvaluatorContract, GarbageIsSurvived) {

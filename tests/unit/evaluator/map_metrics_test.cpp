@@ -243,5 +243,19 @@ TEST(CoverageTest, CountsKnownVolumeAndShare) {
   EXPECT_FALSE(coverage(make_known_space(make_labelled_voxels(0.5, {}), {}), map).explored_share);
 }
 
+TEST(CoverageTest, HistoryGivesTheShareOfEveryMap) {
+  const KnownSpace reference = make_known_space(random_map(200, 4, 1), {});
+  KnownHistory history;
+  std::vector<double> expected;
+  for (const std::size_t count : {0U, 50U, 300U, 20U, 600U}) {  // what is known may become unknown again
+    const KnownSpace map = make_known_space(random_map(count, 4, 7), {});
+    history.add(map);
+    expected.push_back(coverage(reference, map).explored_share.value());
+  }
+  EXPECT_EQ(history.shares(reference), expected);
+  EXPECT_GT(expected.back(), 0.5);
+  EXPECT_TRUE(history.shares(make_known_space(make_labelled_voxels(0.25, {}), {})).empty());
+}
+
 }  // namespace
 }  // namespace lapis::evaluator

@@ -6,6 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "evaluator/core/timeline.hpp"
+
 namespace lapis::evaluator {
 namespace {
 
@@ -127,6 +129,27 @@ TEST(Metrics, MapFiguresNameTheClasses) {
 TEST(Metrics, ARunThatLostTooManyFramesIsLost) {
   EXPECT_EQ(judged_exit_reason("finished", 95, 100), "finished");
   EXPECT_EQ(judged_exit_reason("finished", 94, 100), "lost");
+}
+
+TEST(Timeline, WhatWasNotMeasuredIsEmpty) {
+  TimelineRow row;
+  row.time_s = 1.5;
+  EXPECT_THAT(to_csv({row}), HasSubstr("state\n1.500000,,,,,,LOST\n"));
+  row = {2.0, 10.0, 0.25, 3.0, 0.125, true, true};
+  EXPECT_THAT(to_csv({row}), HasSubstr("\n2.000000,10.000000,0.250000,3.000000,0.125000,,TRACKING\n"));
+}
+
+TEST(Timeline, TimeToReachIsThatOfTheFirstRow) {
+  std::vector<TimelineRow> rows(5);
+  const std::vector<std::optional<double>> shares = {std::nullopt, 0.1, 0.8, 0.79, 0.85};
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    rows[i].time_s = static_cast<double>(i);
+    rows[i].explored_share = shares[i];
+  }
+  EXPECT_EQ(time_to_reach(rows, 0.8), 2.0);
+  EXPECT_EQ(time_to_reach(rows, 0.81), 4.0);
+  EXPECT_FALSE(time_to_reach(rows, 0.9));
+  EXPECT_FALSE(time_to_reach({}, 0.0));
 }
 
 }  // namespace

@@ -21,6 +21,8 @@ json parse_json_object(std::string_view text, const std::string& file) {
   } catch (const json::parse_error& error) {
     throw std::runtime_error(file + ": no valid JSON text at byte " + std::to_string(error.byte) +
                              "; correct it or export the file again");
+  } catch (const json::out_of_range&) {
+    throw std::runtime_error(file + ": a number in the JSON text is too large; correct it or export the file again");
   }
 }
 

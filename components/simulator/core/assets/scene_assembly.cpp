@@ -32,6 +32,14 @@ void move_unsound_vertices(Mesh& mesh) {
   }
 }
 
+// There are some in exports: a picture that is wrong there is better than none.
+void clear_unsound_texture_coordinates(Mesh& mesh) {
+  constexpr float kLargest = 1e4F;
+  for (auto& uv : mesh.texture_coordinates) {
+    if (!(uv.cwiseAbs().maxCoeff() <= kLargest) || !uv.allFinite()) uv.setZero();
+  }
+}
+
 // Area of horizontal floor per 5 cm of height. Closed slabs have a lower side too: where normals look up, only those
 // count.
 double find_floor(const Scene& scene) {
@@ -150,6 +158,7 @@ void finish_scene(Scene& scene, const std::string& file) {
                              " triangles are left out: their vertices are not finite or more than 100 km away");
   }
   move_unsound_vertices(scene.mesh);
+  clear_unsound_texture_coordinates(scene.mesh);
   scene.floor_z_m = find_floor(scene);
 }
 

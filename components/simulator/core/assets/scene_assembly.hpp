@@ -71,8 +71,8 @@ class InstanceList {
 void turn_upright(Mesh& mesh);
 
 /// What every loader does last: drops triangles with a vertex that is not finite or farther than 100 km from the
-/// origin (with one warning), and finds floor_z_m: the lowest height at which there is a fifth of the floor (class
-/// "floor"); without such a class the lowest point.
+/// origin (with one warning), sets texture coordinates of that kind to zero, and finds floor_z_m: the lowest height at
+/// which there is a fifth of the floor (class "floor"); without such a class the lowest point.
 /// @throws std::runtime_error naming `file` when no triangle is left.
 void finish_scene(Scene& scene, const std::string& file);
 

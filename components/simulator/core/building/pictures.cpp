@@ -92,7 +92,7 @@ void skyline(Canvas& canvas, Dice& dice) {
 
 /// Rectangles within rectangles, in the manner of De Stijl.
 void split(Canvas& canvas, Dice& dice, double x0, double y0, double x1, double y1, int depth) {
-  if (depth == 0 || (depth < 4 && dice.chance(0.15))) {
+  if (depth == 0 || (depth < 5 && dice.chance(0.15))) {
     canvas.rectangle({x0, y0, x1, y1, kInk});
     canvas.rectangle(
         {x0 + 0.008, y0 + 0.008, x1 - 0.008, y1 - 0.008, dice.chance(0.45) ? kPaper : dice.color(0.6, 0.95)});
@@ -108,7 +108,7 @@ void split(Canvas& canvas, Dice& dice, double x0, double y0, double x1, double y
   }
 }
 
-void rectangles(Canvas& canvas, Dice& dice) { split(canvas, dice, 0, 0, 1, 1, 6); }
+void rectangles(Canvas& canvas, Dice& dice) { split(canvas, dice, 0, 0, 1, 1, 8); }
 
 void circles(Canvas& canvas, Dice& dice) {
   canvas.rectangle({0, 0, 1, 1, dice.color(0.05, 0.3)});

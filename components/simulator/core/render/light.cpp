@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <numbers>
+#include <span>
 #include <thread>
 
 namespace lapis::simulator {
@@ -16,6 +18,7 @@ constexpr float kFloor = 0.06F;
 constexpr float kOffset_m = 0.004F;   // of a ray's origin from its surface
 constexpr float kLampRange_m = 7.0F;  // beyond it a lamp is not asked for
 constexpr float kGamma = 1.0F / 2.2F;
+constexpr float kCrease = 0.7F;  // cosine of the angle between faces
 
 using Directions = std::array<Eigen::Vector3f, kDirections>;
 
@@ -34,17 +37,52 @@ Directions hammersley() {
   return out;
 }
 
-/// Area-weighted normals; zero for a vertex without a triangle.
-std::vector<Eigen::Vector3f> vertex_normals(const Mesh& mesh) {
-  std::vector<Eigen::Vector3f> normals(mesh.positions.size(), Eigen::Vector3f::Zero());
+/// Corners of triangles (3 * triangle + corner) by vertex.
+struct Corners {
+  std::vector<std::uint32_t> first;  // of each vertex, in `corner`; one more at the end
+  std::vector<std::uint32_t> corner;
+};
+
+Corners corners_by_vertex(const Mesh& mesh) {
+  Corners out;
+  out.first.assign(mesh.positions.size() + 1, 0);
   for (const auto& triangle : mesh.triangles) {
-    const auto& [a, b, c] = triangle.vertices;
-    const auto& p = mesh.positions;
-    const Eigen::Vector3f normal = (p[b] - p[a]).cross(p[c] - p[a]);
-    for (const auto v : triangle.vertices) normals[v] += normal;
+    for (const auto v : triangle.vertices) ++out.first[v + 1];
   }
-  for (auto& normal : normals) normal.normalize();
-  return normals;
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) out.first[v + 1] += out.first[v];
+  out.corner.resize(3 * mesh.triangles.size());
+  auto next = out.first;
+  for (std::uint32_t c = 0; c < out.corner.size(); ++c) {
+    out.corner[next[mesh.triangles[c / 3].vertices[c % 3]]++] = c;
+  }
+  return out;
+}
+
+/// Twice the area long.
+Eigen::Vector3f area_normal(const Mesh& mesh, const Triangle& triangle) {
+  const auto& [a, b, c] = triangle.vertices;
+  return (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
+}
+
+/// Corners at one vertex whose faces pass smoothly into each other.
+struct SmoothGroup {
+  Eigen::Vector3f normal;  // area-weighted, not of unit length
+  std::vector<std::uint32_t> corners;
+};
+
+/// An edge sharper than kCrease separates what lies on its two sides: the top of a table is not lit as its sides are.
+std::vector<SmoothGroup> smooth_groups(const Mesh& mesh, std::span<const std::uint32_t> corners) {
+  std::vector<SmoothGroup> groups;
+  for (const std::uint32_t c : corners) {
+    const Eigen::Vector3f normal = area_normal(mesh, mesh.triangles[c / 3]);
+    auto it = std::find_if(groups.begin(), groups.end(), [&](const SmoothGroup& group) {
+      return group.normal.dot(normal) > kCrease * group.normal.norm() * normal.norm();
+    });
+    if (it == groups.end()) it = groups.insert(it, {Eigen::Vector3f::Zero(), {}});
+    it->normal += normal;
+    it->corners.push_back(c);
+  }
+  return groups;
 }
 
 class Baker {
@@ -105,21 +143,26 @@ class Baker {
 
 std::vector<std::uint8_t> bake_light(const Scene& scene, const SceneRaycaster& raycaster, int threads) {
   if (!scene.is_lit) return {};
-  const auto& positions = scene.mesh.positions;
-  const auto normals = vertex_normals(scene.mesh);
+  const Mesh& mesh = scene.mesh;
+  const Corners corners = corners_by_vertex(mesh);
   const Baker baker(scene, raycaster);
-  std::vector<std::uint8_t> light(positions.size());
+  std::vector<std::uint8_t> light(3 * mesh.triangles.size());
   const auto bake = [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      const float brightest =
-          std::max(baker.irradiance(positions[i], normals[i]), baker.irradiance(positions[i], -normals[i]));
-      light[i] = static_cast<std::uint8_t>(std::lround(255.0F * std::pow(std::min(brightest, 1.0F), kGamma)));
+    for (std::size_t v = begin; v < end; ++v) {
+      const std::span around(corners.corner.data() + corners.first[v], corners.first[v + 1] - corners.first[v]);
+      for (const auto& group : smooth_groups(mesh, around)) {
+        const Eigen::Vector3f normal = group.normal.normalized();
+        const float brightest =
+            std::max(baker.irradiance(mesh.positions[v], normal), baker.irradiance(mesh.positions[v], -normal));
+        const auto level = static_cast<std::uint8_t>(std::lround(255.0F * std::pow(std::min(brightest, 1.0F), kGamma)));
+        for (const std::uint32_t c : group.corners) light[c] = level;
+      }
     }
   };
   std::vector<std::jthread> workers;
   const auto count = static_cast<std::size_t>(std::max(threads, 1));
   for (std::size_t i = 0; i < count; ++i) {
-    workers.emplace_back(bake, positions.size() * i / count, positions.size() * (i + 1) / count);
+    workers.emplace_back(bake, mesh.positions.size() * i / count, mesh.positions.size() * (i + 1) / count);
   }
   return workers.clear(), light;
 }

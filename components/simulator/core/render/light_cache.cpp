@@ -61,13 +61,13 @@ std::string hexadecimal(std::uint64_t value) {
   return text;
 }
 
-std::optional<std::vector<std::uint8_t>> read_light(const std::string& file, std::size_t vertices) {
+std::optional<std::vector<std::uint8_t>> read_light(const std::string& file, std::size_t size) {
   std::string reason;
   auto bytes = files::read_file(file, reason);
-  if (!bytes || bytes->size() != vertices + kChecksumBytes) return std::nullopt;
+  if (!bytes || bytes->size() != size + kChecksumBytes) return std::nullopt;
   std::uint32_t checksum = 0;
-  std::memcpy(&checksum, bytes->data() + vertices, kChecksumBytes);
-  bytes->resize(vertices);
+  std::memcpy(&checksum, bytes->data() + size, kChecksumBytes);
+  bytes->resize(size);
   if (mapping::crc32(*bytes) != checksum) return std::nullopt;
   return bytes;
 }
@@ -99,7 +99,7 @@ std::vector<std::uint8_t> cached_light(const Scene& scene, const SceneRaycaster&
   add_geometry(hash, scene);
   add_holes(hash, scene);
   const auto file = (folder / (hexadecimal(hash.value()) + ".light")).string();
-  if (auto light = read_light(file, scene.mesh.positions.size())) return *light;
+  if (auto light = read_light(file, 3 * scene.mesh.triangles.size())) return *light;
   auto light = bake_light(scene, raycaster, threads);
   std::error_code ignored;
   std::filesystem::create_directories(folder, ignored);

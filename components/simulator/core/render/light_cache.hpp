@@ -11,7 +11,7 @@ namespace lapis::simulator {
 /// Fingerprint of what a scene shows: geometry, looks, classes, lamps.
 std::uint64_t scene_hash(const Scene& scene);
 
-/// bake_light(), or what it gave for the same geometry and lamps before: kept in `folder`, a file of a byte per vertex
+/// bake_light(), or what it gave for the same geometry and lamps before: kept in `folder`, a file of a byte per corner
 /// each. An empty folder name: nothing is kept. A file that is damaged or cannot be written costs time, nothing else.
 std::vector<std::uint8_t> cached_light(const Scene& scene, const SceneRaycaster& raycaster, int threads,
                                        const std::filesystem::path& folder);

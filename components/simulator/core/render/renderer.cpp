@@ -42,8 +42,9 @@ struct Renderer::Implementation {
   std::vector<MipMap> textures;
   std::vector<Facet> facets;
 
-  Facet facet_of(const Scene& scene, const Triangle& triangle, const std::vector<std::uint8_t>& light) const {
+  Facet facet_of(const Scene& scene, std::size_t index, const std::vector<std::uint8_t>& light) const {
     const Mesh& mesh = scene.mesh;
+    const Triangle& triangle = mesh.triangles[index];
     const Material& material = mesh.materials[triangle.material];
     Facet facet;
     const auto& [a, b, c] = triangle.vertices;
@@ -55,7 +56,7 @@ struct Renderer::Implementation {
     for (std::size_t i = 0; i < 3; ++i) {
       const std::uint32_t v = triangle.vertices[i];
       facet.colors[i] = mesh.colors.empty() ? material.color : times(material.color, mesh.colors[v]);
-      if (!light.empty() && !material.is_emissive) facet.light[i] = light[v];
+      if (!light.empty() && !material.is_emissive) facet.light[i] = light[3 * index + i];
       facet.texture_coordinates[i] =
           mesh.texture_coordinates.empty() ? Eigen::Vector2f::Zero() : mesh.texture_coordinates[v];
     }
@@ -67,6 +68,8 @@ struct Renderer::Implementation {
     }
     return facet;
   }
+
+  void store(int column, int row, const Ray& ray, const RayHit& hit, float pixel, RenderedFrame& frame) const;
 
   geometry::Rgb8 shade(const Facet& facet, const RayHit& hit, float cosine, float pixel_m) const {
     const float w = 1.0F - hit.u - hit.v;
@@ -95,71 +98,72 @@ struct Renderer::Implementation {
 Renderer::Renderer(const Scene& scene, const SceneRaycaster& raycaster, const std::vector<std::uint8_t>& light,
                    const RendererConfig& config)
     : implementation_(std::make_unique<Implementation>(Implementation{raycaster, config, {}, {}})) {
-  for (const auto& texture : scene.mesh.textures) implementation_->textures.emplace_back(*texture);
+  for (const auto& texture : scene.mesh.textures) implementation_->textures.emplace_back(texture);
   implementation_->facets.reserve(scene.mesh.triangles.size());
-  for (const auto& triangle : scene.mesh.triangles) {
-    implementation_->facets.push_back(implementation_->facet_of(scene, triangle, light));
+  for (std::size_t i = 0; i < scene.mesh.triangles.size(); ++i) {
+    implementation_->facets.push_back(implementation_->facet_of(scene, i, light));
   }
 }
 Renderer::~Renderer() = default;
 
 namespace {
 
-/// Sixteen rays through a tile's pixels. Their directions have z-depth 1, so that distances are z-depths.
-struct TileCaster {
-  const geometry::PinholeCamera& camera;
-  Eigen::Vector3f origin;
-  Eigen::Matrix3f rotation;
+using Packet = std::array<Ray, SceneRaycaster::kPacket>;
+using Hits = std::array<RayHit, SceneRaycaster::kPacket>;
 
-  TileCaster(const geometry::PinholeCamera& camera_, const geometry::Pose& T_world_camera)
-      : camera(camera_), origin(T_world_camera.translation().cast<float>()),
-        rotation(T_world_camera.linear().cast<float>()) {}
-
-  void fill(int column, int row, std::array<Ray, SceneRaycaster::kPacket>& rays) const {
-    for (int i = 0; i < SceneRaycaster::kPacket; ++i) {
-      const double u = column + i % kTile, v = row + i / kTile;
-      const Eigen::Vector3d p = camera.unproject(u, v, 1.0);
-      rays[static_cast<std::size_t>(i)] = {origin, rotation * p.cast<float>()};
-    }
-  }
-};
-
-}  // namespace
-
-RenderedFrame Renderer::render(const geometry::PinholeCamera& camera, const geometry::Pose& T_world_camera,
-                               bool with_color) const {
-  const auto& self = *implementation_;
+RenderedFrame empty_frame(int width, int height, bool with_color) {
   RenderedFrame frame;
-  const int width = camera.width, height = camera.height;
   if (with_color) frame.color = geometry::ColorImage(width, height);
   frame.depth = geometry::DepthImage(width, height);
   frame.labels = geometry::LabelImage(width, height);
   frame.instances = geometry::Image<std::uint16_t>(width, height);
   frame.cosines = geometry::Image<float>(width, height);
-  const TileCaster caster(camera, T_world_camera);
-  const float pixel = 1.0F / static_cast<float>(std::sqrt(camera.fx * camera.fy));
-  const auto store = [&](int column, int row, const Ray& ray, const RayHit& hit) {
-    if (hit.triangle == RayHit::kNone) return;
-    const Facet& facet = self.facets[hit.triangle];
-    const float cosine = std::abs(facet.normal.dot(ray.direction)) / ray.direction.norm();
-    frame.depth(column, row) = hit.distance;
-    frame.labels(column, row) = facet.class_id;
-    frame.instances(column, row) = facet.instance_id;
-    frame.cosines(column, row) = cosine;
-    if (with_color) frame.color(column, row) = self.shade(facet, hit, cosine, hit.distance * pixel);
-  };
+  return frame;
+}
+
+/// Sixteen rays through a tile's pixels. Their directions have z-depth 1, so that distances are z-depths.
+Packet rays_of(const geometry::PinholeCamera& camera, const Eigen::Vector3f& origin, const Eigen::Matrix3f& rotation,
+               int column, int row) {
+  Packet rays;
+  for (int i = 0; i < SceneRaycaster::kPacket; ++i) {
+    const Eigen::Vector3d p = camera.unproject(column + i % kTile, row + i / kTile, 1.0);
+    rays[static_cast<std::size_t>(i)] = {origin, rotation * p.cast<float>()};
+  }
+  return rays;
+}
+
+}  // namespace
+
+/// What the hit of a pixel's ray says.
+void Renderer::Implementation::store(int column, int row, const Ray& ray, const RayHit& hit, float pixel,
+                                     RenderedFrame& frame) const {
+  if (hit.triangle == RayHit::kNone || column >= frame.depth.width || row >= frame.depth.height) return;
+  const Facet& facet = facets[hit.triangle];
+  const float cosine = std::abs(facet.normal.dot(ray.direction)) / ray.direction.norm();
+  frame.depth(column, row) = hit.distance;
+  frame.labels(column, row) = facet.class_id;
+  frame.instances(column, row) = facet.instance_id;
+  frame.cosines(column, row) = cosine;
+  if (!frame.color.empty()) frame.color(column, row) = shade(facet, hit, cosine, hit.distance * pixel);
+}
+
+RenderedFrame Renderer::render(const geometry::PinholeCamera& camera, const geometry::Pose& T_world_camera,
+                               bool with_color) const {
+  const auto& self = *implementation_;
+  RenderedFrame frame = empty_frame(camera.width, camera.height, with_color);
+  const Eigen::Vector3f origin = T_world_camera.translation().cast<float>();
+  const Eigen::Matrix3f rotation = T_world_camera.linear().cast<float>();
+  const auto pixel = static_cast<float>(1.0 / std::sqrt(camera.fx * camera.fy));  // side, at 1 m [m]
   std::atomic<int> next_row{0};
   const auto work = [&] {
-    std::array<Ray, SceneRaycaster::kPacket> rays;
-    std::array<RayHit, SceneRaycaster::kPacket> hits;
-    for (int row = next_row.fetch_add(kTile); row < height; row = next_row.fetch_add(kTile)) {
-      for (int column = 0; column < width; column += kTile) {
-        caster.fill(column, row, rays);
+    Hits hits;
+    for (int row = next_row.fetch_add(kTile); row < camera.height; row = next_row.fetch_add(kTile)) {
+      for (int column = 0; column < camera.width; column += kTile) {
+        const Packet rays = rays_of(camera, origin, rotation, column, row);
         self.raycaster.cast(rays, kFarthest_m, hits);
-        for (int i = 0; i < SceneRaycaster::kPacket; ++i) {
-          const int x = column + i % kTile, y = row + i / kTile;
-          if (x < width && y < height)
-            store(x, y, rays[static_cast<std::size_t>(i)], hits[static_cast<std::size_t>(i)]);
+        for (std::size_t i = 0; i < rays.size(); ++i) {
+          const int at = static_cast<int>(i);
+          self.store(column + at % kTile, row + at / kTile, rays[i], hits[i], pixel, frame);
         }
       }
     }

@@ -28,7 +28,7 @@ struct RendererConfig {
 /// Renders a scene. View-independent light, so that features stay where they are.
 class Renderer {
  public:
-  /// @param light at every vertex (bake_light); empty: colours as they are
+  /// @param light at the corners of every triangle (bake_light); empty: colours as they are
   Renderer(const Scene& scene, const SceneRaycaster& raycaster, const std::vector<std::uint8_t>& light,
            const RendererConfig& config = {});
   ~Renderer();

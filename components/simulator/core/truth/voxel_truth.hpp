@@ -17,7 +17,7 @@ struct TruthConfig {
   double resolution_m = 0.25;      ///< edge of a voxel; the mapper's, so that grids coincide
   double sensing_range_m = 5.0;    ///< Euclidean
   double robot_radius_m = 0.2;     ///< of the disc that has to fit
-  double view_spacing_m = 0.25;    ///< between the places that stand for all reachable ones
+  double view_spacing_m = 0.5;     ///< between the places that stand for all reachable ones
   geometry::PinholeCamera camera;  ///< sees up and down; it turns to any heading
   geometry::CameraMount mount;
   int threads = 1;  ///< the result does not depend on it

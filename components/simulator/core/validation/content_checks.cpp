@@ -51,7 +51,8 @@ Check check_overlaps(const Scene& scene, const Inventory& inventory) {
     offenders.push_back(inventory.items[pair.first].name + " - " + inventory.items[pair.second].name + ": share " +
                         percent(pair.share) + " of the smaller one, around " + at(pair.at));
   }
-  return with_details("overlaps", counted(offenders.size(), "pair"), std::move(offenders));
+  const std::string figures = counted(offenders.size(), "pair");
+  return with_details("overlaps", figures, std::move(offenders));
 }
 
 Check check_walls(const Scene& scene, const Inventory& inventory) {

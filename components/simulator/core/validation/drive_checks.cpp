@@ -15,7 +15,7 @@ namespace {
 constexpr double kLeastReach = 0.05;  // share of a room's floor
 constexpr double kLeastWidth_m = 0.8, kCorridorWidth_m = 1.2;
 constexpr double kDoorway_m = 0.075;  // how far cells just outside a corridor are
-constexpr double kEntry_m = 0.75;     // how far inside a corridor its doorways lead
+constexpr double kEntry_m = 1.2;      // a doorway leads to the most open place within this distance
 
 std::string at(const Eigen::Vector2d& p) { return "(" + decimal(p.x(), 2) + ", " + decimal(p.y(), 2) + ")"; }
 

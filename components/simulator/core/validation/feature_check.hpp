@@ -13,7 +13,7 @@ struct FeatureConfig {
   geometry::PinholeCamera camera;
   geometry::CameraMount mount;
   double robot_radius_m = 0.2;
-  std::size_t max_views = 1000;
+  std::size_t max_views = 1500;
 };
 
 /// A view and how many ORB features (at most 1000, FAST threshold 20) its image with the default noise has.

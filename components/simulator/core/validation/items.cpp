@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <map>
-#include <optional>
 
 namespace lapis::simulator {
 namespace {
@@ -18,20 +18,27 @@ bool is_structure(const Scene& scene, const Instance& instance) {
 
 using Corners = std::array<Eigen::Vector3f, 3>;
 
-/// Halves the longest side until all sides are short: slivers then give few points.
+constexpr float kRowSpacing = 0.8F;  // so that the middle of four points is near enough
+
+int pieces(float length, float longest) { return std::max(1, static_cast<int>(std::ceil(length / longest))); }
+
+/// Points in rows along the longest side, each row as long as the strip above it is wide.
 void add_points(const Corners& c, float spacing_m, std::vector<Eigen::Vector3f>& points) {
   std::size_t longest = 0;
   for (const std::size_t side : {1U, 2U}) {
     if ((c[(side + 1) % 3] - c[side]).squaredNorm() > (c[(longest + 1) % 3] - c[longest]).squaredNorm()) longest = side;
   }
   const Eigen::Vector3f &a = c[longest], &b = c[(longest + 1) % 3], &top = c[(longest + 2) % 3];
-  if ((b - a).norm() <= spacing_m) {
-    points.emplace_back((a + b + top) / 3.0F);
-    return;
+  const float base = (b - a).norm(), twice_area = (b - a).cross(top - a).norm();
+  const float height = base > 0.0F ? twice_area / base : 0.0F;
+  const int rows = pieces(height, kRowSpacing * spacing_m);
+  for (int row = 0; row < rows; ++row) {
+    const float share = static_cast<float>(row) / static_cast<float>(rows);
+    const Eigen::Vector3f left = a + share * (top - a), span = (1.0F - share) * (b - a);
+    const int count = pieces(span.norm(), spacing_m);
+    for (int i = 0; i < count; ++i)
+      points.emplace_back(left + (static_cast<float>(i) + 0.5F) / static_cast<float>(count) * span);
   }
-  const Eigen::Vector3f middle = 0.5F * (a + b);
-  add_points({a, middle, top}, spacing_m, points);
-  add_points({middle, b, top}, spacing_m, points);
 }
 
 }  // namespace

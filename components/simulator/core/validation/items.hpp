@@ -31,7 +31,7 @@ Inventory take_inventory(const Scene& scene);
 /// Only these triangles, with their looks.
 Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& triangles);
 
-/// Points that cover the triangles: one in each piece of at most `spacing_m` [m].
+/// Points that cover the triangles: no place on them is farther than `spacing_m` from a point [m].
 std::vector<Eigen::Vector3f> surface_points(const Mesh& mesh, const std::vector<std::uint32_t>& triangles,
                                             float spacing_m);
 

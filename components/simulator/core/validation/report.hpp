@@ -12,8 +12,8 @@ enum class Verdict { kOk, kNote, kFail };
 struct Check {
   std::string name;
   Verdict verdict = Verdict::kOk;
-  std::string figures;               ///< one line
-  std::vector<std::string> details;  ///< one line each: the offenders, or what the figures are made of
+  std::string figures{};               ///< one line
+  std::vector<std::string> details{};  ///< one line each: the offenders, or what the figures are made of
 };
 
 /// Told what is being done, one line at a time.

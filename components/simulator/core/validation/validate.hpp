@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/geometry/image.hpp"
+#include "simulator/core/robot/tour.hpp"
 #include "simulator/core/validation/feature_check.hpp"
 #include "simulator/core/validation/report.hpp"
 #include "simulator/core/world.hpp"

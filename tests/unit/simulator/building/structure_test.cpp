@@ -55,10 +55,14 @@ void expect_closed(const Scene& scene) {
 
 TEST(Structure, WallsFloorAndCeilingHaveTheAreaOfTheRoom) {
   const Scene scene = built(test::two_rooms());
-  const auto on_left_wall = [](const Eigen::Vector3f& p) {
-    return p.x() < 4.01F && (is_near(p.x(), 0) || is_near(p.x(), 4) || is_near(p.y(), 0) || is_near(p.y(), 3));
+  const auto wall_area = [&](int axis, double at) {
+    const auto is_on_it = [&](const Eigen::Vector3f& p) { return is_near(p[axis], at) && p.x() < 4.01F; };
+    return test::area_of(scene, "wall", is_on_it);
   };
-  EXPECT_NEAR(test::area_of(scene, "wall", on_left_wall), 14 * 2.6 - 0.9 * 2.05 - 1.2 * 1.2, 1e-3);
+  EXPECT_NEAR(wall_area(0, 0), 3 * 2.6, 1e-3);
+  EXPECT_NEAR(wall_area(0, 4), 3 * 2.6 - 0.9 * 2.05, 1e-3);
+  EXPECT_NEAR(wall_area(1, 0), 4 * 2.6 - 1.2 * 1.2, 1e-3);
+  EXPECT_NEAR(wall_area(1, 3), 4 * 2.6, 1e-3);
   const auto anywhere = [](const Eigen::Vector3f&) { return true; };
   // Half of the doorway's floor belongs to either room, and the closed door's to the right one.
   EXPECT_NEAR(test::area_of(scene, "floor", anywhere), 4 * 3 + 2.88 * 3 + 0.9 * 0.12 + 0.9 * 0.12, 1e-3);

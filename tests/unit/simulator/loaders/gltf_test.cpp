@@ -282,6 +282,7 @@ TEST(Gltf, RefusesWhatItDoesNotRead) {
   EXPECT_THAT(load_error({{"a.gltf", {}}}, "a.gltf"), HasSubstr("0 bytes"));
   EXPECT_THAT(load_error({{"a.gltf", test::to_bytes("{\"asset\": ")}}, "a.gltf"), HasSubstr("no valid JSON"));
   EXPECT_THAT(load_error({{"a.gltf", test::to_bytes("[1]")}}, "a.gltf"), HasSubstr("no JSON object"));
+  EXPECT_THAT(load_error({{"a.gltf", test::to_bytes("{\"a\": 1e999}")}}, "a.gltf"), HasSubstr("number"));
 }
 
 TEST(Gltf, WrongTypesInTheTextAreErrors) {

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
 #include <map>
 
 #include "unit/simulator/loaders/sample_scenes.hpp"
@@ -116,6 +117,18 @@ TEST(Semantics, WhatDoesNotFitIsAWarning) {
   EXPECT_THAT(load(builder, nullptr).warnings, ElementsAre(HasSubstr("nothing is labelled")));
   const json semantics{{"instances", {entry(1, "wall", "node", "wal")}}};
   EXPECT_THAT(load(builder, semantics).warnings, ElementsAre(HasSubstr("instance 1 ('wal')")));
+}
+
+TEST(Semantics, TextureCoordinatesThatAreNotFiniteBecomeZero) {
+  GltfBuilder builder = test::labelled_gltf();
+  const float nan = std::numeric_limits<float>::quiet_NaN();
+  builder.root["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] =
+      builder.add_floats({nan, 0.5F, 1e30F, 0.5F, 0.25F, 0.5F}, 2);
+  const Scene scene = load(builder, nullptr);
+  EXPECT_EQ(problem_of(scene.mesh), "");
+  EXPECT_EQ(std::count(scene.mesh.texture_coordinates.begin(), scene.mesh.texture_coordinates.end(),
+                       Eigen::Vector2f(0.25F, 0.5F)),
+            1);
 }
 
 TEST(Semantics, ErrorsNameFileAndEntry) {

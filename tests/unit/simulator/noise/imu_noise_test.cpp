@@ -1,6 +1,7 @@
 #include "simulator/core/noise/imu_noise.hpp"
 
 #include <cmath>
+#include <numeric>
 
 #include <gtest/gtest.h>
 
@@ -91,6 +92,17 @@ TEST(ImuNoise, AxesAreIndependent) {
   const Signals x = errors_of({}, 3, 0, 10000, 0.005), y = errors_of({}, 3, 1, 10000, 0.005);
   EXPECT_LT(std::abs(correlation_of(x.turn_rate, y.turn_rate)), 0.06);  // 5 sigma, and a bit for the walk
   EXPECT_LT(std::abs(correlation_of(x.turn_rate, x.acceleration)), 0.06);
+}
+
+TEST(ImuNoise, WalkAndWhiteNoiseAreIndependent) {
+  constexpr int kReadings = 10000;
+  const Signals white = errors_of({1, 0, 1, 0}, 3, 0, kReadings, 1.0);
+  Signals walk = errors_of({0, 1, 0, 1}, 3, 0, kReadings, 1.0);
+  std::adjacent_difference(walk.turn_rate.begin(), walk.turn_rate.end(), walk.turn_rate.begin());
+  std::adjacent_difference(walk.acceleration.begin(), walk.acceleration.end(), walk.acceleration.begin());
+  for (const auto* step : {&walk.turn_rate, &walk.acceleration})
+    for (const auto* noise : {&white.turn_rate, &white.acceleration})
+      EXPECT_LT(std::abs(correlation_of(*step, *noise)), kSigmas / std::sqrt(kReadings));
 }
 
 TEST(ImuNoise, DependsOnSeedAndNumberAlone) {

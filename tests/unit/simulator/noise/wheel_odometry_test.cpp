@@ -1,5 +1,6 @@
 #include "simulator/core/noise/wheel_odometry.hpp"
 
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -117,6 +118,28 @@ TEST(WheelOdometry, CovarianceIsWhatErrorsReallyAre) {
     for (std::uint64_t seed = 0; seed < 2000; ++seed) errors.push_back(normalised_error(config, seed));
     // Chi-squared with 3 degrees of freedom has mean 3 and variance 6; the covariance is right to first order.
     EXPECT_NEAR(mean_of(errors), 3.0, kSigmas * std::sqrt(6.0 / 2000) + 0.1);
+  }
+}
+
+TEST(WheelOdometry, CovarianceOfOneLongStepIsThatOfItsSamples) {
+  std::vector<double> x, y, yaw;
+  Eigen::Matrix3d reported = Eigen::Matrix3d::Zero();
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    WheelOdometry odometry(random_only(), seed);
+    odometry.step(0.8, 0.4);
+    x.push_back(odometry.position().x());
+    y.push_back(odometry.position().y());
+    yaw.push_back(odometry.yaw_rad());
+    reported += odometry.covariance() / static_cast<double>(kRuns);
+  }
+  const std::array<const std::vector<double>*, 3> samples{&x, &y, &yaw};
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) {
+      const double sampled =
+          covariance_of(*samples[static_cast<std::size_t>(i)], *samples[static_cast<std::size_t>(j)]);
+      const double scale = std::sqrt(reported(i, i) * reported(j, j));
+      EXPECT_NEAR(sampled / scale, reported(i, j) / scale, variance_bound(kRuns)) << i << ", " << j;
+    }
   }
 }
 

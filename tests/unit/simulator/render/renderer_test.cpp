@@ -167,17 +167,16 @@ TEST(Light, OpenFloorIsBrighterThanACornerAndShadowsAreDarker) {
   scene.mesh.materials.push_back({"table", {90, 90, 90}});
   scene.instances.push_back({7, 7, "table"});
   test::add_quad(scene, {{{1.5F, 1.0F, 1.0F}, {2.5F, 1.0F, 1.0F}, {2.5F, 2.0F, 1.0F}, {1.5F, 2.0F, 1.0F}}}, 1, 6);
-  const auto vertex = [&](const Eigen::Vector3f& p) {  // tiny triangles that sense the light
+  const auto sense = [&](const Eigen::Vector3f& p) {  // a tiny triangle; its first corner
     const auto first = static_cast<std::uint32_t>(scene.mesh.positions.size());
     for (const Eigen::Vector3f& offset : {Eigen::Vector3f(0, 0, 0), {0.001F, 0, 0}, {0, 0.001F, 0}}) {
       scene.mesh.positions.emplace_back(p + offset);
       scene.mesh.texture_coordinates.emplace_back(0, 0);
     }
     scene.mesh.triangles.push_back({{first, first + 1, first + 2}, 0, 4});
-    return first;
+    return 3 * (scene.mesh.triangles.size() - 1);
   };
-  const auto open = vertex({1.0F, 1.5F, 0.0F}), corner = vertex({0.02F, 0.02F, 0.0F}),
-             shadow = vertex({2.0F, 1.5F, 0.0F});
+  const auto open = sense({1.0F, 1.5F, 0.0F}), corner = sense({0.02F, 0.02F, 0.0F}), shadow = sense({2.0F, 1.5F, 0.0F});
   const SceneRaycaster raycaster(scene.mesh);
   const auto light = bake_light(scene, raycaster, 1);
   EXPECT_GT(light[open], light[corner] + 20);

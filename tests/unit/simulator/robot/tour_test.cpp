@@ -69,6 +69,28 @@ TEST(PathPlanner, KeepsToTheMiddleOfPassages) {
   EXPECT_GT(least_clearance(map, *path), 0.35) << "of 0.5 m in the middle";
 }
 
+TEST(PathPlanner, KeepsTheRobotOffObstacles) {
+  std::mt19937_64 engine(12);
+  int found = 0;
+  for (int k = 0; k < 10; ++k) {
+    std::vector<Rectangle> things;
+    for (int i = 0; i < 40; ++i) {
+      const double x = draw(engine, 0.8, 7.2), y = draw(engine, 0, 6);
+      things.push_back({x, y, x + draw(engine, 0.05, 0.4), y + draw(engine, 0.05, 0.4)});
+    }
+    const NavMap map = map_of(8, 6, things);
+    for (const double weight : {0.0, 2.0}) {
+      PathConfig config;
+      config.nearness_weight = weight;
+      const auto path = PathPlanner(map, config).plan({0.4, 3}, {7.7, 3});
+      if (!path) continue;
+      ++found;
+      EXPECT_GE(least_clearance(map, *path), config.radius_m) << "map " << k;
+    }
+  }
+  EXPECT_GT(found, 10);
+}
+
 TEST(PathPlanner, FindsNoWayThroughWalls) {
   const NavMap map = map_of(6, 4, {{2.9, 0, 3.1, 4}});
   EXPECT_FALSE(PathPlanner(map, {}).plan({1, 2}, {5, 2}));
@@ -113,13 +135,13 @@ struct Drive {
   std::vector<double> nearest_m;  ///< to each way-point
 };
 
-Drive drive(const std::vector<WayPoint>& way_points, double start_yaw, double period_s) {
-  const TourConfig config;
+Drive drive(const std::vector<WayPoint>& way_points, double start_yaw, double period_s, const NavMap& map = flat(),
+            const TourConfig& config = {}) {
   RobotState start;
   start.position = {1, 1};
   start.yaw_rad = start_yaw;
-  TourFollower follower(flat(), plan_tour(flat(), start.position, way_points, config), config);
-  Robot robot(flat(), RobotConfig{}, start);
+  TourFollower follower(map, plan_tour(map, start.position, way_points, config), config);
+  Robot robot(map, RobotConfig{}, start);
   Drive out;
   out.nearest_m.assign(way_points.size(), 1e9);
   DriveCommand late;  // commands take effect one period later, as in lock-step
@@ -161,6 +183,15 @@ TEST_P(Following, ReachesAllWayPointsWithoutContact) {
 INSTANTIATE_TEST_SUITE_P(Conditions, Following,
                          testing::Values(std::pair(0.0, 1.0 / 15), std::pair(kPi, 1.0 / 15), std::pair(-2.0, 0.1),
                                          std::pair(1.5, 0.02)));
+
+TEST(TourFollower, DoesNotCutTheCornersOfTautPaths) {
+  const NavMap map = map_of(8, 6, {{3.9, 0, 4.1, 3}, {5.4, 2, 5.5, 6}});
+  TourConfig config;
+  config.path = shortest_only();
+  const Drive result = drive({{{3, 4.5}}, {{3.62, 2.9}}, {{4.7, 1}}, {{7, 5}}, {{3, 1}}}, 0.0, 1.0 / 15, map, config);
+  EXPECT_TRUE(result.is_finished);
+  EXPECT_FALSE(result.has_contact);
+}
 
 TEST(Tour, LooksAroundWhereToldTo) {
   const Drive without = drive({{{3, 1}}}, 0.0, 0.05), with = drive({{{3, 1}, true}}, 0.0, 0.05);

@@ -26,6 +26,7 @@ TruthConfig config() {
   TruthConfig out;
   out.camera = kCamera;
   out.mount = {1.0, 0.0};
+  out.view_spacing_m = 0.25;
   return out;
 }
 

@@ -11,7 +11,7 @@ namespace {
 ValidationConfig small_config() {
   ValidationConfig config;
   config.features.camera = {320, 180, 160.0, 160.0, 159.5, 89.5};
-  config.features.mount.translation = {0, 0, 1.0};
+  config.features.mount.height_m = 1.0;
   config.features.max_views = 40;
   return config;
 }

@@ -1,0 +1,39 @@
+#include "evaluator/core/timeline.hpp"
+
+#include <algorithm>
+#include <cstdio>
+
+namespace lapis::evaluator {
+namespace {
+
+constexpr const char* kHeader =
+    "time_s,explored_volume_m3,explored_share,path_length_m,position_error_m,position_sigma_m,state\n";
+
+std::string cell(const std::optional<double>& value) {
+  if (!value) return "";
+  char text[40];
+  std::snprintf(text, sizeof text, "%.6f", *value);
+  return text;
+}
+
+}  // namespace
+
+std::string to_csv(const std::vector<TimelineRow>& rows) {
+  std::string text = kHeader;
+  for (const TimelineRow& row : rows) {
+    text += cell(row.time_s) + "," + cell(row.explored_volume_m3) + "," + cell(row.explored_share) + "," +
+            cell(row.path_length_m) + "," + cell(row.position_error_m) + ",," +
+            (row.is_tracking ? "TRACKING" : "LOST") + "\n";
+  }
+  return text;
+}
+
+std::optional<double> time_to_reach(const std::vector<TimelineRow>& rows, double share) {
+  const auto has_reached = [share](const TimelineRow& row) {
+    return row.explored_share && *row.explored_share >= share;
+  };
+  const auto first = std::find_if(rows.begin(), rows.end(), has_reached);
+  return first == rows.end() ? std::nullopt : std::optional(first->time_s);
+}
+
+}  // namespace lapis::evaluator

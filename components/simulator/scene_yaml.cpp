@@ -257,7 +257,7 @@ LampSpec lamp(YamlEntry& entry) {
 }
 
 StartPose start(YamlEntry& entry) {
-  const StartPose pose{vector2(entry, "at"), entry.number("yaw_deg", 0.0) * kDegree};
+  StartPose pose{vector2(entry, "at"), entry.number("yaw_deg", 0.0) * kDegree};
   entry.done();
   return pose;
 }

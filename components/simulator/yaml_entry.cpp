@@ -25,8 +25,8 @@ YAML::Node load_yaml(const std::filesystem::path& file) {
   }
 }
 
-YamlEntry::YamlEntry(std::filesystem::path file, YAML::Node node, std::string what)
-    : file_(std::move(file)), node_(std::move(node)), what_(std::move(what)) {
+YamlEntry::YamlEntry(std::filesystem::path file, const YAML::Node& node, std::string what)
+    : file_(std::move(file)), node_(node), what_(std::move(what)) {
   if (!node_.IsMap()) refuse("must be a list of \"key: value\"");
   std::set<std::string> seen;
   for (const auto& pair : node_) {
@@ -136,7 +136,7 @@ void YamlEntry::done() const {
     const std::string name = pair.first.Scalar();
     if (asked_.contains(name)) continue;
     std::string known;
-    for (const auto& key : asked_) known += (known.empty() ? "" : ", ") + key;
+    for (const auto& key : asked_) known.append(known.empty() ? "" : ", ").append(key);
     refuse_at(pair.first, what_ + ": unknown key \"" + name + "\"; known are " + known);
   }
 }

@@ -16,7 +16,7 @@ YAML::Node load_yaml(const std::filesystem::path& file);
 /// std::runtime_error and name file and line.
 class YamlEntry {
  public:
-  YamlEntry(std::filesystem::path file, YAML::Node node, std::string what);
+  YamlEntry(std::filesystem::path file, const YAML::Node& node, std::string what);
 
   bool has(const std::string& key);
   double number(const std::string& key, double otherwise);

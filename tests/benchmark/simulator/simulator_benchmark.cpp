@@ -75,18 +75,22 @@ void load(benchmark::State& state, bool with_cache) {
   std::filesystem::remove_all(folder);
 }
 
-BENCHMARK_CAPTURE(render, rgb_depth_label / 640x360, true)
-    ->MinTime(2.0)
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(render, depth_label / 640x360, false)
-    ->MinTime(2.0)
-    ->Unit(benchmark::kMillisecond)
-    ->MeasureProcessCPUTime();
-BENCHMARK(simulate_frame)->MinTime(2.0)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(load, first_time, false)->Iterations(1)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
-BENCHMARK_CAPTURE(load, from_cache, true)->Iterations(3)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+void register_all() {
+  const auto add = [](const char* name, auto&& function) {
+    return benchmark::RegisterBenchmark(name, function)->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime();
+  };
+  add("render/rgb_depth_label/640x360", [](auto& state) { render(state, true); })->MinTime(2.0);
+  add("render/depth_label/640x360", [](auto& state) { render(state, false); })->MinTime(2.0);
+  add("frame_with_noise/640x360", [](auto& state) { simulate_frame(state); })->MinTime(2.0);
+  add("load/first_time", [](auto& state) { load(state, false); })->Iterations(1);
+  add("load/from_cache", [](auto& state) { load(state, true); })->Iterations(3);
+}
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  register_all();
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -9,6 +9,7 @@
 #include "common/topics.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/endpoint_watcher.hpp"
+#include "tests/support/small_scene.hpp"
 #include "tests/support/topic_probe.hpp"
 #include "tests/unit/sensor_replay/synthetic_dataset.hpp"
 
@@ -62,6 +63,19 @@ const std::vector<Lines> kReplay = {writers(topics::kColor, topics::kDepth, topi
                                             topics::kLabels, topics::kLabelInfo, topics::kStaticTransforms,
                                             topics::kClock, topics::kGroundTruth)};
 
+const std::vector<Lines> kSimulator = {kReplay[0],
+                                       writers(topics::kWheelOdometry, topics::kCollision),
+                                       readers(topics::kCommand),
+                                       server(topics::kPause),
+                                       server(topics::kRun),
+                                       server(topics::kStep),
+                                       server(topics::kReset)};
+
+std::vector<Lines> joined(std::vector<Lines> a, const std::vector<Lines>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
 const std::vector<Process> kProcesses = {
     {"slam",
      "slam",
@@ -86,7 +100,12 @@ const std::vector<Process> kProcesses = {
      "sensor_replay",
      {"DATASET", "--rate", "1", "--set", "sensor_replay.wait_for_readers=1"},
      kReplay},
-    {"replay_in_lockstep", "sensor_replay", {"DATASET"}, {kReplay[0], writers(topics::kTick), readers(topics::kAck)}}};
+    {"replay_in_lockstep", "sensor_replay", {"DATASET"}, {kReplay[0], writers(topics::kTick), readers(topics::kAck)}},
+    {"simulator_by_the_wall_clock", "simulator", {"FOLDER/scene.yaml", "--mode", "freerun"}, kSimulator},
+    {"simulator_in_lockstep_with_imu",
+     "simulator",
+     {"FOLDER/scene.yaml", "--set", "simulator.imu=true"},
+     joined(kSimulator, {writers(topics::kTick, topics::kImu), readers(topics::kAck)})}};
 
 class Endpoints : public ::testing::TestWithParam<Process> {
  protected:
@@ -119,6 +138,7 @@ class Endpoints : public ::testing::TestWithParam<Process> {
 
 TEST_P(Endpoints, AreThoseOfTheTopicTableAndNoOthers) {
   sensor_replay::test::write_dataset(folder_.path(), 2);
+  write_small_scene(folder_.path());
   TopicProbe probe;
   const EndpointWatcher watcher(probe.participant());
   const auto& graph = probe.collect(kRosGraph);

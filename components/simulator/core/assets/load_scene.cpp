@@ -83,8 +83,8 @@ Candidate only_scene(const fs::path& folder, const Names& names) {
     if (scene && std::find(found.begin(), found.end(), *scene) == found.end()) found.push_back(*scene);
   }
   // A labelled PLY file may have models beside it in its own folder, and other scenes stray PLY files.
-  const Candidate usual{Layout::kLabelledPly, "scene_labelled.ply"};
-  if (std::find(found.begin(), found.end(), usual) != found.end()) return usual;
+  const auto usual = std::find(found.begin(), found.end(), Candidate{Layout::kLabelledPly, "scene_labelled.ply"});
+  if (usual != found.end()) return *usual;
   if (found.empty()) {
     throw std::runtime_error(folder.string() +
                              ": there is no scene in it: neither .ply, .obj, .gltf, .glb nor .house; check the folder");

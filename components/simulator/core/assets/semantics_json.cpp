@@ -172,7 +172,7 @@ std::uint16_t Labeller::class_id(const std::string& name, const std::string& use
   const auto id = find_class(labels_, name);
   if (!id) {
     throw std::runtime_error(file_ + ": " + user + " has the unknown class '" + name +
-                             "'; name it in \"labels\" of semantics.json or in the label list");
+                             "'; name it in 'labels' of semantics.json or in the label list");
   }
   return *id;
 }
@@ -186,7 +186,7 @@ Semantics parse_semantics(std::string_view text, const std::string& file) {
   for (std::size_t i = 0; i < instances.size(); ++i) result.instances.push_back(parse_entry(instances[i], i, file));
   result.labels = parse_labels(array_member(root, "labels", file), file);
   const auto up = optional_text(root, "up", file);
-  if (up && *up != "y" && *up != "z") throw std::runtime_error(file + ": 'up' must be \"y\" or \"z\"");
+  if (up && *up != "y" && *up != "z") throw std::runtime_error(file + ": 'up' must be 'y' or 'z'");
   if (up) result.up = *up == "y" ? UpAxis::kY : UpAxis::kZ;
   return result;
 }

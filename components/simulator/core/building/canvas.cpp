@@ -17,11 +17,10 @@ std::uint8_t to_byte(float value) {
 }  // namespace
 
 Paint hsv(const Hsv& color) {
-  const auto [hue, saturation, value] = color;
-  const double sector = (hue - std::floor(hue)) * 6.0;
+  const double sector = (color.hue - std::floor(color.hue)) * 6.0;
   const auto channel = [&](double n) {
     const double k = std::fmod(n + sector, 6.0);
-    return static_cast<float>(value - value * saturation * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0));
+    return static_cast<float>(color.value * (1.0 - color.saturation * std::clamp(std::min(k, 4.0 - k), 0.0, 1.0)));
   };
   return {channel(5.0), channel(3.0), channel(1.0)};
 }

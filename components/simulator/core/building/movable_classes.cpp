@@ -108,8 +108,8 @@ void plant(Workshop& s) {
   s.cylinder(0, 0, 0.9F * pot_height, 0.03F * s.w, 0.02F * s.w, 0.4F * s.h, stem, 6);
   for (int i = 0; i < 9; ++i) {
     const float angle = 2.4F * static_cast<float>(i), out = i == 0 ? 0.0F : 0.3F;
-    const float size = static_cast<float>(s.dice(0.13, 0.2));
-    const float z = s.h * static_cast<float>(s.dice(0.5, 0.85));
+    const auto size = static_cast<float>(s.dice(0.13, 0.2)), height = static_cast<float>(s.dice(0.5, 0.85));
+    const float z = height * s.h;
     s.shapes.ball({out * s.w * std::cos(angle), out * s.d * std::sin(angle), i == 0 ? 0.85F * s.h : z},
                   {size * s.w, size * s.d, 0.15F * s.h}, leaf, 6);
   }

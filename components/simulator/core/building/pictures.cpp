@@ -246,7 +246,10 @@ void mosaic(Canvas& canvas, Dice& dice) {
   }
   canvas.rectangle({0, 0, 1, 1, dice.color(0.2, 0.6)});
   const double hue = dice(0, 1), spread = dice(0.1, 0.5);
-  const auto node = [&](int column, int row) { return nodes[static_cast<std::size_t>(row * (columns + 1) + column)]; };
+  const auto node = [&](int column, int row) {
+    const int index = row * (columns + 1) + column;
+    return nodes[static_cast<std::size_t>(index)];
+  };
   const auto tone = [&] { return hsv({hue + dice(-spread, spread), dice(0.3, 0.9), dice(0.25, 0.98)}); };
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {

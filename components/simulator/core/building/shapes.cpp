@@ -65,7 +65,10 @@ void Shapes::face(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eige
       vertices.push_back(vertex(position, start + Eigen::Vector2f(s * width, t * height) / texture_period_m));
     }
   }
-  const auto at = [&](int column, int row) { return vertices[static_cast<std::size_t>(row * (columns + 1) + column)]; };
+  const auto at = [&](int column, int row) {
+    const int index = row * (columns + 1) + column;
+    return vertices[static_cast<std::size_t>(index)];
+  };
   for (int row = 0; row < rows; ++row) {
     for (int column = 0; column < columns; ++column) {
       triangle(at(column, row), at(column + 1, row), at(column + 1, row + 1), material);
@@ -125,7 +128,10 @@ void Shapes::ball(const Eigen::Vector3f& center, const Eigen::Vector3f& radius, 
                                     static_cast<float>(ring) / static_cast<float>(rings)}));
     }
   }
-  const auto at = [&](int ring, int i) { return vertices[static_cast<std::size_t>(ring * (sides + 1) + i)]; };
+  const auto at = [&](int ring, int i) {
+    const int index = ring * (sides + 1) + i;
+    return vertices[static_cast<std::size_t>(index)];
+  };
   for (int ring = 0; ring < rings; ++ring) {
     for (int i = 0; i < sides; ++i) {
       if (ring > 0) triangle(at(ring, i), at(ring, i + 1), at(ring + 1, i + 1), material);

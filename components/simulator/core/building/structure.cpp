@@ -56,7 +56,8 @@ class RoomBuilder {
     const Vector top(0.0F, 0.0F, static_cast<float>(plan_.height_m));
     const Sheet roof{top, Vector::UnitY(), Vector::UnitX(), texture_period_m(room_.ceiling.texture)};
     Polygon mirrored;
-    for (auto it = room_.polygon.rbegin(); it != room_.polygon.rend(); ++it) mirrored.emplace_back(it->y(), it->x());
+    for (const auto& corner : room_.polygon) mirrored.emplace_back(corner.y(), corner.x());
+    std::reverse(mirrored.begin(), mirrored.end());
     build_area(roof, mirrored, ceiling);
   }
 

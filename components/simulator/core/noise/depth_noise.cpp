@@ -16,7 +16,10 @@ using geometry::DepthImage;
 
 constexpr float kMaxEncodable_m = 65.5F;  // 65535 mm
 
-std::uint16_t millimetres(float depth_m) { return static_cast<std::uint16_t>(depth_m * 1000.0F + 0.5F); }
+/// Nearest integer, for -1000 < x < 1e5; faster than std::lround.
+int rounded(float x) { return static_cast<int>(x + 1000.5F) - 1000; }
+
+std::uint16_t millimetres(float depth_m) { return static_cast<std::uint16_t>(rounded(depth_m * 1000.0F)); }
 
 geometry::Image<std::uint16_t> ideal_millimetres(const DepthImage& ideal) {
   geometry::Image<std::uint16_t> result(ideal.width, ideal.height);
@@ -26,9 +29,6 @@ geometry::Image<std::uint16_t> ideal_millimetres(const DepthImage& ideal) {
   }
   return result;
 }
-
-/// Nearest integer, for |x| < 1000.
-int rounded(float x) { return static_cast<int>(x + 1000.5F) - 1000; }
 
 /// One pixel, and the random bits of this frame for it.
 struct PixelDraw {

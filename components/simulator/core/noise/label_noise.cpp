@@ -94,7 +94,8 @@ class BoundaryFlow {
       const Offset &a = nodes[x.node], &b = nodes[x.node + 1];
       const int from_column = std::clamp(column + rounded(x.first * a.x + x.second * b.x), 0, width_ - 1);
       const int from_row = std::clamp(row + rounded(x.first * a.y + x.second * b.y), 0, height_ - 1);
-      indices[static_cast<std::size_t>(column)] = static_cast<std::size_t>(from_row * width_ + from_column);
+      indices[static_cast<std::size_t>(column)] =
+          static_cast<std::size_t>(from_row) * across_.size() + static_cast<std::size_t>(from_column);
     }
   }
 

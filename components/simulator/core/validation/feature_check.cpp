@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
 #include <numeric>
 #include <opencv2/core.hpp>
@@ -20,7 +21,7 @@ constexpr double kSpacing_m = 0.5;
 constexpr int kHeadings = 8;
 constexpr int kMaxFeatures = 1000, kFewFeatures = 100;
 constexpr double kMostPoor = 0.04, kLeastPoor = 0.005;
-constexpr std::size_t kWorstShown = 8;
+constexpr std::size_t kWorstShown = 4;
 constexpr std::size_t kProgressEvery = 200;
 constexpr std::uint64_t kSeed = 1;
 
@@ -65,12 +66,42 @@ int count_features(cv::ORB& orb, geometry::ColorImage image) {
   return static_cast<int>(keypoints.size());
 }
 
-std::string describe(const Scene& scene, const FeatureView& view) {
+std::string room_at(const Scene& scene, const Eigen::Vector2d& p) {
   const auto room = std::find_if(scene.rooms.begin(), scene.rooms.end(),
-                                 [&](const Room& candidate) { return is_inside(candidate.polygon, view.position); });
-  const std::string where = room == scene.rooms.end() ? "" : room->id + " ";
-  return where + "(" + decimal(view.position.x(), 2) + ", " + decimal(view.position.y(), 2) + ") at " +
-         decimal(view.yaw_rad * 180.0 / std::numbers::pi, 0) + " deg: " + std::to_string(view.features) + " features";
+                                 [&](const Room& candidate) { return is_inside(candidate.polygon, p); });
+  return room == scene.rooms.end() ? "elsewhere" : room->id;
+}
+
+std::string describe(const FeatureView& view) {
+  return "(" + decimal(view.position.x(), 2) + ", " + decimal(view.position.y(), 2) + ") at " +
+         decimal(view.yaw_rad * 180.0 / std::numbers::pi, 0) + " deg: " + std::to_string(view.features);
+}
+
+struct RoomViews {
+  std::size_t all = 0;
+  std::vector<FeatureView> poor;
+};
+
+/// A line for every room with poor views, with its worst ones; the room with most of them first.
+std::vector<std::string> worst_places(const Scene& scene, const std::vector<FeatureView>& sorted) {
+  std::map<std::string, RoomViews> views_of;
+  for (const FeatureView& view : sorted) {
+    RoomViews& room = views_of[room_at(scene, view.position)];
+    ++room.all;
+    if (view.features < kFewFeatures) room.poor.push_back(view);
+  }
+  std::vector<std::pair<std::string, RoomViews>> rooms(views_of.begin(), views_of.end());
+  std::erase_if(rooms, [](const auto& room) { return room.second.poor.empty(); });
+  std::stable_sort(rooms.begin(), rooms.end(),
+                   [](const auto& a, const auto& b) { return a.second.poor.size() > b.second.poor.size(); });
+  std::vector<std::string> lines;
+  for (const auto& [id, views] : rooms) {
+    std::string line = id + ": " + std::to_string(views.poor.size()) + " of " + std::to_string(views.all) + " views";
+    for (std::size_t i = 0; i < std::min(kWorstShown, views.poor.size()); ++i)
+      line += (i == 0 ? "; " : ", ") + describe(views.poor[i]);
+    lines.push_back(line);
+  }
+  return lines;
 }
 
 }  // namespace
@@ -104,8 +135,7 @@ Check check_features(const Scene& scene, std::vector<FeatureView> views) {
                   ", 5th percentile " + std::to_string(views[views.size() / 20].features);
   if (share > kMostPoor) check.verdict = scene.is_stress ? Verdict::kNote : Verdict::kFail;
   if (share < kLeastPoor) check.verdict = Verdict::kNote;
-  for (std::size_t i = 0; i < std::min(kWorstShown, views.size()); ++i)
-    check.details.push_back(describe(scene, views[i]));
+  check.details = worst_places(scene, views);
   return check;
 }
 

@@ -84,15 +84,15 @@ void add_picture(SceneSpec& spec, int edge, double along) {
 
 std::vector<Mistake> mistakes() {
   return {
-      {"room \"left\": its outline",
+      {R"(room "left": its outline)",
        [](SceneSpec& s) {
          s.rooms[0].polygon = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
        }},
-      {"room \"left\": the id occurs twice", [](SceneSpec& s) { s.rooms[1].id = "left"; }},
-      {"no texture is called \"marble\"", [](SceneSpec& s) { s.rooms[1].floor.texture = "marble"; }},
-      {"room \"right\": height", [](SceneSpec& s) { s.rooms[1].height_m = 0.5; }},
+      {R"(room "left": the id occurs twice)", [](SceneSpec& s) { s.rooms[1].id = "left"; }},
+      {R"(no texture is called "marble")", [](SceneSpec& s) { s.rooms[1].floor.texture = "marble"; }},
+      {R"(room "right": height)", [](SceneSpec& s) { s.rooms[1].height_m = 0.5; }},
       {"rooms: there are none", [](SceneSpec& s) { s.rooms.clear(); }},
-      {"no class \"wall\"",
+      {R"(no class "wall")",
        [](SceneSpec& s) {
          s.labels = mapping::LabelList::from_names({{1, "chair"}});
        }},
@@ -112,18 +112,18 @@ std::vector<Mistake> mistakes() {
       {"opening 1: is higher", [](SceneSpec& s) { s.openings[0].top_m = 2.7; }},
       {"opening 4: meets opening 1", [](SceneSpec& s) { s.openings.push_back(s.openings[0]); }},
       {"opening 2: top", [](SceneSpec& s) { s.openings[1].top_m = 0.5; }},
-      {"no room \"attic\"", [](SceneSpec& s) { against(s, "attic", 0, 1); }},
-      {"item \"desk\": room \"left\" has no wall 4", [](SceneSpec& s) { against(s, "left", 4, 1); }},
-      {"item \"desk\": wall 0", [](SceneSpec& s) { against(s, "left", 0, 4.5); }},
-      {"no class \"throne\"",
+      {R"(no room "attic")", [](SceneSpec& s) { against(s, "attic", 0, 1); }},
+      {R"(item "desk": room "left" has no wall 4)", [](SceneSpec& s) { against(s, "left", 4, 1); }},
+      {R"(item "desk": wall 0)", [](SceneSpec& s) { against(s, "left", 0, 4.5); }},
+      {R"(no class "throne")",
        [](SceneSpec& s) {
          s.furniture = {item("a", "throne", {1, 1})};
        }},
-      {"item \"a\": the id occurs twice",
+      {R"(item "a": the id occurs twice)",
        [](SceneSpec& s) {
          s.furniture = {item("a", "chair", {1, 1}), item("a", "chair", {2, 2})};
        }},
-      {"no item \"desk\"",
+      {R"(no item "desk")",
        [](SceneSpec& s) {
          s.furniture = {item("lamp", "lighting", {1, 1})};
          s.furniture[0].place = OnItem{"desk", {0, 0}, 0.0};

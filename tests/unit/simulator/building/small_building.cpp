@@ -1,8 +1,8 @@
 #include "small_building.hpp"
 
 #include <gtest/gtest.h>
-#include <stdlib.h>
 
+#include <cstdlib>
 #include <fstream>
 #include <stdexcept>
 
@@ -48,7 +48,7 @@ SceneFolder::SceneFolder() {
 SceneFolder::~SceneFolder() { fs::remove_all(folder_); }
 
 fs::path SceneFolder::write(const std::string& text) const {
-  const fs::path file = folder_ / "scenes/scene.yaml";
+  fs::path file = folder_ / "scenes/scene.yaml";
   std::ofstream(file) << text;
   return file;
 }

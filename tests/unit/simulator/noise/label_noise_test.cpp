@@ -140,7 +140,7 @@ TEST(LabelNoise, ConfusionPrefersTheSameKind) {
 TEST(LabelNoise, InstancesAreRightAsOftenAsTheirAccuracySays) {
   const LabelNoise noise(still(), list(), 3);
   constexpr int kCells = 60;
-  const auto n = static_cast<std::size_t>(kCells * kTiles);
+  constexpr std::size_t n = std::size_t{kCells} * kTiles;
   for (const std::uint16_t class_id : {kWall, kChair, kMirror, kRobot}) {
     for (const double range_m : {1.0, 4.0}) {
       const Picture picture = tiles(class_id, range_m);

@@ -81,13 +81,16 @@ TEST(Features, FourPercentOfPoorViewsAreTooManyExceptUnderStress) {
   EXPECT_EQ(check_features(scene, views_with(50, 100)).verdict, Verdict::kNote);
 }
 
-TEST(Features, TheWorstPlacesComeFirst) {
+TEST(Features, PoorViewsAreListedByRoomTheWorstFirst) {
   Scene scene;
-  scene.rooms = {{"den", "", {{0, 0}, {2, 0}, {2, 2}, {0, 2}}}};
+  scene.rooms = {{"den", "", {{0, 0}, {2, 0}, {2, 2}, {0, 2}}}, {"attic", "", {{3, 0}, {5, 0}, {5, 2}, {3, 2}}}};
   auto views = views_with(0, 50);
-  views[20] = {{0.5, 1.5}, 1.5707963, 3};
-  const Check check = check_features(scene, views);
-  EXPECT_EQ(check.details.at(0), "den (0.50, 1.50) at 90 deg: 3 features");
+  views[10] = {{4.0, 1.0}, 0.0, 0};
+  views[20] = {{0.5, 1.5}, 1.5707963, 42};
+  views[30] = {{1.5, 0.25}, 0.0, 3};
+  EXPECT_THAT(check_features(scene, views).details,
+              ::testing::ElementsAre("den: 2 of 49 views; (1.50, 0.25) at 0 deg: 3, (0.50, 1.50) at 90 deg: 42",
+                                     "attic: 1 of 1 views; (4.00, 1.00) at 0 deg: 0"));
 }
 
 }  // namespace

@@ -25,12 +25,19 @@ REDWOOD = DATA / "rgbd/redwood_livingroom1"
 AWS = DATA / "rgbd/aws_small_house_loop"
 AWS_CLASSES = DATA / "environments/aws_small_house/classes.csv"
 COMPONENTS = ("slam", "semantic_mapper", "evaluator", "sensor_replay")
+# What a run folder has, and what of it is equal to the byte in a repeated run (docs/evaluation.md).
+FILES = ("trajectory_estimate.txt", "trajectory_ground_truth.txt", "keyframes.txt", "pose_graph.g2o", "map.lapis",
+         "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "figures/trajectory.png", "figures/errors.png")
+FILES_OF_LABELS = ("figures/class_iou.png",)
+FILES_OF_TRUTH = tuple(f"ground_truth/{name}" for name in ("mesh.lapis", "flood.lapis", "ideal.lapis", "classes.json",
+                                                           "rooms.json", "navmap.png", "navmap.yaml"))
+MEASURED_BY_THE_CLOCK = {"real_time_factor", "wall_time_s", "cpu_ms_per_frame", "peak_rss_mb"}
 SKIPPED = 77  # SKIP_RETURN_CODE of ctest
 
 
-def main():
+def main(needs_recordings=True):
     """Runs the tests of the calling module; skips them, loudly, where the recorded data is not there."""
-    missing = [str(folder) for folder in (REDWOOD, AWS) if not folder.is_dir()]
+    missing = [str(folder) for folder in (REDWOOD, AWS) if needs_recordings and not folder.is_dir()]
     if missing:
         print(f"SKIPPED [integration] no recorded data at {', '.join(missing)}; set LAPIS_TEST_DATA")
         sys.exit(SKIPPED)
@@ -118,8 +125,9 @@ class Process:
 
 
 def replay(dataset, out, *options, log=None):
-    """launch_scripts/replay.sh, started."""
-    command = [REPOSITORY / "launch_scripts/replay.sh", dataset, "--out", out, *options]
+    """launch_scripts/replay.sh, started; a text names a scene, a path a data set."""
+    source = ["--scene", dataset] if isinstance(dataset, str) else [dataset]
+    command = [REPOSITORY / "launch_scripts/replay.sh", *source, "--out", out, *options]
     return Process(command, log or f"{out}.log")
 
 
@@ -181,9 +189,17 @@ class ChainTest(unittest.TestCase):
         self.assertEqual(wait_until_gone(process.run), {}, "processes left behind")
 
     def play(self, dataset, name, *options):
-        """Plays a data set to the end, demands success and returns the run folder."""
+        """Plays a data set or a scene to the end, demands success and returns the run folder."""
         out = self.folder / name
         with replay(dataset, out, *options) as run:
             self.assertEqual(run.wait(120), 0, run.output())
             self.assert_no_orphan(run)
         return out
+
+    def assert_same_run(self, one, other, files=FILES):
+        """All that docs/evaluation.md promises to be equal."""
+        differing = [file for file in files if (one / file).read_bytes() != (other / file).read_bytes()]
+        self.assertEqual(differing, [], f"{one} and {other} differ")
+        results = [{key: value for key, value in metrics_of(folder).items() if key not in MEASURED_BY_THE_CLOCK}
+                   for folder in (one, other)]
+        self.assertEqual(*results)

@@ -1,6 +1,7 @@
 #include "evaluator/core/ground_truth.hpp"
 
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
@@ -31,8 +32,11 @@ KnownSpace read_mesh(const std::filesystem::path& file) {
 /// @param numbers translation, quaternion x y z w
 geometry::Pose to_pose(const std::array<double, 7>& numbers) {
   const auto& [x, y, z, qx, qy, qz, qw] = numbers;
-  geometry::Pose T = geometry::make_pose({x, y, z}, Eigen::Quaterniond(qw, qx, qy, qz));
-  if (!geometry::is_valid(T)) throw std::runtime_error("T_map_world is no pose");
+  const Eigen::Quaterniond rotation(qw, qx, qy, qz);
+  geometry::Pose T = geometry::make_pose({x, y, z}, rotation);
+  if (!(std::abs(rotation.norm() - 1.0) < 1e-6) || !geometry::is_valid(T)) {
+    throw std::runtime_error("T_map_world is no pose");
+  }
   return T;
 }
 

@@ -10,7 +10,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kAreaPerLamp_m2 = 12.0, kBelowCeiling_m = 0.35;
+constexpr double kAreaPerLamp_m2 = 12.0, kBelowCeiling_m = 0.35, kFromWall_m = 0.25;
 
 /// Points on a grid of 0.25 m inside a polygon, row by row along its longer side.
 std::vector<Eigen::Vector2d> floor_points(const Polygon& polygon) {
@@ -47,8 +47,9 @@ std::vector<Eigen::Vector2d> spread(const Polygon& polygon, std::size_t count) {
       counts[i] += 1.0;
     }
     for (std::size_t i = 0; i < centers.size(); ++i) {
-      // The middle of a bent share may lie outside of the room; such a lamp stays where it is.
-      if (counts[i] > 0.0 && contains(polygon, sums[i] / counts[i])) centers[i] = sums[i] / counts[i];
+      // The middle of a bent share may lie in a wall, or outside of the room; such a lamp stays where it is.
+      const Eigen::Vector2d middle = counts[i] > 0.0 ? sums[i] / counts[i] : centers[i];
+      if (contains(polygon, middle) && distance_to_border(polygon, middle) > kFromWall_m) centers[i] = middle;
     }
   }
   return centers;

@@ -133,12 +133,14 @@ bool YamlEntry::is_number(const std::string& key) {
 
 void YamlEntry::done() const {
   for (const auto& pair : node_) {
-    const std::string name = pair.first.Scalar();
-    if (asked_.contains(name)) continue;
-    std::string known;
-    for (const auto& key : asked_) known.append(known.empty() ? "" : ", ").append(key);
-    refuse_at(pair.first, what_ + ": unknown key \"" + name + "\"; known are " + known);
+    if (!asked_.contains(pair.first.Scalar())) refuse_unknown(pair.first);
   }
+}
+
+void YamlEntry::refuse_unknown(const YAML::Node& key) const {
+  std::string known;
+  for (const auto& name : asked_) known.append(known.empty() ? "" : ", ").append(name);
+  refuse_at(key, what_ + ": unknown key \"" + key.Scalar() + "\"; known are " + known);
 }
 
 void YamlEntry::refuse(const std::string& why) const { refuse_at(node_, what_ + ": " + why); }

@@ -45,6 +45,7 @@ class YamlEntry {
   YAML::Node required(const std::string& key);
   double to_number(const YAML::Node& value, const std::string& key) const;
   std::vector<double> to_numbers(const YAML::Node& value, const std::string& key, std::size_t count) const;
+  [[noreturn]] void refuse_unknown(const YAML::Node& key) const;
   [[noreturn]] void refuse_at(const YAML::Node& at, const std::string& why) const;
 
   std::filesystem::path file_;

@@ -10,7 +10,8 @@ import unittest
 
 REPOSITORY = pathlib.Path(sys.argv.pop(1))
 BIN = pathlib.Path(sys.argv.pop(1))
-COMPONENTS = ["sensor_replay", "slam", "semantic_mapper", "evaluator"]
+COMPONENTS = ["sensor_replay", "simulator", "slam", "semantic_mapper", "evaluator"]
+KNOW_THE_ROBOT = ["simulator", "semantic_mapper", "evaluator"]
 
 
 def output_of(*command):
@@ -35,6 +36,14 @@ class Documents(unittest.TestCase):
         for file in files:
             with self.subTest(str(file)):
                 output_of(BIN / f"lapis_{file.stem}", "--config", file, "--check-config")
+
+    def test_the_robot_file_says_what_the_defaults_are(self):
+        for name in KNOW_THE_ROBOT:
+            with self.subTest(name):
+                program = BIN / f"lapis_{name}"
+                self.assertEqual(output_of(program, "--config", REPOSITORY / "config/robot.yaml", "--print-config"),
+                                 output_of(program, "--print-config"))
+                output_of(program, "--config", REPOSITORY / "config/robot_wide.yaml", "--check-config")
 
     def test_component_pages_list_every_configuration_key(self):
         for name in COMPONENTS:

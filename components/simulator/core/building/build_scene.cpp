@@ -78,7 +78,19 @@ class SceneBuilder {
     auto& model = std::get<SourcedModel>(answer);
     for (const auto& warning : model.warnings) add_once(scene_.warnings, warning);
     if (model.credit) add_once(scene_.credits, *model.credit);
+    warn_of_unknown_parts(item, model);
     return std::move(model);
+  }
+
+  void warn_of_unknown_parts(const FurnitureSpec& item, const SourcedModel& model) {
+    for (const auto& entry : item.parts) {
+      const std::string& name = entry.first;
+      const auto& materials = model.mesh.materials;
+      const bool is_known =
+          std::any_of(materials.begin(), materials.end(), [&](const Material& m) { return m.name == name; }) ||
+          std::find(model.groups.begin(), model.groups.end(), name) != model.groups.end();
+      if (!is_known) add_once(scene_.warnings, "item \"" + item.id + "\": " + item.model + " has no part " + name);
+    }
   }
 
   void add_furniture() {

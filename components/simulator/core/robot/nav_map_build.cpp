@@ -20,9 +20,9 @@ constexpr double kMaxCells = 4e7;
 using Corners = std::array<Eigen::Vector3d, 3>;
 
 bool meets(const Mesh& mesh, const Triangle& triangle, const Slab& slab) {
-  const double a = static_cast<double>(mesh.positions[triangle.vertices[0]].z());
-  const double b = static_cast<double>(mesh.positions[triangle.vertices[1]].z());
-  const double c = static_cast<double>(mesh.positions[triangle.vertices[2]].z());
+  const auto a = static_cast<double>(mesh.positions[triangle.vertices[0]].z());
+  const auto b = static_cast<double>(mesh.positions[triangle.vertices[1]].z());
+  const auto c = static_cast<double>(mesh.positions[triangle.vertices[2]].z());
   return std::min({a, b, c}) <= slab.high && std::max({a, b, c}) >= slab.low;
 }
 

@@ -112,7 +112,9 @@ TEST(BuildScene, PartsOfAModelMayHaveAnotherClass) {
   spec.furniture[0].parts = {{"body", "mirror"}};
   EXPECT_EQ(count_of(build_scene(spec, source), "mirror"), 1);
   spec.furniture[0].parts = {{"legs", "mirror"}};
-  EXPECT_EQ(count_of(build_scene(spec, source), "mirror"), 0);
+  const Scene scene = build_scene(spec, source);
+  EXPECT_EQ(count_of(scene, "mirror"), 0);
+  EXPECT_EQ(scene.warnings, std::vector<std::string>{R"(item "sofa#1": Library#0 has no part legs)"});
 }
 
 TEST(BuildScene, PicturesHangOnTheirWallAndDensityLeavesSomeOut) {

@@ -211,7 +211,7 @@ TEST(NavMapPicture, ShowsNorthUpAndSurvivesPng) {
   ASSERT_EQ(back.cols, 20);
   for (int row = 0; row < 10; ++row) {
     for (int column = 0; column < 20; ++column) {
-      const auto bgr = back.at<cv::Vec3b>(row, column);
+      const auto& bgr = back.at<cv::Vec3b>(row, column);
       EXPECT_EQ((geometry::Rgb8{bgr[2], bgr[1], bgr[0]}), image(column, row)) << column << ' ' << row;
     }
   }

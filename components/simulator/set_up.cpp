@@ -27,7 +27,7 @@ fs::path find_scene(const std::string& name) {
     throw std::runtime_error("no scene given; call: lapis_simulator SCENE (bundled: " + joined(bundled_scenes()) + ")");
   }
   if (fs::exists(name)) return name;
-  const fs::path bundled = config_folder() / "scenes" / (name + ".yaml");
+  fs::path bundled = config_folder() / "scenes" / (name + ".yaml");
   if (name.find('/') == std::string::npos && fs::exists(bundled)) return bundled;
   throw std::runtime_error("scene " + name + ": no such file, and no bundled scene (" + joined(bundled_scenes()) + ")");
 }
@@ -150,7 +150,7 @@ StartPose start_pose(const World& world, const SimulatorConfig& config) {
   double x = 0.0, y = 0.0, yaw_deg = 0.0;
   std::string rest;
   if (!(text >> x >> y >> yaw_deg) || text >> rest) {
-    throw std::runtime_error("simulator.start: must be \"x y yaw_deg\", not \"" + config.start + "\"");
+    throw std::runtime_error(R"(simulator.start: must be "x y yaw_deg", not ")" + config.start + "\"");
   }
   return {{x, y}, yaw_deg * std::numbers::pi / 180.0};
 }

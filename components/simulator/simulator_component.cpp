@@ -140,7 +140,7 @@ bool SimulatorComponent::may_tick() {
 }
 
 void SimulatorComponent::tick() {
-  if (!began_) began_ = Clock::now();
+  if (!began_) began_ = reported_ = Clock::now();
   Step step = next_.get();
   ++ticks_;
   stamp_ = step.frame.stamp;

@@ -61,14 +61,17 @@ class TumWriter {
   trajectory::Trajectory truth_;
 };
 
+SimulatorConfig with_a_tour(SimulatorConfig config) {
+  if (config.tour.empty()) config.tour = "bundled";
+  return config;
+}
+
 }  // namespace
 
-int export_tum(const SimulatorConfig& requested) {
-  SimulatorConfig config = requested;
-  if (config.tour.empty()) config.tour = "bundled";
+int export_tum(const SimulatorConfig& config) {
   const World world = open_world(config);
   const StartPose start = start_pose(world, config);
-  auto tour = plan_tour(world, start, config);
+  auto tour = plan_tour(world, start, with_a_tour(config));
   Simulation simulation(world, simulation_config(config), start);
   TumWriter writer(config.export_dir, world.scene(), config.robot.camera);
   const geometry::Pose T_base_camera = geometry::T_base_camera(camera_mount(config.robot.camera));

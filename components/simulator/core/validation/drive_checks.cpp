@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <limits>
-#include <set>
+#include <optional>
 #include <stdexcept>
 
 #include <Eigen/Geometry>
 
+#include "simulator/core/building/polygon.hpp"
 #include "simulator/core/robot/regions.hpp"
 
 namespace lapis::simulator {
@@ -35,16 +36,6 @@ void for_all_cells(const Grid& grid, const Visit& visit) {
   }
 }
 
-double distance_to_outline(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p) {
-  double best = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const Eigen::Vector2d a = polygon[i], side = polygon[(i + 1) % polygon.size()] - a;
-    const double along = std::clamp(side.dot(p - a) / side.squaredNorm(), 0.0, 1.0);
-    best = std::min(best, (a + along * side - p).norm());
-  }
-  return best;
-}
-
 /// A corridor by itself: everything outside its polygon is blocked.
 NavMap inside_of(const NavMap& map, const Room& corridor) {
   const Grid& grid = map.grid();
@@ -62,7 +53,7 @@ std::vector<Room> entries(const NavMap& map, const Room& corridor) {
   for_all_cells(grid, [&](Cell c) {
     const Eigen::Vector2d p = grid.center(c);
     if (map.is_blocked(c) || is_inside(corridor.polygon, p)) return;
-    if (distance_to_outline(corridor.polygon, p) < kDoorway_m) outside(c.column, c.row) = 255;
+    if (distance_to_border(corridor.polygon, p) < kDoorway_m) outside(c.column, c.row) = 255;
   });
   const Regions regions = find_regions(outside, Neighbours::kEight);
   std::vector<Eigen::AlignedBox2d> boxes(regions.sizes.size());

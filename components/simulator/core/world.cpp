@@ -7,6 +7,7 @@
 
 #include "simulator/core/noise/random.hpp"
 #include "simulator/core/render/light_cache.hpp"
+#include "simulator/core/robot/regions.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -23,17 +24,27 @@ void require_sound(const Scene& scene) {
   }
 }
 
-StartPose draw_anywhere(const World& world, double radius_m, const Random& random) {
-  const NavMap& map = world.nav_map();
+/// Cells of the largest connected area in which the robot has room around it: not a closed room, nor the hollow of a
+/// piece of furniture.
+std::vector<std::size_t> cells_with_room(const NavMap& map, double radius_m) {
   const auto free = map.free_cells(radius_m + kRoomAround_m);
+  const Regions regions = find_regions(free, Neighbours::kFour);
+  if (regions.sizes.empty()) return {};
+  const auto largest = std::max_element(regions.sizes.begin(), regions.sizes.end()) - regions.sizes.begin();
   std::vector<std::size_t> cells;
   for (std::size_t i = 0; i < free.pixels.size(); ++i) {
-    if (free.pixels[i] != 0) cells.push_back(i);
+    if (regions.labels.pixels[i] == static_cast<std::uint32_t>(largest) + 1) cells.push_back(i);
   }
+  return cells;
+}
+
+StartPose draw_anywhere(const World& world, double radius_m, const Random& random) {
+  const NavMap& map = world.nav_map();
+  const auto cells = cells_with_room(map, radius_m);
   if (cells.empty()) throw std::runtime_error("scene " + world.scene().name + ": the robot fits nowhere");
-  const auto chosen =
-      static_cast<int>(cells[static_cast<std::size_t>(random.uniform(1) * static_cast<double>(cells.size()))]);
-  return {map.grid().center({chosen % free.width, chosen / free.width}),
+  const auto drawn = static_cast<std::size_t>(random.uniform(1) * static_cast<double>(cells.size()));
+  const auto cell = static_cast<int>(cells[drawn]);
+  return {map.grid().center({cell % map.grid().width, cell / map.grid().width}),
           random.uniform(2, -std::numbers::pi, std::numbers::pi)};
 }
 

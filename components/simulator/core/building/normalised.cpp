@@ -9,6 +9,8 @@
 namespace lapis::simulator {
 namespace {
 
+constexpr double kMaxReach_m = 1000.0, kMaxLength_m = 100.0, kMaxArea_m2 = 2000.0;  // for the sake of cells of 0.2 m
+
 /// Checks a spec and fills in what was left out, list by list.
 class Normaliser {
  public:
@@ -43,6 +45,7 @@ class Normaliser {
   static std::string called(const RoomSpec& room) { return "room \"" + room.id + "\""; }
 
   void normalise(RoomSpec& room) {
+    check_extent(room);
     if (!is_simple(room.polygon)) refuse(spec_, called(room), "its outline touches or cuts itself");
     const double height = room.height_m.value_or(spec_.height_m);
     if (!(height >= 1.5 && height <= 20.0)) refuse(spec_, called(room), "height must be from 1.5 to 20");
@@ -53,6 +56,17 @@ class Normaliser {
       if (!is_texture(surface->texture)) {
         refuse(spec_, called(room), "no texture is called \"" + surface->texture + "\"");
       }
+    }
+  }
+
+  void check_extent(const RoomSpec& room) const {
+    const auto is_far = [&](const Eigen::Vector2d& corner) {
+      return !(corner.cwiseAbs().maxCoeff() <= kMaxReach_m) ||
+             (corner - room.polygon.front()).cwiseAbs().maxCoeff() > kMaxLength_m;
+    };
+    if (std::any_of(room.polygon.begin(), room.polygon.end(), is_far) ||
+        std::abs(signed_area(room.polygon)) > kMaxArea_m2) {
+      refuse(spec_, called(room), "must have at most 100 m and 2000 m2, within 1 km of the origin");
     }
   }
 

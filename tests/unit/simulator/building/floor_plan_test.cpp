@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "simulator/core/building/build_scene.hpp"
 #include "simulator/core/building/polygon.hpp"
 #include "small_building.hpp"
@@ -88,6 +90,12 @@ std::vector<Mistake> mistakes() {
        [](SceneSpec& s) {
          s.rooms[0].polygon = {{0, 0}, {1, 1}, {1, 0}, {0, 1}};
        }},
+      {R"(room "left": must have at most 100 m)", [](SceneSpec& s) { s.rooms[0].polygon[1].x() = 1e9; }},
+      {R"(room "left": must have)",
+       [](SceneSpec& s) {
+         s.rooms[0].polygon = {{0, 0}, {60, 0}, {60, 40}, {0, 40}};
+       }},
+      {R"(room "left": must have)", [](SceneSpec& s) { s.rooms[0].polygon[1].x() = std::nan(""); }},
       {R"(room "left": the id occurs twice)", [](SceneSpec& s) { s.rooms[1].id = "left"; }},
       {R"(no texture is called "marble")", [](SceneSpec& s) { s.rooms[1].floor.texture = "marble"; }},
       {R"(room "right": height)", [](SceneSpec& s) { s.rooms[1].height_m = 0.5; }},

@@ -254,7 +254,7 @@ LabelNoiseConfig wobble_only(double warp_px) {
 }
 
 TEST(LabelNoise, BoundariesAreDisplacedBySigmaEverywhere) {
-  constexpr int kWidth = 229, kHeight = 100, kFrames = 1500;
+  constexpr int kWidth = 229, kHeight = 100, kFrames = 600;
   for (const double sigma : {2.0, 4.0}) {
     const LabelNoise noise(wobble_only(sigma), list(), 3);
     for (const int boundary : {96, 102, 108}) {  // nodes are 12 px apart, at 96 and 108

@@ -13,7 +13,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr std::size_t kRuns = 4000;
+constexpr std::size_t kRuns = 2000;
 
 WheelNoiseConfig random_only() {
   WheelNoiseConfig config;
@@ -93,7 +93,7 @@ TEST(WheelOdometry, SystematicErrorsAreConstantInARun) {
   }
   EXPECT_NEAR(variance_of(wheels) / 1e-4, 1.0, variance_bound(kRuns));
   EXPECT_NEAR(variance_of(turns) / 2e-4, 1.0, variance_bound(kRuns));  // of wheel and base
-  EXPECT_NEAR(correlation_of(wheels, turns), std::sqrt(0.5), 0.05);
+  EXPECT_NEAR(correlation_of(wheels, turns), std::sqrt(0.5), 0.07);
 }
 
 /// Normalised squared error of the pose after a winding way of 8 m.
@@ -115,9 +115,9 @@ double normalised_error(const WheelNoiseConfig& config, std::uint64_t seed) {
 TEST(WheelOdometry, CovarianceIsWhatErrorsReallyAre) {
   for (const WheelNoiseConfig& config : {WheelNoiseConfig(), random_only()}) {
     std::vector<double> errors;
-    for (std::uint64_t seed = 0; seed < 2000; ++seed) errors.push_back(normalised_error(config, seed));
+    for (std::uint64_t seed = 0; seed < 1000; ++seed) errors.push_back(normalised_error(config, seed));
     // Chi-squared with 3 degrees of freedom has mean 3 and variance 6; the covariance is right to first order.
-    EXPECT_NEAR(mean_of(errors), 3.0, kSigmas * std::sqrt(6.0 / 2000) + 0.1);
+    EXPECT_NEAR(mean_of(errors), 3.0, kSigmas * std::sqrt(6.0 / 1000) + 0.1);
   }
 }
 

@@ -60,8 +60,9 @@ TEST(VisibleVoxels, AreThoseOfWhichAPointCanBeSeen) {
     const mapping::VoxelIndex index = box.index_of(cell);
     bool expected = false;
     for (int i = 0; i < 6 * 6 * 6 && !expected; ++i) {
-      const Eigen::Vector3d p(index.x + (i % 6 + 0.5) / 6, index.y + (i / 6 % 6 + 0.5) / 6,
-                              index.z + (i / 36 + 0.5) / 6);
+      const Eigen::Vector3i part(i % 6, i / 6 % 6, i / 36);
+      const Eigen::Vector3d p =
+          Eigen::Vector3d(index.x, index.y, index.z) + (part.cast<double>().array() + 0.5).matrix() / 6.0;
       expected = is_visible(scene.mesh, eyes, config, T.inverse() * (p * 0.25));
     }
     ++compared;

@@ -144,10 +144,10 @@ TEST(IdealMapTest, OfAWholeTourIsTheTruthOfTheMesh) {
       ideal.add(kCamera, T_map_world(start) * T_world_camera, frame.depth, frame.labels);
     }
   }
-  const auto mesh = known(truth.mesh), map = known(ideal.map());
-  EXPECT_GT(evaluator::coverage(mesh, map).explored_share.value(), 0.98);
-  EXPECT_GT(evaluator::coverage(map, mesh).explored_share.value(), 0.98);
-  EXPECT_GT(evaluator::semantic_iou(mesh.occupied, map.occupied).top_mean.value(), 0.8);
+  const auto mesh = known(truth.mesh), seen = known(ideal.map());
+  EXPECT_GT(evaluator::coverage(mesh, seen).explored_share.value(), 0.98);
+  EXPECT_GT(evaluator::coverage(seen, mesh).explored_share.value(), 0.98);
+  EXPECT_GT(evaluator::semantic_iou(mesh.occupied, seen.occupied).top_mean.value(), 0.8);
   EXPECT_THROW(ideal.add(kCamera, start, geometry::DepthImage(3, 3), geometry::LabelImage(3, 3)), std::runtime_error);
 }
 

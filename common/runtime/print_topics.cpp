@@ -34,7 +34,8 @@ int main() {
   std::cout << "\n| service | type | from | what |\n| --- | --- | --- | --- |\n";
   lapis::topics::for_each_service([](const auto& service) {
     using Service = typename std::decay_t<decltype(service)>::Type;
-    std::cout << "| `" << service.name << "`" << (service.is_global ? " *" : "") << " | " << lapis::idl::ServiceSupport<Service>::kRosName << " | "
-              << service.from << " | " << service.meaning << " |\n";
+    std::cout << "| `" << service.name << "`" << (service.is_global ? " *" : "") << " | "
+              << lapis::idl::ServiceSupport<Service>::kRosName << " | " << service.from << " | " << service.meaning
+              << " |\n";
   });
 }

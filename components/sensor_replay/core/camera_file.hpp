@@ -15,7 +15,7 @@ struct CameraFile {
   std::array<double, 5> distortion{};  ///< plumb_bob k1 k2 p1 p2 k3, of the recorded images, -10 to 10; absent = all 0
   double depth_scale = 0.0;            ///< value of a depth pixel per metre, 1 to 100000 (TUM 5000, millimetres 1000)
   double fps = 0.0;                    ///< nominal rate of the frames [Hz], 0.1 to 1000
-  geometry::CameraMount mount;                   ///< camera_height [m] and pitch_down_deg; absent = 0
+  geometry::CameraMount mount;         ///< camera_height [m] and pitch_down_deg; absent = 0
 };
 
 /// Reads the calibration of a data set from a file, of whatever format. Throws std::runtime_error with one line naming

@@ -50,7 +50,7 @@ double value_of(std::string_view name, const std::array<NamedValue, N>& values, 
   return found == values.end() ? otherwise : found->value;
 }
 
-// Fitted with the default configuration.
+// Values of the prototype behind the default configuration.
 constexpr std::array<NamedValue, 11> kBonus{{{"wall", 0.10},
                                              {"floor", 0.12},
                                              {"ceiling", 0.10},

@@ -27,8 +27,8 @@ struct FeatureView {
 /// max_views, a fixed choice of them.
 std::vector<FeatureView> measure_features(const World& world, const FeatureConfig& config, const Progress& progress);
 
-/// Judges measure_features: fails when more than 4 % of the views have fewer than 100 features, with a note below
-/// 0.5 % (the robot cannot get lost) and for stress scenes.
+/// Judges measure_features: fails when more than 4 % of the views have fewer than 100 features; a note instead for
+/// stress scenes and for those without rooms or pictures, and also below 0.5 % (the robot cannot get lost).
 Check check_features(const Scene& scene, std::vector<FeatureView> views);
 
 }  // namespace lapis::simulator

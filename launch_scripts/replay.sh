@@ -86,7 +86,7 @@ mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another wi
     figures/{trajectory,errors,class_iou}.png logs/{slam,semantic_mapper,evaluator,sensor_replay,simulator}.log
 )
 if [ "$source" = simulator ]; then
-  play=("$scene" --tour bundled "${play[@]}" --set "simulator.output_dir=$out")
+  play=("$scene" --set simulator.tour=bundled "${play[@]}" --set "simulator.output_dir=$out")
   [ -z "$rate" ] || play+=(--mode freerun)
 else
   play=("$dataset" "${play[@]}")

@@ -7,6 +7,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kUnknownVariance = 1e6;  // of what a robot on the floor cannot measure
+constexpr double kLeastVariance = 1e-8;   // of what has no noise: zero would read as "unknown"
 
 /// Pose of a robot on the floor.
 geometry::Pose planar_pose(const Eigen::Vector2d& position, double yaw_rad) {
@@ -23,6 +24,7 @@ geometry::Matrix6d planar_covariance(const Eigen::Matrix3d& covariance) {
     for (int column = 0; column < 3; ++column) {
       out(index[static_cast<std::size_t>(row)], index[static_cast<std::size_t>(column)]) = covariance(row, column);
     }
+    out(index[static_cast<std::size_t>(row)], index[static_cast<std::size_t>(row)]) += kLeastVariance;
   }
   return out;
 }

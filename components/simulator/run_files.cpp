@@ -68,9 +68,10 @@ void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const
             frame.ideal_depth, frame.ideal_labels);
 }
 
-void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config) {
+void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config, double resolution_m,
+                 const std::filesystem::path& folder) {
   TruthConfig truth;
-  truth.resolution_m = config.truth.resolution_m;
+  truth.resolution_m = resolution_m;
   truth.sensing_range_m = config.robot.sensing_range_m;
   truth.robot_radius_m = config.robot.radius_m;
   truth.camera = pinhole_camera(config.robot.camera);
@@ -78,7 +79,7 @@ void write_truth(const World& world, const StartPose& start, const SimulatorConf
   truth.threads = config.render_threads;
   const auto T = T_world_start(world, start);
   const auto volumes = make_voxel_truth(world.scene(), world.raycaster(), world.nav_map(), T, truth);
-  write_scene_truth(truth_folder(config), world.scene(), world.nav_map(), T, volumes);
+  write_scene_truth(folder, world.scene(), world.nav_map(), T, volumes);
 }
 
 }  // namespace lapis::simulator

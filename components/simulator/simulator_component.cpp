@@ -33,6 +33,8 @@ void SimulatorComponent::add_options(CLI::App& app, Config& config) {
   app.add_flag("--validate", config.validate, "check the scene, print a table, write its navigation map, and exit");
   app.add_flag("--credits", config.credits, "list authors and licences of what the scene shows, and exit");
   app.add_option("--snapshot", config.snapshot_dir, "render views of every room into this folder, and exit");
+  app.add_option("--ground-truth", config.truth_dir,
+                 "write labelled voxels, explorable volume, rooms and navigation map into this folder, and exit");
   app.add_option("--export-tum", config.export_dir, "write the tour as a TUM RGB-D data set, and exit");
 }
 
@@ -44,7 +46,6 @@ SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& c
       wheels_(context.advertise(topics::kWheelOdometry)), collision_(context.advertise(topics::kCollision)) {
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "simulator.output_dir");
   describe_scene(world_);
-  if (!config_.output_dir.empty()) make_truth();
   if (config_.imu) imu_ = &context.advertise(topics::kImu);
   context.subscribe(topics::kCommand, [this](const auto& m) { command_ = from_message(m); });
   serve();
@@ -53,10 +54,7 @@ SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& c
     driver_ = std::make_unique<runtime::LockstepDriver>(context, config_.lockstep, [this] { publish_again(); });
   }
   context.on_cycle([this](const runtime::Cycle&) { work(); });
-}
-
-SimulatorComponent::~SimulatorComponent() {
-  if (next_.valid()) next_.wait();
+  if (!config_.output_dir.empty()) make_truth();
 }
 
 void SimulatorComponent::serve() {
@@ -103,23 +101,25 @@ void SimulatorComponent::begin() {
   simulate_next();
 }
 
+/// One tick at most: between two the executor looks for signals, services and commands.
 void SimulatorComponent::work() {
   using State = runtime::LockstepDriver::State;
-  while ((!driver_ || driver_->state() == State::kIdle) && may_tick()) {
-    if (has_ended_) {
-      report_progress(true);
-      return context_.finish();
-    }
-    if (is_over_) {
-      end();
-    } else {
-      tick();
-    }
-  }
-  if (driver_ && driver_->state() == State::kFailed && failure_.empty()) {
+  const State state = driver_ ? driver_->state() : State::kIdle;
+  if (state == State::kFailed && failure_.empty()) {
     failure_ = driver_->failure();
-    context_.fail(failure_);
+    return context_.fail(failure_);
   }
+  if (state != State::kIdle || !may_tick()) return;
+  if (has_ended_) {
+    report_progress(true);
+    return context_.finish();
+  }
+  if (is_over_) {
+    end();
+  } else {
+    tick();
+  }
+  context_.executor().wake();
 }
 
 /// False while paused, or before the wall-clock time of the next tick, at which it wakes the executor.
@@ -132,8 +132,7 @@ bool SimulatorComponent::may_tick() {
   }
   if (pace > 0.0) {
     const std::chrono::duration<double> period(1.0 / (pace * config_.robot.camera.rate_hz));
-    due_ = std::max(due_, Clock::now() - std::chrono::milliseconds(100)) +
-           std::chrono::duration_cast<Clock::duration>(period);
+    due_ = std::max(due_ + std::chrono::duration_cast<Clock::duration>(period), Clock::now());  // lost time stays lost
   }
   if (is_paused_) --steps_;
   return true;
@@ -203,7 +202,9 @@ void SimulatorComponent::report_progress(bool is_last) {
 
 /// The ground truth of the scene, in a thread of its own: the run does not wait for it.
 void SimulatorComponent::make_truth() {
-  truth_ = std::async(std::launch::async, [this] { write_truth(world_, start_, config_); });
+  truth_ = std::async(std::launch::async, [this] {
+    write_truth(world_, start_, config_, config_.truth.resolution_m, truth_folder(config_));
+  });
 }
 
 void SimulatorComponent::finish() {
@@ -225,8 +226,8 @@ void SimulatorComponent::write_files() {
   if (driver_) summary.cpu_ms = driver_->cpu_ms();
   files::replace_text(std::filesystem::path(config_.output_dir) / "simulation.yaml",
                       to_yaml(summary, world_, start_, config_));
-  write_ideal_map(truth_folder(config_), world_.scene(), *ideal_);
   truth_.get();
+  write_ideal_map(truth_folder(config_), world_.scene(), *ideal_);
 }
 
 }  // namespace lapis::simulator

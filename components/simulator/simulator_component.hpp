@@ -33,7 +33,6 @@ class SimulatorComponent {
   static std::optional<int> run_tool(const Config& config);
 
   SimulatorComponent(const Config& config, runtime::Context& context);
-  ~SimulatorComponent();
   void finish();
 
  private:
@@ -69,8 +68,6 @@ class SimulatorComponent {
   std::unique_ptr<Simulation> simulation_;
   std::optional<TourFollower> tour_;
   std::optional<DriveCommand> command_;  // newest, not yet obeyed
-  std::future<Step> next_;
-  std::future<void> truth_;  // ground truth of the scene is being written
   std::optional<IdealMap> ideal_;
   std::optional<SensorMessages> last_;  // lock-step may want them again
   time::Time stamp_;
@@ -85,6 +82,9 @@ class SimulatorComponent {
   std::optional<Clock::time_point> began_;
   Clock::time_point due_;  // of the next tick by the wall clock
   Clock::time_point reported_;
+  // Last: their threads use what is above, and end before it does.
+  std::future<Step> next_;
+  std::future<void> truth_;  // ground truth of the scene is being written
 };
 
 }  // namespace lapis::simulator

@@ -49,6 +49,7 @@ struct SimulatorConfig {
   bool credits = false;
   std::string snapshot_dir;
   std::string export_dir;
+  std::string truth_dir;
 };
 
 template <class Field>

@@ -5,6 +5,7 @@
 #include "common/files/atomic_file.hpp"
 #include "simulator/core/frame_picture.hpp"
 #include "simulator/core/views.hpp"
+#include "simulator/run_files.hpp"
 #include "simulator/set_up.hpp"
 #include "simulator/tum_export.hpp"
 #include "simulator/validate_tool.hpp"
@@ -48,6 +49,20 @@ int write_snapshots(const SimulatorConfig& config) {
   return 0;
 }
 
+/// A folder per resolution: the paper's, and those of fine maps.
+int write_ground_truth(const SimulatorConfig& config) {
+  const World world = open_world(config);
+  print_warnings(world.scene());
+  const StartPose start = start_pose(world, config);
+  make_folder(config.truth_dir);
+  for (const auto& [name, resolution_m] : {std::pair{"0.25", 0.25}, {"0.10", 0.10}, {"0.05", 0.05}}) {
+    const auto folder = std::filesystem::path(config.truth_dir) / name;
+    write_truth(world, start, config, resolution_m, folder);
+    std::cout << folder.string() << '\n' << std::flush;
+  }
+  return 0;
+}
+
 int print_credits(const SimulatorConfig& config) {
   const Scene scene = open_scene(config);
   print_warnings(scene);
@@ -64,6 +79,7 @@ std::optional<int> run_scene_tool(const SimulatorConfig& config) {
   if (config.validate) return validate_scene(config);
   if (config.credits) return print_credits(config);
   if (!config.snapshot_dir.empty()) return write_snapshots(config);
+  if (!config.truth_dir.empty()) return write_ground_truth(config);
   if (!config.export_dir.empty()) return export_tum(config);
   return std::nullopt;
 }

@@ -128,7 +128,7 @@ std::vector<std::pair<std::string, std::string>> YamlEntry::all_texts() {
 
 bool YamlEntry::is_number(const std::string& key) {
   const YAML::Node value = node(key);
-  return value.IsScalar() && value.Scalar().find_first_not_of("0123456789") == std::string::npos;
+  return value.IsDefined() && value.IsScalar() && value.Scalar().find_first_not_of("0123456789") == std::string::npos;
 }
 
 void YamlEntry::done() const {

@@ -298,5 +298,35 @@ TEST_F(SimulatorContract, OneSeedGivesTheSameFilesWithAnyNumberOfThreads) {
   EXPECT_NE(first.at("rgb/000001.png"), exported("third", "1", "6").at("rgb/000001.png"));
 }
 
+// Nobody to wait for, or a camera that is faster than the machine: a request to stop is still heard.
+TEST_F(SimulatorContract, StopsWhenAskedHoweverBusyItIs) {
+  for (const auto& options :
+       {with_stages("[]"), arguments({"--mode", "freerun", "--set", "robot.camera.rate_hz=120"})}) {
+    ChildProcess simulator(kSimulator, options);
+    ASSERT_TRUE(simulator.wait_for_line("real-time factor")) << simulator.log();
+    EXPECT_EQ(simulator.stop(SIGTERM, Seconds(5)), 0) << simulator.log();
+  }
+}
+
+TEST_F(SimulatorContract, ToolsWriteWhatTheyName) {
+  const auto run = [&](const std::vector<std::string>& options) {
+    ChildProcess simulator(kSimulator, arguments(options));
+    EXPECT_EQ(simulator.wait(Seconds(60)), 0) << simulator.log();
+    return simulator.output();
+  };
+  const auto exists = [&](const std::string& name) { return std::filesystem::file_size(folder.path() / name) > 0; };
+  run({"--snapshot", (folder.path() / "views").string()});
+  for (const char* name : {"views/living_1.png", "views/hall_2.png", "views/sheet.png"})
+    EXPECT_TRUE(exists(name)) << name;
+  run({"--ground-truth", (folder.path() / "truth").string()});
+  for (const char* size : {"0.25", "0.10", "0.05"}) {
+    for (const char* name : {"mesh.lapis", "flood.lapis", "classes.json", "rooms.json", "navmap.png", "navmap.yaml"}) {
+      EXPECT_TRUE(exists(std::string("truth/") + size + "/" + name)) << size << name;
+    }
+  }
+  EXPECT_THAT(run({"--credits"}), HasSubstr("nothing that others have made"));
+  EXPECT_THAT(run({"--help"}), HasSubstr("--validate"));
+}
+
 }  // namespace
 }  // namespace lapis::test

@@ -158,6 +158,10 @@ ElevationRange elevation_range(const geometry::PinholeCamera& camera, double pit
 
 VoxelSet visible_voxels(const SceneRaycaster& raycaster, const std::vector<Eigen::Vector3d>& positions,
                         const VisibilityConfig& config, const geometry::Pose& T_map_world, const VoxelBox& box) {
+  for (const auto& p : positions) {
+    const Eigen::Vector3d v = box.to_box(T_map_world * p);
+    if (!box.contains(v.array().floor().cast<int>())) throw std::invalid_argument("a place to see from is outside");
+  }
   const auto rays = directions(config.elevation, box.resolution_m() / config.range_m);
   std::vector<Walker> walkers(static_cast<std::size_t>(std::max(config.threads, 1)), Walker(box));
   const auto work = [&](std::size_t thread) {

@@ -34,6 +34,7 @@ struct VisibilityConfig {
 /// Voxels that a camera at one of `positions` (world frame [m]) has in line of sight: those that a ray passes through
 /// or meets a surface in. Rays are so dense that a voxel at the end of the range is one ray wide. A ray that meets
 /// nothing at all, be it beyond the range, says nothing, like a pixel without depth. The mesh must lie in the box.
+/// @throws std::invalid_argument when a position lies outside of the box.
 VoxelSet visible_voxels(const SceneRaycaster& raycaster, const std::vector<Eigen::Vector3d>& positions,
                         const VisibilityConfig& config, const geometry::Pose& T_map_world, const VoxelBox& box);
 

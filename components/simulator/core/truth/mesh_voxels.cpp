@@ -90,8 +90,10 @@ void add_voxel(const std::vector<Piece>& pieces, std::size_t begin, std::size_t 
 
 }  // namespace
 
-VoxelBox voxel_box(const Scene& scene, const geometry::Pose& T_map_world, double resolution_m) {
+VoxelBox voxel_box(const Scene& scene, const geometry::Pose& T_map_world, double resolution_m,
+                   const std::vector<Eigen::Vector3d>& eyes) {
   Eigen::AlignedBox3d box;
+  for (const auto& p : eyes) box.extend(T_map_world * p);
   for (const auto& p : scene.mesh.positions) box.extend(T_map_world * p.cast<double>());
   return {box, resolution_m};
 }

@@ -23,8 +23,9 @@ struct SurfaceVoxel {
   bool operator==(const SurfaceVoxel&) const = default;
 };
 
-/// Box of the scene's mesh, in the map frame.
-VoxelBox voxel_box(const Scene& scene, const geometry::Pose& T_map_world, double resolution_m);
+/// Box of the scene's mesh and of the places (world frame [m]) that it is seen from, in the map frame.
+VoxelBox voxel_box(const Scene& scene, const geometry::Pose& T_map_world, double resolution_m,
+                   const std::vector<Eigen::Vector3d>& eyes = {});
 
 /// Surface voxels of the scene's mesh, sorted by cell. Areas are exact: every triangle is cut at the voxels' faces.
 /// Holes of cut-out textures count as surface. The mesh must be sound (problem_of) and lie in the box.

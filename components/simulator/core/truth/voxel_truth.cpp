@@ -37,16 +37,15 @@ mapping::VoxelMap to_map(const VoxelSet& known, const std::vector<SurfaceVoxel>&
 VoxelTruth make_voxel_truth(const Scene& scene, const SceneRaycaster& raycaster, const NavMap& nav_map,
                             const geometry::Pose& T_world_base, const TruthConfig& config) {
   const geometry::Pose T = T_map_world(T_world_base);
-  const VoxelBox box = voxel_box(scene, T, config.resolution_m);
-  const auto surface = surface_voxels(scene, T, box);
-  VoxelSet solid(box);
-  for (const auto& voxel : surface) solid.insert(voxel.cell);
-
   const Eigen::Vector3d start = T_world_base.translation();
   std::vector<Eigen::Vector3d> eyes;
   for (const auto& p : viewpoints(nav_map, start.head<2>(), config.robot_radius_m, config.view_spacing_m)) {
     eyes.emplace_back(p.x(), p.y(), start.z() + config.mount.height_m);
   }
+  const VoxelBox box = voxel_box(scene, T, config.resolution_m, eyes);
+  const auto surface = surface_voxels(scene, T, box);
+  VoxelSet solid(box);
+  for (const auto& voxel : surface) solid.insert(voxel.cell);
   const VisibilityConfig visibility{elevation_range(config.camera, config.mount.pitch_down_rad), config.sensing_range_m,
                                     config.threads};
   const VoxelSet seen = visible_voxels(raycaster, eyes, visibility, T, box);

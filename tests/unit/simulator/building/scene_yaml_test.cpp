@@ -105,6 +105,7 @@ TEST(SceneYaml, MistakesNameFileAndLine) {
       {"furniture:\n  - {class: chair, at: [1, x]}\n", ":5: at: must be a number, not \"x\""},
       {"furniture:\n  - {class: chair, at: [1, .nan]}\n", ":5: at: must be a number"},
       {"furniture:\n  - {class: chair, at: [1, 1], room: a, wall: 0}\n", ":5: item: give one of at, room, on"},
+      {"furniture:\n  - {class: chair, room: a}\n", ":5: item: key \"wall\" is missing"},
       {"furniture:\n  - {class: chair, room: c, wall: 0}\n", ":5: item: there is no room \"c\""},
       {"furniture:\n  - {class: chair, room: a, wall: 9}\n", ":5: item: room \"a\" has no wall 9"},
       {"furniture:\n  - {class: chair, room: a, wall: up}\n", ":5: item: wall must be a number, north"},

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -12,7 +13,9 @@
 #include "evaluator/core/iou.hpp"
 #include "evaluator/core/map_input.hpp"
 #include "simulator/core/render/renderer.hpp"
+#include "simulator/core/truth/explorable.hpp"
 #include "simulator/core/truth/ideal_map.hpp"
+#include "simulator/core/truth/mesh_voxels.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -49,6 +52,21 @@ Scene furnished_room() {
 
 // The map's origin is chosen so that all surfaces run through the middle of voxels.
 const geometry::Pose kStart = test::translation(4.125, 3.875, -0.125);
+
+// A scan without a ceiling ends below the camera.
+TEST(VoxelTruthTest, TheCameraMayBeAboveAllOfTheScene) {
+  Scene scene = test::room({3, 3, 0.3F});
+  std::erase_if(scene.mesh.triangles, [&](const Triangle& t) {  // the ceiling
+    return std::all_of(t.vertices.begin(), t.vertices.end(),
+                       [&](std::uint32_t v) { return scene.mesh.positions[v].z() > 0.2F; });
+  });
+  const VoxelTruth truth = truth_of(scene, test::translation(1.5, 1.5, 0.0), config());
+  EXPECT_GT(evaluator::coverage(known(truth.mesh)).explored_volume_m3, 3 * 3 * 0.3);
+  const SceneRaycaster raycaster(scene.mesh);
+  const VoxelBox box = voxel_box(scene, geometry::Pose::Identity(), 0.25);
+  EXPECT_THROW(visible_voxels(raycaster, {{1.5, 1.5, 4.0}}, {}, geometry::Pose::Identity(), box),
+               std::invalid_argument);
+}
 
 TEST(VoxelTruthTest, OfARoomIsAllButTheInsideOfThings) {
   const VoxelTruth truth = truth_of(furnished_room(), kStart, config());

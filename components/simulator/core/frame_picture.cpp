@@ -10,7 +10,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr float kFar_m = 8.0F;  // black
+constexpr float kFar_m = 8.0F;  // and beyond: nearly black
 constexpr int kCaption_px = 16;
 
 cv::Mat view_of(const geometry::ColorImage& image) {

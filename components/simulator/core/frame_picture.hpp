@@ -10,7 +10,7 @@
 
 namespace lapis::simulator {
 
-/// Colour, depth (near: bright; nothing: black), and classes in their colours, side by side.
+/// Colour, depth (near: bright, from 8 m on nearly black; nothing: black), and classes in their colours, side by side.
 geometry::ColorImage side_by_side(const RenderedFrame& frame, const mapping::LabelList& labels);
 
 /// Pictures of equal size in rows, each scaled down to `width_px` and named.

@@ -4,6 +4,12 @@
 
 namespace lapis::runtime {
 
+namespace {
+
+constexpr std::chrono::milliseconds kSettling(500);
+
+}  // namespace
+
 CameraPublisher::CameraPublisher(Context& context, const Parts& parts)
     : ids_{context.frame("base_link"), context.frame("camera_link"), context.frame("camera_color_optical_frame"),
            "world"},
@@ -15,6 +21,16 @@ CameraPublisher::CameraPublisher(Context& context, const Parts& parts)
     label_info_ = &context.advertise(topics::kLabelInfo);
   }
   if (parts.has_ground_truth) ground_truth_ = &context.advertise(topics::kGroundTruth);
+}
+
+bool CameraPublisher::has_readers(std::size_t number) {
+  if (number == 0) return true;
+  if (depth_.matched() < number) {
+    matched_since_.reset();
+    return false;
+  }
+  if (!matched_since_) matched_since_ = Clock::now();
+  return Clock::now() - *matched_since_ >= kSettling;
 }
 
 void CameraPublisher::publish_latched(const geometry::CameraMount& mount, const mapping::LabelList& labels,

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <vector>
+#include <chrono>
+#include <optional>
 
 #include "common/mapping/label_list.hpp"
 #include "common/messages/camera_frame.hpp"
@@ -19,15 +20,19 @@ class CameraPublisher {
   CameraPublisher(Context& context, const Parts& parts);
 
   const messages::CameraFrameIds& ids() const { return ids_; }
-  /// Readers of the depth images.
-  std::size_t readers() const { return depth_.matched(); }
+  /// True when the depth images have had `number` readers for half a second: their readers of other topics match within
+  /// that time. To be asked often.
+  bool has_readers(std::size_t number);
   /// Mount and classes, once.
   void publish_latched(const geometry::CameraMount& mount, const mapping::LabelList& labels, time::Time stamp);
   /// The frame, and then its stamp on /clock. Published again by lock-step when a participant was late.
   void publish(const messages::CameraMessages& messages);
 
  private:
+  using Clock = std::chrono::steady_clock;
+
   messages::CameraFrameIds ids_;
+  std::optional<Clock::time_point> matched_since_;
   dds::Publisher<sensor_msgs::msg::Image>& color_;
   dds::Publisher<sensor_msgs::msg::Image>& depth_;
   dds::Publisher<sensor_msgs::msg::CameraInfo>& color_info_;

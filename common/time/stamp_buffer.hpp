@@ -10,6 +10,9 @@
 
 namespace lapis::time {
 
+/// A source whose stamps go back by more than this began anew; less is disorder.
+inline constexpr Duration kRestartGap{1'000'000'000};
+
 enum class Push {
   kStored,
   kDuplicate,  ///< not stored: the stamp is there or was taken last
@@ -79,8 +82,6 @@ class StampBuffer {
   }
 
  private:
-  static constexpr Duration kRestartGap{1'000'000'000};
-
   std::size_t capacity_;
   std::deque<std::pair<Time, Message>> entries_;
   std::optional<Time> newest_;

@@ -10,7 +10,6 @@ namespace {
 
 constexpr double kProgressPeriod_s = 2.0;
 constexpr double kMatchingPeriod_s = 0.05;
-constexpr double kSettling_s = 0.5;
 constexpr double kFarewell_s = 2.0;  // at the end, for readers that still miss the last frame
 
 TumDatasetConfig dataset_config(const SensorReplayConfig& config) {
@@ -86,19 +85,8 @@ void SensorReplayComponent::work() {
   if (driver_->state() == State::kFailed) context_.fail(driver_->failure());
 }
 
-/// True when the depth topic has had its readers for a moment: their readers of other topics match within that time.
-bool SensorReplayComponent::is_awaited_by_readers() {
-  if (config_.wait_for_readers == 0) return true;
-  if (camera_.readers() < static_cast<std::size_t>(config_.wait_for_readers)) {
-    matched_since_.reset();
-    return false;
-  }
-  if (!matched_since_) matched_since_ = Clock::now();
-  return seconds_between(*matched_since_, Clock::now()) >= kSettling_s;
-}
-
 void SensorReplayComponent::play_by_wall_clock() {
-  if (began_ || !is_awaited_by_readers()) return;
+  if (began_ || !camera_.has_readers(static_cast<std::size_t>(config_.wait_for_readers))) return;
   began_ = Clock::now();
   for (std::size_t index = range_.begin; index < range_.end; ++index) {
     const double at_s = (dataset_.stamp(index) - dataset_.stamp(range_.begin)).seconds() / config_.rate;

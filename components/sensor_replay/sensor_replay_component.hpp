@@ -32,7 +32,6 @@ class SensorReplayComponent {
   using Clock = std::chrono::steady_clock;
 
   void work();
-  bool is_awaited_by_readers();
   void play_by_wall_clock();
   bool publish_next();
   void count(const SkippedFrame& skipped);
@@ -52,7 +51,6 @@ class SensorReplayComponent {
   bool has_ended_ = false;
   double longest_tick_s_ = 0.0;               // of those with a frame
   std::optional<Clock::time_point> closing_;  // begin of the tick after the last frame
-  std::optional<Clock::time_point> matched_since_;
   std::optional<Clock::time_point> began_;
   Clock::time_point reported_;
 };

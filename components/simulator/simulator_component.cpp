@@ -1,6 +1,7 @@
 #include "simulator/simulator_component.hpp"
 
 #include "common/files/atomic_file.hpp"
+#include "common/time/stamp_buffer.hpp"
 #include "simulator/core/truth/truth_files.hpp"
 #include "simulator/run_files.hpp"
 #include "simulator/set_up.hpp"
@@ -10,6 +11,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kProgressPeriod_s = 2.0;
+constexpr std::chrono::milliseconds kMatchingPeriod(50);
 
 double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
   return std::chrono::duration<double>(b - a).count();
@@ -47,7 +49,7 @@ SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& c
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "simulator.output_dir");
   describe_scene(world_);
   if (config_.imu) imu_ = &context.advertise(topics::kImu);
-  context.subscribe(topics::kCommand, [this](const auto& m) { command_ = from_message(m); });
+  context.subscribe(topics::kCommand, [this](const auto& m) { run_->command(from_message(m)); });
   serve();
   begin();
   if (config_.mode == "lockstep") {
@@ -58,73 +60,82 @@ SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& c
 }
 
 void SimulatorComponent::serve() {
-  const auto answer = [](const std::string& text) {
+  const auto answer = [](const std::string& text, bool is_done = true) {
     std_srvs::srv::Trigger_Response response;
-    response.success(true);
+    response.success(is_done);
     response.message(text);
     return response;
   };
-  context_.serve(topics::kPause, [this, answer](const auto&) {
-    is_paused_ = true;
-    return answer("paused at tick " + std::to_string(ticks_));
+  const auto tick = [this] { return std::to_string(run_->frames()); };
+  context_.serve(topics::kPause, [this, answer, tick](const auto&) {
+    pause();
+    return answer("paused at tick " + tick());
   });
-  context_.serve(topics::kRun, [this, answer](const auto&) {
-    is_paused_ = false;
-    due_ = Clock::now();
-    return answer("running from tick " + std::to_string(ticks_));
+  context_.serve(topics::kRun, [this, answer, tick](const auto&) {
+    go_on();
+    return answer("running from tick " + tick());
   });
-  context_.serve(topics::kStep, [this, answer](const auto&) {
-    is_paused_ = true;
+  context_.serve(topics::kStep, [this, answer, tick](const auto&) {
+    pause();
     ++steps_;
-    return answer("stepping on from tick " + std::to_string(ticks_));
+    return answer("stepping on from tick " + tick());
   });
   context_.serve(topics::kReset, [this, answer](const auto&) {
+    const auto first = time::Duration::from_seconds(1.0 / config_.robot.camera.rate_hz);
+    if (run_->frames() > 0 && run_->stamp() <= time::Time{} + first + time::kRestartGap) {
+      return answer("not reset: consumers take a step back of less than a second for disorder; try again later", false);
+    }
     begin();
     if (driver_) driver_->restart();
     return answer("back at the start");
   });
 }
 
+void SimulatorComponent::pause() {
+  if (!paused_at_) paused_at_ = Clock::now();
+}
+
+void SimulatorComponent::go_on() {
+  if (paused_at_ && began_) *began_ += Clock::now() - *paused_at_;  // real-time factors are of the time that ran
+  paused_at_.reset();
+  steps_ = 0;
+  due_ = Clock::now();
+}
+
 /// At the start again, with time 0.
 void SimulatorComponent::begin() {
-  if (next_.valid()) next_.wait();
-  simulation_ = std::make_unique<Simulation>(world_, simulation_config(config_), start_);
-  if (!config_.output_dir.empty()) ideal_.emplace(truth_config(config_));
-  tour_ = simulator::plan_tour(world_, start_, config_);
-  command_.reset();
-  last_.reset();
-  ticks_ = 0;
-  is_over_ = has_ended_ = false;
+  run_.reset();  // before the next one takes its memory
+  run_ = std::make_unique<Run>(world_, start_, config_, SimulatorFrameIds{camera_.ids(), context_.frame("odom")});
+  has_ended_ = false;
+  steps_ = 0;
   began_.reset();
   due_ = Clock::now();
   camera_.publish_latched(robot::camera_mount(config_.robot.camera), world_.scene().labels, time::Time{});
-  simulate_next();
 }
 
 /// One tick at most: between two the executor looks for signals, services and commands.
 void SimulatorComponent::work() {
   using State = runtime::LockstepDriver::State;
-  const State state = driver_ ? driver_->state() : State::kIdle;
-  if (state == State::kFailed && failure_.empty()) {
-    failure_ = driver_->failure();
-    return context_.fail(failure_);
+  if (!failure_.empty()) return;
+  try {
+    if (truth_.valid() && truth_.wait_for(std::chrono::seconds(0)) == std::future_status::ready) truth_.get();
+    const State state = driver_ ? driver_->state() : State::kIdle;
+    if (state == State::kFailed) throw std::runtime_error(driver_->failure());
+    if (state == State::kIdle && may_tick()) tick();
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+    context_.fail(failure_);
   }
-  if (state != State::kIdle || !may_tick()) return;
-  if (has_ended_) {
-    report_progress(true);
-    return context_.finish();
-  }
-  if (is_over_) {
-    end();
-  } else {
-    tick();
-  }
-  context_.executor().wake();
 }
 
-/// False while paused, or before the wall-clock time of the next tick, at which it wakes the executor.
+/// False while paused, while readers are awaited, or before the wall-clock time of the next tick, at which it wakes the
+/// executor.
 bool SimulatorComponent::may_tick() {
-  if (is_paused_ && steps_ == 0) return false;
+  if (paused_at_ && steps_ == 0) return false;
+  if (!driver_ && !began_ && !camera_.has_readers(static_cast<std::size_t>(config_.wait_for_readers))) {
+    context_.executor().at(Clock::now() + kMatchingPeriod, [] {});
+    return false;
+  }
   const double pace = driver_ ? config_.max_real_time_factor : 1.0;
   if (pace > 0.0 && Clock::now() < due_) {
     context_.executor().at(due_, [] {});
@@ -134,70 +145,52 @@ bool SimulatorComponent::may_tick() {
     const std::chrono::duration<double> period(1.0 / (pace * config_.robot.camera.rate_hz));
     due_ = std::max(due_ + std::chrono::duration_cast<Clock::duration>(period), Clock::now());  // lost time stays lost
   }
-  if (is_paused_) --steps_;
+  if (paused_at_) --steps_;
   return true;
 }
 
+/// Publishes a frame; after the last one a tick without any, in which others finish their work; and then ends.
 void SimulatorComponent::tick() {
+  if (has_ended_) {
+    report_progress(true);
+    return context_.finish();
+  }
   if (!began_) began_ = reported_ = Clock::now();
-  Step step = next_.get();
-  ++ticks_;
-  stamp_ = step.frame.stamp;
-  last_ = std::move(step.messages);
-  publish_again();
-  publish_contact(step.frame.is_in_contact);
-  if (tour_) command_ = tour_->command(step.frame.robot.position, step.frame.robot.yaw_rad);
-  const bool is_tour_over = tour_ && tour_->is_finished();
-  is_over_ = is_tour_over || (config_.duration_s > 0.0 && stamp_.seconds() >= config_.duration_s);
-  if (!is_over_) simulate_next();
-  if (driver_) driver_->begin(stamp_, false);
-  report_progress(false);
+  has_ended_ = run_->is_over();
+  if (!has_ended_) {
+    run_->advance();
+    publish_again();
+    publish_contact();
+    report_progress(false);
+  }
+  if (driver_) driver_->begin(run_->stamp(), has_ended_);
+  context_.executor().wake();
 }
 
-/// A tick without a frame: others finish their work.
-void SimulatorComponent::end() {
-  has_ended_ = true;
-  last_.reset();
-  if (driver_) driver_->begin(stamp_, true);
-}
-
+/// Nothing in the last tick, which has no frame.
 void SimulatorComponent::publish_again() {
-  if (!last_) return;
-  for (const auto& message : last_->wheels) wheels_.publish(message);
-  for (const auto& message : last_->imu) imu_->publish(message);
-  camera_.publish(last_->camera);
+  if (has_ended_) return;
+  for (const auto& message : run_->messages()->wheels) wheels_.publish(message);
+  for (const auto& message : run_->messages()->imu) imu_->publish(message);
+  camera_.publish(run_->messages()->camera);
 }
 
-void SimulatorComponent::publish_contact(bool is_in_contact) {
-  if (is_in_contact && !is_in_contact_) ++collisions_;
-  if (is_in_contact != is_in_contact_ || ticks_ == 1) {
+void SimulatorComponent::publish_contact() {
+  if (run_->has_contact_changed()) {
     std_msgs::msg::Bool message;
-    message.data(is_in_contact);
+    message.data(run_->is_in_contact());
     collision_.publish(message);
   }
-  is_in_contact_ = is_in_contact;
-  context_.status().value("frames", ticks_);
-  context_.status().value("collisions", collisions_);
-}
-
-/// In a thread of its own, because rendering takes longer than the others' work on a stage.
-void SimulatorComponent::simulate_next() {
-  next_ = std::async(std::launch::async, [this, command = std::exchange(command_, std::nullopt)] {
-    Step step;
-    step.frame = simulation_->next(command);
-    if (ideal_) add_to(*ideal_, step.frame, world_, start_, config_);
-    step.messages =
-        to_messages(step.frame, pinhole_camera(config_.robot.camera), {camera_.ids(), context_.frame("odom")});
-    return step;
-  });
+  context_.status().value("frames", run_->frames());
+  context_.status().value("collisions", run_->collisions());
 }
 
 void SimulatorComponent::report_progress(bool is_last) {
   const auto now = Clock::now();
   if (!is_last && seconds_between(reported_, now) < kProgressPeriod_s) return;
   reported_ = now;
-  const double elapsed_s = std::max(seconds_between(*began_, now), 1e-3);
-  spdlog::info("{:.1f} s simulated, real-time factor {:.2f}", stamp_.seconds(), stamp_.seconds() / elapsed_s);
+  const double elapsed_s = std::max(seconds_between(*began_, now), 1e-3), simulated_s = run_->stamp().seconds();
+  spdlog::info("{:.1f} s simulated, real-time factor {:.2f}", simulated_s, simulated_s / elapsed_s);
 }
 
 /// The ground truth of the scene, in a thread of its own: the run does not wait for it.
@@ -208,10 +201,9 @@ void SimulatorComponent::make_truth() {
 }
 
 void SimulatorComponent::finish() {
-  if (next_.valid()) next_.wait();
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
-  if (simulation_->commands_refused() > 0) {
-    spdlog::warn("commands refused, because they are not finite: {}", simulation_->commands_refused());
+  if (const auto refused = run_->commands_refused(); refused > 0) {
+    spdlog::warn("commands refused, because they are not finite: {}", refused);
   }
   if (!config_.output_dir.empty()) write_files();
 }
@@ -219,15 +211,15 @@ void SimulatorComponent::finish() {
 void SimulatorComponent::write_files() {
   RunSummary summary;
   summary.exit_reason = !failure_.empty() ? failure_ : has_ended_ ? "completed" : "stopped";
-  summary.frames = ticks_;
-  summary.simulated_s = stamp_.seconds();
-  if (began_) summary.wall_s = seconds_between(*began_, Clock::now());
-  summary.collisions = collisions_;
+  summary.frames = run_->frames();
+  summary.simulated_s = run_->stamp().seconds();
+  if (began_) summary.wall_s = seconds_between(*began_, paused_at_.value_or(Clock::now()));
+  summary.collisions = run_->collisions();
   if (driver_) summary.cpu_ms = driver_->cpu_ms();
   files::replace_text(std::filesystem::path(config_.output_dir) / "simulation.yaml",
                       to_yaml(summary, world_, start_, config_));
-  truth_.get();
-  write_ideal_map(truth_folder(config_), world_.scene(), *ideal_);
+  if (truth_.valid()) truth_.get();
+  write_ideal_map(truth_folder(config_), world_.scene(), run_->ideal_map());
 }
 
 }  // namespace lapis::simulator

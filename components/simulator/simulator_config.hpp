@@ -37,6 +37,7 @@ struct SimulatorConfig {
   std::string tour;
   std::string start;
   std::string output_dir;
+  int wait_for_readers = 0;
   int render_threads = 1;
   bool imu = false;
   SceneConfig world;
@@ -100,6 +101,8 @@ void describe(Field& field, SimulatorConfig& c) {
   field("start", c.start, config::anything(), "\"x y yaw_deg\" [m, m, deg]; empty: drawn by the seed");
   field("output_dir", c.output_dir, config::anything(),
         "run folder for simulation.yaml and ground_truth/; empty: none");
+  field("wait_for_readers", c.wait_for_readers, config::in_range(0, 100),
+        "freerun: begin when the depth topic has this many readers");
   field("render_threads", c.render_threads, config::in_range(1, 64), "images do not depend on it");
   field("imu", c.imu, config::anything(), "publish /imu at 200 Hz");
   field("world", c.world);

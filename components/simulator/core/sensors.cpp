@@ -27,9 +27,11 @@ CameraImages Sensors::see(const RenderedFrame& ideal, const View& view) const {
           labels_.apply(ideal.labels, ideal.instances, ideal.depth, view.T_world_camera, view.tick)};
 }
 
-void Sensors::roll(const Motion& motion) {
+void Sensors::feel(const Motion& motion) {
   rolled_m_ += motion.distance_m;
   turned_rad_ += motion.turn_rad;
+  felt_turn_rad_ += motion.turn_rad;
+  felt_push_m_s_ += motion.acceleration * motion.duration_s;
 }
 
 WheelSample Sensors::read_wheels(time::Time stamp, time::Duration period) {
@@ -47,9 +49,12 @@ WheelSample Sensors::read_wheels(time::Time stamp, time::Duration period) {
   return out;
 }
 
-ImuSample Sensors::read_imu(const Motion& motion, time::Time stamp, time::Duration period) {
-  const Eigen::Vector3d acceleration(motion.acceleration.x(), motion.acceleration.y(), kGravity_m_s2);
-  const ImuReading reading = imu_.read({0.0, 0.0, motion.turn_rate_rad_s}, acceleration, period.seconds());
+ImuSample Sensors::read_imu(time::Time stamp, time::Duration period) {
+  const double period_s = period.seconds();
+  const Eigen::Vector3d acceleration(felt_push_m_s_.x() / period_s, felt_push_m_s_.y() / period_s, kGravity_m_s2);
+  const ImuReading reading = imu_.read({0.0, 0.0, felt_turn_rad_ / period_s}, acceleration, period_s);
+  felt_turn_rad_ = 0.0;
+  felt_push_m_s_.setZero();
   return {stamp, reading.turn_rate_rad_s, reading.acceleration_m_s2, reading.turn_rate_variance,
           reading.acceleration_variance};
 }

@@ -71,12 +71,12 @@ class Sensors {
           std::uint64_t seed);
 
   CameraImages see(const RenderedFrame& ideal, const View& view) const;
-  /// The wheels have turned: counted until odometry is read.
-  void roll(const Motion& motion);
+  /// The robot has moved: added up until odometry and IMU are read.
+  void feel(const Motion& motion);
   /// Odometry of what the wheels rolled in the period that ends now.
   WheelSample read_wheels(time::Time stamp, time::Duration period);
-  /// Mean over a motion that took `period`.
-  ImuSample read_imu(const Motion& motion, time::Time stamp, time::Duration period);
+  /// Mean of what the body felt in the period that ends now.
+  ImuSample read_imu(time::Time stamp, time::Duration period);
 
  private:
   double focal_px_;
@@ -85,8 +85,10 @@ class Sensors {
   LabelNoise labels_;
   WheelOdometry wheels_;
   ImuNoise imu_;
-  double rolled_m_ = 0.0;
+  double rolled_m_ = 0.0;  // since the last odometry
   double turned_rad_ = 0.0;
+  double felt_turn_rad_ = 0.0;           // since the last reading of the IMU
+  Eigen::Vector2d felt_push_m_s_{0, 0};  // change of velocity, along and across the heading
 };
 
 }  // namespace lapis::simulator

@@ -60,9 +60,9 @@ void Simulation::drive_to(time::Time stamp, SensorFrame& frame) {
     const Motion motion = robot_.advance(until);
     frame.is_in_contact |= motion.is_in_contact;
     frame.turn_rate_rad_s = motion.turn_rate_rad_s;
-    sensors_.roll(motion);
+    sensors_.feel(motion);
     if (until == next_multiple(now, kWheelPeriod)) frame.wheels.push_back(sensors_.read_wheels(until, kWheelPeriod));
-    if (config_.sensors.has_imu && until == imu_due) frame.imu.push_back(sensors_.read_imu(motion, until, kImuPeriod));
+    if (config_.sensors.has_imu && until == imu_due) frame.imu.push_back(sensors_.read_imu(until, kImuPeriod));
   }
 }
 

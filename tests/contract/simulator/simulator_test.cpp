@@ -3,8 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <fstream>
+#include <map>
 #include <set>
 
 #include "common/messages/camera.hpp"
@@ -30,12 +32,23 @@ std::string text_of(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
+template <class Message>
+time::Time stamp_of(const Message& message) {
+  return messages::from_message(message.header().stamp());
+}
+
+std::map<time::Time, std::vector<std::uint8_t>> images_by_stamp(const std::vector<sensor_msgs::msg::Image>& images) {
+  std::map<time::Time, std::vector<std::uint8_t>> out;
+  for (const auto& image : images) out[stamp_of(image)] = image.data();
+  return out;
+}
+
 /// Stamps in order of arrival, without the repetitions that lock-step allows itself.
 template <class Message>
 std::vector<time::Time> stamps_of(const std::vector<Message>& messages) {
   std::vector<time::Time> out;
   for (const auto& message : messages) {
-    const auto stamp = messages::from_message(message.header().stamp());
+    const auto stamp = stamp_of(message);
     if (out.empty() || stamp != out.back()) out.push_back(stamp);
   }
   return out;
@@ -111,9 +124,19 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   const auto& wheels = probe.collect(topics::kWheelOdometry);
   const auto& mount = probe.collect(topics::kStaticTransforms);
   const auto& names = probe.collect(topics::kLabelInfo);
-  ChildProcess simulator(kSimulator, arguments({"--mode", "freerun"}));
+  ChildProcess simulator(kSimulator, arguments({"--mode", "freerun", "--set", "simulator.wait_for_readers=1", "--set",
+                                                "robot.camera.rate_hz=5"}));
   ASSERT_TRUE(probe.wait_until([&] { return labels.size() > 5 && truth.size() > 5 && wheels.size() > 20; }))
       << simulator.log();
+  // It began when the readers were there: nothing is missing from the first frame on.
+  for (std::size_t i = 0; i < 5; ++i) {
+    const auto stamp = time::Time{static_cast<std::int64_t>(i + 1) * 200'000'000};
+    EXPECT_EQ(stamp_of(color[i]), stamp);
+    EXPECT_EQ(stamp_of(depth[i]), stamp);
+    EXPECT_EQ(stamp_of(labels[i]), stamp);
+    EXPECT_EQ(stamp_of(info[i]), stamp);
+    EXPECT_EQ(stamp_of(truth[i]), stamp);
+  }
   ASSERT_TRUE(probe.wait_until([&] { return !mount.empty() && !names.empty() && !info.empty(); }));
   EXPECT_EQ(names[0].class_map().size(), 10U);
   const auto camera = messages::from_message(info[0]);
@@ -128,9 +151,7 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   EXPECT_EQ(truth.back().child_frame_id(), "base_link");
   EXPECT_EQ(wheels.back().header().frame_id(), "odom");
   for (std::size_t i = 1; i < wheels.size(); ++i) {
-    const auto step =
-        messages::from_message(wheels[i].header().stamp()) - messages::from_message(wheels[i - 1].header().stamp());
-    EXPECT_EQ(step.nanoseconds, 20'000'000);
+    EXPECT_EQ((stamp_of(wheels[i]) - stamp_of(wheels[i - 1])).nanoseconds, 20'000'000);
   }
   EXPECT_EQ(simulator.stop(SIGTERM), 0) << simulator.log();
   EXPECT_THAT(summary(), HasSubstr("exit_reason: \"stopped\""));
@@ -233,7 +254,7 @@ TEST_F(SimulatorContract, SlowLateAndWrongAnswersDoNotMoveTheClock) {
 
 TEST_F(SimulatorContract, PauseStepRunAndReset) {
   TopicProbe probe;
-  const auto& truth = probe.collect(topics::kGroundTruth);
+  const auto& depth = probe.collect(topics::kDepth);
   auto& pause = probe.client(topics::kPause);
   auto& step = probe.client(topics::kStep);
   auto& run = probe.client(topics::kRun);
@@ -241,30 +262,59 @@ TEST_F(SimulatorContract, PauseStepRunAndReset) {
   ChildProcess echo(kEcho);
   ChildProcess simulator(kSimulator, with_stages("[test_echo]", {"--set", "simulator.max_real_time_factor=1"}));
   ASSERT_TRUE(probe.wait_until([&] {
-    return pause.is_ready() && step.is_ready() && run.is_ready() && reset.is_ready() && truth.size() > 3;
+    return pause.is_ready() && step.is_ready() && run.is_ready() && reset.is_ready() && depth.size() > 3;
   })) << simulator.log();
-  const auto call = [&](auto& client) {
+  /// Answers with the number of the tick that the reply names, 0 when it names none.
+  const auto call = [&](auto& client) -> std::uint64_t {
     const auto number = client.call({});
     std::optional<std_srvs::srv::Trigger_Response> reply;
-    ASSERT_TRUE(probe.wait_until([&] { return (reply = client.take_reply(*number)).has_value(); })) << simulator.log();
-    EXPECT_TRUE(reply->success());
-    EXPECT_THAT(reply->message(), ::testing::Not(::testing::IsEmpty()));
+    EXPECT_TRUE(probe.wait_until([&] { return (reply = client.take_reply(*number)).has_value(); })) << simulator.log();
+    EXPECT_TRUE(reply && reply->success());
+    const std::string text = reply ? reply->message() : "";
+    const auto at = text.find("tick ");
+    return at == std::string::npos ? 0 : std::stoull(text.substr(at + 5));
   };
-  call(pause);
-  probe.wait_until([] { return false; }, Seconds(0.3));  // a frame that was under way when the pause came
-  const auto paused = truth.size();
-  EXPECT_FALSE(probe.wait_until([&] { return truth.size() > paused; }, Seconds(0.5)));
-  call(step);
-  EXPECT_TRUE(probe.wait_until([&] { return truth.size() == paused + 1; }));
-  EXPECT_FALSE(probe.wait_until([&] { return truth.size() > paused + 1; }, Seconds(0.5)));
+  const auto last_frame = [&] {
+    return static_cast<std::uint64_t>(std::lround(depth.empty() ? 0.0 : 15.0 * stamp_of(depth.back()).seconds()));
+  };
+  const std::uint64_t paused = call(pause);
+  ASSERT_GT(paused, 3U);
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(call(step), paused);  // what it says is where it was, and that stands still
+  EXPECT_TRUE(probe.wait_until([&] { return last_frame() == paused + 3; })) << simulator.log();
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(call(pause), paused + 3);
   call(run);
-  EXPECT_TRUE(probe.wait_until([&] { return truth.size() > paused + 5; })) << simulator.log();
-  const auto before = messages::from_message(truth.back().header().stamp());
-  call(reset);
-  ASSERT_TRUE(probe.wait_until([&] { return messages::from_message(truth.back().header().stamp()) < before; }))
-      << simulator.log() << echo.log();
-  const auto again = truth.size();
-  EXPECT_TRUE(probe.wait_until([&] { return truth.size() > again + 5; })) << simulator.log() << echo.log();
+  EXPECT_TRUE(probe.wait_until([&] { return last_frame() > paused + 20; })) << simulator.log();
+  const auto first_run = images_by_stamp(depth);
+  const std::size_t before = depth.size();
+  EXPECT_EQ(call(reset), 0U);
+  ASSERT_TRUE(probe.wait_until([&] { return depth.size() > before + 15 && last_frame() > 10; })) << simulator.log();
+  // The same start, seed and (no) commands: the same bytes.
+  const auto went_back = std::adjacent_find(depth.begin(), depth.end(),
+                                            [](const auto& a, const auto& b) { return stamp_of(b) < stamp_of(a); });
+  ASSERT_NE(went_back, depth.end());
+  std::size_t compared = 0;
+  for (const auto& [stamp, bytes] : images_by_stamp({went_back + 1, depth.end()})) {
+    const auto known = first_run.find(stamp);
+    if (known == first_run.end()) continue;
+    EXPECT_EQ(known->second, bytes) << "at " << stamp.seconds() << " s";
+    ++compared;
+  }
+  EXPECT_GT(compared, 5U);
+}
+
+TEST_F(SimulatorContract, AResetThatConsumersWouldTakeForDisorderIsRefused) {
+  TopicProbe probe;
+  HandMadeParticipant slam(probe);
+  auto& reset = probe.client(topics::kReset);
+  ChildProcess simulator(kSimulator, with_stages("[slam]"));
+  ASSERT_TRUE(slam.wait_for_tick(1)) << simulator.log();
+  ASSERT_TRUE(probe.wait_until([&] { return reset.is_ready(); }));
+  const auto number = reset.call({});
+  std::optional<std_srvs::srv::Trigger_Response> reply;
+  ASSERT_TRUE(probe.wait_until([&] { return (reply = reset.take_reply(*number)).has_value(); })) << simulator.log();
+  EXPECT_FALSE(reply->success());
+  slam.answer(slam.ticks.back());
+  EXPECT_TRUE(slam.wait_for_tick(2)) << "the run goes on";
 }
 
 TEST_F(SimulatorContract, BadScenesAreNamedBeforeAnythingIsPublished) {

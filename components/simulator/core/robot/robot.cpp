@@ -74,11 +74,11 @@ Motion Robot::advance(time::Time until) {
     motion.is_in_contact |= move(drive_on(step_s), step_s, motion);
     state_.stamp = next;
   }
-  const double duration_s = (state_.stamp - begin).seconds();
-  if (duration_s <= 0) return motion;
+  motion.duration_s = (state_.stamp - begin).seconds();
+  if (motion.duration_s <= 0) return motion;
   const Eigen::Vector2d change = Eigen::Rotation2Dd(state_.yaw_rad) * state_.velocity - velocity;
-  motion.acceleration = Eigen::Rotation2Dd(-(yaw + 0.5 * motion.turn_rad)) * change / duration_s;
-  motion.turn_rate_rad_s = motion.turn_rad / duration_s;
+  motion.acceleration = Eigen::Rotation2Dd(-(yaw + 0.5 * motion.turn_rad)) * change / motion.duration_s;
+  motion.turn_rate_rad_s = motion.turn_rad / motion.duration_s;
   return motion;
 }
 

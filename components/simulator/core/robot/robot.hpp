@@ -36,6 +36,7 @@ struct RobotState {
 
 /// What really happened over an interval: the truth behind wheel odometry and IMU.
 struct Motion {
+  double duration_s = 0.0;
   double distance_m = 0.0;             ///< along the heading: what wheels roll
   double turn_rad = 0.0;               ///< what wheels turn
   double slide_m = 0.0;                ///< to the left, along an obstacle: wheels do not notice

@@ -70,6 +70,27 @@ TEST_F(SimulationTest, TheSameCommandsAndSeedGiveTheSameBytes) {
   EXPECT_NE(a.images.depth_mm.pixels, c.images.depth_mm.pixels);
 }
 
+/// Frames end within IMU periods (66.7 ms, 5 ms), and yet every reading covers its whole period.
+TEST_F(SimulationTest, ReadingsOfTheImuAddUpToTheMotion) {
+  SimulationConfig config = config_of(1);
+  config.sensors.imu = {0.0, 0.0, 0.0, 0.0};
+  Simulation simulation(world_, config, start_);
+  SensorFrame frame;
+  double turn_rad = 0.0;
+  Eigen::Vector2d push_m_s(0, 0);          // in the direction of the start
+  for (int tick = 1; tick <= 6; ++tick) {  // 0.4 s: both drives still speed up
+    frame = simulation.next(DriveCommand{0.5, 0.7});
+    for (const auto& sample : frame.imu) {
+      const double middle_rad = turn_rad + 0.5 * sample.turn_rate_rad_s.z() * 0.005;
+      turn_rad += sample.turn_rate_rad_s.z() * 0.005;
+      push_m_s += Eigen::Rotation2Dd(middle_rad) * sample.acceleration_m_s2.head<2>() * 0.005;
+    }
+  }
+  EXPECT_NEAR(turn_rad, frame.robot.yaw_rad, 1e-12);
+  EXPECT_NEAR(push_m_s.norm(), frame.robot.drive.speed_m_s, 1e-5);
+  EXPECT_GT(frame.robot.drive.speed_m_s, 0.3);
+}
+
 TEST_F(SimulationTest, TheCameraSitsOnTheRobotsMount) {
   SimulationConfig config = config_of(1);
   config.sensors.depth.model = DepthModel::kNone;

@@ -1,0 +1,64 @@
+#include "simulator/run.hpp"
+
+#include <utility>
+
+#include "simulator/run_files.hpp"
+#include "simulator/set_up.hpp"
+
+namespace lapis::simulator {
+
+Run::Run(const World& world, const StartPose& start, const SimulatorConfig& config, SimulatorFrameIds ids)
+    : world_(world), start_(start), config_(config), ids_(std::move(ids)),
+      simulation_(world, simulation_config(config), start), tour_(plan_tour(world, start, config)),
+      ideal_map_(truth_config(config)) {
+  begin_next();
+}
+
+void Run::command(const DriveCommand& command) {
+  if (!tour_) command_ = command;
+}
+
+void Run::advance() {
+  const bool was_in_contact = is_in_contact();
+  step_ = next_.get();
+  const SensorFrame& frame = step_->frame;
+  has_contact_changed_ = frame.tick == 1 || frame.is_in_contact != was_in_contact;
+  if (frame.is_in_contact && !was_in_contact) ++collisions_;
+  if (tour_) command_ = tour_->command(frame.robot.position, frame.robot.yaw_rad);
+  is_over_ =
+      (tour_ && tour_->is_finished()) || (config_.duration_s > 0.0 && frame.stamp.seconds() >= config_.duration_s);
+  if (!is_over_) begin_next();
+}
+
+void Run::begin_next() {
+  next_ = std::async(std::launch::async, [this, command = std::exchange(command_, std::nullopt)] {
+    add_to_ideal_map();  // the last frame: only what has been published counts
+    Step step;
+    step.frame = simulation_.next(command);
+    step.messages = to_messages(step.frame, pinhole_camera(config_.robot.camera), ids_);
+    return step;
+  });
+}
+
+void Run::add_to_ideal_map() {
+  if (config_.output_dir.empty() || frames_in_ideal_map_ == frames()) return;
+  add_to(ideal_map_, step_->frame, world_, start_, config_);
+  frames_in_ideal_map_ = frames();
+}
+
+void Run::wait() const {
+  if (next_.valid()) next_.wait();
+}
+
+std::uint64_t Run::commands_refused() {
+  wait();
+  return simulation_.commands_refused();
+}
+
+const IdealMap& Run::ideal_map() {
+  wait();
+  add_to_ideal_map();
+  return ideal_map_;
+}
+
+}  // namespace lapis::simulator

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <future>
+#include <optional>
+
+#include "simulator/conversions.hpp"
+#include "simulator/core/robot/tour_follower.hpp"
+#include "simulator/core/simulation.hpp"
+#include "simulator/core/truth/ideal_map.hpp"
+#include "simulator/core/world.hpp"
+#include "simulator/simulator_config.hpp"
+
+namespace lapis::simulator {
+
+/// One run of the robot, from its start to its end. The next frame is simulated in a thread of its own, because that
+/// takes as long as the others' work on the last one.
+class Run {
+ public:
+  /// @param world must outlive the run.
+  /// @throws std::runtime_error when the robot does not fit at the start, or the tour cannot be driven.
+  Run(const World& world, const StartPose& start, const SimulatorConfig& config, SimulatorFrameIds ids);
+
+  /// From the next frame but one on, because the next one is under way. Not on a tour.
+  void command(const DriveCommand& command);
+  /// Waits for the next frame, and has the one after it simulated, too.
+  /// @throws whatever went wrong there; std::runtime_error when the robot is stuck on its tour.
+  void advance();
+  /// No frame follows: the tour is finished, or the time is up.
+  bool is_over() const { return is_over_; }
+
+  /// Messages of the last frame, and of the sensors since the one before; nothing before the first.
+  const SensorMessages* messages() const { return step_ ? &step_->messages : nullptr; }
+  bool is_in_contact() const { return step_ && step_->frame.is_in_contact; }
+  /// Number of frames so far, and the time of the last one.
+  std::uint64_t frames() const { return step_ ? step_->frame.tick : 0; }
+  time::Time stamp() const { return step_ ? step_->frame.stamp : time::Time{}; }
+  /// True when contact with an obstacle began or ended with the last frame; the first one tells, too.
+  bool has_contact_changed() const { return has_contact_changed_; }
+  /// Contacts so far.
+  std::uint64_t collisions() const { return collisions_; }
+  /// Waits for what is being simulated. Commands that were not finite.
+  std::uint64_t commands_refused();
+  /// Waits for what is being simulated. What the mapper would make of the frames so far without noise.
+  const IdealMap& ideal_map();
+
+ private:
+  struct Step {
+    SensorFrame frame;
+    SensorMessages messages;
+  };
+  void begin_next();
+  void add_to_ideal_map();
+  void wait() const;
+
+  const World& world_;
+  const StartPose start_;
+  const SimulatorConfig config_;
+  const SimulatorFrameIds ids_;
+  Simulation simulation_;
+  std::optional<TourFollower> tour_;
+  std::optional<DriveCommand> command_;  // newest, not yet obeyed
+  IdealMap ideal_map_;
+  std::uint64_t frames_in_ideal_map_ = 0;
+  std::optional<Step> step_;
+  std::uint64_t collisions_ = 0;
+  bool is_over_ = false;
+  bool has_contact_changed_ = false;
+  std::future<Step> next_;  // last: its thread uses what is above, and ends before it does
+};
+
+}  // namespace lapis::simulator

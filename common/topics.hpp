@@ -58,7 +58,7 @@ inline constexpr Topic<vision_msgs::msg::LabelInfo> kLabelInfo{
     "/camera/semantic/label_info", dds::kLatched, "camera, or a segmentation", "once", "names of the class ids"};
 inline constexpr Topic<nav_msgs::msg::Odometry> kWheelOdometry{"/odom", dds::kState, "robot", "50 Hz",
                                                                "optional; wheel odometry, drifting"};
-inline constexpr Topic<sensor_msgs::msg::Imu> kImu{"/imu", dds::kState, "robot", "200 Hz", "optional"};
+inline constexpr Topic<sensor_msgs::msg::Imu> kImu{"/imu", dds::kBurst, "robot", "200 Hz", "optional"};
 
 // Ground truth: only the evaluator and tests may read these.
 inline constexpr Topic<nav_msgs::msg::Odometry> kGroundTruth{
@@ -68,7 +68,7 @@ inline constexpr Topic<std_msgs::msg::Bool> kCollision{"/ground_truth/collision"
 
 // Transforms.
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTransforms{
-    "/tf", dds::kTransform, "slam, robot", "camera rate", "map -> odom -> base_link", true};
+    "/tf", dds::kBurst, "slam, robot", "camera rate", "map -> odom -> base_link", true};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kStaticTransforms{
     "/tf_static", dds::kLatchedByMany, "camera", "once", "base_link -> camera_link -> optical frame", true};
 

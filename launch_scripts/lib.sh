@@ -6,7 +6,7 @@ bin=${LAPIS_BIN:-$repository/build/release/bin}
 out="" # run folder, set by the script
 pids=()
 names=()
-viewer=""
+viewer="" shown="" # process that shows a log, and the index of the one whose log it is
 declare -A statuses=() # by name, of those that have ended
 
 # die TEXT: bad set-up.
@@ -27,9 +27,10 @@ start() {
   launch "$@" >>"$out/logs/$1.log" 2>&1
 }
 
-# start_shown NAME ARGUMENT...: the same, and what it prints is shown, too.
+# start_shown NAME ARGUMENT...: the same for the source of frames, and what it prints is shown, too.
 start_shown() {
   local sink
+  shown=${#pids[@]}
   exec {sink}> >(exec tee -i "$out/logs/$1.log")
   viewer=$!
   launch "$@" >&"$sink" 2>&1
@@ -77,11 +78,11 @@ end_process() {
   statuses[${names[index]}]=$status
 }
 
-# Ends everything that still runs; the trap of every script that starts processes. In the order of the starts: who
-# collects what others write at their end was started after them.
+# Ends everything that still runs; the trap of every script that starts processes. The source of frames first, then in
+# the order of the starts: who collects what others write at their end was started after them.
 end_all() {
   local index
-  for index in "${!pids[@]}"; do
+  for index in $shown "${!pids[@]}"; do
     [ -n "${statuses[${names[index]}]:-}" ] || end_process "$index"
   done
   [ -z "$viewer" ] || wait "$viewer" 2>/dev/null || true # now the log is complete

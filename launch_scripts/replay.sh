@@ -32,6 +32,7 @@ TEXT
 }
 
 source=sensor_replay # of the frames
+of_data_set=() of_scene=() # options given that the other kind of source does not know
 command_line="$*" dataset="" scene="" out="" rate="" play=() requests=() robots=("$repository/config/robot.yaml")
 while [ $# -gt 0 ]; do
   case $1 in
@@ -43,8 +44,10 @@ while [ $# -gt 0 ]; do
     --out) out=$2 && shift ;;
     --rate) rate=$2 && shift ;;
     --scene) scene=$2 source=simulator && shift ;;
-    --robot) robots+=("$2") && shift ;;
-    --start | --duration | --labels | --seed | --tour) play+=("$1" "$2") && shift ;;
+    --robot) robots+=("$2") of_scene+=("$1") && shift ;;
+    --duration) play+=("$1" "$2") && shift ;;
+    --start | --labels) play+=("$1" "$2") of_data_set+=("$1") && shift ;;
+    --seed | --tour) play+=("$1" "$2") of_scene+=("$1") && shift ;;
     --set) requests+=("$2") && shift ;;
     -*) die "unknown option $1 (see --help)" ;;
     *) [ -z "$dataset" ] || die "two data sets given: $dataset and $1"; dataset=$1 ;;
@@ -53,6 +56,9 @@ while [ $# -gt 0 ]; do
 done
 [ -n "$dataset$scene" ] || { usage >&2; exit 2; }
 [ -z "$dataset" ] || [ -z "$scene" ] || die "a data set and a scene given: $dataset and $scene"
+[ -z "$scene" ] || [ ${#of_data_set[@]} -eq 0 ] || die "${of_data_set[0]} is of data sets, and a scene is given"
+[ -n "$scene" ] || [ ${#of_scene[@]} -eq 0 ] || die "${of_scene[0]} is of scenes, and a data set is given"
+[ -z "$scene" ] || [ -z "$rate" ] || [ "$rate" = 1 ] || die "--rate $rate: a scene runs by the wall clock (1) or in lock-step"
 [ -n "$scene" ] || [ -d "$dataset" ] || die "$dataset: no such folder (wanted is a TUM RGB-D data set)"
 require_build
 
@@ -87,7 +93,7 @@ mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another wi
 )
 if [ "$source" = simulator ]; then
   play=("$scene" --set simulator.tour=bundled "${play[@]}" --set "simulator.output_dir=$out")
-  [ -z "$rate" ] || play+=(--mode freerun)
+  [ -z "$rate" ] || play+=(--mode freerun --set simulator.wait_for_readers=3)
 else
   play=("$dataset" "${play[@]}")
   [ -z "$rate" ] || play+=(--rate "$rate" --set sensor_replay.wait_for_readers=3)

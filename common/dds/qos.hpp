@@ -18,11 +18,11 @@ struct Qos {
 
 inline constexpr Qos kSensor{.depth = 5, .urgent = true};
 inline constexpr Qos kState{.depth = 10};
+inline constexpr Qos kBurst{.depth = 100};  ///< many samples at once, such as those since the last camera frame
 inline constexpr Qos kFrameState{.depth = 10, .urgent = true};  ///< one sample per camera frame
 inline constexpr Qos kLatched{.depth = 1, .latched = true};
 inline constexpr Qos kLatchedByMany{.depth = 1, .latched = true, .reader_depth = 100};
 inline constexpr Qos kCommand{.depth = 1};
-inline constexpr Qos kTransform{.depth = 100};
 inline constexpr Qos kLockstep{.depth = 100, .urgent = true};
 inline constexpr Qos kKeyedTiles{.depth = 1, .latched = true, .keyed = true};
 inline constexpr Qos kService{.depth = 10};

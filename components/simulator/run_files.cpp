@@ -1,5 +1,6 @@
 #include "simulator/run_files.hpp"
 
+#include <charconv>
 #include <cstdio>
 #include <numbers>
 
@@ -23,6 +24,12 @@ std::string number(double value) {
   return text;
 }
 
+/// The shortest text that is read back as the same number.
+std::string exact(double value) {
+  char text[40];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
 std::string hexadecimal(std::uint64_t value) {
   char text[40];
   std::snprintf(text, sizeof text, "\"%016llx\"", static_cast<unsigned long long>(value));
@@ -36,8 +43,8 @@ std::string to_yaml(const RunSummary& summary, const World& world, const StartPo
   std::string text = "scene: " + config::quoted(world.scene().name) + "\n";
   text += "scene_hash: " + hexadecimal(world.hash()) + "\n";
   text += "seed: " + std::to_string(config.seed) + "\n";
-  text += "start: [" + number(start.position.x()) + ", " + number(start.position.y()) + ", " +
-          number(start.yaw_rad * 180.0 / std::numbers::pi) + "]  # x y [m] yaw [deg]\n";
+  text += "start: \"" + exact(start.position.x()) + " " + exact(start.position.y()) + " " +
+          exact(start.yaw_rad * 180.0 / std::numbers::pi) + "\"  # as simulator.start\n";
   text += std::string("instruction_set: ") + world.raycaster().instruction_set() + "\n";
   text += "mode: " + config.mode + "\n";
   text += "exit_reason: " + config::quoted(summary.exit_reason) + "\n";

@@ -21,14 +21,16 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-/// A file of its own, or a bundled scene by its name.
+/// A bundled scene by its name, or a file or folder.
 fs::path find_scene(const std::string& name) {
   if (name.empty()) {
     throw std::runtime_error("no scene given; call: lapis_simulator SCENE (bundled: " + joined(bundled_scenes()) + ")");
   }
+  if (name.find('/') == std::string::npos) {
+    fs::path bundled = config_folder() / "scenes" / (name + ".yaml");
+    if (fs::exists(bundled)) return bundled;
+  }
   if (fs::exists(name)) return name;
-  fs::path bundled = config_folder() / "scenes" / (name + ".yaml");
-  if (name.find('/') == std::string::npos && fs::exists(bundled)) return bundled;
   throw std::runtime_error("scene " + name + ": no such file, and no bundled scene (" + joined(bundled_scenes()) + ")");
 }
 

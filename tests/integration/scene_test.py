@@ -39,6 +39,24 @@ class SceneTest(chain.ChainTest):
         self.assert_no_orphan(run)
         self.assertIn("semantic_mapper: 137", (self.folder / "run/manifest.yaml").read_text())
 
+    def test_an_interrupted_run_has_all_that_a_whole_one_has(self):
+        run = chain.replay(SCENE, self.folder / "run", *OPTIONS)
+        self.addCleanup(run.kill)
+        self.assertTrue(run.wait_for_text("real-time factor", 60), run.output())
+        self.assertEqual(run.stop(signal.SIGINT, 60), 130, run.output())
+        self.assert_no_orphan(run)
+        metrics = chain.metrics_of(self.folder / "run")
+        for key in ("frames_tracked", "map_error_mean_m", "ideal_map_error_mean_m", "explored_share"):
+            self.assertIsNotNone(metrics[key], key)
+        self.assertIn('exit_reason: "stopped"', (self.folder / "run/manifest.yaml").read_text())
+
+    def test_options_of_another_kind_of_source_are_refused(self):
+        for source, option, value in ((SCENE, "--start", "1"), (SCENE, "--labels", "a.csv"), (SCENE, "--rate", "2"),
+                                      (self.folder, "--seed", "1"), (self.folder, "--tour", "a.yaml")):
+            with self.subTest(option), chain.replay(source, self.folder / "run", option, value) as run:
+                self.assertEqual(run.wait(), 2, run.output())
+                self.assertIn(option, run.output())
+
     def test_bad_scenes_are_named(self):
         run = chain.replay("no_such_scene", self.folder / "run")
         self.addCleanup(run.kill)

@@ -7,8 +7,8 @@ namespace {
 
 using namespace compat::fdds;  // NOLINT(google-build-using-namespace): policy names only
 
-constexpr Qos kProfiles[] = {kSensor,    kState,    kFrameState, kLatched, kCommand,
-                             kTransform, kLockstep, kKeyedTiles, kService};
+constexpr Qos kProfiles[] = {kSensor, kState,    kFrameState, kLatched, kCommand,
+                             kBurst,  kLockstep, kKeyedTiles, kService};
 
 template <class EndpointQos>
 void expect_common(const EndpointQos& qos, const Qos& wanted) {

@@ -146,7 +146,7 @@ void SimulatorComponent::tick() {
   last_ = std::move(step.messages);
   publish_again();
   publish_contact(step.frame.is_in_contact);
-  if (tour_) command_ = tour_->command(step.frame.robot.position, step.frame.robot.yaw_rad);
+  if (tour_) command_ = tour_->command(step.frame.robot);
   const bool is_tour_over = tour_ && tour_->is_finished();
   is_over_ = is_tour_over || (config_.duration_s > 0.0 && stamp_.seconds() >= config_.duration_s);
   if (!is_over_) simulate_next();

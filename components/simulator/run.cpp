@@ -24,7 +24,12 @@ void Run::advance() {
   const SensorFrame& frame = step_->frame;
   has_contact_changed_ = frame.tick == 1 || frame.is_in_contact != was_in_contact;
   if (frame.is_in_contact && !was_in_contact) ++collisions_;
-  if (tour_) command_ = tour_->command(frame.robot.position, frame.robot.yaw_rad);
+  if (tour_) {
+    command_ = tour_->command(frame.robot);
+    if (const auto problem = tour_->stalled(); !problem.empty()) {
+      throw std::runtime_error("scene " + world_.scene().name + ": " + problem);
+    }
+  }
   is_over_ =
       (tour_ && tour_->is_finished()) || (config_.duration_s > 0.0 && frame.stamp.seconds() >= config_.duration_s);
   if (!is_over_) begin_next();

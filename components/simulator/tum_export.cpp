@@ -80,7 +80,10 @@ int export_tum(const SimulatorConfig& config) {
   while (!is_over) {
     const SensorFrame frame = simulation.next(command);
     writer.add(frame, frame.T_world_base * T_base_camera);
-    command = tour->command(frame.robot.position, frame.robot.yaw_rad);
+    command = tour->command(frame.robot);
+    if (const auto problem = tour->stalled(); !problem.empty()) {
+      throw std::runtime_error("scene " + world.scene().name + ": " + problem);
+    }
     is_over = tour->is_finished() || (config.duration_s > 0.0 && frame.stamp.seconds() >= config.duration_s);
     if (frame.tick % kProgressFrames == 0) {
       std::cout << "frame " << frame.tick << ", way-point " << tour->leg() << '\n' << std::flush;

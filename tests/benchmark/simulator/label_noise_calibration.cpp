@@ -84,7 +84,7 @@ void calibrate(const std::string& scene) {
   int used = 0;
   while (!tour->is_finished()) {
     const SensorFrame frame = simulation.next(command);
-    command = tour->command(frame.robot.position, frame.robot.yaw_rad);
+    command = tour->command(frame.robot);
     if (frame.tick % kEvery != 0) continue;
     const geometry::Pose T = frame.T_world_base * T_base_camera;
     const auto depth = to_metres(frame.images.depth_mm);

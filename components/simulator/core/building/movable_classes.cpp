@@ -88,7 +88,7 @@ void seating(Workshop& s) {
 
 void bed(Workshop& s) {
   const auto frame = s.wood(), sheet = s.white(), blanket = s.fabric(), pillow = s.fabric();
-  const float top = std::min(0.5F, 0.6F * s.h);
+  const float top = std::min(0.55F, 0.7F * s.h);
   s.legs(0.08F, 0.2F * s.h, 0.0F, frame);
   s.box(-s.w / 2, s.w / 2, -s.d / 2, s.d / 2, 0.2F * s.h, 0.5F * top, frame);
   s.box(-s.w / 2, s.w / 2, s.d / 2 - 0.06F, s.d / 2, 0.0F, s.h, frame);

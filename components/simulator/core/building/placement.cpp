@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "simulator/core/building/keep_clear.hpp"
 #include "simulator/core/noise/random.hpp"
 
 namespace lapis::simulator {
@@ -23,8 +24,8 @@ class FurniturePlacer {
   }
 
   void jitter(std::uint64_t seed) {
+    const std::vector<Polygon> clear = keep_clear(spec_, plan_);
     for (std::size_t i = 0; i < poses_.size(); ++i) {
-      poses_[i] = pose(i);  // anew, since what it stands on may have moved
       if (!spec_.furniture[i].is_movable) continue;
       const Random random(seed, RandomStream::kFurniture, i);
       for (const double share : {1.0, 0.5, 0.25}) {
@@ -32,10 +33,11 @@ class FurniturePlacer {
         const double x = random.uniform(0, -1.0, 1.0), y = random.uniform(1, -1.0, 1.0);
         moved.at += share * kMaxMove_m * Eigen::Vector2d(x, y);
         moved.yaw_rad += share * kMaxTurn_rad * random.uniform(2, -1.0, 1.0);
-        if (!is_free(i, moved)) continue;
+        if (!is_free(i, moved, clear)) continue;
         poses_[i] = moved;
         break;
       }
+      take_along(i);
     }
   }
 
@@ -89,13 +91,22 @@ class FurniturePlacer {
     return overlap(a.footprint(extents_[i]), b.footprint(extents_[k]));
   }
 
-  bool is_free(std::size_t i, const ItemPose& moved) const {
+  /// What stands on an item, on that in turn, and so on: it comes later in the list, and has not been moved itself.
+  void take_along(std::size_t moved) {
+    for (std::size_t i = moved + 1; i < poses_.size(); ++i) {
+      if (std::holds_alternative<OnItem>(spec_.furniture[i].place)) poses_[i] = pose(i);
+    }
+  }
+
+  bool is_free(std::size_t i, const ItemPose& moved, const std::vector<Polygon>& clear) const {
     const Polygon footprint = moved.footprint(extents_[i]);
+    const auto meets_zone = [&](const Polygon& zone) { return overlap(footprint, zone); };
     if (const auto* on = std::get_if<OnItem>(&spec_.furniture[i].place)) {
       const std::size_t support = index_of(on->item);
       if (!contains(poses_[support].footprint(extents_[support]), footprint)) return false;
     } else if (std::none_of(spec_.rooms.begin(), spec_.rooms.end(),
-                            [&](const RoomSpec& room) { return contains(room.polygon, footprint); })) {
+                            [&](const RoomSpec& room) { return contains(room.polygon, footprint); }) ||
+               std::any_of(clear.begin(), clear.end(), meets_zone)) {
       return false;
     }
     for (std::size_t k = 0; k < poses_.size(); ++k) {

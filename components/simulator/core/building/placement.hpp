@@ -33,7 +33,8 @@ std::vector<ItemPose> place_furniture(const SceneSpec& spec, const std::vector<R
                                       const std::vector<ItemExtent>& extents);
 
 /// The same with movable items moved by up to 5 cm and turned by up to 10 degrees, as far as they then stay in their
-/// room (those on another item: on it) and clear of others. What stands on a moved item goes with it.
+/// room (those on another item: on it), clear of others and of what keep_clear() keeps free; those that stand in such a
+/// place as the author wrote them down stay there. What stands on a moved item goes with it.
 std::vector<ItemPose> place_furniture_with_jitter(const SceneSpec& spec, const std::vector<RoomPlan>& plan,
                                                   const std::vector<ItemExtent>& extents, std::uint64_t seed);
 

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iomanip>
 #include <limits>
 #include <numbers>
+#include <sstream>
 #include <utility>
 
 namespace lapis::simulator {
@@ -21,6 +23,8 @@ constexpr double kStopGain = 0.8;    // [1/s]
 constexpr double kSafety_m = 0.02;   // between disc and obstacle on the line to the target
 constexpr double kSample_m = 0.025;
 constexpr double kShortest_m = 0.05;  // distance of the target
+constexpr double kProgress_m = 0.05;  // along the path: less is none
+constexpr double kPatience_s = 20.0;  // without progress, beside the time that a full turn takes
 
 double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
@@ -46,7 +50,31 @@ bool TourFollower::is_at_end() const {
   return along_m_.back() - progress_m_ <= (tour_.legs[leg_].stops ? kArrived_m : kPassed_m);
 }
 
-DriveCommand TourFollower::command(const Eigen::Vector2d& position, double yaw_rad) {
+DriveCommand TourFollower::command(const RobotState& robot) {
+  const DriveCommand command = next_command(robot.position, robot.yaw_rad);
+  watch(robot);
+  return command;
+}
+
+/// Notes when the robot last came nearer to the end of the tour.
+void TourFollower::watch(const RobotState& robot) {
+  robot_ = robot;
+  if (!mark_ || mark_->leg != leg_ || progress_m_ >= mark_->progress_m + kProgress_m)
+    mark_ = {robot.stamp, leg_, progress_m_};
+}
+
+std::string TourFollower::stalled() const {
+  const double patience_s = kPatience_s + 2.0 * std::numbers::pi / config_.max_turn_rate_rad_s;
+  if (is_finished() || !mark_ || (robot_.stamp - mark_->stamp).seconds() < patience_s) return {};
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(2) << "the tour is stuck at (" << robot_.position.x() << ", "
+       << robot_.position.y() << "), on the way to way-point " << leg_ + 1 << " (" << tour_.legs[leg_].path.back().x()
+       << ", " << tour_.legs[leg_].path.back().y() << "): no progress for " << std::setprecision(0) << patience_s
+       << " s; move the way-point, or make room";
+  return text.str();
+}
+
+DriveCommand TourFollower::next_command(const Eigen::Vector2d& position, double yaw_rad) {
   while (!is_finished()) {
     if (!last_yaw_) track(position);
     if (!is_at_end()) return pursue(position, yaw_rad);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -19,13 +20,22 @@ class TourFollower {
   /// @param map must outlive the follower.
   TourFollower(const NavMap& map, Tour tour, const TourConfig& config);
 
-  /// Command for a pose; to be asked regularly (10 Hz or more). Standstill once finished.
-  DriveCommand command(const Eigen::Vector2d& position, double yaw_rad);
+  /// Command for a robot; to be asked regularly (10 Hz or more). Standstill once finished.
+  DriveCommand command(const RobotState& robot);
   bool is_finished() const { return leg_ == tour_.legs.size(); }
   /// Index of the leg (and way-point) that is driven now; the number of legs once finished.
   std::size_t leg() const { return leg_; }
+  /// One line that names the way-point when the robot has not come nearer to it for long; else empty.
+  std::string stalled() const;
 
  private:
+  struct Mark {
+    time::Time stamp;
+    std::size_t leg = 0;
+    double progress_m = 0.0;
+  };
+  DriveCommand next_command(const Eigen::Vector2d& position, double yaw_rad);
+  void watch(const RobotState& robot);
   bool is_at_end() const;
   void begin_leg(std::size_t leg);
   DriveCommand look_around(double yaw_rad);
@@ -44,6 +54,8 @@ class TourFollower {
   bool is_turning_ = false;         ///< on the spot, towards the path
   double turned_rad_ = 0.0;         ///< while looking around
   std::optional<double> last_yaw_;  ///< while looking around
+  std::optional<Mark> mark_;        ///< last progress worth the name
+  RobotState robot_;                ///< at the last command
 };
 
 }  // namespace lapis::simulator

@@ -99,6 +99,37 @@ TEST(Placement, JitterIsBoundedAndDrawnFromTheSeed) {
   EXPECT_GT(moves, 40);  // of 160: the row is narrow
 }
 
+TEST(Placement, JitterKeepsDoorsStartsAndWaysClear) {
+  SceneSpec spec = test::two_rooms();
+  spec.starts = {{{1.0, 0.6}, 0.0}};
+  spec.tour = {{0.5, 2.6}, {2.5, 2.6}};
+  const auto put = [&](double x, double y) {
+    FurnitureSpec chair;
+    chair.class_name = "chair";
+    chair.is_movable = true;
+    chair.place = AtPoint{{x, y}, 0.0};
+    spec.furniture.push_back(chair);
+  };
+  put(4.0 - 0.7 - 0.24, 1.0);   // a centimetre before the clear floor of the door
+  put(1.0 + 0.35 + 0.24, 0.6);  // ... around the start
+  put(1.5, 2.6 - 0.35 - 0.26);  // ... along the way
+  put(0.6, 2.6);                // in the way, by the author's will
+  spec = normalised(spec);
+  const auto plan = plan_walls(spec);
+  const std::vector<ItemExtent> extents(spec.furniture.size(), {{0.46, 0.5, 0.9}, 0.0});
+  const auto still = place_furniture(spec, plan, extents);
+  std::vector<int> moves(still.size());
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const auto moved = place_furniture_with_jitter(spec, plan, extents, seed);
+    for (std::size_t i = 0; i < moved.size(); ++i) moves[i] += moved[i].at == still[i].at ? 0 : 1;
+    EXPECT_FALSE(overlap(moved[0].footprint(extents[0]), rectangle({3.65, 1.0}, {0.7, 0.9}, 0.0)));
+    EXPECT_FALSE(overlap(moved[1].footprint(extents[1]), rectangle({1.0, 0.6}, {0.7, 0.7}, 0.0)));
+    EXPECT_FALSE(overlap(moved[2].footprint(extents[2]), rectangle({1.5, 2.6}, {2.7, 0.7}, 0.0)));
+  }
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_GT(moves[i], 5) << "item " << i;
+  EXPECT_EQ(moves[3], 0);
+}
+
 TEST(Placement, WhatIsNotMovableStays) {
   SceneSpec spec = chairs_in_a_row(0.49);
   for (auto& chair : spec.furniture) chair.is_movable = false;

@@ -146,7 +146,7 @@ Drive drive(const std::vector<WayPoint>& way_points, double start_yaw, double pe
   out.nearest_m.assign(way_points.size(), 1e9);
   DriveCommand late;  // commands take effect one period later, as in lock-step
   for (int k = 1; k * period_s < 600 && !follower.is_finished(); ++k) {
-    const DriveCommand command = follower.command(robot.state().position, robot.state().yaw_rad);
+    const DriveCommand command = follower.command(robot.state());
     EXPECT_TRUE(robot.command(late));
     late = command;
     const Motion motion = robot.advance(time::Time::from_seconds(k * period_s));
@@ -160,6 +160,7 @@ Drive drive(const std::vector<WayPoint>& way_points, double start_yaw, double pe
     }
   }
   out.is_finished = follower.is_finished();
+  EXPECT_EQ(follower.stalled(), "");
   return out;
 }
 
@@ -206,10 +207,36 @@ TEST(Tour, EstimatesLengthAndDuration) {
   EXPECT_NEAR(tour.duration_s, result.duration_s, 0.2 * result.duration_s);
 }
 
+/// The follower knows a map without the wall that stops the robot.
+TEST(TourFollower, SaysWhereItIsStuck) {
+  const NavMap believed = map_of(8, 6, {}), real = map_of(8, 6, {{4, 0, 4.2, 6}});
+  RobotState start;
+  start.position = {1, 1};
+  TourFollower follower(believed, plan_tour(believed, start.position, {{{3, 1}}, {{6, 1}}}, {}), {});
+  Robot robot(real, RobotConfig{}, start);
+  double stopped_s = 0.0;  // since when it stands at the wall
+  int k = 0;
+  for (; k < 2000 && follower.stalled().empty(); ++k) {
+    EXPECT_TRUE(robot.command(follower.command(robot.state())));
+    if (!robot.advance(time::Time::from_seconds((k + 1) / 15.0)).is_in_contact) stopped_s = k / 15.0;
+  }
+  EXPECT_FALSE(follower.is_finished());
+  EXPECT_NEAR(k / 15.0 - stopped_s, 20.0 + 2 * kPi / TourConfig().max_turn_rate_rad_s, 1.0);
+  EXPECT_THAT(follower.stalled(),
+              testing::AllOf(testing::HasSubstr("stuck at (3.8"), testing::HasSubstr("way-point 2 (6.00, 1.00)")));
+}
+
+TEST(TourFollower, ATurnOnTheSpotIsNoStall) {
+  TourConfig slow;
+  slow.max_turn_rate_rad_s = 0.1;
+  const Drive result = drive({{{3, 1}, true}, {{1, 1}}}, kPi, 1.0 / 15, flat(), slow);
+  EXPECT_TRUE(result.is_finished);
+}
+
 TEST(Tour, WithoutWayPointsIsFinishedAtOnce) {
   TourFollower follower(flat(), plan_tour(flat(), {1, 1}, {}, {}), {});
   EXPECT_TRUE(follower.is_finished());
-  EXPECT_EQ(follower.command({1, 1}, 0).speed_m_s, 0.0);
+  EXPECT_EQ(follower.command({}).speed_m_s, 0.0);
 }
 
 }  // namespace

@@ -13,14 +13,15 @@ const dds::Source* find_source(const CountedInputs::Sources& sources, const std:
 
 }  // namespace
 
-bool CountedInputs::are_received(const Counts& counts, const Sources& sources) const {
-  return std::all_of(counts.begin(), counts.end(), [&](const auto& count) {
+const lapis_msgs::msg::TopicCount* CountedInputs::missing(const Counts& counts, const Sources& sources) const {
+  const auto it = std::find_if(counts.begin(), counts.end(), [&](const auto& count) {
     const dds::Source* source = find_source(sources, count.topic());
-    if (source == nullptr) return true;
+    if (source == nullptr) return false;
     const auto forgiven = forgiven_.find(count.writer_gid());
-    if (forgiven != forgiven_.end() && count.count() <= forgiven->second) return true;
-    return source->received(count.writer_gid()) >= count.count();
+    if (forgiven != forgiven_.end() && count.count() <= forgiven->second) return false;
+    return source->received(count.writer_gid()) < count.count();
   });
+  return it == counts.end() ? nullptr : &*it;
 }
 
 void CountedInputs::forgive(const Counts& counts, const Sources& sources) {

@@ -16,8 +16,8 @@ class CountedInputs {
   using Counts = std::vector<lapis_msgs::msg::TopicCount>;
   using Sources = std::vector<std::unique_ptr<dds::Source>>;
 
-  /// True when every counted sample of a topic among `sources` was taken, or is forgiven.
-  bool are_received(const Counts& counts, const Sources& sources) const;
+  /// The first count of a topic among `sources` whose samples were neither taken nor forgiven; null when all is there.
+  const lapis_msgs::msg::TopicCount* missing(const Counts& counts, const Sources& sources) const;
   /// Samples of volatile topics up to these counts were published before we matched: they are nobody's and will never
   /// come.
   void forgive(const Counts& counts, const Sources& sources);

@@ -7,6 +7,10 @@
 namespace lapis::runtime {
 namespace {
 
+using lapis_msgs::msg::Ack_Constants::STATUS_BUSY;
+using lapis_msgs::msg::Ack_Constants::STATUS_DONE;
+using lapis_msgs::msg::Ack_Constants::STATUS_ERROR;
+
 constexpr double kJoinRepeat_s = 0.1;    // tick 0 is for those who come later, so it is repeated often
 constexpr double kTickRepeat_s = 0.5;    // later ones for a participant that has been restarted
 constexpr double kLongestWait_s = 60.0;  // policy "wait"
@@ -14,6 +18,8 @@ constexpr double kLongestWait_s = 60.0;  // policy "wait"
 double seconds_since(std::chrono::steady_clock::time_point t) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();
 }
+
+std::pair<std::uint64_t, std::uint32_t> number_of(const lapis_msgs::msg::Ack& ack) { return {ack.tick(), ack.stage()}; }
 
 std::string joined(const std::vector<std::string>& words) {
   std::string out;
@@ -40,12 +46,13 @@ void LockstepDriver::restart() {
   tick_.emplace(context_.participant(), topics::kTick);
   state_ = State::kJoining;
   last_ack_.clear();
+  newcomers_.clear();
   outputs_.clear();
   number_ = 0;
   stage_ = 0;
   is_final_ = false;
   tick_began_ = Clock::now();
-  release_stage();
+  publish_tick();
 }
 
 void LockstepDriver::begin(time::Time stamp, bool is_final) {
@@ -54,15 +61,14 @@ void LockstepDriver::begin(time::Time stamp, bool is_final) {
   stamp_ = stamp;
   is_final_ = is_final;
   state_ = State::kWaiting;
-  tick_began_ = frame_published_ = Clock::now();
-  release_stage();
+  tick_began_ = stage_began_ = frame_published_ = Clock::now();
+  publish_tick();
   advance();  // no stages: nothing to wait for
 }
 
 void LockstepDriver::release_stage() {
-  heard_.clear();
-  for (const auto& participant : config_.stages) heard_[participant] = Clock::now();
-  publish_tick();
+  stage_began_ = Clock::now();
+  if (stage_ < config_.stages.size()) publish_tick();
 }
 
 void LockstepDriver::publish_tick() {
@@ -102,27 +108,26 @@ void LockstepDriver::on_ack(const Ack& ack) {
   const auto& stages = config_.stages;
   const std::string& participant = ack.participant();
   if (ack.run_gid() != tick_->gid() || std::find(stages.begin(), stages.end(), participant) == stages.end()) return;
-  if (std::make_pair(ack.tick(), ack.stage()) > std::make_pair(number_, stage_)) return;  // was never released
-  // BUSY is no sign of life: who waits for an input that cannot come any more would wait for ever.
-  if (ack.status() == lapis_msgs::msg::Ack_Constants::STATUS_DONE) heard_[participant] = Clock::now();
+  if (number_of(ack) > std::make_pair(number_, stage_)) return;  // was never released
   const auto known = last_ack_.find(participant);
-  const bool is_old =
-      known != last_ack_.end() && known->second.participant_gid() == ack.participant_gid() &&
-      std::make_pair(ack.tick(), ack.stage()) < std::make_pair(known->second.tick(), known->second.stage());
-  if (is_old) return;
   const bool is_new = known == last_ack_.end() || known->second.participant_gid() != ack.participant_gid();
-  last_ack_[participant] = ack;
+  if (!is_new && number_of(ack) < number_of(known->second)) return;
   cpu_ms_[participant] += static_cast<double>(ack.cpu_ms());
-  if (is_new || state_ == State::kJoining) outputs_.forgive(ack.counts(), context_.sources());
-  if (is_new && state_ == State::kJoining) {
+  if (ack.status() == STATUS_ERROR) return fail(participant + " reported an error in lock-step: " + ack.reason());
+  const bool is_joining = state_ == State::kJoining;
+  const bool is_newcomer = is_new && ack.status() == STATUS_BUSY;
+  // What it published before its endpoints were matched is nobody's; later it is waited for, however long it stalled.
+  if (is_joining || is_newcomer) outputs_.forgive(ack.counts(), context_.sources());
+  if (is_newcomer && !is_joining) {
+    newcomers_[participant] = ack;
+    return admit_newcomers();
+  }
+  newcomers_.erase(participant);
+  last_ack_[participant] = ack;
+  if (is_new && is_joining) {
     // All must match the newcomer's endpoints, so all are asked again; a VOLATILE sample from before is nobody's.
     ++stage_;
     publish_tick();
-  }
-  if (ack.status() == lapis_msgs::msg::Ack_Constants::STATUS_ERROR) {
-    failure_ = participant + " reported an error in lock-step: " + ack.reason();
-    state_ = State::kFailed;
-    return;
   }
   advance();
 }
@@ -130,24 +135,30 @@ void LockstepDriver::on_ack(const Ack& ack) {
 bool LockstepDriver::has_answered(const std::string& participant) const {
   const auto it = last_ack_.find(participant);
   return it != last_ack_.end() && it->second.tick() == number_ && it->second.stage() == stage_ &&
-         it->second.status() == lapis_msgs::msg::Ack_Constants::STATUS_DONE;
+         it->second.status() == STATUS_DONE;
 }
 
-bool LockstepDriver::is_everybody_matched() const {
-  for (const auto& [participant, ack] : last_ack_) {
-    for (const auto& reader : ack.readers()) {
-      for (const auto& writer : context_.writers()) {
-        if (writer->dds_name() == reader.topic() && !writer->is_matched(reader.gid())) return false;
-      }
+/// True in a tick whose last stage has answered; what was counted in the answers may still be on its way.
+bool LockstepDriver::have_all_answered() const { return state_ == State::kWaiting && stage_ >= config_.stages.size(); }
+
+/// True when all that we write reaches the participant.
+bool LockstepDriver::is_matched(const Ack& ack) const {
+  for (const auto& reader : ack.readers()) {
+    for (const auto& writer : context_.writers()) {
+      if (writer->dds_name() == reader.topic() && !writer->is_matched(reader.gid())) return false;
     }
   }
   return true;
 }
 
+bool LockstepDriver::is_everybody_matched() const {
+  return std::all_of(last_ack_.begin(), last_ack_.end(),
+                     [this](const auto& entry) { return is_matched(entry.second); });
+}
+
 bool LockstepDriver::are_outputs_received() const {
-  return std::all_of(last_ack_.begin(), last_ack_.end(), [this](const auto& entry) {
-    return outputs_.are_received(entry.second.counts(), context_.sources());
-  });
+  return std::all_of(last_ack_.begin(), last_ack_.end(),
+                     [this](const auto& entry) { return missing_output(entry.second) == nullptr; });
 }
 
 void LockstepDriver::advance() {
@@ -166,73 +177,119 @@ void LockstepDriver::advance() {
       return;
     }
     if (!has_answered(config_.stages[stage_])) return;
-    if (++stage_ < config_.stages.size()) release_stage();
+    ++stage_;
+    release_stage();
   }
 }
 
+/// For whom the run waits: for an answer, or for samples that an answer has counted.
 std::vector<std::string> LockstepDriver::silent() const {
   std::vector<std::string> names;
-  if (state_ == State::kJoining) {
-    for (const auto& name : config_.stages) {
-      if (!has_answered(name)) names.push_back(name);
-    }
-  } else if (state_ == State::kWaiting && stage_ < config_.stages.size()) {
-    names.push_back(config_.stages[stage_]);
+  if (state_ == State::kWaiting && stage_ < config_.stages.size()) return {config_.stages[stage_]};
+  for (const auto& name : config_.stages) {
+    const auto ack = last_ack_.find(name);
+    const bool is_silent = state_ == State::kJoining ? !has_answered(name)
+                                                     : ack != last_ack_.end() && missing_output(ack->second) != nullptr;
+    if (is_silent) names.push_back(name);
   }
   return names;
 }
 
+const lapis_msgs::msg::TopicCount* LockstepDriver::missing_output(const Ack& ack) const {
+  return outputs_.missing(ack.counts(), context_.sources());
+}
+
 // The endpoints of a participant that has left must not be waited for. It drops out of discovery with its lease.
 void LockstepDriver::forget_the_dead() {
-  std::erase_if(last_ack_,
-                [this](const auto& entry) { return !acks_.is_participant_matched(entry.second.participant_gid()); });
+  const auto is_dead = [this](const auto& entry) {
+    return !acks_.is_participant_matched(entry.second.participant_gid());
+  };
+  std::erase_if(last_ack_, is_dead);
+  std::erase_if(newcomers_, is_dead);
+}
+
+// Who comes in the middle of a run has not had this tick's samples: they are published again as soon as they reach it.
+void LockstepDriver::admit_newcomers() {
+  const auto admitted = std::erase_if(newcomers_, [this](const auto& entry) {
+    if (!is_matched(entry.second)) return false;
+    spdlog::info("lock-step: {} came in tick {}; publishing it again", entry.first, number_);
+    last_ack_[entry.first] = entry.second;
+    return true;
+  });
+  if (admitted > 0) publish_frame_again();
+}
+
+void LockstepDriver::publish_frame_again() {
+  if (number_ > 0) republish_();
+  frame_published_ = Clock::now();
+  publish_tick();
 }
 
 void LockstepDriver::check_time() {
   forget_the_dead();
+  admit_newcomers();
+  advance();
+  if (state_ == State::kIdle || state_ == State::kFailed) return;
+  const bool is_joining = state_ == State::kJoining;
+  const double silence_s = seconds_since(is_joining ? tick_began_ : stage_began_);
   const double patience_s =
       config_.silent_participant == "wait" ? std::max(kLongestWait_s, config_.hard_timeout_s) : config_.hard_timeout_s;
-  if (state_ == State::kJoining) {
-    advance();
-    if (state_ != State::kJoining) return;
-    if (seconds_since(tick_published_) >= kJoinRepeat_s) publish_tick();
-    if (seconds_since(tick_began_) > patience_s) give_up_on(silent(), patience_s);
-    return;
-  }
-  if (state_ != State::kWaiting || stage_ >= config_.stages.size()) return;
-  const double silence_s = seconds_since(heard_[config_.stages[stage_]]);
   if (silence_s > patience_s) {
-    give_up_on(silent(), silence_s);
-  } else if (silence_s > config_.soft_timeout_s && seconds_since(frame_published_) > config_.soft_timeout_s) {
-    spdlog::warn("lock-step: no answer of {} to tick {} for {:.0f} s; publishing it again", config_.stages[stage_],
-                 number_, silence_s);
-    republish_();
-    frame_published_ = Clock::now();
-    publish_tick();
-  } else if (seconds_since(tick_published_) > kTickRepeat_s) {
+    give_up(silence_s);
+  } else if (have_all_answered()) {
+    return;  // nothing to repeat: what they have counted is on its way
+  } else if (!is_joining && std::min(silence_s, seconds_since(frame_published_)) > config_.soft_timeout_s) {
+    spdlog::warn("{}; publishing it again", describe_silence(silence_s));
+    publish_frame_again();
+  } else if (seconds_since(tick_published_) > (is_joining ? kJoinRepeat_s : kTickRepeat_s)) {
     publish_tick();
   }
 }
 
-void LockstepDriver::give_up_on(const std::vector<std::string>& participants, double silence_s) {
+std::string LockstepDriver::describe_silence(double silence_s) const {
+  std::vector<std::string> words;
+  for (const auto& name : silent()) {
+    const auto ack = last_ack_.find(name);
+    if (have_all_answered()) {
+      const auto* missing = missing_output(ack->second);
+      words.push_back(name + " has counted " + std::to_string(missing->count()) + " on " + missing->topic());
+    } else if (ack != last_ack_.end() && ack->second.status() == STATUS_BUSY) {
+      words.push_back(name + " (busy: " + ack->second.reason() + ")");
+    } else {
+      words.push_back(name);
+    }
+  }
+  const std::string when =
+      " to tick " + std::to_string(number_) + " for " + std::to_string(static_cast<int>(silence_s)) + " s";
+  if (have_all_answered()) return "lock-step: samples counted in answers" + when + " have not come: " + joined(words);
+  return "lock-step: no answer of " + joined(words) + when;
+}
+
+void LockstepDriver::give_up(double silence_s) {
+  const auto participants = silent();
   if (participants.empty()) {  // while joining: all have answered, but not all endpoints are matched
-    failure_ = "lock-step: readers of " + joined(config_.stages) + " were not matched; is a QoS incompatible?";
-    state_ = State::kFailed;
-    return;
+    return fail("lock-step: readers of " + joined(config_.stages) + " were not matched; is a QoS incompatible?");
   }
-  if (config_.silent_participant == "demote") {
-    spdlog::warn("lock-step: going on without {}", joined(participants));
-    std::erase_if(config_.stages, [&](const std::string& name) {
-      return std::find(participants.begin(), participants.end(), name) != participants.end();
-    });
-    for (const auto& name : participants) last_ack_.erase(name);
-    if (state_ == State::kWaiting && stage_ < config_.stages.size()) release_stage();
-    advance();
-    return;
+  const std::string reason = describe_silence(silence_s);
+  if (config_.silent_participant != "demote") {
+    const char* remedy = "; is it running in this DDS domain? (lockstep.stages names the participants)";
+    return fail(have_all_answered() ? reason : reason + remedy);
   }
-  failure_ = "lock-step: no answer of " + joined(participants) + " to tick " + std::to_string(number_) + " for " +
-             std::to_string(static_cast<int>(silence_s)) +
-             " s; is it running in this DDS domain? (lockstep.stages names the participants)";
+  for (const auto& name : participants) {
+    demoted_.emplace(name, number_);
+    last_ack_.erase(name);
+    newcomers_.erase(name);
+  }
+  std::erase_if(config_.stages, [this](const std::string& name) { return demoted_.contains(name); });
+  if (config_.stages.empty()) return fail(reason + ", and no other participant is left");
+  spdlog::warn("{}; going on without {}", reason, joined(participants));
+  context_.status().set(Status::Level::kWarn, "lock-step goes on without " + joined(participants));
+  if (state_ == State::kWaiting) release_stage();
+  advance();
+}
+
+void LockstepDriver::fail(const std::string& reason) {
+  failure_ = reason;
   state_ = State::kFailed;
 }
 

@@ -26,7 +26,7 @@ void describe(Field& field, LockstepConfig& c) {
   field("soft_timeout_s", c.soft_timeout_s, config::in_range(0.1, 600.0),
         "silence of a participant after which frame and tick are published again [s]");
   field("hard_timeout_s", c.hard_timeout_s, config::in_range(0.1, 3600.0),
-        "silence after which silent_participant applies [s]");
+        "time without an answer, busy or not, after which silent_participant applies [s]");
   field("silent_participant", c.silent_participant, config::one_of({"abort", "wait", "demote"}),
         "end the run, wait for a restart (at most 60 s), or go on without it");
 }
@@ -38,7 +38,8 @@ class LockstepDriver {
  public:
   enum class State { kJoining, kIdle, kWaiting, kFailed };
 
-  /// `republish` publishes the last frame and /clock again.
+  /// `republish` publishes the samples of the tick under way, frame and /clock, again: for one that is late, and for
+  /// one that has been restarted and cannot have them.
   LockstepDriver(Context& context, const LockstepConfig& config, std::function<void()> republish);
 
   void begin(time::Time stamp, bool is_final);
@@ -52,6 +53,8 @@ class LockstepDriver {
   double longest_tick_s() const { return longest_tick_s_; }
   /// CPU time of each participant, from one answer to the next [ms].
   const std::map<std::string, double>& cpu_ms() const { return cpu_ms_; }
+  /// Participants without which the run went on, and the tick that they did not answer.
+  const std::map<std::string, std::uint64_t>& demoted() const { return demoted_; }
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -60,14 +63,21 @@ class LockstepDriver {
   void on_ack(const Ack& ack);
   void check_time();
   void publish_tick();
+  void publish_frame_again();
   void release_stage();
   void forget_the_dead();
+  void admit_newcomers();
   void advance();
   bool has_answered(const std::string& participant) const;
+  bool have_all_answered() const;
+  bool is_matched(const Ack& ack) const;
   bool is_everybody_matched() const;
   bool are_outputs_received() const;
   std::vector<std::string> silent() const;
-  void give_up_on(const std::vector<std::string>& participants, double silence_s);
+  const lapis_msgs::msg::TopicCount* missing_output(const Ack& ack) const;
+  std::string describe_silence(double silence_s) const;
+  void give_up(double silence_s);
+  void fail(const std::string& reason);
 
   Context& context_;
   LockstepConfig config_;
@@ -77,13 +87,15 @@ class LockstepDriver {
   State state_ = State::kJoining;
   std::string failure_;
   CountedInputs outputs_;
-  std::map<std::string, Ack> last_ack_;             // by participant
-  std::map<std::string, Clock::time_point> heard_;  // last answer or begin of the stage, by participant
+  std::map<std::string, Ack> last_ack_;   // by participant
+  std::map<std::string, Ack> newcomers_;  // came in the middle of a run, and our samples do not reach them yet
+  std::map<std::string, std::uint64_t> demoted_;
   std::uint64_t number_ = 0;
   std::uint32_t stage_ = 0;
   time::Time stamp_;
   bool is_final_ = false;
   Clock::time_point tick_began_;
+  Clock::time_point stage_began_;
   Clock::time_point tick_published_;
   Clock::time_point frame_published_;
   double longest_tick_s_ = 0.0;

@@ -10,9 +10,6 @@ namespace {
 
 using lapis_msgs::msg::Ack;
 
-// A participant that joins a run under way cannot get what was published before; it stops waiting for it after this.
-constexpr auto kJoiningPatience = std::chrono::seconds(1);
-
 double process_cpu_s() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -38,47 +35,69 @@ void LockstepParticipant::after_handlers() {
   if (pending_ && !is_active()) pending_.reset();  // the driver is gone: nobody waits for the answer
   if (pending_) {
     answer_pending();
-  } else if (!is_active()) {
+  } else if (is_free()) {
     context_.run_cycle({});
   }
 }
 
 bool LockstepParticipant::is_active() const { return run_ != dds::Gid{} && ticks_.is_matched(run_); }
 
+// A newcomer to a run leaves its inputs alone until it is its turn, or has seen a whole tick that was not for it.
+bool LockstepParticipant::is_free() const { return !is_active() && (ticks_.matched() == 0 || is_bystander_); }
+
 void LockstepParticipant::on_tick(const Tick& tick) {
   const auto& due = tick.due();
-  if (std::find(due.begin(), due.end(), context_.name()) == due.end()) return;
+  const bool is_due = std::find(due.begin(), due.end(), context_.name()) != due.end();
+  if (tick.run_gid() != watched_) {
+    watched_ = tick.run_gid();
+    first_watched_ = tick.tick();
+  }
+  is_bystander_ = !is_due && (tick.tick() == 0 || tick.tick() > first_watched_ + 1);  // tick 0 names everybody
+  if (!is_due) return;
   const std::pair<std::uint64_t, std::uint32_t> number(tick.tick(), tick.stage());
-  if (tick.run_gid() != run_) {
+  const bool is_new_run = tick.run_gid() != run_;
+  if (is_new_run) {
     run_ = tick.run_gid();
     has_joined_ = false;
     answered_.reset();
     inputs_.clear();
-  } else if (answered_ && number == *answered_) {
+  }
+  // What was published before we came is nobody's: of a tick under way the driver publishes its own samples again, when
+  // it knows us. Tick 0 carries no data and comes again with each newcomer's counts.
+  if (is_new_run || tick.tick() == 0) inputs_.forgive(tick.counts(), context_.sources());
+  if (answered_ && number == *answered_) {
     publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_DONE, "");  // the answer was lost
     return;
   } else if (answered_ && number < *answered_) {
     return;
   }
-  const bool is_repeated = pending_ && pending_->tick() == tick.tick() && pending_->stage() == tick.stage();
-  if (!is_repeated) pending_since_ = Clock::now();
   pending_ = tick;
-  if (!has_joined_) publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_BUSY, "matching endpoints");
+  if (!has_joined_) say_busy();
 }
 
 void LockstepParticipant::answer_pending() {
   const Tick& tick = *pending_;
-  const bool is_joining = !has_joined_ || tick.tick() == 0;
-  if (is_joining && !are_endpoints_matched(tick)) return;
-  // Tick 0 carries no data. It comes again with each newcomer's counts, of which nothing has to be there.
-  const bool is_late = tick.tick() == 0 || (!has_joined_ && Clock::now() - pending_since_ > kJoiningPatience);
-  if (is_late) inputs_.forgive(tick.counts(), context_.sources());
-  if (!inputs_.are_received(tick.counts(), context_.sources())) return;
+  if (!obstacle(tick).empty()) return;
   has_joined_ = true;
   if (tick.tick() > 0) context_.run_cycle({.inputs_complete = true, .is_final = tick.is_final()});
   publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_DONE, "");
   answered_ = {tick.tick(), tick.stage()};
   pending_.reset();
+}
+
+/// Why a tick cannot be answered yet; empty: it can.
+std::string LockstepParticipant::obstacle(const Tick& tick) const {
+  if (!are_endpoints_matched(tick)) return "matching endpoints";
+  if (!has_joined_ && tick.tick() > 0 && !is_admitted(tick)) return "waiting to be admitted to the run";
+  const auto* missing = inputs_.missing(tick.counts(), context_.sources());
+  if (missing != nullptr) return "waiting for sample " + std::to_string(missing->count()) + " on " + missing->topic();
+  return "";
+}
+
+// The driver names our readers from the moment on when its samples reach them.
+bool LockstepParticipant::is_admitted(const Tick& tick) const {
+  return std::any_of(tick.readers().begin(), tick.readers().end(),
+                     [this](const auto& reader) { return reader.gid() == ticks_.gid(); });
 }
 
 bool LockstepParticipant::are_endpoints_matched(const Tick& tick) const {
@@ -116,6 +135,10 @@ void LockstepParticipant::publish_ack(const Tick& tick, std::uint8_t status, con
     reader.gid(source->gid());
     ack.readers().push_back(reader);
   }
+  lapis_msgs::msg::TopicEndpoint tick_reader;  // names us even when there is no other reader
+  tick_reader.topic(ticks_.dds_name());
+  tick_reader.gid(ticks_.gid());
+  ack.readers().push_back(tick_reader);
   const double cpu_s = process_cpu_s();
   ack.cpu_ms(static_cast<float>(1e3 * (cpu_s - cpu_s_at_answer_)));
   cpu_s_at_answer_ = cpu_s;
@@ -124,8 +147,8 @@ void LockstepParticipant::publish_ack(const Tick& tick, std::uint8_t status, con
 
 void LockstepParticipant::say_busy() {
   if (!pending_) return;
-  publish_ack(*pending_, lapis_msgs::msg::Ack_Constants::STATUS_BUSY,
-              has_joined_ ? "waiting for counted inputs" : "matching endpoints");
+  const std::string reason = obstacle(*pending_);
+  if (!reason.empty()) publish_ack(*pending_, lapis_msgs::msg::Ack_Constants::STATUS_BUSY, reason);
 }
 
 }  // namespace lapis::runtime

@@ -1,7 +1,8 @@
 #pragma once
 
-#include <chrono>
 #include <optional>
+#include <string>
+#include <utility>
 
 #include "common/dds/publisher.hpp"
 #include "common/dds/subscription.hpp"
@@ -22,24 +23,29 @@ class LockstepParticipant {
   void after_handlers();
 
  private:
-  using Clock = std::chrono::steady_clock;
   using Tick = lapis_msgs::msg::Tick;
 
   void on_tick(const Tick& tick);
   void answer_pending();
   bool is_active() const;
+  bool is_free() const;
+  std::string obstacle(const Tick& tick) const;
   bool are_endpoints_matched(const Tick& tick) const;
+  bool is_admitted(const Tick& tick) const;
   void publish_ack(const Tick& tick, std::uint8_t status, const std::string& reason);
   void say_busy();
 
   Context& context_;
   dds::Publisher<lapis_msgs::msg::Ack> ack_;
   dds::Subscription<Tick> ticks_;
-  dds::Gid run_{};               // the driver's tick writer; zero: not in lock-step
-  bool has_joined_ = false;      // endpoints of this run are matched
-  std::optional<Tick> pending_;  // received, not answered
-  Clock::time_point pending_since_;
+  dds::Gid run_{};                                                   // the driver's tick writer; zero: not in lock-step
+  bool has_joined_ = false;                                          // has answered a tick of this run
+  std::optional<Tick> pending_;                                      // received, not answered
   std::optional<std::pair<std::uint64_t, std::uint32_t>> answered_;  // tick and stage
+  // The run of the last tick, whoever was due, its first tick that came here, and whether it does without us.
+  dds::Gid watched_{};
+  std::uint64_t first_watched_ = 0;
+  bool is_bystander_ = false;
   CountedInputs inputs_;
   double cpu_s_at_answer_ = 0.0;
 };

@@ -55,6 +55,11 @@ std::string to_yaml(const RunSummary& summary, const World& world, const StartPo
   text += "collisions: " + std::to_string(summary.collisions) + "\n";
   text += "participants:  # CPU time [ms]\n";
   for (const auto& [name, cpu_ms] : summary.cpu_ms) text += "  " + name + ": " + number(cpu_ms) + "\n";
+  text += "demoted: {";
+  for (const auto& [name, tick] : summary.demoted) {
+    text += (text.back() == '{' ? "" : ", ") + name + ": " + std::to_string(tick);
+  }
+  text += "}  # participants without which the run went on, from which tick on\n";
   return text;
 }
 

@@ -19,7 +19,8 @@ struct RunSummary {
   double simulated_s = 0.0;
   double wall_s = 0.0;
   std::uint64_t collisions = 0;
-  std::map<std::string, double> cpu_ms;  ///< by participant of lock-step
+  std::map<std::string, double> cpu_ms;          ///< by participant of lock-step
+  std::map<std::string, std::uint64_t> demoted;  ///< participants without which the run went on, from which tick on
 };
 
 /// simulation.yaml of the run folder: what is needed to repeat the run, and how it went.

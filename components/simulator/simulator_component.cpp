@@ -215,7 +215,10 @@ void SimulatorComponent::write_files() {
   summary.simulated_s = run_->stamp().seconds();
   if (began_) summary.wall_s = seconds_between(*began_, paused_at_.value_or(Clock::now()));
   summary.collisions = run_->collisions();
-  if (driver_) summary.cpu_ms = driver_->cpu_ms();
+  if (driver_) {
+    summary.cpu_ms = driver_->cpu_ms();
+    summary.demoted = driver_->demoted();
+  }
   files::replace_text(std::filesystem::path(config_.output_dir) / "simulation.yaml",
                       to_yaml(summary, world_, start_, config_));
   if (truth_.valid()) truth_.get();

@@ -13,6 +13,7 @@
 #include "common/messages/time.hpp"
 #include "common/topics.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/hand_made_participant.hpp"
 #include "tests/support/small_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/topic_probe.hpp"
@@ -20,7 +21,6 @@
 namespace lapis::test {
 namespace {
 
-using lapis_msgs::msg::Ack;
 using lapis_msgs::msg::Tick;
 using ::testing::HasSubstr;
 
@@ -80,40 +80,6 @@ class SimulatorContract : public ::testing::Test {
   TemporaryFolder folder;
 };
 
-/// A participant of lock-step whose answers the test decides on.
-class HandMadeParticipant {
- public:
-  explicit HandMadeParticipant(TopicProbe& probe)
-      : probe_(probe), ticks(probe.collect(topics::kTick)), acks_(probe.advertise(topics::kAck)) {}
-
-  bool wait_for_tick(std::uint64_t number) {
-    return probe_.wait_until([&] {
-      // Tick 0 invites; joining is answered as often as asked.
-      if (!ticks.empty() && ticks.back().tick() == 0 && number > 0) answer(ticks.back());
-      return !ticks.empty() && ticks.back().tick() >= number;
-    });
-  }
-  void answer(const Tick& tick, std::uint8_t status = lapis_msgs::msg::Ack_Constants::STATUS_DONE) {
-    Ack ack;
-    ack.run_gid(tick.run_gid());
-    ack.tick(tick.tick());
-    ack.stage(tick.stage());
-    ack.participant("slam");
-    ack.participant_gid(probe_.participant().gid());
-    ack.status(status);
-    acks_.publish(ack);
-  }
-
- private:
-  TopicProbe& probe_;
-
- public:
-  const std::vector<Tick>& ticks;
-
- private:
-  dds::Publisher<Ack>& acks_;
-};
-
 TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   TopicProbe probe;
   const auto& color = probe.collect(topics::kColor);
@@ -157,38 +123,54 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   EXPECT_THAT(summary(), HasSubstr("exit_reason: \"stopped\""));
 }
 
-TEST_F(SimulatorContract, ACommandActsFromTheNextFrameOnAndTheWatchdogStopsTheRobot) {
+// A command of tick 4 cannot move frame 5, which is being rendered meanwhile. However late it comes, it moves frame 6,
+// because it is counted.
+TEST_F(SimulatorContract, ACountedCommandActsFromTheNextFrameButOneOnAndTheWatchdogStopsTheRobot) {
   TopicProbe probe;
-  HandMadeParticipant slam(probe);
+  HandMadeParticipant slam(probe, "slam");
   auto& command = probe.advertise(topics::kCommand);
-  const auto& truth = probe.collect(topics::kGroundTruth);
+  std::map<std::int64_t, double> y;  // true positions by frame
+  double speed = 0.0;
+  probe.listen<nav_msgs::msg::Odometry>(topics::kGroundTruth, [&](auto& m) {
+    y[std::lround(15.0 * stamp_of(m).seconds())] = m.pose().pose().position().y();
+    speed = m.twist().twist().linear().x();
+  });
   ChildProcess simulator(kSimulator, with_stages("[slam]"));
   const auto step = [&](std::uint64_t tick) {
     ASSERT_TRUE(slam.wait_for_tick(tick)) << simulator.log();
     slam.answer(slam.ticks.back());
   };
-  const auto position = [&](std::size_t frame) {
-    probe.wait_until([&] { return stamps_of(truth).size() >= frame; });
-    return truth.back().pose().pose().position();
-  };
   ASSERT_TRUE(probe.wait_until_matched()) << simulator.log();
   for (std::uint64_t tick = 1; tick <= 3; ++tick) step(tick);
   ASSERT_TRUE(slam.wait_for_tick(4));
-  const auto at_rest = position(4);
-  geometry_msgs::msg::Twist ahead;
-  ahead.linear().x(-0.3);  // the wall is in front
-  command.publish(ahead);
-  // The count of the command is not in this participant's answers, so it waits until the simulator must have it.
-  ASSERT_TRUE(probe.wait_until([&] { return command.matched() > 0; }));
-  command.wait_until_acknowledged(2.0);
-  slam.answer(slam.ticks.back());
-  for (std::uint64_t tick = 5; tick <= 9; ++tick) step(tick);
-  const auto moved = position(9);
-  EXPECT_LT(moved.y(), at_rest.y() - 0.03);
-  for (std::uint64_t tick = 10; tick <= 30; ++tick) step(tick);
+  slam.publish(slam.answer_to(slam.ticks.back(), command, 1));
+  EXPECT_FALSE(probe.wait_until([&] { return slam.ticks.back().tick() > 4; }, Seconds(0.5)));
+  geometry_msgs::msg::Twist back;
+  back.linear().x(-0.3);  // the wall is in front
+  command.publish(back);
+  for (std::uint64_t tick = 5; tick <= 30; ++tick) step(tick);
   ASSERT_TRUE(slam.wait_for_tick(31));
-  EXPECT_NEAR(truth.back().twist().twist().linear().x(), 0.0, 1e-3) << "no command for more than half a second";
-  EXPECT_GT(truth.back().pose().pose().position().y(), 0.2) << "and never in a wall";
+  ASSERT_TRUE(probe.wait_until([&] { return y.contains(31); }));
+  EXPECT_EQ(y.at(5), y.at(4));
+  EXPECT_LT(y.at(6), y.at(5) - 1e-4);
+  EXPECT_LT(y.at(9), y.at(4) - 0.03);
+  EXPECT_NEAR(speed, 0.0, 1e-3) << "no command for more than half a second";
+  EXPECT_GT(y.at(31), 0.2) << "and never in a wall";
+}
+
+TEST_F(SimulatorContract, WhoIsDemotedIsNamedAndWithoutAnybodyTheRunFails) {
+  const std::string demote = "lockstep.silent_participant=demote";
+  ChildProcess echo(kEcho);
+  ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
+  ChildProcess simulator(kSimulator, with_stages("[test_echo, nobody]", {"--duration", "1", "--set", demote, "--set",
+                                                                         "lockstep.hard_timeout_s=5"}));
+  EXPECT_EQ(simulator.wait(Seconds(30)), 0) << simulator.log();
+  EXPECT_THAT(summary(), HasSubstr("exit_reason: \"completed\""));
+  EXPECT_THAT(summary(), HasSubstr("demoted: {nobody: 0}"));
+  ChildProcess alone(kSimulator, with_stages("[nobody]", {"--set", demote, "--set", "lockstep.hard_timeout_s=1"}));
+  EXPECT_EQ(alone.wait(Seconds(30)), 1) << alone.log();
+  EXPECT_THAT(summary(), HasSubstr("no answer of nobody"));
+  EXPECT_THAT(summary(), HasSubstr("no other participant is left"));
 }
 
 TEST_F(SimulatorContract, AKilledParticipantEndsTheRunWhichNamesIt) {
@@ -224,7 +206,7 @@ TEST_F(SimulatorContract, ARestartedParticipantMissesNoFrame) {
 
 TEST_F(SimulatorContract, SlowLateAndWrongAnswersDoNotMoveTheClock) {
   TopicProbe probe;
-  HandMadeParticipant slam(probe);
+  HandMadeParticipant slam(probe, "slam");
   const auto& truth = probe.collect(topics::kGroundTruth);
   ChildProcess simulator(kSimulator, with_stages("[slam]", {"--set", "lockstep.soft_timeout_s=0.5"}));
   ASSERT_TRUE(slam.wait_for_tick(1)) << simulator.log();
@@ -234,7 +216,7 @@ TEST_F(SimulatorContract, SlowLateAndWrongAnswersDoNotMoveTheClock) {
   Tick foreign = slam.ticks.back();
   foreign.run_gid()[0] ^= 0xFF;
   slam.answer(foreign);
-  slam.answer(slam.ticks.back(), lapis_msgs::msg::Ack_Constants::STATUS_BUSY);
+  slam.publish(slam.busy_with(slam.ticks.back(), "thinking"));
   // Late: the tick is published again, and the frame with it.
   const auto repetitions = [&] {
     return std::count_if(slam.ticks.begin(), slam.ticks.end(), [](const Tick& tick) { return tick.tick() == 1; });
@@ -304,7 +286,7 @@ TEST_F(SimulatorContract, PauseStepRunAndReset) {
 
 TEST_F(SimulatorContract, AResetThatConsumersWouldTakeForDisorderIsRefused) {
   TopicProbe probe;
-  HandMadeParticipant slam(probe);
+  HandMadeParticipant slam(probe, "slam");
   auto& reset = probe.client(topics::kReset);
   ChildProcess simulator(kSimulator, with_stages("[slam]"));
   ASSERT_TRUE(slam.wait_for_tick(1)) << simulator.log();

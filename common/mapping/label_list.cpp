@@ -46,6 +46,12 @@ std::string LabelList::name(std::uint16_t id) const {
   return label ? label->name : "class " + std::to_string(id);
 }
 
+std::optional<std::uint16_t> LabelList::id_of(std::string_view name) const {
+  const auto it = std::find_if(labels_.begin(), labels_.end(), [&](const Label& label) { return label.name == name; });
+  if (it == labels_.end()) return std::nullopt;
+  return it->id;
+}
+
 geometry::Rgb8 LabelList::color(std::uint16_t id) const {
   const Label* label = find(id);
   return label ? label->color : default_color(id);

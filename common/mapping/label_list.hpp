@@ -42,6 +42,8 @@ class LabelList {
   bool contains(std::uint16_t id) const { return find(id) != nullptr; }
   /// "unlabelled" for 0, "class <id>" for an id that is not listed.
   std::string name(std::uint16_t id) const;
+  /// Id of the class of that name; nothing when there is none. Of several the smallest.
+  std::optional<std::uint16_t> id_of(std::string_view name) const;
   /// The default colour for an id that is not listed.
   geometry::Rgb8 color(std::uint16_t id) const;
   bool operator==(const LabelList&) const = default;

@@ -14,6 +14,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr std::size_t kMostItems = 10'000, kMostCorners = 200;
 
 Eigen::Vector2d vector2(YamlEntry& entry, const std::string& key) {
   const auto values = entry.numbers(key, 2);
@@ -61,6 +62,8 @@ RoomSpec room(YamlEntry& entry) {
     spec.polygon = {{r[0], r[1]}, {r[2], r[1]}, {r[2], r[3]}, {r[0], r[3]}};
   } else {
     spec.polygon = polygon(entry, "polygon");
+    if (spec.polygon.size() < 3 || spec.polygon.size() > kMostCorners)
+      entry.refuse("polygon must have from 3 to 200 corners");
   }
   spec.floor = surface(entry, "floor");
   spec.wall = surface(entry, "wall");
@@ -172,11 +175,14 @@ struct Row {
   int count = 1;
   Eigen::Vector2d step{0, 0};  ///< along a wall: x
 
-  Row(YamlEntry& entry, bool is_on_wall) {
+  /// @param existing how many there are already in that list
+  Row(YamlEntry& entry, bool is_on_wall, std::size_t existing) {
+    if (existing >= kMostItems) entry.refuse("there are more than 10000 of them");
     if (!entry.has("row")) return;
     YamlEntry row = entry.entry("row");
     count = row.whole_number("count", 1);
     if (count < 1 || count > 1000) row.refuse("count must be from 1 to 1000");
+    if (existing + static_cast<std::size_t>(count) > kMostItems) row.refuse("there are more than 10000 with this row");
     step = is_on_wall ? Eigen::Vector2d(row.number("step"), 0.0) : vector2(row, "step");
     row.done();
   }
@@ -215,14 +221,15 @@ void add_furniture(SceneSpec& scene, YamlEntry& entry) {
   if (entry.has("parts")) {
     for (const auto& [part, class_name] : entry.entry("parts").all_texts()) item.parts[part] = class_name;
   }
-  const auto variant = static_cast<std::uint64_t>(std::max(0, entry.whole_number("variant", 0)));
+  const int variant = entry.whole_number("variant", 0);
+  if (variant < 0) entry.refuse("variant must not be negative");
   const bool has_variant = entry.has("variant");
-  const Row row(entry, std::holds_alternative<AgainstWall>(item.place));
+  const Row row(entry, std::holds_alternative<AgainstWall>(item.place), scene.furniture.size());
   entry.done();
   for (int i = 0; i < row.count; ++i) {
     FurnitureSpec& copy = scene.furniture.emplace_back(item);
     if (row.count > 1 && !item.id.empty()) copy.id += "." + std::to_string(i + 1);
-    copy.variant = has_variant ? variant : scene.furniture.size();
+    copy.variant = has_variant ? static_cast<std::uint64_t>(variant) : scene.furniture.size();
     move(copy.place, i * row.step);
   }
 }
@@ -238,7 +245,7 @@ void add_pictures(SceneSpec& scene, YamlEntry& entry) {
   const int motif = entry.whole_number("motif", 0);
   if (motif < 0) entry.refuse("motif must not be negative");
   const bool has_motif = entry.has("motif");
-  const Row row(entry, true);
+  const Row row(entry, true, scene.pictures.size());
   entry.done();
   for (int i = 0; i < row.count; ++i) {
     PictureSpec& copy = scene.pictures.emplace_back(picture);

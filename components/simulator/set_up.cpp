@@ -3,10 +3,10 @@
 #include <algorithm>
 #include <cstdlib>
 #include <numbers>
-#include <sstream>
 #include <stdexcept>
 
 #include "simulator/core/assets/load_scene.hpp"
+#include "simulator/core/assets/text_scan.hpp"
 #include "simulator/furniture.hpp"
 #include "simulator/scene_yaml.hpp"
 
@@ -56,9 +56,7 @@ fs::path light_folder(const SimulatorConfig& config) {
 }
 
 std::uint16_t class_id(const Scene& scene, const std::string& name) {
-  for (const auto& label : scene.labels.labels()) {
-    if (label.name == name) return label.id;
-  }
+  if (const auto id = scene.labels.id_of(name)) return *id;
   throw std::runtime_error("simulator.world.passable_classes: scene " + scene.name + " has no class " + name);
 }
 
@@ -148,13 +146,12 @@ SimulationConfig simulation_config(const SimulatorConfig& config) {
 
 StartPose start_pose(const World& world, const SimulatorConfig& config) {
   if (config.start.empty()) return draw_start(world, config.robot.radius_m, static_cast<std::uint64_t>(config.seed));
-  std::istringstream text(config.start);
-  double x = 0.0, y = 0.0, yaw_deg = 0.0;
-  std::string rest;
-  if (!(text >> x >> y >> yaw_deg) || text >> rest) {
+  std::string_view text = config.start;
+  const auto x = to_float(take_word(text)), y = to_float(take_word(text)), yaw_deg = to_float(take_word(text));
+  if (!x || !y || !yaw_deg || !trimmed(text).empty()) {
     throw std::runtime_error(R"(simulator.start: must be "x y yaw_deg", not ")" + config.start + "\"");
   }
-  return {{x, y}, yaw_deg * std::numbers::pi / 180.0};
+  return {{*x, *y}, *yaw_deg * std::numbers::pi / 180.0};
 }
 
 TourConfig tour_config(const SimulatorConfig& config) {

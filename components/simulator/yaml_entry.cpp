@@ -1,9 +1,9 @@
 #include "simulator/yaml_entry.hpp"
 
 #include <cmath>
-#include <locale>
-#include <sstream>
 #include <stdexcept>
+
+#include "simulator/core/assets/text_scan.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -51,12 +51,10 @@ YAML::Node YamlEntry::required(const std::string& key) {
 bool YamlEntry::has(const std::string& key) { return node(key).IsDefined(); }
 
 double YamlEntry::to_number(const YAML::Node& value, const std::string& key) const {
-  constexpr double kLargest = 1e12;
+  constexpr double kLargest = 1e9;
   if (value.IsScalar()) {
-    std::istringstream in(value.Scalar());
-    in.imbue(std::locale::classic());
-    double number = 0.0;
-    if (in >> number && in.eof() && std::abs(number) <= kLargest) return number;
+    const auto number = lapis::simulator::to_number<double>(value.Scalar());
+    if (number && std::abs(*number) <= kLargest) return *number;
   }
   refuse_at(value, key + ": must be a number" + (value.IsScalar() ? ", not \"" + value.Scalar() + "\"" : ""));
 }

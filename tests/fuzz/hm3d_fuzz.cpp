@@ -18,7 +18,5 @@ std::optional<std::map<std::string, std::string>> read_mapping(const FuzzStore& 
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const FuzzStore store(data, size, {"a.semantic.txt", "a.tsv", "a.semantic.glb", "a.glb"});
-  return lapis::simulator::fuzz::check_loading([&] {
-    return load_hm3d(store, "a", read_mapping(store), {{}, {}, 16});
-  });
+  return lapis::simulator::fuzz::check_loading([&] { return load_hm3d(store, "a", read_mapping(store), {{}, 16}); });
 }

@@ -2,12 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 #include <optional>
-#include <system_error>
 #include <vector>
+
+#include "common/files/atomic_file.hpp"
 
 namespace lapis::sensor_replay {
 namespace {
@@ -29,19 +29,9 @@ bool is_truncated_jpeg(const std::vector<std::uint8_t>& bytes) {
   return true;
 }
 
-std::optional<std::vector<std::uint8_t>> read_bytes(const std::filesystem::path& file) {
-  std::error_code error;
-  const auto size = std::filesystem::file_size(file, error);  // an error for folders, too
-  std::ifstream stream(file, std::ios::binary);
-  if (error || !stream) return std::nullopt;
-  std::vector<std::uint8_t> bytes(size);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!stream) return std::nullopt;
-  return bytes;
-}
-
 Decoded decode(const std::filesystem::path& file) {
-  const auto bytes = read_bytes(file);
+  std::string reason;
+  const auto bytes = files::read_file(file.string(), reason);
   if (!bytes) return ImageFault::kMissing;
   if (bytes->empty() || is_truncated_jpeg(*bytes)) return ImageFault::kUndecodable;
   try {

@@ -22,6 +22,8 @@ TEST(LabelList, IsSortedByIdAndNamesWhatItLacks) {
   EXPECT_EQ(LabelList().largest_accepted_id(), 65535);
   EXPECT_TRUE(list.contains(4));
   EXPECT_FALSE(list.contains(2));
+  EXPECT_EQ(list.id_of("door"), 4);
+  EXPECT_EQ(list.id_of("window"), std::nullopt);
 }
 
 TEST(LabelList, RefusesZeroAndRepeatedIds) {

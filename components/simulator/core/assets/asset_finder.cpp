@@ -47,11 +47,11 @@ std::optional<AssetFinder::Found> AssetFinder::image(std::string_view written) {
 }
 
 std::optional<AssetFinder::Found> AssetFinder::read_any_case(const std::string& name) {
-  if (auto bytes = store_.read(name)) return Found{name, std::move(*bytes)};
+  if (auto bytes = store_.read(name)) return Found{name, std::move(*bytes), false};
   const std::string lowered = lower(name);
   for (const auto& candidate : names()) {
     if (lower(candidate) != lowered) continue;
-    if (auto bytes = store_.read(candidate)) return Found{candidate, std::move(*bytes)};
+    if (auto bytes = store_.read(candidate)) return Found{candidate, std::move(*bytes), false};
   }
   return std::nullopt;
 }
@@ -65,7 +65,7 @@ std::optional<AssetFinder::Found> AssetFinder::only_image() {
   if (images.size() != 1) return std::nullopt;
   auto bytes = store_.read(images.front());
   if (!bytes) return std::nullopt;
-  return Found{images.front(), std::move(*bytes)};
+  return Found{images.front(), std::move(*bytes), true};
 }
 
 const std::vector<std::string>& AssetFinder::names() {

@@ -16,6 +16,7 @@ class AssetFinder {
   struct Found {
     std::string name;  ///< in the store
     std::vector<std::uint8_t> bytes;
+    bool is_guess = false;  ///< has another name: the only image there is
   };
 
   /// `model` is the model file; names are relative to its folder. The store must outlive the finder.

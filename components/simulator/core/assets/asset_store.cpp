@@ -1,8 +1,9 @@
 #include "simulator/core/assets/asset_store.hpp"
 
 #include <algorithm>
-#include <fstream>
 #include <system_error>
+
+#include "common/files/atomic_file.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -16,16 +17,8 @@ bool leaves_folder(const fs::path& normal) { return normal.empty() || normal.is_
 std::optional<std::vector<std::uint8_t>> FolderStore::read(const std::string& name) const {
   const fs::path normal = fs::path(name).lexically_normal();
   if (leaves_folder(normal)) return std::nullopt;
-  const fs::path file = folder_ / normal;
-  std::error_code error;
-  if (!fs::is_regular_file(file, error)) return std::nullopt;
-  const auto size = fs::file_size(file, error);
-  std::ifstream stream(file, std::ios::binary);
-  if (error || !stream) return std::nullopt;
-  std::vector<std::uint8_t> bytes(size);
-  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
-  if (!stream) return std::nullopt;
-  return bytes;
+  std::string reason;  // what needs the file says so
+  return files::read_file((folder_ / normal).string(), reason);
 }
 
 std::vector<std::string> FolderStore::names() const {

@@ -108,19 +108,6 @@ std::vector<std::filesystem::path> libraries_in(const std::filesystem::path& fol
 // SweetHome3D has y up and the front along +z.
 Eigen::Vector3f to_item_axes(const Eigen::Vector3f& p) { return {p.x(), -p.z(), p.y()}; }
 
-void to_item_frame(Mesh& mesh, const CatalogEntry& entry) {
-  for (auto& p : mesh.positions) p = to_item_axes(entry.model_rotation * p);
-  const Eigen::AlignedBox3f box = bounds(mesh);
-  const Eigen::Vector3f extent = box.sizes();
-  const Eigen::Vector3f origin(box.center().x(), box.center().y(), box.min().z());
-  Eigen::Vector3f scale = Eigen::Vector3f::Ones();
-  for (int axis = 0; axis < 3; ++axis) {
-    const bool is_flat = extent[axis] < 1e-5F * extent.maxCoeff();
-    if (!is_flat) scale[axis] = static_cast<float>(entry.size_m[axis]) / extent[axis];
-  }
-  for (auto& p : mesh.positions) p = (p - origin).cwiseProduct(scale);
-}
-
 }  // namespace
 
 std::vector<CatalogEntry> parse_catalog(std::span<const std::uint8_t> properties, const std::string& file) {
@@ -174,7 +161,8 @@ std::variant<Model, FurnitureRefusal> FurnitureCatalog::load(const CatalogEntry&
       return FurnitureRefusal{entry.id + ": " + std::to_string(triangles) + " triangles, more than " +
                               std::to_string(kMaxTriangles)};
     }
-    to_item_frame(model.mesh, entry);
+    for (auto& p : model.mesh.positions) p = to_item_axes(entry.model_rotation * p);
+    fit_to_box(model.mesh, entry.size_m);
     const std::string problem = problem_of(model.mesh);
     if (!problem.empty()) return FurnitureRefusal{entry.id + ": " + problem};
     return model;

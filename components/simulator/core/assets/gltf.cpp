@@ -6,6 +6,7 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "simulator/core/assets/gltf_file.hpp"
@@ -21,6 +22,7 @@ constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 constexpr double kLeastOpacity = 0.35;
 // A mesh may be shown by many nodes: a small file could ask for any amount of memory.
 constexpr std::size_t kMostElements = 30'000'000;
+constexpr std::size_t kMostImageBytes = std::size_t{1} << 30U;  // of all images that are shown, as the file has them
 
 // IEC 61966-2-1; from 0..1 to 0..255.
 std::uint8_t to_srgb(double linear) {
@@ -74,8 +76,7 @@ class GltfReader {
     Eigen::Affine3d T_scene_parent;
   };
 
-  void refuse_compression() const;
-  void read_images();
+  void refuse_extensions() const;
   void read_nodes();
   std::vector<std::size_t> root_nodes() const;
   void link_children();
@@ -86,17 +87,19 @@ class GltfReader {
   std::vector<geometry::Rgb8> read_colors(std::size_t accessor) const;
   std::optional<std::uint32_t> material(std::size_t index);
   std::optional<std::uint32_t> make_material(const json& source);
-  int texture_image(const json& reference) const;
+  int texture_image(const json& reference);
+  void add_image(std::size_t index);
 
   GltfFile file_;
   GltfModel scene_;
   std::map<std::size_t, std::optional<std::uint32_t>> materials_;  ///< by index in the file; nothing: not shown
+  std::map<std::size_t, std::size_t> images_;                      ///< index in the file -> GltfModel::images
+  std::size_t image_bytes_ = 0;
 };
 
 GltfModel GltfReader::read() {
   scene_.file = file_.description();
-  refuse_compression();
-  read_images();
+  refuse_extensions();
   read_nodes();
   std::vector<Visit> stack;
   for (const std::size_t root : root_nodes()) stack.push_back({root, Eigen::Affine3d::Identity()});
@@ -117,22 +120,21 @@ GltfModel GltfReader::read() {
   return std::move(scene_);
 }
 
-void GltfReader::refuse_compression() const {
+// A file may only be shown by who knows all extensions that it requires [section 3.12].
+void GltfReader::refuse_extensions() const {
+  constexpr std::array<std::string_view, 2> kRead{"KHR_materials_unlit", "KHR_mesh_quantization"};
   for (const auto& extension : array_member(file_.root(), "extensionsRequired", scene_.file)) {
-    if (extension == "KHR_draco_mesh_compression" || extension == "EXT_meshopt_compression") {
-      file_.fail("the geometry is compressed (" + extension.get<std::string>() +
-                 "), which is not read; export without compression");
+    if (!extension.is_string()) file_.fail("'extensionsRequired' must be a list of names; export the file again");
+    const std::string name = extension.get<std::string>().substr(0, 60);
+    if (std::find(kRead.begin(), kRead.end(), name) != kRead.end()) continue;
+    std::string what = "the file requires " + name, remedy = "export without it";
+    if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression") {
+      what = "the geometry is compressed (" + name + ")", remedy = "export without compression";
+    } else if (name == "KHR_texture_basisu" || name == "GOOGLE_texture_basis") {
+      what = "the textures are compressed (" + name + ", KTX2)", remedy = "export them as PNG or JPEG";
     }
-  }
-}
-
-void GltfReader::read_images() {
-  const auto& images = array_member(file_.root(), "images", scene_.file);
-  for (std::size_t i = 0; i < images.size(); ++i) {
-    scene_.images.push_back(file_.image(i));
-    std::string name = text_member(images[i], "uri", scene_.file).substr(0, 80);
-    if (name.empty() || name.rfind("data:", 0) == 0) name = "image " + std::to_string(i);
-    scene_.image_names.push_back(std::move(name));
+    file_.fail(what + ", which is not read; " + remedy +
+               " (required extensions that are read: KHR_materials_unlit, KHR_mesh_quantization)");
   }
 }
 
@@ -274,8 +276,9 @@ std::vector<geometry::Rgb8> GltfReader::read_colors(std::size_t accessor) const 
 }
 
 std::optional<std::uint32_t> GltfReader::material(std::size_t index) {
+  static const json kDefault;  // no copy of the other: a value that is nested too deep cannot be copied
   const auto [entry, is_new] = materials_.try_emplace(index);
-  if (is_new) entry->second = make_material(index == kNone ? json() : file_.item("materials", index));
+  if (is_new) entry->second = make_material(index == kNone ? kDefault : file_.item("materials", index));
   return entry->second;
 }
 
@@ -295,8 +298,9 @@ std::optional<std::uint32_t> GltfReader::make_material(const json& source) {
   return static_cast<std::uint32_t>(scene_.model.mesh.materials.size() - 1);
 }
 
-// Index of the image that a texture shows; -1: none. Textures in other formats than PNG and JPEG may name a second one.
-int GltfReader::texture_image(const json& reference) const {
+// Index in GltfModel::images of the image that a texture shows; -1: none. Textures in other formats than PNG and JPEG
+// may name it in an extension.
+int GltfReader::texture_image(const json& reference) {
   if (reference.is_null()) return -1;
   const json& texture = file_.item("textures", index_member(reference, "index", scene_.file, kNone));
   std::size_t image = index_member(texture, "source", scene_.file, kNone);
@@ -304,9 +308,23 @@ int GltfReader::texture_image(const json& reference) const {
   for (const char* extension : {"KHR_texture_basisu", "GOOGLE_texture_basis", "EXT_texture_webp"}) {
     if (image == kNone) image = index_member(member(extensions, extension), "source", scene_.file, kNone);
   }
-  if (image == kNone) return -1;
-  if (image >= scene_.images.size()) file_.fail("a texture names an image that is not there; export the scene again");
-  return static_cast<int>(image);
+  const auto [entry, is_new] = images_.try_emplace(image, scene_.images.size());
+  if (is_new) add_image(image);
+  return static_cast<int>(entry->second);
+}
+
+void GltfReader::add_image(std::size_t index) {
+  std::string name = "a texture without PNG or JPEG";
+  std::vector<std::uint8_t> bytes;
+  if (index != kNone) {
+    name = text_member(file_.item("images", index), "uri", scene_.file).substr(0, 80);
+    if (name.empty() || name.rfind("data:", 0) == 0) name = "image " + std::to_string(index);
+    bytes = file_.image(index);
+  }
+  image_bytes_ += bytes.size();
+  if (image_bytes_ > kMostImageBytes) file_.fail("the images have more than 1 GiB; shrink them, or split the scene");
+  scene_.images.push_back(std::move(bytes));
+  scene_.image_names.push_back(std::move(name));
 }
 
 // The magic numbers of KTX 2 and of .basis files.
@@ -319,31 +337,31 @@ bool is_basis(const std::vector<std::uint8_t>& bytes) {
   return starts_with(kKtx2) || starts_with(kBasis);
 }
 
-// Decodes the images that materials show. Returns per image the index of the texture, or -1.
+// Decodes the images. Returns per image the index of the texture, or -1.
 std::vector<int> decode_images(GltfModel& scene, int max_texture_px) {
   Mesh& mesh = scene.model.mesh;
   std::vector<int> texture_of(scene.images.size(), -1);
-  std::vector<bool> is_used(scene.images.size(), false);
-  for (const auto& material : mesh.materials) {
-    if (material.texture >= 0) is_used[static_cast<std::size_t>(material.texture)] = true;
-  }
-  std::size_t basis = 0;
+  std::vector<std::string> unreadable;
+  std::size_t basis = 0, texels = 0;
   for (std::size_t i = 0; i < scene.images.size(); ++i) {
-    if (!is_used[i]) continue;
     if (auto texture = decode_texture(scene.images[i], max_texture_px)) {
+      texels += texture->pixels.size();
+      if (texels > kMaxTexels) {
+        throw std::runtime_error(scene.file + ": the textures have more than 1 G texels; shrink them, or split it");
+      }
       texture_of[i] = static_cast<int>(mesh.textures.size());
       mesh.textures.push_back(std::move(texture));
-    } else if (is_basis(scene.images[i])) {
-      ++basis;
     } else {
-      scene.model.warnings.push_back(scene.file + ": texture '" + scene.image_names[i] +
-                                     "' is missing or no PNG or JPEG; grey stands in");
+      unreadable.push_back(scene.image_names[i]);
+      if (is_basis(scene.images[i])) ++basis;
     }
+    scene.images[i] = {};
   }
-  if (basis > 0) {
-    scene.model.warnings.push_back(scene.file + ": " + std::to_string(basis) +
-                                   " textures are in the Basis format (KTX2), grey stands in; use the download "
-                                   "without 'basis', or convert them to PNG");
+  if (!unreadable.empty()) {
+    scene.model.warnings.push_back(scene.file + ": " + std::to_string(unreadable.size()) + " textures ('" +
+                                   unreadable.front() + "' for one) are missing or no PNG or JPEG, " +
+                                   std::to_string(basis) + " of them are in the Basis format (KTX2); grey stands in; " +
+                                   "put them there, or convert them to PNG");
   }
   return texture_of;
 }

@@ -15,7 +15,7 @@ struct GltfModel {
   Model model;
   std::vector<int> parents;                       ///< per group: index of the parent node, or -1
   std::vector<std::string> classes;               ///< per group: extras.class, or empty
-  std::vector<std::vector<std::uint8_t>> images;  ///< as the file has them (PNG, JPEG); empty: not there
+  std::vector<std::vector<std::uint8_t>> images;  ///< of shown materials, as the file has them; empty: not there
   std::vector<std::string> image_names;           ///< for messages
   std::string file;                               ///< for messages
 };
@@ -25,11 +25,13 @@ struct GltfModel {
 /// are left out, and so are materials that are nearly transparent (alphaMode BLEND, alpha below 0.35), as in
 /// read_obj().
 /// @throws std::runtime_error in one line with the remedy for files that are missing, truncated, or inconsistent; for
-///   compressed or sparse geometry; and when the nodes are no tree.
+///   required extensions that are not read (compression, KTX2, ...) and sparse geometry; when the nodes are no tree;
+///   for more than 30 million vertices or triangles, or 1 GiB of images.
 GltfModel read_gltf(const AssetStore& store, const std::string& name);
 
 /// Decodes the images and turns vertex colours, which glTF has as linear light, into sRGB. Images that cannot be
-/// decoded leave the material grey, with one warning each, or one for all that are in the Basis format (KTX2).
+/// decoded leave their materials grey, with one warning for all.
+/// @throws std::runtime_error when the textures have more than 2^30 texels.
 void finish_looks(GltfModel& scene, int max_texture_px);
 
 }  // namespace lapis::simulator

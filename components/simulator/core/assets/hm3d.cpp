@@ -144,7 +144,6 @@ Scene Hm3dLoader::load() {
   scene_.is_lit = false;
   choose_looks(semantic, colors);
   for (std::size_t i = 0; i < parts.size(); ++i) scene_.mesh.triangles[i].part = parts[i];
-  if (options_.up.value_or(UpAxis::kZ) == UpAxis::kY) turn_upright(scene_.mesh);
   finish_scene(scene_, file_);
   return std::move(scene_);
 }
@@ -188,18 +187,18 @@ std::string Hm3dLoader::class_of(const Hm3dInstance& instance) {
 }
 
 void Hm3dLoader::choose_looks(GltfModel& semantic, const std::vector<std::uint32_t>& colors) {
-  for (const char* ending : {".glb", ".basis.glb"}) {
-    if (!store_.read(id_ + ending)) continue;
-    GltfModel looks = read_gltf(store_, id_ + ending);
-    if (!have_same_triangles(looks.model.mesh, semantic.model.mesh)) continue;
-    finish_looks(looks, options_.max_texture_px);
-    scene_.mesh = std::move(looks.model.mesh);
-    scene_.warnings.insert(scene_.warnings.end(), looks.model.warnings.begin(), looks.model.warnings.end());
-    return;
+  if (store_.read(id_ + ".glb")) {
+    GltfModel looks = read_gltf(store_, id_ + ".glb");
+    if (have_same_triangles(looks.model.mesh, semantic.model.mesh)) {
+      finish_looks(looks, options_.max_texture_px);
+      scene_.mesh = std::move(looks.model.mesh);
+      scene_.warnings.insert(scene_.warnings.end(), looks.model.warnings.begin(), looks.model.warnings.end());
+      return;
+    }
   }
   scene_.warnings.push_back(file_ + ": no " + id_ +
-                            ".glb with the same triangles in the same order; the colours of the "
-                            "instances are shown");
+                            ".glb with the same triangles in the same order (.basis.glb is not read); the colours of "
+                            "the instances are shown");
   show_instances(semantic.model.mesh, colors);
   scene_.mesh = std::move(semantic.model.mesh);
 }

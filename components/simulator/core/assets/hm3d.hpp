@@ -26,9 +26,9 @@ std::map<std::uint32_t, Hm3dInstance> parse_hm3d_instances(std::string_view text
 std::map<std::string, std::string> parse_hm3d_mapping(std::string_view text, const std::string& file);
 
 /// Reads ID.semantic.glb and ID.semantic.txt. A triangle belongs to the instance whose colour it has: that of most of
-/// seven texels below it, of the vertices where there is no texture; no colour is ever mixed. ID.glb or, failing that,
-/// ID.basis.glb gives the looks if it has the same triangles in the same order; else a warning says that the colours
-/// of the instances are shown. Up is z unless the options say otherwise.
+/// seven texels below it, of the vertices where there is no texture; no colour is ever mixed. ID.glb gives the looks if
+/// it has the same triangles in the same order; else a warning says that the colours of the instances are shown. z is
+/// up, as in the files of the data set.
 /// @param mapping from raw category to class; nothing: the raw categories are the classes
 /// @throws std::runtime_error in one line with the remedy.
 Scene load_hm3d(const AssetStore& store, const std::string& id,

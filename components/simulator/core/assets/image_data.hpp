@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -7,6 +8,9 @@
 #include "simulator/core/scene/mesh.hpp"
 
 namespace lapis::simulator {
+
+/// All textures of a model may have as many texels (4 GiB).
+inline constexpr std::size_t kMaxTexels = std::size_t{1} << 30U;
 
 /// Decodes PNG, JPEG or BMP with 8 or 16 bits; pixels stay where the file has them, whatever its EXIF tag says.
 /// Shrinks to at most `max_px` on the longer side (averaging). Row 0 is the upper edge of the picture. Null when it is

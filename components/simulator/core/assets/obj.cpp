@@ -123,6 +123,7 @@ class ObjReader {
   std::string material_name_;
   UsedMaterial* material_ = nullptr;
   std::map<std::string, std::shared_ptr<const TextureImage>> textures_;
+  std::size_t texels_ = 0;
   std::map<std::string, std::uint32_t> groups_;
   std::string group_name_ = "default";
   std::uint32_t group_ = kNone;  ///< index of group_name_ in Model::groups; kNone: not yet there
@@ -282,8 +283,16 @@ std::uint32_t ObjReader::material_index(bool has_texture_coordinates) {
 std::shared_ptr<const TextureImage> ObjReader::texture(const std::string& written) {
   const auto [entry, is_new] = textures_.try_emplace(written);
   if (!is_new) return entry->second;
-  if (const auto found = finder_.image(written)) entry->second = decode_texture(found->bytes, max_texture_px_);
-  if (!entry->second) model_.warnings.push_back(name_ + ": texture '" + written + "' is missing or no image");
+  const auto found = finder_.image(written);
+  if (found) entry->second = decode_texture(found->bytes, max_texture_px_);
+  texels_ += entry->second ? entry->second->pixels.size() : 0;
+  if (texels_ > kMaxTexels) fail("the textures have more than 1 G texels; shrink them");
+  if (!entry->second) {
+    model_.warnings.push_back(name_ + ": texture '" + written + "' is missing or no image; a plain colour stands in");
+  } else if (found->is_guess) {
+    model_.warnings.push_back(name_ + ": texture '" + written + "' is missing; the only image beside the model, '" +
+                              found->name + "', stands in");
+  }
   return entry->second;
 }
 

@@ -99,8 +99,9 @@ class PlyReader {
   double read_binary();
   std::size_t remaining() const { return bytes_.size() - at_; }
 
+  std::optional<std::size_t> find_number(const Element& element, std::string_view property) const;
   std::array<std::size_t, 3> require_position(const Element& element) const;
-  static std::optional<std::array<std::size_t, 3>> find_color(const Element& element);
+  std::optional<std::array<std::size_t, 3>> find_color(const Element& element) const;
   void read_vertices(const Element& element);
   void read_faces(const Element& element);
   std::vector<std::size_t> require_labels(const Element& element) const;
@@ -284,19 +285,26 @@ double PlyReader::read_binary() {
   return static_cast<double>(value);
 }
 
+std::optional<std::size_t> PlyReader::find_number(const Element& element, std::string_view property) const {
+  const auto found = element.find(property);
+  if (found && element.properties[*found].length_type) {
+    fail("property '" + std::string(property) + "' must be a number, not a list; export the file again");
+  }
+  return found;
+}
+
 std::array<std::size_t, 3> PlyReader::require_position(const Element& element) const {
-  const auto x = element.find("x"), y = element.find("y"), z = element.find("z");
+  const auto x = find_number(element, "x"), y = find_number(element, "y"), z = find_number(element, "z");
   if (!x || !y || !z) fail("the vertices need the properties x, y and z; export the file again");
   return {*x, *y, *z};
 }
 
-std::optional<std::array<std::size_t, 3>> PlyReader::find_color(const Element& element) {
+std::optional<std::array<std::size_t, 3>> PlyReader::find_color(const Element& element) const {
   std::array<std::size_t, 3> channels{};
   const std::array<std::string_view, 3> names{"red", "green", "blue"};
   for (std::size_t i = 0; i < names.size(); ++i) {
-    const auto found = element.find(names[i]);
-    if (!found || element.properties[*found].length_type || element.properties[*found].type != Type::kUint8)
-      return std::nullopt;
+    const auto found = find_number(element, names[i]);
+    if (!found || element.properties[*found].type != Type::kUint8) return std::nullopt;
     channels[i] = *found;
   }
   return channels;
@@ -325,10 +333,8 @@ void PlyReader::read_vertices(const Element& element) {
 std::vector<std::size_t> PlyReader::require_labels(const Element& element) const {
   std::vector<std::size_t> columns;
   for (const auto& label : face_labels_) {
-    const auto found = element.find(label);
-    if (!found || element.properties[*found].length_type) {
-      fail("the faces need the property '" + label + "'; it says which thing a face belongs to");
-    }
+    const auto found = find_number(element, label);
+    if (!found) fail("the faces need the property '" + label + "'; it says which thing a face belongs to");
     columns.push_back(*found);
   }
   return columns;

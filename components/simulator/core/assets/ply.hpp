@@ -26,8 +26,8 @@ struct PlyMesh {
 /// red, green, blue (uchar), and the whole numbers named in `face_labels`; the rest is skipped. No memory is taken for
 /// elements that the file is too short to hold.
 /// @param file for messages
-/// @throws std::runtime_error in one line for a header that makes no sense, a property that is missing, a file that
-///   ends too early, and indices that are out of range.
+/// @throws std::runtime_error in one line for a header that makes no sense, a property that is missing or a list
+///   where a number should be, a file that ends too early, and indices that are out of range.
 PlyMesh read_ply(std::span<const std::uint8_t> bytes, const std::string& file,
                  const std::vector<std::string>& face_labels);
 

@@ -41,14 +41,15 @@ void clear_unsound_texture_coordinates(Mesh& mesh) {
 }
 
 // Area of horizontal floor per 5 cm of height. Closed slabs have a lower side too: where normals look up, only those
-// count.
-double find_floor(const Scene& scene) {
+// count. Nothing when no instance of the class "floor" is level.
+std::optional<double> find_floor(const Scene& scene) {
   constexpr double kBin_m = 0.05;
-  const auto floor = find_class(scene.labels, "floor");
+  const auto floor = scene.labels.id_of("floor");
+  if (!floor) return std::nullopt;
   std::map<long, double> upward, any;
   double upward_area = 0, any_area = 0;
   for (const auto& triangle : scene.mesh.triangles) {
-    if (!floor || scene.instances[triangle.part].class_id != *floor) continue;
+    if (scene.instances[triangle.part].class_id != *floor) continue;
     const auto& p = scene.mesh.positions;
     const Eigen::Vector3d a = p[triangle.vertices[0]].cast<double>(), b = p[triangle.vertices[1]].cast<double>(),
                           c = p[triangle.vertices[2]].cast<double>();
@@ -63,7 +64,7 @@ double find_floor(const Scene& scene) {
   for (const auto& [bin, area] : has_upward ? upward : any) {
     if (area >= 0.2 * (has_upward ? upward_area : any_area)) return static_cast<double>(bin) * kBin_m;
   }
-  return bounds(scene.mesh).min().z();
+  return std::nullopt;
 }
 
 }  // namespace
@@ -83,13 +84,6 @@ std::string_view as_text(const std::vector<std::uint8_t>& bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-std::optional<std::uint16_t> find_class(const mapping::LabelList& labels, std::string_view name) {
-  for (const auto& label : labels.labels()) {
-    if (label.name == name) return label.id;
-  }
-  return std::nullopt;
-}
-
 mapping::LabelList number_classes(const std::set<std::string>& names) {
   std::vector<std::pair<std::uint16_t, std::string>> numbered;
   for (const auto& name : names) {
@@ -107,7 +101,7 @@ ClassNames::ClassNames(const mapping::LabelList& wanted, const std::set<std::str
 
 std::uint16_t ClassNames::id_of(const std::string& name) {
   if (name.empty() || name == "void" || name == "unlabeled" || name == "unlabelled") return 0;
-  const auto id = find_class(labels_, name);
+  const auto id = labels_.id_of(name);
   if (!id) unknown_.insert(name);
   return id.value_or(0);
 }
@@ -159,7 +153,11 @@ void finish_scene(Scene& scene, const std::string& file) {
   }
   move_unsound_vertices(scene.mesh);
   clear_unsound_texture_coordinates(scene.mesh);
-  scene.floor_z_m = find_floor(scene);
+  const auto floor_z_m = find_floor(scene);
+  scene.floor_z_m = floor_z_m ? *floor_z_m : static_cast<double>(bounds(scene.mesh).min().z());
+  if (!floor_z_m) {
+    scene.warnings.push_back(file + ": nothing level has the class 'floor'; the lowest point is taken for the floor");
+  }
 }
 
 }  // namespace lapis::simulator

@@ -22,9 +22,6 @@ std::vector<std::uint8_t> read_required(const AssetStore& store, const std::stri
 
 std::string_view as_text(const std::vector<std::uint8_t>& bytes);
 
-/// Id of the class of that name; nothing when the list has none.
-std::optional<std::uint16_t> find_class(const mapping::LabelList& labels, std::string_view name);
-
 /// Classes numbered from 1 in the order of their names.
 mapping::LabelList number_classes(const std::set<std::string>& names);
 
@@ -72,7 +69,7 @@ void turn_upright(Mesh& mesh);
 
 /// What every loader does last: drops triangles with a vertex that is not finite or farther than 100 km from the
 /// origin (with one warning), sets texture coordinates of that kind to zero, and finds floor_z_m: the lowest height at
-/// which there is a fifth of the floor (class "floor"); without such a class the lowest point.
+/// which there is a fifth of the floor (class "floor"); without such a class the lowest point, with a warning.
 /// @throws std::runtime_error naming `file` when no triangle is left.
 void finish_scene(Scene& scene, const std::string& file);
 

@@ -169,7 +169,7 @@ bool Labeller::fits(const Semantics::Entry& entry, std::uint32_t group, std::uin
 
 std::uint16_t Labeller::class_id(const std::string& name, const std::string& user) const {
   if (name.empty()) return 0;
-  const auto id = find_class(labels_, name);
+  const auto id = labels_.id_of(name);
   if (!id) {
     throw std::runtime_error(file_ + ": " + user + " has the unknown class '" + name +
                              "'; name it in 'labels' of semantics.json or in the label list");
@@ -187,7 +187,7 @@ Semantics parse_semantics(std::string_view text, const std::string& file) {
   result.labels = parse_labels(array_member(root, "labels", file), file);
   const auto up = optional_text(root, "up", file);
   if (up && *up != "y" && *up != "z") throw std::runtime_error(file + ": 'up' must be 'y' or 'z'");
-  if (up) result.up = *up == "y" ? UpAxis::kY : UpAxis::kZ;
+  if (up == "z") result.up = UpAxis::kZ;
   return result;
 }
 
@@ -209,7 +209,7 @@ Scene load_model_scene(const AssetStore& store, const std::string& name, const L
                              ": nothing is labelled; put a semantics.json beside it, or extras.class into nodes");
   }
   Labeller(source, semantics, options, file).label(scene);
-  if (options.up.value_or(semantics.up.value_or(UpAxis::kY)) == UpAxis::kY) turn_upright(scene.mesh);
+  if (semantics.up == UpAxis::kY) turn_upright(scene.mesh);
   finish_scene(scene, file);
   return scene;
 }

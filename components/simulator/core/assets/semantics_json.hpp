@@ -12,6 +12,8 @@
 
 namespace lapis::simulator {
 
+enum class UpAxis { kY, kZ };
+
 /// What semantics.json says about the model beside it:
 ///
 ///     {"instances": [{"id": 1, "class": "chair", "node": "Chair.001"}, {"id": 2, "class": "wall", "material":
@@ -29,7 +31,7 @@ struct Semantics {
   };
   std::vector<Entry> instances;
   mapping::LabelList labels;  ///< empty when the file has none
-  std::optional<UpAxis> up;
+  UpAxis up = UpAxis::kY;
 };
 
 /// @throws std::runtime_error naming `file` and the entry in one line.
@@ -37,8 +39,8 @@ Semantics parse_semantics(std::string_view text, const std::string& file);
 
 /// Reads an .obj, .gltf or .glb file with the semantics.json beside it. A triangle belongs to the first entry that
 /// fits; else, in glTF, to the nearest node above it with extras.class; else to nothing. The classes are those of
-/// "labels", of the options, or, when both are empty, all that are named. Up is what the options say, else "up", else
-/// y. Without semantics.json and extras.class nothing is labelled, with a warning.
+/// "labels", of the options, or, when both are empty, all that are named. Up is "up", else y. Without semantics.json
+/// and extras.class nothing is labelled, with a warning.
 /// @throws std::runtime_error in one line with the remedy.
 Scene load_model_scene(const AssetStore& store, const std::string& name, const LoadOptions& options);
 

@@ -2,11 +2,14 @@
 
 #include <zip.h>
 
+#include <algorithm>
 #include <stdexcept>
 #include <system_error>
 
 namespace lapis::simulator {
 namespace {
+
+constexpr std::size_t kLeastStep = 1 << 20;  // [bytes]
 
 struct CloseEntry {
   void operator()(zip_file* entry) const { zip_fclose(entry); }
@@ -60,8 +63,13 @@ std::optional<std::vector<std::uint8_t>> ZipStore::read(const std::string& name)
   const std::lock_guard lock(mutex_);
   const std::unique_ptr<zip_file, CloseEntry> entry(zip_fopen_index(archive_.get(), found->second.index, 0));
   if (!entry) return std::nullopt;
-  std::vector<std::uint8_t> bytes(found->second.size);
-  if (zip_fread(entry.get(), bytes.data(), bytes.size()) != static_cast<zip_int64_t>(bytes.size())) return std::nullopt;
+  std::vector<std::uint8_t> bytes;
+  while (bytes.size() < found->second.size) {  // no memory for what the archive promises and does not hold
+    const std::size_t had = bytes.size();
+    bytes.resize(std::min<std::size_t>(found->second.size, had + std::max(had, kLeastStep)));
+    const std::size_t wanted = bytes.size() - had;
+    if (zip_fread(entry.get(), bytes.data() + had, wanted) != static_cast<zip_int64_t>(wanted)) return std::nullopt;
+  }
   std::uint8_t beyond = 0;  // reading on checks the CRC, and finds files longer than the archive says
   if (zip_fread(entry.get(), &beyond, 1) != 0) return std::nullopt;
   return bytes;

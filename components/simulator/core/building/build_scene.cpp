@@ -96,8 +96,11 @@ class SceneBuilder {
   void add_furniture() {
     std::vector<SourcedModel> models;
     std::vector<ItemExtent> extents;
+    std::size_t triangles = 0;
     for (const FurnitureSpec& item : spec_.furniture) {
       const SourcedModel& model = models.emplace_back(model_of(item));
+      triangles += model.mesh.triangles.size();
+      if (triangles > kMaxTriangles) refuse(spec_, "furniture", "has more than 20 million triangles; remove some");
       const bool is_on_item = std::holds_alternative<OnItem>(item.place);
       const double usual = is_on_item ? 0.0 : model.elevation_m;
       extents.push_back({bounds(model.mesh).sizes().cast<double>(), item.elevation_m.value_or(usual)});

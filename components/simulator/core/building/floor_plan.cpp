@@ -146,12 +146,6 @@ void refuse(const SceneSpec& spec, const std::string& item, const std::string& w
   throw std::runtime_error(spec.file + ": " + item + ": " + what);
 }
 
-std::uint16_t class_id(const mapping::LabelList& labels, const std::string& name) {
-  const auto& all = labels.labels();
-  const auto it = std::find_if(all.begin(), all.end(), [&](const mapping::Label& label) { return label.name == name; });
-  return it == all.end() ? std::uint16_t{0} : it->id;
-}
-
 std::string numbered(const std::string& what, std::size_t index) { return what + " " + std::to_string(index + 1); }
 
 }  // namespace lapis::simulator

@@ -50,9 +50,6 @@ std::vector<RoomPlan> plan_walls(const SceneSpec& spec);
 /// One line for std::runtime_error: file, item, what is wrong.
 [[noreturn]] void refuse(const SceneSpec& spec, const std::string& item, const std::string& what);
 
-/// Id of a class by its name; 0 when there is none.
-std::uint16_t class_id(const mapping::LabelList& labels, const std::string& name);
-
 /// "picture 3": how messages call a thing without id; numbers begin at 1.
 std::string numbered(const std::string& what, std::size_t index);
 

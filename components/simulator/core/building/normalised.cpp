@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <sstream>
 
 #include "simulator/core/building/floor_plan.hpp"
 #include "simulator/core/building/polygon.hpp"
@@ -10,6 +11,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kMaxReach_m = 1000.0, kMaxLength_m = 100.0, kMaxArea_m2 = 2000.0;  // for the sake of cells of 0.2 m
+constexpr double kMinSize_m = 0.001, kMaxSize_m = 50.0;                             // of furniture
 
 /// Checks a spec and fills in what was left out, list by list.
 class Normaliser {
@@ -24,7 +26,7 @@ class Normaliser {
     std::set<std::string> ids;
     for (std::size_t i = 0; i < spec_.furniture.size(); ++i) normalise(spec_.furniture[i], i, ids);
     normalise_pictures();
-    for (std::size_t i = 0; i < spec_.lamps.size(); ++i) check_inside(spec_.lamps[i].at, numbered("lamp", i));
+    for (std::size_t i = 0; i < spec_.lamps.size(); ++i) check(spec_.lamps[i], numbered("lamp", i));
     for (std::size_t i = 0; i < spec_.starts.size(); ++i) check_inside(spec_.starts[i].position, numbered("start", i));
     for (std::size_t i = 0; i < spec_.tour.size(); ++i) check_inside(spec_.tour[i], numbered("tour point", i));
   }
@@ -104,6 +106,12 @@ class Normaliser {
       refuse(spec_, item, "only windows may have a bottom above the floor");
   }
 
+  void check(const LampSpec& lamp, const std::string& item) const {
+    const RoomSpec& room = check_inside(lamp.at, item);
+    if (lamp.height_m) check_range("height", *lamp.height_m, {0.1, room.height_m.value_or(spec_.height_m)}, item);
+    check_range("intensity", lamp.intensity, {0.0, 1000.0}, item);
+  }
+
   static std::string called(const FurnitureSpec& item, std::size_t index) {
     return item.id.empty() ? numbered("furniture", index) + " (" + item.class_name + ")" : "item \"" + item.id + "\"";
   }
@@ -112,12 +120,17 @@ class Normaliser {
     const std::string name = called(item, index);
     check_class(item.class_name, name);
     for (const auto& [part, class_name] : item.parts) check_class(class_name, name);
-    if (item.size_m && !(item.size_m->minCoeff() > 0.0 && item.size_m->maxCoeff() < 50.0))
-      refuse(spec_, name, "sizes must be positive");
+    if (item.size_m) check_each("size", *item.size_m, {kMinSize_m, kMaxSize_m}, name);
+    if (item.elevation_m) check_range("elevation", *item.elevation_m, {-kMaxSize_m, kMaxSize_m}, name);
+    if (const auto* place = std::get_if<AtPoint>(&item.place)) {
+      check_each("at", place->at, {-kMaxReach_m, kMaxReach_m}, name);
+    }
     if (const auto* place = std::get_if<AgainstWall>(&item.place)) {
       check_along(room_with_edge(place->room, place->edge, name), place->edge, place->along_m, name);
+      check_range("gap", place->gap_m, {-1.0, kMaxLength_m}, name);
     }
     if (const auto* place = std::get_if<OnItem>(&item.place)) {
+      check_each("offset", place->offset, {-kMaxSize_m, kMaxSize_m}, name);
       if (!ids.contains(place->item))
         refuse(spec_, name, "no item \"" + place->item + "\" comes before it to stand on");
     }
@@ -138,19 +151,38 @@ class Normaliser {
       const std::string name = numbered("picture", i);
       check_class(picture.class_name, name);
       check_along(room_with_edge(picture.room, picture.edge, name), picture.edge, picture.along_m, name);
-      if (!(picture.size_m.minCoeff() >= 0.1)) refuse(spec_, name, "sizes must be at least 0.1");
+      check_each("size", picture.size_m, {0.1, kMaxSize_m}, name);
       while (!picture.motif && motifs.contains(next)) ++next;
       if (!picture.motif) picture.motif = next++;
     }
   }
 
   void check_class(const std::string& class_name, const std::string& item) const {
-    if (class_id(spec_.labels, class_name) == 0) refuse(spec_, item, "the labels have no class \"" + class_name + "\"");
+    if (!spec_.labels.id_of(class_name)) refuse(spec_, item, "the labels have no class \"" + class_name + "\"");
   }
 
-  void check_inside(const Eigen::Vector2d& at, const std::string& item) const {
-    const auto holds = [&](const RoomSpec& room) { return contains(room.polygon, at); };
-    if (std::none_of(spec_.rooms.begin(), spec_.rooms.end(), holds)) refuse(spec_, item, "lies in no room");
+  struct Range {
+    double low, high;
+  };
+
+  void check_range(const char* key, double value, const Range& range, const std::string& item) const {
+    if (value >= range.low && value <= range.high) return;  // not for NaN
+    std::ostringstream problem;
+    problem << key << " must be from " << range.low << " to " << range.high;
+    refuse(spec_, item, problem.str());
+  }
+
+  template <class Vector>
+  void check_each(const char* key, const Vector& values, const Range& range, const std::string& item) const {
+    for (const double value : values) check_range(key, value, range, item);
+  }
+
+  /// The room that the point lies in.
+  const RoomSpec& check_inside(const Eigen::Vector2d& at, const std::string& item) const {
+    const auto room = std::find_if(spec_.rooms.begin(), spec_.rooms.end(),
+                                   [&](const RoomSpec& candidate) { return contains(candidate.polygon, at); });
+    if (room == spec_.rooms.end()) refuse(spec_, item, "lies in no room");
+    return *room;
   }
 
   const RoomSpec& room_with_edge(const std::string& id, int edge, const std::string& item) const {

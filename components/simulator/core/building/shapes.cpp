@@ -187,13 +187,4 @@ std::vector<double> grid_lines(std::vector<double> values, double max_step) {
   return lines;
 }
 
-void fit_to_box(Mesh& mesh, const Eigen::Vector3d& size_m) {
-  if (mesh.positions.empty()) return;
-  const Eigen::AlignedBox3f box = bounds(mesh);
-  const Eigen::Vector3f foot(box.center().x(), box.center().y(), box.min().z()), extent = box.sizes();
-  const Eigen::Array3f safe = (extent.array() > 1e-6F).select(extent.array(), 1.0F);
-  const Eigen::Array3f scale = (extent.array() > 1e-6F).select(size_m.cast<float>().array() / safe, 1.0F);
-  for (auto& p : mesh.positions) p = (scale * (p - foot).array()).matrix();
-}
-
 }  // namespace lapis::simulator

@@ -70,8 +70,4 @@ class Shapes {
 /// most `max_step` apart.
 std::vector<double> grid_lines(std::vector<double> values, double max_step);
 
-/// Scales and moves a mesh so that its bounds are width x depth x height in the item frame (x and y centred, z from 0).
-/// An extent of zero stays zero.
-void fit_to_box(Mesh& mesh, const Eigen::Vector3d& size_m);
-
 }  // namespace lapis::simulator

@@ -238,8 +238,11 @@ class RoomBuilder {
 
 std::uint32_t add_instance(Scene& scene, const std::string& class_name, const std::string& name) {
   const std::size_t index = scene.instances.size();
-  if (index >= std::numeric_limits<std::uint16_t>::max()) throw std::runtime_error(scene.name + ": too many instances");
-  scene.instances.push_back({static_cast<std::uint16_t>(index + 1), class_id(scene.labels, class_name), name});
+  if (index >= std::numeric_limits<std::uint16_t>::max())
+    throw std::runtime_error("scene " + scene.name + ": has more than 65535 walls and things; make it smaller");
+  if (scene.mesh.triangles.size() > kMaxTriangles)
+    throw std::runtime_error("scene " + scene.name + ": has more than 20 million triangles; make it smaller");
+  scene.instances.push_back({static_cast<std::uint16_t>(index + 1), scene.labels.id_of(class_name).value_or(0), name});
   return static_cast<std::uint32_t>(index);
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -10,7 +12,11 @@
 
 namespace lapis::simulator {
 
+/// Of a whole scene: 2 GB with what renders them.
+inline constexpr std::size_t kMaxTriangles = 20'000'000;
+
 /// Appends an instance and returns its index, which is the `part` of its triangles.
+/// @throws std::runtime_error when there are more than 65535 instances or kMaxTriangles triangles
 std::uint32_t add_instance(Scene& scene, const std::string& class_name, const std::string& name);
 
 /// Adds walls, floors, ceilings, doors and windows of all rooms to a scene: one instance per wall, floor, and ceiling

@@ -15,7 +15,8 @@ struct Slab {
   double low = 0.0, high = 0.0;
 };
 
-/// The convex polygon that a slab leaves of a triangle: at most five corners, none when they do not meet.
+/// The convex polygon that a slab leaves of a triangle: at most five corners (the first cut leaves two new ones beside
+/// each other on its plane, which the second one does not touch), none when they do not meet. low < high.
 struct SlabPolygon {
   std::array<Eigen::Vector3d, 5> corners;
   std::size_t size = 0;

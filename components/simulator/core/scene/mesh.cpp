@@ -53,6 +53,18 @@ Eigen::AlignedBox3f bounds(const Mesh& mesh) {
   return box;
 }
 
+void fit_to_box(Mesh& mesh, const Eigen::Vector3d& size_m) {
+  if (mesh.positions.empty()) return;
+  const Eigen::AlignedBox3f box = bounds(mesh);
+  const Eigen::Vector3f foot(box.center().x(), box.center().y(), box.min().z()), extent = box.sizes();
+  Eigen::Vector3f scale = Eigen::Vector3f::Ones();
+  for (int axis = 0; axis < 3; ++axis) {
+    const bool is_flat = extent[axis] <= 1e-5F * extent.maxCoeff();
+    if (!is_flat) scale[axis] = static_cast<float>(size_m[axis]) / extent[axis];
+  }
+  for (auto& p : mesh.positions) p = (p - foot).cwiseProduct(scale);
+}
+
 std::string problem_of(const Mesh& mesh) {
   const std::size_t vertices = mesh.positions.size();
   if (!mesh.texture_coordinates.empty() && mesh.texture_coordinates.size() != vertices)

@@ -53,6 +53,10 @@ std::uint32_t add_material(Mesh& mesh, Material material, std::shared_ptr<const 
 /// Box around all positions; empty when there are none.
 Eigen::AlignedBox3f bounds(const Mesh& mesh);
 
+/// Scales and moves a mesh so that its bounds are width x depth x height in the item frame (x and y centred, z from 0).
+/// An extent of zero, but for rounding, stays as it is.
+void fit_to_box(Mesh& mesh, const Eigen::Vector3d& size_m);
+
 /// Why a mesh cannot be used: an index out of range, a coordinate that is not finite, arrays of different lengths.
 /// Empty when it is sound.
 std::string problem_of(const Mesh& mesh);

@@ -29,6 +29,7 @@ VoxelBox voxel_box(const Scene& scene, const geometry::Pose& T_map_world, double
 
 /// Surface voxels of the scene's mesh, sorted by cell. Areas are exact: every triangle is cut at the voxels' faces.
 /// Holes of cut-out textures count as surface. The mesh must be sound (problem_of) and lie in the box.
+/// @throws std::runtime_error in one line with the remedy when its surface is too large for that resolution.
 std::vector<SurfaceVoxel> surface_voxels(const Scene& scene, const geometry::Pose& T_map_world, const VoxelBox& box);
 
 }  // namespace lapis::simulator

@@ -7,17 +7,17 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kMaxCells = 4e9;
+constexpr double kMaxCells = 2e8;  // bits of several sets, and 8 bytes for those that are known
 
 }  // namespace
 
 VoxelBox::VoxelBox(const Eigen::AlignedBox3d& box, double resolution_m) : resolution_m_(resolution_m) {
   const Eigen::Vector3d low = (box.min() / resolution_m).array().floor() - 1.0;
   const Eigen::Vector3d edges = (box.max() / resolution_m).array().floor() + 2.0 - low.array();
-  if (!(edges.prod() <= kMaxCells)) {
+  if (box.isEmpty() || !(edges.prod() <= kMaxCells)) {
     std::ostringstream problem;
     problem << "the scene measures " << box.sizes().transpose() << " m, too much for voxels of " << resolution_m
-            << " m: are its units metres?";
+            << " m; take larger voxels, or correct its units if they are not metres";
     throw std::runtime_error(problem.str());
   }
   low_ = low.cast<int>();

@@ -14,10 +14,11 @@ namespace lapis::simulator {
 class VoxelBox {
  public:
   /// All voxels that the box [m, map frame] touches, and one more on each side.
-  /// @throws std::runtime_error when there are more than 4e9 of them.
+  /// @throws std::runtime_error in one line with the remedy when there are more than 2e8 of them.
   VoxelBox(const Eigen::AlignedBox3d& box, double resolution_m);
 
   double resolution_m() const { return resolution_m_; }
+  Eigen::Vector3d size_m() const { return edges_.cast<double>() * resolution_m_; }
   std::size_t size() const { return strides_.z() * static_cast<std::size_t>(edges_.z()); }
   /// A point of the map frame [m] in voxels from the corner of the box.
   Eigen::Vector3d to_box(const Eigen::Vector3d& p_map) const { return p_map / resolution_m_ - low_.cast<double>(); }

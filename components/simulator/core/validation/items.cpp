@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <sstream>
+#include <stdexcept>
 
 namespace lapis::simulator {
 namespace {
@@ -18,6 +20,7 @@ bool is_structure(const Scene& scene, const Instance& instance) {
 
 using Corners = std::array<Eigen::Vector3f, 3>;
 
+constexpr double kMostPoints = 1e8;  // 1.2 GB
 constexpr float kRowSpacing = 0.8F;  // so that the middle of four points is near enough
 
 int pieces(float length, float longest) { return std::max(1, static_cast<int>(std::ceil(length / longest))); }
@@ -39,6 +42,17 @@ void add_points(const Corners& c, float spacing_m, std::vector<Eigen::Vector3f>&
     for (int i = 0; i < count; ++i)
       points.emplace_back(left + (static_cast<float>(i) + 0.5F) / static_cast<float>(count) * span);
   }
+}
+
+[[noreturn]] void refuse(const Mesh& mesh, const std::vector<std::uint32_t>& triangles) {
+  Eigen::AlignedBox3f box;
+  for (const std::uint32_t t : triangles) {
+    for (const std::uint32_t v : mesh.triangles[t].vertices) box.extend(mesh.positions[v]);
+  }
+  std::ostringstream problem;
+  problem << "a thing measures " << box.sizes().transpose()
+          << " m, too much to check; correct the units of the scene if they are not metres";
+  throw std::runtime_error(problem.str());
 }
 
 }  // namespace
@@ -90,10 +104,16 @@ Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& triangles) {
 
 std::vector<Eigen::Vector3f> surface_points(const Mesh& mesh, const std::vector<std::uint32_t>& triangles,
                                             float spacing_m) {
+  const float cell_m2 = kRowSpacing * spacing_m * spacing_m;
+  double expected = 0.0;
   std::vector<Eigen::Vector3f> points;
   for (const std::uint32_t t : triangles) {
     const auto& v = mesh.triangles[t].vertices;
-    add_points({mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]}, spacing_m, points);
+    const Corners corners{mesh.positions[v[0]], mesh.positions[v[1]], mesh.positions[v[2]]};
+    const Eigen::Vector3f a = corners[1] - corners[0], b = corners[2] - corners[0];
+    expected += static_cast<double>(a.cross(b).norm() / 2 / cell_m2 + (a.norm() + b.norm()) / spacing_m);
+    if (expected > kMostPoints) refuse(mesh, triangles);
+    add_points(corners, spacing_m, points);
   }
   return points;
 }

@@ -32,6 +32,7 @@ Inventory take_inventory(const Scene& scene);
 Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& triangles);
 
 /// Points that cover the triangles: no place on them is farther than `spacing_m` from a point [m].
+/// @throws std::runtime_error in one line with the remedy when the triangles are so large that these are too many.
 std::vector<Eigen::Vector3f> surface_points(const Mesh& mesh, const std::vector<std::uint32_t>& triangles,
                                             float spacing_m);
 

@@ -13,7 +13,7 @@ constexpr int kContact_voxels = 4;  // 8 cm: what is pressed in by 6 cm is not m
 constexpr double kOverlapShare = 0.02;
 constexpr double kOutside_m = 0.03, kOutsideShare = 0.01;
 constexpr float kSpacing_m = 0.03F;
-constexpr float kLargest_m3 = 500.0F;  // what is larger is no furniture, and its voxels are too many
+constexpr double kMostVoxels = 6e7;  // 500 m3: what is larger is no furniture
 
 /// The voxels of two solids.
 class Pair {
@@ -93,7 +93,7 @@ std::vector<Overlap> find_overlaps(const Scene& scene, const Inventory& inventor
   std::vector<Overlap> found;
   for (std::size_t i = 0; i < items.size(); ++i) {
     for (std::size_t k = i + 1; k < items.size(); ++k) {
-      if (std::max(items[i].box.volume(), items[k].box.volume()) > kLargest_m3) continue;
+      if (std::max(Solid::voxels(items[i]), Solid::voxels(items[k])) > kMostVoxels) continue;
       if (!items[i].box.intersects(items[k].box)) continue;
       Overlap overlap = Pair(solid(i), solid(k)).compare();
       overlap.first = i;

@@ -13,6 +13,8 @@ Eigen::Vector3i voxel_of(const Eigen::Vector3f& p) { return (p / Solid::kVoxel_m
 
 }  // namespace
 
+double Solid::voxels(const Item& item) { return ((item.box.sizes() / kVoxel_m).cast<double>().array() + 2.0).prod(); }
+
 Solid::Solid(const Scene& scene, const Item& item)
     : low_(voxel_of(item.box.min())), size_((voxel_of(item.box.max()) - low_).array() + 1),
       filled_(index(Eigen::Vector3i(0, 0, size_.z())), 0) {

@@ -18,6 +18,9 @@ class Solid {
 
   Solid(const Scene& scene, const Item& item);
 
+  /// How many voxels the box of an item takes.
+  static double voxels(const Item& item);
+
   const Eigen::Vector3i& low() const { return low_; }                  ///< lowest voxel
   Eigen::Vector3i high() const { return (low_ + size_).array() - 1; }  ///< highest voxel
   std::size_t count() const { return count_; }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 
 #include "simulator/core/building/build_scene.hpp"
 #include "simulator/core/building/polygon.hpp"
@@ -12,6 +13,8 @@ namespace lapis::simulator {
 namespace {
 
 using Change = std::function<void(SceneSpec&)>;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 FurnitureSpec item(const std::string& id, const std::string& class_name, const Eigen::Vector2d& at) {
   FurnitureSpec spec;
@@ -151,9 +154,36 @@ std::vector<Mistake> mistakes() {
        [](SceneSpec& s) {
          s.tour = {{1, 1}, {9, 9}};
        }},
-      {"lamp 1",
+      {"lamp 1: lies in no room",
        [](SceneSpec& s) {
          s.lamps = {{{9, 9}, {}, 1.0}};
+       }},
+      {"lamp 1: height must be from 0.1 to 2.6",
+       [](SceneSpec& s) {
+         s.lamps = {{{1, 1}, 1e8, 1.0}};
+       }},
+      {"lamp 1: intensity must be from 0 to 1000",
+       [](SceneSpec& s) {
+         s.lamps = {{{1, 1}, {}, kNan}};
+       }},
+      {R"(item "a": at must be from -1000 to 1000)",
+       [](SceneSpec& s) {
+         s.furniture = {item("a", "chair", {1, 1e8})};
+       }},
+      {R"(item "a": elevation must be from -50 to 50)",
+       [](SceneSpec& s) {
+         s.furniture = {item("a", "chair", {1, 1})};
+         s.furniture[0].elevation_m = kNan;
+       }},
+      {R"(item "desk": gap must be from -1 to 100)",
+       [](SceneSpec& s) {
+         against(s, "left", 0, 1);
+         std::get<AgainstWall>(s.furniture[0].place).gap_m = 1e8;
+       }},
+      {R"(item "b": offset must be from -50 to 50)",
+       [](SceneSpec& s) {
+         s.furniture = {item("a", "chair", {1, 1}), item("b", "chair", {1, 1})};
+         s.furniture[1].place = OnItem{"a", {0, -1e8}, 0.0};
        }},
   };
 }

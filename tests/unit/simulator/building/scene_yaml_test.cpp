@@ -113,6 +113,10 @@ TEST(SceneYaml, MistakesNameFileAndLine) {
       {"furniture:\n  - {class: chair, at: [1, 1], movable: maybe}\n", ":5: movable: must be true or false"},
       {"furniture:\n  - {class: chair, at: [1, 1], at: [2, 2]}\n", ":5: key \"at\" occurs twice"},
       {"furniture:\n  - {class: chair, at: [1, 1], row: {count: 0, step: [1, 0]}}\n", ":5: row: count"},
+      {"furniture:\n  - {class: chair, at: [1, 1], row: {count: 1001, step: [1, 0]}}\n", ":5: row: count"},
+      {"furniture:\n  - {class: chair, at: [1, 1e300]}\n", ":5: at: must be a number, not \"1e300\""},
+      {"furniture:\n  - {class: chair, at: [1, 1], elevation: .inf}\n", ":5: elevation: must be a number"},
+      {"furniture:\n  - {class: chair, at: [1, 1], variant: -1}\n", ":5: item: variant must not be negative"},
       {"tour: [[1, 2], 3]\n", ":4: tour: must be 2 numbers"},
       {"openings: {door: [4, 1]}\n", ":4: openings: must be a list"},
       {"labels: nowhere.yaml\n", "nowhere.yaml: not found"},
@@ -126,6 +130,26 @@ TEST(SceneYaml, MistakesNameFileAndLine) {
   }
   EXPECT_NE(test::error_of([] { read_scene_yaml("/nowhere/scene.yaml"); }).find("/nowhere/scene.yaml: not found"),
             std::string::npos);
+}
+
+TEST(SceneYaml, PolygonsHaveThreeToTwoHundredCorners) {
+  const SceneFolder folder;
+  std::string many = "[0, 0]";
+  for (int i = 1; i <= 200; ++i) many += ", [" + std::to_string(i) + ", 1]";
+  for (const std::string& corners : {std::string(), std::string("[0, 0], [1, 1]"), many}) {
+    const auto file = folder.write("rooms:\n  - {id: a, polygon: [" + corners +
+                                   "]}\nfurniture:\n  - {class: chair, room: a, wall: 0}\n");
+    const std::string error = test::error_of([&] { read_scene_yaml(file); });
+    EXPECT_EQ(error, file.string() + ":2: room: polygon must have from 3 to 200 corners");
+  }
+}
+
+TEST(SceneYaml, HugeListsAreRefused) {
+  const SceneFolder folder;
+  std::string text = kRooms + "furniture:\n";
+  for (int i = 0; i < 11; ++i) text += "  - {class: chair, at: [1, 1], row: {count: 1000, step: [0, 0]}}\n";
+  const std::string error = test::error_of([&] { read_scene_yaml(folder.write(text)); });
+  EXPECT_NE(error.find(":15: item: there are more than 10000"), std::string::npos) << error;
 }
 
 TEST(SceneYaml, EmptyAndForeignFilesAreRefused) {

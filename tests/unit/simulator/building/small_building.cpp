@@ -65,7 +65,7 @@ std::string error_of(const std::function<void()>& call) {
 
 double area_of(const Scene& scene, const std::string& class_name,
                const std::function<bool(const Eigen::Vector3f&)>& counts) {
-  const std::uint16_t wanted = class_id(scene.labels, class_name);
+  const std::uint16_t wanted = scene.labels.id_of(class_name).value_or(0);
   double area = 0.0;
   for (const Triangle& triangle : scene.mesh.triangles) {
     if (scene.instances[triangle.part].class_id != wanted) continue;

@@ -209,8 +209,52 @@ TEST(Gltf, TexturesThatCannotBeReadAreGreyWithAWarning) {
   GltfModel scene = load(builder);
   finish_looks(scene, 64);
   EXPECT_THAT(scene.model.mesh.textures, IsEmpty());
-  EXPECT_THAT(scene.model.warnings, ElementsAre(HasSubstr("'gone.jpg'"), HasSubstr("2 textures are in the Basis")));
+  EXPECT_THAT(scene.model.warnings, ElementsAre(testing::AllOf(HasSubstr("3 textures ('gone.jpg' for one)"),
+                                                               HasSubstr("2 of them are in the Basis format"))));
   EXPECT_EQ(problem_of(scene.model.mesh), "");
+}
+
+TEST(Gltf, OneTextureThatCannotBeReadIsAWarningToo) {
+  const json no_image = {{"sampler", 0}}, other = {{"extensions", {{"MSFT_texture_dds", {{"source", 0}}}}}};
+  for (const json& texture : {no_image, other}) {
+    GltfBuilder builder;
+    const std::size_t material = builder.add_textured_material(builder.add_image(test::png(4, 4, {1, 2, 3, 255})));
+    builder.root["textures"][0] = texture;
+    builder.add_node({{"mesh", add_triangle_mesh(builder, material)}});
+    GltfModel scene = load(builder);
+    finish_looks(scene, 64);
+    EXPECT_THAT(scene.model.warnings, ElementsAre(HasSubstr("1 textures ('a texture without PNG or JPEG' for one)")));
+    EXPECT_EQ(scene.model.mesh.materials[0].color, (geometry::Rgb8{160, 160, 160}));
+  }
+}
+
+TEST(Gltf, OnlyImagesThatAreShownAreFetchedAndOnce) {
+  GltfBuilder builder;
+  const std::size_t first = builder.add_textured_material(builder.add_image(test::png(4, 4, {1, 2, 3, 255})));
+  const std::size_t second = builder.add_textured_material(0);
+  builder.add_textured_material(builder.add_image(test::png(4, 4, {4, 5, 6, 255})));
+  for (const std::size_t material : {first, second}) builder.add_node({{"mesh", add_triangle_mesh(builder, material)}});
+  GltfModel scene = load(builder);
+  EXPECT_EQ(scene.images.size(), 1U);
+  finish_looks(scene, 64);
+  EXPECT_EQ(scene.model.mesh.textures.size(), 1U);
+  EXPECT_EQ(scene.model.mesh.materials[0].texture, 0);
+  EXPECT_EQ(scene.model.mesh.materials[1].texture, 0);
+}
+
+TEST(Gltf, RequiredExtensionsAreKnownOrRefused) {
+  const auto error = [](const std::string& extension) {
+    GltfBuilder builder = triangle_scene();
+    builder.root["extensionsRequired"] = {"KHR_materials_unlit", extension};
+    return load_error(builder);
+  };
+  EXPECT_EQ(error("KHR_mesh_quantization"), "");
+  EXPECT_THAT(error("KHR_draco_mesh_compression"), HasSubstr("export without compression"));
+  EXPECT_THAT(error("EXT_meshopt_compression"), HasSubstr("export without compression"));
+  EXPECT_THAT(error("KHR_texture_basisu"), HasSubstr("(KHR_texture_basisu, KTX2), which is not read; export them as"));
+  EXPECT_THAT(error("KHR_texture_transform"),
+              testing::AllOf(HasSubstr("memory/a.glb: the file requires KHR_texture_transform"),
+                             HasSubstr("are read: KHR_materials_unlit, KHR_mesh_quantization")));
 }
 
 TEST(Gltf, EveryTruncatedFileIsRefused) {
@@ -267,9 +311,6 @@ TEST(Gltf, RefusesNodesThatAreNoTree) {
 
 TEST(Gltf, RefusesWhatItDoesNotRead) {
   GltfBuilder builder = triangle_scene();
-  builder.root["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-  EXPECT_THAT(load_error(builder), HasSubstr("export without compression"));
-  builder = triangle_scene();
   builder.root["accessors"][0]["sparse"] = {{"count", 1}};
   EXPECT_THAT(load_error(builder), HasSubstr("sparse"));
   builder = triangle_scene();
@@ -283,6 +324,17 @@ TEST(Gltf, RefusesWhatItDoesNotRead) {
   EXPECT_THAT(load_error({{"a.gltf", test::to_bytes("{\"asset\": ")}}, "a.gltf"), HasSubstr("no valid JSON"));
   EXPECT_THAT(load_error({{"a.gltf", test::to_bytes("[1]")}}, "a.gltf"), HasSubstr("no JSON object"));
   EXPECT_THAT(load_error({{"a.gltf", test::to_bytes("{\"a\": 1e999}")}}, "a.gltf"), HasSubstr("number"));
+}
+
+TEST(Gltf, ValuesMayBeNestedDeep) {
+  const Bytes plain = test::labelled_gltf().embedded();
+  std::string text(plain.begin(), plain.end());
+  const std::string key = R"("name":"paint")";
+  const std::size_t at = text.find(key);
+  ASSERT_NE(at, std::string::npos);
+  constexpr std::size_t kDepth = 300'000;
+  text.insert(at, "\"extras\":" + std::string(kDepth, '[') + std::string(kDepth, ']') + ",");
+  EXPECT_EQ(load({{"a.gltf", test::to_bytes(text)}}, "a.gltf").model.mesh.triangles.size(), 2U);
 }
 
 TEST(Gltf, WrongTypesInTheTextAreErrors) {
@@ -300,6 +352,7 @@ TEST(Gltf, WrongTypesInTheTextAreErrors) {
   EXPECT_THAT(with(Place("/accessors/0/type"), "MAT4"), HasSubstr("type that is not read"));
   EXPECT_THAT(with(Place("/accessors/0/type"), "VEC2"), HasSubstr("3 components"));
   EXPECT_THAT(with(Place("/meshes/0/primitives/0/material"), 3), HasSubstr("no materials[3]"));
+  EXPECT_THAT(with(Place("/extensionsRequired"), json::array({7})), HasSubstr("must be a list of names"));
 }
 
 }  // namespace

@@ -84,16 +84,19 @@ TEST(Hm3d, TheMappingLeadsToTheClassesOfTheList) {
   const auto bytes = test::hm3d_mapping();
   const auto mapping = parse_hm3d_mapping({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "m.tsv");
   const auto labels = mapping::LabelList::from_names({{2, "floor"}, {3, "chair"}});
-  const Scene scene = load(test::hm3d_files(), mapping, {labels, {}, 64});
+  const Scene scene = load(test::hm3d_files(), mapping, {labels, 64});
   EXPECT_EQ(scene.labels, labels);
   EXPECT_EQ(scene.instances[scene.mesh.triangles[1].part].class_id, 3);
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("1 categories are not in")));  // the lamp
   EXPECT_THAT(test::error_of([] { parse_hm3d_mapping("a\tb\n", "m.tsv"); }), HasSubstr("m.tsv: line 1"));
 }
 
-TEST(Hm3d, UpIsZUnlessToldOtherwise) {
-  EXPECT_FLOAT_EQ(bounds(load(test::hm3d_files()).mesh).max().z(), 0.0F);
-  EXPECT_FLOAT_EQ(bounds(load(test::hm3d_files(), {}, {{}, UpAxis::kY, 64}).mesh).max().z(), 2.0F);
+TEST(Hm3d, UpIsZ) { EXPECT_FLOAT_EQ(bounds(load(test::hm3d_files()).mesh).max().z(), 0.0F); }
+
+TEST(Hm3d, LooksInTheBasisFormatAreNotRead) {
+  Files files = test::hm3d_files();
+  files["h.basis.glb"] = files.extract("h.glb").mapped();
+  EXPECT_THAT(load(files).warnings, Contains(HasSubstr(".basis.glb is not read")));
 }
 
 TEST(Hm3d, ErrorsNameFileAndLine) {

@@ -15,7 +15,7 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
 Scene load(const Files& files, const mapping::LabelList& labels = {}) {
-  return load_matterport(MemoryStore(files), "m", {labels, {}, 64});
+  return load_matterport(MemoryStore(files), "m", {labels, 64});
 }
 
 std::string house_error(const std::string& records) {

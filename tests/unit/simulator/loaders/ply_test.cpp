@@ -131,6 +131,21 @@ TEST(Ply, NamesWhatIsMissing) {
   EXPECT_THAT(ply_error(Bytes{}), HasSubstr("0 bytes"));
 }
 
+TEST(Ply, RefusesListsWhereANumberShouldBe) {
+  const std::string vertex = "property float x\nproperty float y\nproperty float z\nproperty uchar red\n";
+  const std::string face = "property list uchar int vertex_indices\nproperty int object_id\nproperty uchar red\n";
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 0\n" + vertex + "element face 0\n" + face + "end_header\n";
+  EXPECT_EQ(ply_error(text), "");
+  for (const char* property : {"float x", "float y", "float z", "uchar red", "int object_id"}) {
+    std::string changed = text;
+    const std::string whole = std::string("property ") + property;
+    changed.replace(changed.rfind(whole), whole.size(), std::string("property list uchar ") + property);
+    const std::string name = std::string(property).substr(std::string(property).find(' ') + 1);
+    EXPECT_EQ(ply_error(changed), "f.ply: property '" + name + "' must be a number, not a list; export the file again");
+  }
+}
+
 TEST(Ply, RefusesWordsThatAreNoNumbers) {
   const std::string text =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"

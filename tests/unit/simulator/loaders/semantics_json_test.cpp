@@ -17,11 +17,11 @@ using test::MemoryStore;
 using test::to_bytes;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 
 const mapping::LabelList kLabels = mapping::LabelList::from_names({{1, "wall"}, {3, "chair"}, {5, "table"}});
+const auto kNoFloor = HasSubstr("nothing level has the class 'floor'; the lowest point is taken");
 
-Scene load(const GltfBuilder& builder, const json& semantics, const LoadOptions& options = {kLabels, {}, 64}) {
+Scene load(const GltfBuilder& builder, const json& semantics, const LoadOptions& options = {kLabels, 64}) {
   Files files{{"a.glb", builder.glb()}};
   if (!semantics.is_null()) files["semantics.json"] = to_bytes(semantics.dump());
   return load_model_scene(MemoryStore(files), "a.glb", options);
@@ -51,7 +51,7 @@ TEST(Semantics, NodesMaterialsAndExtrasNameInstances) {
   EXPECT_EQ(instance_of(scene, "wood").class_id, 3);  // extras.class
   EXPECT_EQ(instance_of(scene, "wood").name, "chair");
   EXPECT_EQ(scene.labels, kLabels);
-  EXPECT_THAT(scene.warnings, IsEmpty());
+  EXPECT_THAT(scene.warnings, ElementsAre(kNoFloor));
 
   const Scene by_material = load(test::labelled_gltf(), {{"instances", {entry(9, "table", "material", "wood")}}});
   EXPECT_EQ(instance_of(by_material, "wood").class_id, 5);
@@ -77,15 +77,12 @@ TEST(Semantics, TheFirstEntryThatFitsCounts) {
   EXPECT_EQ(instance_of(scene, "paint").id, 3);
 }
 
-TEST(Semantics, UpIsYUnlessOneSaysOtherwise) {
-  const auto top = [](const json& semantics, std::optional<UpAxis> up) {
-    return bounds(load(test::labelled_gltf(), semantics, {kLabels, up, 64}).mesh).max();
-  };
+TEST(Semantics, UpIsYUnlessTheFileSaysOtherwise) {
+  const auto top = [](const json& semantics) { return bounds(load(test::labelled_gltf(), semantics).mesh).max(); };
   // The points (0,0,0), (1,0,0), (0,1,0) of the file, and the same at z = 3.
-  EXPECT_EQ(top(nullptr, std::nullopt), Eigen::Vector3f(1, 0, 1));
-  EXPECT_EQ(top({{"up", "z"}}, std::nullopt), Eigen::Vector3f(1, 1, 3));
-  EXPECT_EQ(top({{"up", "z"}}, UpAxis::kY), Eigen::Vector3f(1, 0, 1));
-  EXPECT_EQ(top(nullptr, UpAxis::kZ), Eigen::Vector3f(1, 1, 3));
+  EXPECT_EQ(top(nullptr), Eigen::Vector3f(1, 0, 1));
+  EXPECT_EQ(top({{"up", "y"}}), Eigen::Vector3f(1, 0, 1));
+  EXPECT_EQ(top({{"up", "z"}}), Eigen::Vector3f(1, 1, 3));
 }
 
 TEST(Semantics, LabelsComeFromTheFileElseTheOptionsElseTheNames) {
@@ -105,7 +102,7 @@ TEST(Semantics, ObjGroupsAndMaterialsNameInstances) {
                                  "g rest\nusemtl paint\nf 3 2 1\n")},
               {"a.mtl", to_bytes("newmtl wood\nKd 1 0 0\nnewmtl paint\n")},
               {"semantics.json", to_bytes(json{{"instances", {entry(6, "chair", "group", "seat")}}}.dump())}};
-  const Scene scene = load_model_scene(MemoryStore(files), "a.obj", {kLabels, {}, 64});
+  const Scene scene = load_model_scene(MemoryStore(files), "a.obj", {kLabels, 64});
   EXPECT_EQ(instance_of(scene, "wood").id, 6);
   EXPECT_EQ(instance_of(scene, "paint").class_id, 0);
   EXPECT_FLOAT_EQ(bounds(scene.mesh).max().y(), 1.0F);  // y up: -z is north
@@ -114,9 +111,9 @@ TEST(Semantics, ObjGroupsAndMaterialsNameInstances) {
 TEST(Semantics, WhatDoesNotFitIsAWarning) {
   GltfBuilder builder = test::labelled_gltf();
   builder.root["nodes"][1].erase("extras");
-  EXPECT_THAT(load(builder, nullptr).warnings, ElementsAre(HasSubstr("nothing is labelled")));
+  EXPECT_THAT(load(builder, nullptr).warnings, ElementsAre(HasSubstr("nothing is labelled"), kNoFloor));
   const json semantics{{"instances", {entry(1, "wall", "node", "wal")}}};
-  EXPECT_THAT(load(builder, semantics).warnings, ElementsAre(HasSubstr("instance 1 ('wal')")));
+  EXPECT_THAT(load(builder, semantics).warnings, ElementsAre(HasSubstr("instance 1 ('wal')"), kNoFloor));
 }
 
 TEST(Semantics, TextureCoordinatesThatAreNotFiniteBecomeZero) {

@@ -47,6 +47,36 @@ TEST(SurfaceVoxels, OfARoomAreItsShell) {
   for (const auto& [voxel, label] : shell) EXPECT_EQ(label, 1);
 }
 
+std::string error_of(const Scene& scene, double resolution_m) {
+  try {
+    surface_voxels(scene, geometry::Pose::Identity(), voxel_box(scene, geometry::Pose::Identity(), resolution_m));
+  } catch (const std::runtime_error& error) {
+    return error.what();
+  }
+  return {};
+}
+
+TEST(SurfaceVoxels, OfAScenePastAllBoundsAreRefusedWithItsExtent) {
+  for (const double size_m : {100.0, 3e4, 1e5}) {
+    const Eigen::Vector3d size(size_m, size_m, size_m);
+    EXPECT_NE(error_of(test::room(size.cast<float>()), 0.1).find("measures"), std::string::npos) << size_m;
+  }
+  EXPECT_NE(error_of(test::room({100, 200, 300}), 0.1).find("100 200 300 m, too much for voxels of 0.1 m"),
+            std::string::npos);
+  EXPECT_EQ(error_of(test::room({10, 20, 30}), 0.1), "");
+  Scene none = test::room({1, 1, 1});
+  none.mesh = {};
+  EXPECT_NE(error_of(none, 0.1), "");
+}
+
+TEST(SurfaceVoxels, TooMuchSurfaceIsRefused) {
+  Scene scene = test::room({60, 60, 0.1F});
+  const std::vector<Triangle> once = scene.mesh.triangles;
+  EXPECT_EQ(error_of(scene, 0.05), "");
+  for (int i = 0; i < 40; ++i) scene.mesh.triangles.insert(scene.mesh.triangles.end(), once.begin(), once.end());
+  EXPECT_NE(error_of(scene, 0.05).find("too much surface for voxels of 0.05 m"), std::string::npos);
+}
+
 TEST(SurfaceVoxels, ASurfaceInTheFaceBetweenTwoVoxelsIsInBoth) {
   // The shell inside, and six sheets outside, which have no edges.
   const auto shell = labels(test::room({4, 3, 2.5}), geometry::Pose::Identity(), 0.25);

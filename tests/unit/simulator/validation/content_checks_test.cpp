@@ -100,6 +100,31 @@ TEST(Solid, ClosedThingsAreSolidAndOpenOnesAreNot) {
   EXPECT_LT(voxel_m3 * static_cast<double>(Solid(scene, inventory.items[1]).count()), 0.2 * box_m3);
 }
 
+/// A scene that holds one square in the plane z = 0.
+Scene square(float edge_m) {
+  Scene scene;
+  scene.labels = test::small_labels();
+  scene.mesh.positions = {{0, 0, 0}, {edge_m, 0, 0}, {edge_m, edge_m, 0}, {0, edge_m, 0}};
+  scene.mesh.materials.resize(1);
+  scene.mesh.triangles = {{{0, 1, 2}, 0, 0}, {{0, 2, 3}, 0, 1}};
+  scene.instances = {{1, 7, "a"}, {2, 8, "b"}};
+  return scene;
+}
+
+TEST(Overlaps, ThingsPastAllBoundsAreNotFilledWithVoxels) {
+  const Scene scene = square(1e4F);
+  EXPECT_THAT(find_overlaps(scene, take_inventory(scene)), IsEmpty());
+}
+
+TEST(SurfacePoints, OfAThingPastAllBoundsAreRefusedWithItsExtent) {
+  const Scene scene = square(1e4F);
+  EXPECT_THAT(
+      [&] {
+        surface_points(scene.mesh, {0, 1}, 0.02F);
+      },
+      testing::ThrowsMessage<std::runtime_error>(testing::HasSubstr("measures 10000 10000")));
+}
+
 TEST(Floating, NothingFloatsInAGoodScene) { EXPECT_THAT(floating_names(test::good_spec()), IsEmpty()); }
 
 TEST(Floating, ItemsFloatFromThreeCentimetresOn) {

@@ -1,0 +1,70 @@
+// Scene files, tours and label lists. Small buildings are built, too; large ones would take too long.
+
+#include <fstream>
+#include <numeric>
+
+#include "check_scene.hpp"
+#include "simulator/core/building/build_scene.hpp"
+#include "simulator/core/building/floor_plan.hpp"
+#include "simulator/core/building/polygon.hpp"
+#include "simulator/scene_yaml.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace {
+
+using namespace lapis::simulator;
+
+/// The file that is read, and the labels that it names.
+class SceneFolder {
+ public:
+  SceneFolder() {
+    std::filesystem::create_directories(folder_.path() / "labels");
+    std::filesystem::create_directories(folder_.path() / "scenes");
+    std::ofstream out(folder_.path() / "labels/mpcat40.yaml");
+    out << "labels:\n";
+    int id = 0;
+    for (const char* name : {"wall", "floor", "ceiling", "door", "window", "lighting", "picture", "table", "chair"})
+      out << "  - {id: " << ++id << ", name: " << name << "}\n";
+  }
+  std::filesystem::path write(const std::uint8_t* data, std::size_t size) const {
+    std::filesystem::path file = folder_.path() / "scenes/a.yaml";
+    std::ofstream(file, std::ios::binary)
+        .write(reinterpret_cast<const char*>(data), static_cast<std::streamsize>(size));
+    return file;
+  }
+
+ private:
+  lapis::test::TemporaryFolder folder_;
+};
+
+bool is_small(const SceneSpec& spec) {
+  constexpr double kArea_m2 = 9.0, kSize_m = 2.0;
+  const double area = std::accumulate(spec.rooms.begin(), spec.rooms.end(), 0.0, [&](double sum, const RoomSpec& room) {
+    return sum + signed_area(room.polygon) * (1.0 + room.height_m.value_or(spec.height_m) / 3.0);
+  });
+  return area < 2 * kArea_m2 && spec.furniture.size() + spec.pictures.size() + spec.openings.size() < 6 &&
+         std::all_of(spec.furniture.begin(), spec.furniture.end(),
+                     [](const FurnitureSpec& item) { return !item.size_m || item.size_m->maxCoeff() < kSize_m; });
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  static const SceneFolder folder;
+  const auto file = folder.write(data, size);
+  const auto attempt = [&](const auto& read) {
+    try {
+      read();
+    } catch (const std::runtime_error& error) {
+      if (std::string(error.what()).empty()) std::abort();
+    }
+  };
+  attempt([&] { read_tour_yaml(file); });
+  attempt([&] { read_label_list(file); });
+  attempt([&] {
+    const SceneSpec spec = normalised(read_scene_yaml(file));
+    plan_walls(spec);
+    if (is_small(spec)) fuzz::check(build_scene(spec, {}));
+  });
+  return 0;
+}

@@ -79,10 +79,6 @@ std::vector<std::uint8_t> read_required(const AssetStore& store, const std::stri
   return std::move(*bytes);
 }
 
-std::string_view as_text(const std::vector<std::uint8_t>& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 std::optional<std::uint16_t> find_class(const mapping::LabelList& labels, std::string_view name) {
   for (const auto& label : labels.labels()) {
     if (label.name == name) return label.id;

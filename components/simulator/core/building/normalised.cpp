@@ -3,8 +3,8 @@
 #include <set>
 
 #include "simulator/core/building/floor_plan.hpp"
-#include "simulator/core/building/polygon.hpp"
 #include "simulator/core/building/textures.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 namespace {

@@ -169,9 +169,7 @@ std::optional<TourFollower> plan_tour(const World& world, const StartPose& start
     throw std::runtime_error("scene " + world.scene().name + " has no tour; give a file with --tour FILE");
   }
   const TourConfig tour = tour_config(config);
-  std::vector<WayPoint> stops;
-  for (const auto& p : way_points) stops.push_back({p, false});
-  return TourFollower(world.nav_map(), plan_tour(world.nav_map(), start.position, stops, tour), tour);
+  return TourFollower(world.nav_map(), plan_tour(world.nav_map(), start.position, way_points, tour), tour);
 }
 
 }  // namespace lapis::simulator

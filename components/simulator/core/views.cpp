@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "simulator/core/robot/reachability.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -48,7 +48,7 @@ std::vector<Candidate> candidates_in(const Room& room, const World& world, const
   for (double x = box.min().x() + kSpacing_m / 2; x < box.max().x(); x += kSpacing_m) {
     for (double y = box.min().y() + kSpacing_m / 2; y < box.max().y(); y += kSpacing_m) {
       const Eigen::Vector2d p(x, y);
-      if (!is_inside(room.polygon, p) || world.nav_map().distance_m(p) < radius_m + kRoomAround_m) continue;
+      if (!contains(room.polygon, p) || world.nav_map().distance_m(p) < radius_m + kRoomAround_m) continue;
       for (int i = 0; i < kHeadings; ++i) {
         const double yaw_rad = 2.0 * std::numbers::pi * i / kHeadings;
         const auto frame = world.renderer().render(camera, T_world_camera(world, mount, p, yaw_rad), false);

@@ -7,12 +7,10 @@
 
 #include "simulator/core/noise/random.hpp"
 #include "simulator/core/render/light_cache.hpp"
-#include "simulator/core/robot/regions.hpp"
+#include "simulator/core/robot/starts.hpp"
 
 namespace lapis::simulator {
 namespace {
-
-constexpr double kRoomAround_m = 0.2;  // between disc and obstacle, where a start is drawn freely
 
 void require_sound(const Scene& scene) {
   if (scene.mesh.triangles.empty()) throw std::runtime_error("scene " + scene.name + ": holds no triangles");
@@ -24,28 +22,12 @@ void require_sound(const Scene& scene) {
   }
 }
 
-/// Cells of the largest connected area in which the robot has room around it: not a closed room, nor the hollow of a
-/// piece of furniture.
-std::vector<std::size_t> cells_with_room(const NavMap& map, double radius_m) {
-  const auto free = map.free_cells(radius_m + kRoomAround_m);
-  const Regions regions = find_regions(free, Neighbours::kFour);
-  if (regions.sizes.empty()) return {};
-  const auto largest = std::max_element(regions.sizes.begin(), regions.sizes.end()) - regions.sizes.begin();
-  std::vector<std::size_t> cells;
-  for (std::size_t i = 0; i < free.pixels.size(); ++i) {
-    if (regions.labels.pixels[i] == static_cast<std::uint32_t>(largest) + 1) cells.push_back(i);
-  }
-  return cells;
-}
-
 StartPose draw_anywhere(const World& world, double radius_m, const Random& random) {
   const NavMap& map = world.nav_map();
-  const auto cells = cells_with_room(map, radius_m);
+  const auto cells = open_cells(map, radius_m);
   if (cells.empty()) throw std::runtime_error("scene " + world.scene().name + ": the robot fits nowhere");
   const auto drawn = static_cast<std::size_t>(random.uniform(1) * static_cast<double>(cells.size()));
-  const auto cell = static_cast<int>(cells[drawn]);
-  return {map.grid().center({cell % map.grid().width, cell / map.grid().width}),
-          random.uniform(2, -std::numbers::pi, std::numbers::pi)};
+  return {map.grid().center(cells[drawn]), random.uniform(2, -std::numbers::pi, std::numbers::pi)};
 }
 
 std::string place(const StartPose& start) {

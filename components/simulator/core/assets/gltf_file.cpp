@@ -12,6 +12,7 @@
 
 #include "simulator/core/assets/json_file.hpp"
 #include "simulator/core/assets/scene_assembly.hpp"
+#include "simulator/core/assets/text_scan.hpp"
 #include "simulator/core/assets/uri.hpp"
 
 namespace lapis::simulator {

@@ -13,6 +13,7 @@
 #include "simulator/core/assets/obj.hpp"
 #include "simulator/core/assets/ply.hpp"
 #include "simulator/core/assets/scene_assembly.hpp"
+#include "simulator/core/assets/text_scan.hpp"
 
 namespace lapis::simulator {
 namespace {

@@ -17,6 +17,7 @@
 #include "simulator/core/assets/replica.hpp"
 #include "simulator/core/assets/scene_assembly.hpp"
 #include "simulator/core/assets/semantics_json.hpp"
+#include "simulator/core/assets/text_scan.hpp"
 
 namespace lapis::simulator {
 namespace {

@@ -26,10 +26,6 @@ namespace {
 constexpr float kLeastOpacity = 0.35F;
 constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
-std::string_view as_text(const std::vector<std::uint8_t>& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 bool has_area(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
   const Eigen::Vector3d ab = (b.cast<double>() - a.cast<double>()), ac = (c.cast<double>() - a.cast<double>());
   return ab.cross(ac).squaredNorm() > 0;

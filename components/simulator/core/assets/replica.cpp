@@ -10,6 +10,7 @@
 #include "simulator/core/assets/json_file.hpp"
 #include "simulator/core/assets/object_ply.hpp"
 #include "simulator/core/assets/scene_assembly.hpp"
+#include "simulator/core/assets/text_scan.hpp"
 
 namespace lapis::simulator {
 namespace {

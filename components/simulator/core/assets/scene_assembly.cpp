@@ -80,10 +80,6 @@ std::vector<std::uint8_t> read_required(const AssetStore& store, const std::stri
   return std::move(*bytes);
 }
 
-std::string_view as_text(const std::vector<std::uint8_t>& bytes) {
-  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
-}
-
 mapping::LabelList number_classes(const std::set<std::string>& names) {
   std::vector<std::pair<std::uint16_t, std::string>> numbered;
   for (const auto& name : names) {

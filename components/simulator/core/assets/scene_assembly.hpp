@@ -20,8 +20,6 @@ std::string full_name(const AssetStore& store, const std::string& name);
 /// Content of a file. @throws std::runtime_error with the remedy when it is missing or empty.
 std::vector<std::uint8_t> read_required(const AssetStore& store, const std::string& name);
 
-std::string_view as_text(const std::vector<std::uint8_t>& bytes);
-
 /// Classes numbered from 1 in the order of their names.
 mapping::LabelList number_classes(const std::set<std::string>& names);
 

@@ -11,6 +11,7 @@
 #include "simulator/core/assets/json_file.hpp"
 #include "simulator/core/assets/obj.hpp"
 #include "simulator/core/assets/scene_assembly.hpp"
+#include "simulator/core/assets/text_scan.hpp"
 
 namespace lapis::simulator {
 namespace {

@@ -2,14 +2,21 @@
 
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <optional>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 namespace lapis::simulator {
 
 inline constexpr std::string_view kBlanks = " \t\r\f\v";
+
+/// The bytes of a file as text; they must outlive it.
+inline std::string_view as_text(const std::vector<std::uint8_t>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
 
 /// Without the blanks at both ends.
 inline std::string_view trimmed(std::string_view text) {

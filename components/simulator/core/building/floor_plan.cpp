@@ -6,7 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
-#include "simulator/core/building/polygon.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 namespace {

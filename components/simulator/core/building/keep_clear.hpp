@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "simulator/core/building/floor_plan.hpp"
-#include "simulator/core/building/polygon.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulator/core/building/polygon.hpp"
 #include "simulator/core/building/shapes.hpp"
 #include "simulator/core/building/structure.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 namespace {

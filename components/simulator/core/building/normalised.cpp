@@ -4,8 +4,8 @@
 #include <sstream>
 
 #include "simulator/core/building/floor_plan.hpp"
-#include "simulator/core/building/polygon.hpp"
 #include "simulator/core/building/textures.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 namespace {

@@ -7,7 +7,7 @@
 #include <Eigen/Geometry>
 
 #include "simulator/core/building/floor_plan.hpp"
-#include "simulator/core/building/polygon.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 

@@ -4,8 +4,8 @@
 #include <limits>
 #include <stdexcept>
 
-#include "simulator/core/building/polygon.hpp"
 #include "simulator/core/noise/random.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 namespace {

@@ -17,11 +17,11 @@ using geometry::Rgb8;
 constexpr double kUnit = 256.0;  // fixed point: brightness in 1/256 of a grey level
 constexpr double kMiddleGrey = 127.5;
 
-/// Brightness of every grey level after contrast and exposure, half a level added for rounding.
-std::array<std::int32_t, 256> response(double contrast, double gain) {
+/// Brightness of every grey level after contrast, half a level added for rounding.
+std::array<std::int32_t, 256> response(double contrast) {
   std::array<std::int32_t, 256> table;
   for (int level = 0; level < 256; ++level) {
-    const double value = gain * (kMiddleGrey + contrast * (level - kMiddleGrey));
+    const double value = kMiddleGrey + contrast * (level - kMiddleGrey);
     table[static_cast<std::size_t>(level)] = static_cast<std::int32_t>(std::lround(kUnit * value + kUnit / 2));
   }
   return table;
@@ -37,19 +37,9 @@ std::array<std::int16_t, NormalTable::kSize> noise_levels(double sigma) {
 
 }  // namespace
 
-/// Normal numbers every `exposure_period` frames and their smooth interpolation, of variance 1 everywhere.
-double ColorNoise::gain(std::uint64_t tick) const {
-  const std::uint64_t period = std::max<std::uint64_t>(config_.exposure_period, 1), node = tick / period;
-  const double x = static_cast<double>(tick % period) / static_cast<double>(period);
-  const double weight = x * x * (3 - 2 * x);
-  const Random random(seed_, RandomStream::kExposure);
-  const double mixed = (1 - weight) * random.normal(node) + weight * random.normal(node + 1);
-  return std::exp(config_.exposure_sigma * mixed / std::hypot(1 - weight, weight));
-}
-
 ColorImage ColorNoise::apply(const ColorImage& ideal, std::uint64_t tick, const Eigen::Vector2d& flow_px) const {
   ColorImage image = motion_blurred(ideal, config_.shutter * flow_px);
-  const auto base = response(config_.contrast, gain(tick));
+  const auto base = response(config_.contrast);
   const auto noise = noise_levels(config_.sigma);
   const Random random(seed_, RandomStream::kColor, tick);
   const auto noisy = [&](std::uint8_t level, std::uint64_t bits) {

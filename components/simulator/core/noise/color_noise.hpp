@@ -9,15 +9,12 @@
 namespace lapis::simulator {
 
 struct ColorNoiseConfig {
-  double sigma = 2.5;                  ///< standard deviation of every channel [1/255], 0 to 30
-  double contrast = 1.0;               ///< differences from middle grey are scaled by this, 0 to 2
-  double shutter = 0.0;                ///< share of the time between frames that the shutter is open, 0 to 1
-  double exposure_sigma = 0.0;         ///< standard deviation of the logarithm of the gain, 0 to 0.5
-  std::uint64_t exposure_period = 30;  ///< frames in which the gain becomes another one, >= 1
+  double sigma = 2.5;     ///< standard deviation of every channel [1/255], 0 to 30
+  double contrast = 1.0;  ///< differences from middle grey are scaled by this, 0 to 2
+  double shutter = 0.0;   ///< share of the time between frames that the shutter is open, 0 to 1
 };
 
-/// Turns ideal colour into what a camera gives: blur by motion, contrast, slow changes of exposure, noise. Frames
-/// depend on each other only by the exposure, which is a smooth function of the tick.
+/// Turns ideal colour into what a camera gives: blur by motion, contrast, noise. Frames are independent of each other.
 class ColorNoise {
  public:
   ColorNoise(const ColorNoiseConfig& config, std::uint64_t seed) : config_(config), seed_(seed) {}
@@ -25,8 +22,6 @@ class ColorNoise {
   /// @param flow_px how far the image moved since the last frame, mean over the image (x right, y down)
   geometry::ColorImage apply(const geometry::ColorImage& ideal, std::uint64_t tick,
                              const Eigen::Vector2d& flow_px = {0, 0}) const;
-  /// Factor on brightness at a frame; 1 on average of its logarithm.
-  double gain(std::uint64_t tick) const;
 
  private:
   ColorNoiseConfig config_;

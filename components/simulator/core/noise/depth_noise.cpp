@@ -8,6 +8,7 @@
 
 #include "simulator/core/noise/normal_table.hpp"
 #include "simulator/core/noise/random.hpp"
+#include "simulator/core/noise/rounded.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -15,9 +16,6 @@ namespace {
 using geometry::DepthImage;
 
 constexpr float kMaxEncodable_m = 65.5F;  // 65535 mm
-
-/// Nearest integer, for -1000 < x < 1e5; faster than std::lround.
-int rounded(float x) { return static_cast<int>(x + 1000.5F) - 1000; }
 
 std::uint16_t millimetres(float depth_m) { return static_cast<std::uint16_t>(rounded(depth_m * 1000.0F)); }
 

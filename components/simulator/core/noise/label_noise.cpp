@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "simulator/core/noise/random.hpp"
+#include "simulator/core/noise/rounded.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -114,8 +115,6 @@ class BoundaryFlow {
     const double t = position - node, norm = std::hypot(1 - t, t);
     return {static_cast<std::size_t>(node), static_cast<float>((1 - t) / norm), static_cast<float>(t / norm)};
   }
-  /// Nearest integer, for |x| < 1000.
-  static int rounded(float x) { return static_cast<int>(x + 1000.5F) - 1000; }
 
   int width_, height_;
   std::array<Offset, std::size_t{kColumns} * kRows> nodes_;

@@ -21,8 +21,7 @@ enum class RandomStream : std::uint64_t {
   kWheelSystematic,
   kWheel,
   kImu,
-  kTruth,
-  kExposure
+  kTruth
 };
 
 /// Counter-based random numbers: a pure function of (seed, stream, counter, index). The mixing function is that of

@@ -1,9 +1,11 @@
 #include "simulator/core/render/light_cache.hpp"
 
+#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <span>
 #include <string>
+#include <type_traits>
 
 #include "common/files/atomic_file.hpp"
 #include "common/mapping/crc32.hpp"
@@ -11,7 +13,13 @@
 namespace lapis::simulator {
 namespace {
 
+namespace fs = std::filesystem;
+
+constexpr const char* kExtension = ".light";
 constexpr std::size_t kChecksumBytes = 4;
+/// Of bake_light() and of what casts its rays: to be raised when either gives other light for the same scene.
+constexpr std::uint64_t kBakeVersion = 1;
+constexpr std::uintmax_t kKept_bytes = 256U << 20U;  // about 70 furnished scenes
 
 /// FNV-1a over words of eight bytes.
 class Hash {
@@ -26,6 +34,9 @@ class Hash {
     add(values.data(), values.size() * sizeof(Value));
   }
   void add(const std::string& text) { add(text.data(), text.size()); }
+  template <class Number>
+  requires std::is_arithmetic_v<Number>
+  void add(Number number) { add(&number, sizeof number); }
   std::uint64_t value() const { return value_; }
 
  private:
@@ -43,16 +54,36 @@ void add_geometry(Hash& hash, const Scene& scene) {
   hash.add(scene.mesh.triangles);
   for (const auto& lamp : scene.lamps) {
     hash.add(lamp.position.data(), sizeof(float) * 3);
-    hash.add(&lamp.intensity, sizeof lamp.intensity);
+    hash.add(lamp.intensity);
   }
 }
 
 void add_holes(Hash& hash, const Scene& scene) {
-  for (const auto& material : scene.mesh.materials) {
+  for (std::size_t i = 0; i < scene.mesh.materials.size(); ++i) {
+    const Material& material = scene.mesh.materials[i];
     if (!material.is_cut_out || material.texture < 0) continue;
-    hash.add(scene.mesh.textures[static_cast<std::size_t>(material.texture)]->pixels);
+    const TextureImage& texture = *scene.mesh.textures[static_cast<std::size_t>(material.texture)];
+    hash.add(i);
+    hash.add(texture.width);
+    hash.add(texture.pixels);
   }
   hash.add(scene.mesh.texture_coordinates);
+}
+
+/// What a run takes from a scene beside its looks.
+void add_plan(Hash& hash, const Scene& scene) {
+  hash.add(scene.floor_z_m);
+  hash.add(scene.is_lit);
+  for (const Room& room : scene.rooms) {
+    hash.add(room.id + "\n" + room.type);
+    hash.add(room.height_m);
+    hash.add(room.polygon);
+  }
+  for (const StartPose& start : scene.starts) {
+    hash.add(start.position.data(), sizeof(double) * 2);
+    hash.add(start.yaw_rad);
+  }
+  hash.add(scene.tour);
 }
 
 std::string hexadecimal(std::uint64_t value) {
@@ -72,6 +103,39 @@ std::optional<std::vector<std::uint8_t>> read_light(const std::string& file, std
   return bytes;
 }
 
+struct KeptFile {
+  fs::path path;
+  fs::file_time_type written;
+  std::uintmax_t bytes = 0;
+};
+
+/// Removes the oldest files of light beyond kKept_bytes. Others may do the same meanwhile: what fails is left.
+void prune(const fs::path& folder) {
+  std::error_code problem;
+  std::vector<KeptFile> files;
+  for (const auto& entry : fs::directory_iterator(folder, problem)) {
+    if (entry.path().extension() != kExtension) continue;
+    const KeptFile file{entry.path(), entry.last_write_time(problem), entry.file_size(problem)};
+    if (!problem) files.push_back(file);
+  }
+  std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.written > b.written; });
+  std::uintmax_t sum = 0;
+  for (const KeptFile& file : files) {
+    sum += file.bytes;
+    if (sum > kKept_bytes) fs::remove(file.path, problem);
+  }
+}
+
+/// What the light depends on.
+std::uint64_t light_key(const Scene& scene, const SceneRaycaster& raycaster) {
+  Hash hash;
+  hash.add(kBakeVersion);
+  hash.add(std::string(raycaster.instruction_set()));
+  add_geometry(hash, scene);
+  add_holes(hash, scene);
+  return hash.value();
+}
+
 }  // namespace
 
 std::uint64_t scene_hash(const Scene& scene) {
@@ -81,33 +145,32 @@ std::uint64_t scene_hash(const Scene& scene) {
   hash.add(scene.mesh.colors);
   for (const auto& material : scene.mesh.materials) {
     hash.add(&material.color, sizeof material.color);
-    hash.add(&material.texture, sizeof material.texture);
+    hash.add(material.texture);
   }
   for (const auto& texture : scene.mesh.textures) hash.add(texture->pixels);
   for (const auto& instance : scene.instances) {
-    hash.add(&instance.id, sizeof instance.id);
-    hash.add(&instance.class_id, sizeof instance.class_id);
+    hash.add(instance.id);
+    hash.add(instance.class_id);
   }
   for (const auto& label : scene.labels.labels()) hash.add(std::to_string(label.id) + label.name);
+  add_plan(hash, scene);
   return hash.value();
 }
 
 std::vector<std::uint8_t> cached_light(const Scene& scene, const SceneRaycaster& raycaster, int threads,
                                        const std::filesystem::path& folder) {
   if (folder.empty() || !scene.is_lit) return bake_light(scene, raycaster, threads);
-  Hash hash;
-  add_geometry(hash, scene);
-  add_holes(hash, scene);
-  const auto file = (folder / (hexadecimal(hash.value()) + ".light")).string();
+  const auto file = (folder / (hexadecimal(light_key(scene, raycaster)) + kExtension)).string();
   if (auto light = read_light(file, 3 * scene.mesh.triangles.size())) return *light;
   auto light = bake_light(scene, raycaster, threads);
   std::error_code ignored;
-  std::filesystem::create_directories(folder, ignored);
+  fs::create_directories(folder, ignored);
   auto bytes = light;
   bytes.resize(light.size() + kChecksumBytes);
   const std::uint32_t checksum = mapping::crc32(light);
   std::memcpy(bytes.data() + light.size(), &checksum, kChecksumBytes);
   static_cast<void>(files::replace_file(file, bytes));  // without it the next start takes longer
+  prune(folder);
   return light;
 }
 

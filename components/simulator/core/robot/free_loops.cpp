@@ -10,6 +10,7 @@
 #include "simulator/core/robot/grid_steps.hpp"
 #include "simulator/core/robot/reachability.hpp"
 #include "simulator/core/robot/regions.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -186,8 +187,8 @@ class LoopSearch {
 std::vector<std::string> rooms_on(const Path& path, const std::vector<Room>& rooms) {
   std::vector<std::string> ids;
   for (const auto& p : path) {
-    const auto room = std::find_if(rooms.begin(), rooms.end(),
-                                   [&](const Room& candidate) { return is_inside(candidate.polygon, p); });
+    const auto room =
+        std::find_if(rooms.begin(), rooms.end(), [&](const Room& candidate) { return contains(candidate.polygon, p); });
     if (room == rooms.end() || std::find(ids.begin(), ids.end(), room->id) != ids.end()) continue;
     ids.push_back(room->id);
   }

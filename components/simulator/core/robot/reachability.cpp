@@ -11,6 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "simulator/core/robot/grid_steps.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -24,7 +25,7 @@ void for_cells_in(const std::vector<Eigen::Vector2d>& polygon, const Grid& grid,
   const Cell low = grid.cell_of(box.min()), high = grid.cell_of(box.max());
   for (int row = low.row; row <= high.row; ++row) {
     for (int column = low.column; column <= high.column; ++column) {
-      if (is_inside(polygon, grid.center({column, row}))) visit(Cell{column, row});
+      if (contains(polygon, grid.center({column, row}))) visit(Cell{column, row});
     }
   }
 }
@@ -115,17 +116,6 @@ class PassageFinder {
 };
 
 }  // namespace
-
-bool is_inside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p) {
-  bool is_in = false;
-  for (std::size_t i = 0; i < polygon.size(); ++i) {
-    const auto& a = polygon[i];
-    const auto& b = polygon[i + 1 == polygon.size() ? 0 : i + 1];
-    if ((a.y() > p.y()) == (b.y() > p.y())) continue;
-    if (p.x() < a.x() + (b.x() - a.x()) * (p.y() - a.y()) / (b.y() - a.y())) is_in = !is_in;
-  }
-  return is_in;
-}
 
 std::vector<RoomReach> room_reach(const NavMap& map, const std::vector<Room>& rooms, const Eigen::Vector2d& start,
                                   double radius_m) {

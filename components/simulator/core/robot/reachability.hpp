@@ -47,7 +47,4 @@ struct FreeLoop {
 std::vector<FreeLoop> find_loops(const NavMap& map, const std::vector<Room>& rooms, const Eigen::Vector2d& start,
                                  double radius_m, double least_area_m2 = 1.0);
 
-/// Whether a point lies in a polygon (even-odd rule).
-bool is_inside(const std::vector<Eigen::Vector2d>& polygon, const Eigen::Vector2d& p);
-
 }  // namespace lapis::simulator

@@ -22,17 +22,17 @@ std::string place(std::size_t number, const Eigen::Vector2d& p) {
   return text.str();
 }
 
-Path plan_leg(const PathPlanner& planner, const NavMap& map, const Eigen::Vector2d& from, const WayPoint& to,
+Path plan_leg(const PathPlanner& planner, const NavMap& map, const Eigen::Vector2d& from, const Eigen::Vector2d& to,
               std::size_t number) {
-  if (!planner.nearest_free(to.position)) {
+  if (!planner.nearest_free(to)) {
     std::ostringstream problem;
-    problem << place(number, to.position) << " is " << std::max(0.0, map.distance_m(to.position))
+    problem << place(number, to) << " is " << std::max(0.0, map.distance_m(to))
             << " m from an obstacle, too close for the robot; move it";
     throw std::runtime_error(problem.str());
   }
-  const auto path = planner.plan(from, to.position);
+  const auto path = planner.plan(from, to);
   if (!path) {
-    throw std::runtime_error(place(number, to.position) + " cannot be reached from " +
+    throw std::runtime_error(place(number, to) + " cannot be reached from " +
                              (number == 1 ? "the start" : "way-point " + std::to_string(number - 1)) +
                              "; move it, or make room");
   }
@@ -74,7 +74,7 @@ double speed_limit_m_s(const TourConfig& config, double distance_m) {
   return std::min(config.max_speed_m_s, kCrawl_m_s + kSpeedPerGap * gap);
 }
 
-Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vector<WayPoint>& way_points,
+Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vector<Eigen::Vector2d>& way_points,
                const TourConfig& config) {
   const PathPlanner planner(map, config.path);
   Tour tour;
@@ -84,15 +84,14 @@ Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vecto
     from = path.back();
     tour.length_m += length_m(path);
     tour.duration_s += drive_time_s(map, config, path);
-    tour.legs.push_back({std::move(path), way_points[i].look_around, true});
+    tour.legs.push_back({std::move(path), true});
   }
   for (std::size_t i = 0; i < tour.legs.size(); ++i) {
     TourLeg& leg = tour.legs[i];
     const bool is_last = i + 1 == tour.legs.size();
     const double angle = is_last ? 0.0 : bend(leg, tour.legs[i + 1]);
-    leg.stops = is_last || leg.looks_around || angle > kSharp_rad;
+    leg.stops = is_last || angle > kSharp_rad;
     if (angle > kSharp_rad) tour.duration_s += angle / config.max_turn_rate_rad_s;
-    if (leg.looks_around) tour.duration_s += 2.0 * std::numbers::pi / config.max_turn_rate_rad_s;
     if (leg.stops) tour.duration_s += kStop_s;
   }
   return tour;

@@ -8,11 +8,6 @@
 
 namespace lapis::simulator {
 
-struct WayPoint {
-  Eigen::Vector2d position{0, 0};  ///< [m]
-  bool look_around = false;        ///< turn once around there
-};
-
 struct TourConfig {
   PathConfig path;
   double max_speed_m_s = 0.5;
@@ -23,8 +18,7 @@ struct TourConfig {
 /// The way to one way-point.
 struct TourLeg {
   Path path;
-  bool looks_around = false;  ///< at its end
-  bool stops = false;         ///< at its end: to look around, to turn sharply, or because the tour ends
+  bool stops = false;  ///< at its end: to turn sharply, or because the tour ends
 };
 
 struct Tour {
@@ -33,9 +27,9 @@ struct Tour {
   double duration_s = 0.0;  ///< estimate
 };
 
-/// Plans a tour over all way-points in their order.
+/// Plans a tour over all way-points [m] in their order.
 /// @throws std::runtime_error naming the way-point (the first is number 1) that cannot be reached from the one before.
-Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vector<WayPoint>& way_points,
+Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vector<Eigen::Vector2d>& way_points,
                const TourConfig& config);
 
 /// Speed that a tour allows itself at this distance from obstacles: slower where it is narrow.

@@ -24,7 +24,7 @@ constexpr double kSafety_m = 0.02;   // between disc and obstacle on the line to
 constexpr double kSample_m = 0.025;
 constexpr double kShortest_m = 0.05;  // distance of the target
 constexpr double kProgress_m = 0.05;  // along the path: less is none
-constexpr double kPatience_s = 20.0;  // without progress, beside the time that a full turn takes
+constexpr double kPatience_s = 20.0;  // without progress, beside the time that turning round takes
 
 double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
@@ -38,8 +38,7 @@ TourFollower::TourFollower(const NavMap& map, Tour tour, const TourConfig& confi
 void TourFollower::begin_leg(std::size_t leg) {
   leg_ = leg;
   along_m_.clear();
-  progress_m_ = turned_rad_ = 0.0;
-  last_yaw_.reset();
+  progress_m_ = 0.0;
   if (is_finished()) return;
   const Path& path = tour_.legs[leg_].path;
   along_m_.push_back(0.0);
@@ -64,7 +63,7 @@ void TourFollower::watch(const RobotState& robot) {
 }
 
 std::string TourFollower::stalled() const {
-  const double patience_s = kPatience_s + 2.0 * std::numbers::pi / config_.max_turn_rate_rad_s;
+  const double patience_s = kPatience_s + std::numbers::pi / config_.max_turn_rate_rad_s;
   if (is_finished() || !mark_ || (robot_.stamp - mark_->stamp).seconds() < patience_s) return {};
   std::ostringstream text;
   text << std::fixed << std::setprecision(2) << "the tour is stuck at (" << robot_.position.x() << ", "
@@ -76,24 +75,11 @@ std::string TourFollower::stalled() const {
 
 DriveCommand TourFollower::next_command(const Eigen::Vector2d& position, double yaw_rad) {
   while (!is_finished()) {
-    if (!last_yaw_) track(position);
+    track(position);
     if (!is_at_end()) return pursue(position, yaw_rad);
-    if (tour_.legs[leg_].looks_around) {
-      const DriveCommand turn = look_around(yaw_rad);
-      if (turn.turn_rate_rad_s > 0) return turn;
-    }
     begin_leg(leg_ + 1);
   }
   return {};
-}
-
-/// No turn rate once the robot has turned around.
-DriveCommand TourFollower::look_around(double yaw_rad) {
-  turned_rad_ += wrapped(yaw_rad - last_yaw_.value_or(yaw_rad));
-  last_yaw_ = yaw_rad;
-  const double rest = 2.0 * std::numbers::pi - turned_rad_;
-  if (rest <= kTurnTo_rad) return {};
-  return {0.0, std::min(config_.max_turn_rate_rad_s, std::max(kSlowTurn_rad_s, kTurnGain * rest))};
 }
 
 DriveCommand TourFollower::pursue(const Eigen::Vector2d& position, double yaw_rad) {

@@ -38,7 +38,6 @@ class TourFollower {
   void watch(const RobotState& robot);
   bool is_at_end() const;
   void begin_leg(std::size_t leg);
-  DriveCommand look_around(double yaw_rad);
   DriveCommand pursue(const Eigen::Vector2d& position, double yaw_rad);
   Eigen::Vector2d target(const Eigen::Vector2d& position) const;
   bool is_clear(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const;
@@ -49,13 +48,11 @@ class TourFollower {
   Tour tour_;
   TourConfig config_;
   std::size_t leg_ = 0;
-  std::vector<double> along_m_;     ///< of each point of the leg's path
-  double progress_m_ = 0.0;         ///< along the leg's path
-  bool is_turning_ = false;         ///< on the spot, towards the path
-  double turned_rad_ = 0.0;         ///< while looking around
-  std::optional<double> last_yaw_;  ///< while looking around
-  std::optional<Mark> mark_;        ///< last progress worth the name
-  RobotState robot_;                ///< at the last command
+  std::vector<double> along_m_;  ///< of each point of the leg's path
+  double progress_m_ = 0.0;      ///< along the leg's path
+  bool is_turning_ = false;      ///< on the spot, towards the path
+  std::optional<Mark> mark_;     ///< last progress worth the name
+  RobotState robot_;             ///< at the last command
 };
 
 }  // namespace lapis::simulator

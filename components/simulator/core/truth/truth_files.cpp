@@ -73,7 +73,6 @@ std::string nav_map_yaml(const Grid& grid) {
 void write_scene_truth(const std::filesystem::path& folder, const Scene& scene, const NavMap& nav_map,
                        const geometry::Pose& T_world_base, const VoxelTruth& truth) {
   files::require_writable_folder(folder.string(), "ground truth");
-  save(folder / "mesh.lapis", scene, truth.mesh, "mesh, what can be seen");
   save(folder / "flood.lapis", scene, truth.flood, "mesh, what can be flooded");
   files::replace_text(folder / "classes.json", classes_json(scene, truth.mesh));
   files::replace_text(folder / "rooms.json", rooms_json(scene, T_map_world(T_world_base)));
@@ -82,6 +81,8 @@ void write_scene_truth(const std::filesystem::path& folder, const Scene& scene, 
   if (const auto problem = files::replace_file((folder / "navmap.png").string(), picture)) {
     throw std::runtime_error(*problem);
   }
+  // Last: readers take its presence as a sign that all are there.
+  save(folder / "mesh.lapis", scene, truth.mesh, "mesh, what can be seen");
 }
 
 void write_ideal_map(const std::filesystem::path& folder, const Scene& scene, const IdealMap& ideal) {

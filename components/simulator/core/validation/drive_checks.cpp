@@ -7,8 +7,9 @@
 
 #include <Eigen/Geometry>
 
-#include "simulator/core/building/polygon.hpp"
 #include "simulator/core/robot/regions.hpp"
+#include "simulator/core/robot/starts.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -41,7 +42,7 @@ NavMap inside_of(const NavMap& map, const Room& corridor) {
   const Grid& grid = map.grid();
   geometry::GrayImage blocked(grid.width, grid.height);
   for_all_cells(grid, [&](Cell c) {
-    if (map.is_blocked(c) || !is_inside(corridor.polygon, grid.center(c))) blocked(c.column, c.row) = 255;
+    if (map.is_blocked(c) || !contains(corridor.polygon, grid.center(c))) blocked(c.column, c.row) = 255;
   });
   return {grid, std::move(blocked)};
 }
@@ -52,7 +53,7 @@ std::vector<Room> entries(const NavMap& map, const Room& corridor) {
   geometry::GrayImage outside(grid.width, grid.height);
   for_all_cells(grid, [&](Cell c) {
     const Eigen::Vector2d p = grid.center(c);
-    if (map.is_blocked(c) || is_inside(corridor.polygon, p)) return;
+    if (map.is_blocked(c) || contains(corridor.polygon, p)) return;
     if (distance_to_border(corridor.polygon, p) < kDoorway_m) outside(c.column, c.row) = 255;
   });
   const Regions regions = find_regions(outside, Neighbours::kEight);
@@ -86,18 +87,9 @@ std::string describe(const FreeLoop& loop) {
 
 }  // namespace
 
-std::vector<StartPose> starts_of(const Scene& scene, const NavMap& map) {
-  if (!scene.starts.empty()) return scene.starts;
-  Cell best;
-  for_all_cells(map.grid(), [&](Cell c) {
-    if (map.distance_at(c) > map.distance_at(best)) best = c;
-  });
-  return {{map.grid().center(best), 0.0}};
-}
-
 Check check_starts(const Scene& scene, const NavMap& map, double radius_m) {
   Check check{"starts"};
-  const auto starts = starts_of(scene, map);
+  const auto starts = starts_of(scene, map, radius_m);
   double least_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 0; i < starts.size(); ++i) {
     const double distance_m = map.distance_m(starts[i].position);
@@ -114,7 +106,7 @@ Check check_starts(const Scene& scene, const NavMap& map, double radius_m) {
 
 Check check_rooms(const Scene& scene, const NavMap& map, double radius_m) {
   Check check{"rooms"};
-  const auto starts = starts_of(scene, map);
+  const auto starts = starts_of(scene, map, radius_m);
   RoomReach least{"", 0.0, 1.0};
   for (std::size_t i = 0; i < starts.size(); ++i) {
     for (const RoomReach& reach : room_reach(map, scene.rooms, starts[i].position, radius_m)) {
@@ -134,14 +126,12 @@ Check check_rooms(const Scene& scene, const NavMap& map, double radius_m) {
 Check check_tour(const Scene& scene, const NavMap& map, const TourConfig& config) {
   if (scene.tour.empty()) return {"tour", Verdict::kNote, "the scene has none", {}};
   Check check{"tour"};
-  std::vector<WayPoint> way_points;
-  for (const auto& p : scene.tour) way_points.push_back({p, false});
-  const auto starts = starts_of(scene, map);
+  const auto starts = starts_of(scene, map, config.path.radius_m);
   for (std::size_t i = 0; i < starts.size(); ++i) {
     try {
-      const Tour tour = plan_tour(map, starts[i].position, way_points, config);
+      const Tour tour = plan_tour(map, starts[i].position, scene.tour, config);
       if (!check.figures.empty()) continue;
-      check.figures = std::to_string(way_points.size()) + " way-points, " + decimal(tour.length_m, 1) + " m, " +
+      check.figures = std::to_string(scene.tour.size()) + " way-points, " + decimal(tour.length_m, 1) + " m, " +
                       decimal(tour.duration_s, 0) + " s from " + start_name(scene, i);
     } catch (const std::runtime_error& error) {
       check.verdict = Verdict::kFail;
@@ -175,7 +165,11 @@ Check check_corridors(const Scene& scene, const NavMap& map) {
     if (room.type != "hallway" && room.type != "corridor") continue;
     ++count;
     const auto way = narrowest(map, room);
-    if (!way) continue;
+    if (!way) {
+      check.details.push_back(room.id + ": not measured, it has no two doorways with free floor between them");
+      if (check.verdict == Verdict::kOk) check.verdict = Verdict::kNote;
+      continue;
+    }
     const std::string text = room.id + ": " + decimal(way->width_m, 2) + " m at " + at(way->at);
     check.details.push_back(text);
     if (is_narrower(way->width_m, kLeastWidth_m, map)) {
@@ -190,7 +184,7 @@ Check check_corridors(const Scene& scene, const NavMap& map) {
 }
 
 std::vector<FreeLoop> long_loops(const Scene& scene, const NavMap& map, double radius_m) {
-  auto loops = find_loops(map, scene.rooms, starts_of(scene, map).front().position, radius_m);
+  auto loops = find_loops(map, scene.rooms, starts_of(scene, map, radius_m).front().position, radius_m);
   std::erase_if(loops, [](const FreeLoop& loop) { return loop.length_m < kLeastLoop_m; });
   return loops;
 }

@@ -13,9 +13,6 @@ namespace lapis::simulator {
 /// Loops shorter than this go round a table, not round a building.
 inline constexpr double kLeastLoop_m = 8.0;
 
-/// The scene's starts; without any the place farthest from all obstacles.
-std::vector<StartPose> starts_of(const Scene& scene, const NavMap& map);
-
 /// No start is nearer to an obstacle than the robot is wide.
 Check check_starts(const Scene& scene, const NavMap& map, double radius_m);
 
@@ -29,7 +26,7 @@ Check check_tour(const Scene& scene, const NavMap& map, const TourConfig& config
 Check check_doors(const Scene& scene, const NavMap& map);
 
 /// In rooms of type "hallway" or "corridor": the largest disc that gets from every doorway to all others without
-/// leaving the corridor is at least 0.8 m wide; a note when below 1.2 m.
+/// leaving the corridor is at least 0.8 m wide; a note when below 1.2 m, or when there are no two doorways.
 Check check_corridors(const Scene& scene, const NavMap& map);
 
 /// Loops of at least kLeastLoop_m from the first start.

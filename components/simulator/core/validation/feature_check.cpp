@@ -11,8 +11,8 @@
 
 #include "simulator/core/noise/color_noise.hpp"
 #include "simulator/core/noise/random.hpp"
-#include "simulator/core/robot/reachability.hpp"
-#include "simulator/core/validation/drive_checks.hpp"
+#include "simulator/core/robot/starts.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -28,7 +28,7 @@ constexpr std::uint64_t kSeed = 1;
 std::vector<FeatureView> reachable_views(const World& world, double radius_m) {
   const NavMap& map = world.nav_map();
   std::vector<geometry::GrayImage> reachable;
-  for (const StartPose& start : starts_of(world.scene(), map))
+  for (const StartPose& start : starts_of(world.scene(), map, radius_m))
     reachable.push_back(map.reachable(start.position, radius_m));
   const Grid& grid = map.grid();
   const int step = std::max(1, static_cast<int>(std::lround(kSpacing_m / grid.resolution_m)));
@@ -68,7 +68,7 @@ int count_features(cv::ORB& orb, geometry::ColorImage image) {
 
 std::string room_at(const Scene& scene, const Eigen::Vector2d& p) {
   const auto room = std::find_if(scene.rooms.begin(), scene.rooms.end(),
-                                 [&](const Room& candidate) { return is_inside(candidate.polygon, p); });
+                                 [&](const Room& candidate) { return contains(candidate.polygon, p); });
   return room == scene.rooms.end() ? "elsewhere" : room->id;
 }
 

@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "simulator/core/robot/nav_map_picture.hpp"
+#include "simulator/core/robot/starts.hpp"
 #include "simulator/core/validation/drive_checks.hpp"
 #include "simulator/core/validation/validate.hpp"
 
@@ -56,10 +57,8 @@ class Canvas {
 };
 
 void draw_tour(Canvas& canvas, const World& world, const StartPose& start, const TourConfig& config) {
-  std::vector<WayPoint> way_points;
-  for (const auto& p : world.scene().tour) way_points.push_back({p, false});
   try {
-    for (const TourLeg& leg : plan_tour(world.nav_map(), start.position, way_points, config).legs)
+    for (const TourLeg& leg : plan_tour(world.nav_map(), start.position, world.scene().tour, config).legs)
       canvas.line(leg.path, kTour, 2);
   } catch (const std::runtime_error&) {
     canvas.line(world.scene().tour, kTour, 1);  // as the crow flies; check_tour says what is wrong
@@ -71,7 +70,7 @@ void draw_tour(Canvas& canvas, const World& world, const StartPose& start, const
 geometry::ColorImage draw_floor_plan(const World& world, const TourConfig& tour) {
   const Scene& scene = world.scene();
   const NavMap& map = world.nav_map();
-  const auto starts = starts_of(scene, map);
+  const auto starts = starts_of(scene, map, tour.path.radius_m);
   Canvas canvas(map, map.reachable(starts.front().position, tour.path.radius_m));
   for (const Room& room : scene.rooms) {
     canvas.line(room.polygon, kRoom, 1, true);

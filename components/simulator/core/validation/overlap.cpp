@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <optional>
 
-#include "simulator/core/building/polygon.hpp"
+#include "simulator/core/scene/polygon.hpp"
 #include "simulator/core/validation/solid.hpp"
 
 namespace lapis::simulator {

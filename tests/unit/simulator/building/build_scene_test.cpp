@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "simulator/core/building/parametric_furniture.hpp"
-#include "simulator/core/building/polygon.hpp"
+#include "simulator/core/scene/polygon.hpp"
 #include "small_building.hpp"
 
 namespace lapis::simulator {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "simulator/core/building/build_scene.hpp"
-#include "simulator/core/building/polygon.hpp"
+#include "simulator/core/scene/polygon.hpp"
 #include "small_building.hpp"
 
 namespace lapis::simulator {

@@ -1,4 +1,4 @@
-#include "simulator/core/building/polygon.hpp"
+#include "simulator/core/scene/polygon.hpp"
 
 #include <gtest/gtest.h>
 

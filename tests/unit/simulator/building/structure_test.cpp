@@ -8,9 +8,9 @@
 #include <string>
 
 #include "simulator/core/building/build_scene.hpp"
-#include "simulator/core/building/polygon.hpp"
 #include "simulator/core/noise/random.hpp"
 #include "simulator/core/render/raycaster.hpp"
+#include "simulator/core/scene/polygon.hpp"
 #include "small_building.hpp"
 
 namespace lapis::simulator {

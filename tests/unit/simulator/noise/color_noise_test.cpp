@@ -117,24 +117,6 @@ TEST(ColorNoise, ContrastShrinksDifferencesFromGrey) {
     ASSERT_NEAR(result.pixels[i].g, 127.5 + 0.5 * (image.pixels[i].g - 127.5), 0.51);
 }
 
-TEST(ColorNoise, ExposureDriftsSmoothly) {
-  ColorNoiseConfig config = quiet();
-  config.exposure_sigma = 0.1;
-  const ColorNoise noise(config, 3);
-  std::vector<double> at_nodes, between;
-  for (std::uint64_t tick = 0; tick < 60000; ++tick) {
-    const double log_gain = std::log(noise.gain(tick));
-    ASSERT_LT(std::abs(std::log(noise.gain(tick + 1)) - log_gain), 0.1 * 8.0 * 2 / 30);  // 8 sigma in 15 frames
-    if (tick % 30 == 0) at_nodes.push_back(log_gain);
-    if (tick % 30 == 15) between.push_back(log_gain);
-  }
-  EXPECT_NEAR(variance_of(at_nodes) / 0.01, 1.0, variance_bound(at_nodes.size()));
-  EXPECT_NEAR(variance_of(between) / 0.01, 1.0, 1.5 * variance_bound(between.size()));  // neighbours are correlated
-  const ColorImage result = noise.apply(ColorImage(4, 4, {100, 100, 100}), 777);
-  EXPECT_NEAR(result.pixels[3].g, 100 * noise.gain(777), 0.51);
-  EXPECT_EQ(ColorNoise(quiet(), 3).gain(777), 1.0);
-}
-
 /// Straightforward mean over the pixels of a line.
 double mean_on_line(const ColorImage& image, int column, int row, const Eigen::Vector2d& step, int half) {
   double sum = 0.0;

@@ -28,11 +28,18 @@ const FurnitureSource& furniture() {
   return source;
 }
 
-/// The scene as a seed furnishes it, in one colour.
+/// A bundled scene with bare walls and floors: textures take time, and nobody looks at them.
+SceneSpec bare(const std::string& name) {
+  SceneSpec spec = read_scene_yaml(scene_file(name));
+  for (RoomSpec& room : spec.rooms) {
+    for (SurfaceSpec* surface : {&room.floor, &room.wall, &room.ceiling}) surface->texture = "blank";
+  }
+  return spec;
+}
+
 Scene furnished(const SceneSpec& spec, std::uint64_t seed) {
   BuildOptions options;
   options.seed = seed;
-  options.texture_richness = 0.0;
   options.pictures_density = 0.0;
   return build_scene(spec, furniture(), options);
 }
@@ -51,12 +58,10 @@ struct Drive {
 
 /// The bundled tour, commands taking effect a frame later, as in lock-step.
 Drive drive(const Scene& scene, const NavMap& map, const StartPose& from) {
-  std::vector<WayPoint> way_points;
-  for (const auto& p : scene.tour) way_points.push_back({p});
   RobotState start;
   start.position = from.position;
   start.yaw_rad = from.yaw_rad;
-  TourFollower follower(map, plan_tour(map, from.position, way_points, {}), {});
+  TourFollower follower(map, plan_tour(map, from.position, scene.tour, {}), {});
   Robot robot(map, RobotConfig{}, start);
   Drive out;
   DriveCommand late;
@@ -78,21 +83,24 @@ Drive drive(const Scene& scene, const NavMap& map, const StartPose& from) {
 class BundledScenes : public testing::TestWithParam<const char*> {};
 
 TEST_P(BundledScenes, EverySeedLeavesTheWayFree) {
-  const SceneSpec spec = read_scene_yaml(scene_file(GetParam()));
+  const SceneSpec spec = bare(GetParam());
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
-    const Scene scene = furnished(spec, seed);
+    Scene scene = furnished(spec, seed);
     const NavMap map = build_nav_map(scene);
-    for (const Check& check :
-         {check_starts(scene, map, kRadius_m), check_rooms(scene, map, kRadius_m), check_doors(scene, map)})
-      EXPECT_EQ(check.verdict, Verdict::kOk) << text_of(check);
+    const Check starts = check_starts(scene, map, kRadius_m);
+    ASSERT_EQ(starts.verdict, Verdict::kOk) << text_of(starts);
+    scene.starts = {scene.starts[seed % scene.starts.size()]};
+    const Check rooms = check_rooms(scene, map, kRadius_m), doors = check_doors(scene, map);
+    EXPECT_EQ(rooms.verdict, Verdict::kOk) << text_of(rooms);
+    EXPECT_EQ(doors.verdict, Verdict::kOk) << text_of(doors);
     const Check corridors = check_corridors(scene, map);
     EXPECT_NE(corridors.verdict, Verdict::kFail) << text_of(corridors);
     if (scene.name == "large_building") {
       EXPECT_EQ(corridors.verdict, Verdict::kOk) << text_of(corridors);
     }
     if (HasFailure()) return;
-    const Drive tour = drive(scene, map, scene.starts[seed % scene.starts.size()]);
+    const Drive tour = drive(scene, map, scene.starts.front());
     EXPECT_EQ(tour.problem, "");
     EXPECT_EQ(tour.contacts, 0);
     RecordProperty("seed_" + std::to_string(seed),

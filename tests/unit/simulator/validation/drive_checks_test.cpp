@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "simulator/core/robot/starts.hpp"
 #include "small_scenes.hpp"
 
 namespace lapis::simulator {
@@ -41,9 +42,9 @@ double number_before(const std::string& text, const std::string& unit) {
 
 TEST(DriveChecks, AGoodScenePassesAll) {
   const Place place(test::good_spec());
-  for (const Check& check : {check_starts(place.scene, place.map, kRadius_m),
-                             check_rooms(place.scene, place.map, kRadius_m), check_tour(place.scene, place.map, {}),
-                             check_doors(place.scene, place.map), check_corridors(place.scene, place.map)}) {
+  for (const Check& check :
+       {check_starts(place.scene, place.map, kRadius_m), check_rooms(place.scene, place.map, kRadius_m),
+        check_tour(place.scene, place.map, {}), check_doors(place.scene, place.map)}) {
     EXPECT_EQ(check.verdict, Verdict::kOk) << test::text_of(check);
     EXPECT_FALSE(check.figures.empty()) << check.name;
   }
@@ -64,7 +65,7 @@ TEST(DriveChecks, WithoutStartsTheMostOpenPlaceStandsIn) {
   SceneSpec spec = test::two_rooms();
   spec.starts.clear();
   const Place place(spec);
-  const auto starts = starts_of(place.scene, place.map);
+  const auto starts = starts_of(place.scene, place.map, kRadius_m);
   ASSERT_EQ(starts.size(), 1U);
   EXPECT_NEAR(place.map.distance_m(starts[0].position), 1.5, 0.06) << "half the width of the living room";
 }
@@ -110,6 +111,13 @@ TEST(DriveChecks, WidthOfACorridorIsThatBetweenItsDoorways) {
     ASSERT_EQ(check.details.size(), 1U);
     EXPECT_NEAR(number_before(check.details[0], " m at"), width_m, 0.1) << "skirting boards, and two cells";
   }
+}
+
+TEST(DriveChecks, ACorridorWithOneDoorwayIsNotMeasuredAndSaysSo) {
+  const Place place(test::good_spec());
+  const Check check = check_corridors(place.scene, place.map);
+  EXPECT_EQ(check.verdict, Verdict::kNote);
+  EXPECT_THAT(check.details, ElementsAre(HasSubstr("hallway: not measured")));
 }
 
 TEST(DriveChecks, FurnitureNarrowsACorridorOnlyBetweenItsDoorways) {

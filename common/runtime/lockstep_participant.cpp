@@ -42,8 +42,12 @@ void LockstepParticipant::after_handlers() {
 
 bool LockstepParticipant::is_active() const { return run_ != dds::Gid{} && ticks_.is_matched(run_); }
 
-// A newcomer to a run leaves its inputs alone until it is its turn, or has seen a whole tick that was not for it.
-bool LockstepParticipant::is_free() const { return !is_active() && (ticks_.matched() == 0 || is_bystander_); }
+// A newcomer to a run leaves its inputs alone until it is its turn, or has seen a whole tick that was not for it. The
+// process that drives is always free.
+bool LockstepParticipant::is_free() const {
+  const bool drives = ticks_.is_participant_matched(context_.participant().gid());
+  return !is_active() && (ticks_.matched() == 0 || drives || is_bystander_);
+}
 
 void LockstepParticipant::on_tick(const Tick& tick) {
   const auto& due = tick.due();

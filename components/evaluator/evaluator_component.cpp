@@ -1,7 +1,6 @@
 #include "evaluator/evaluator_component.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -19,15 +18,7 @@ namespace lapis::evaluator {
 namespace {
 
 constexpr std::size_t kWaitingFrames = 30;
-constexpr double kMaxDistance_m = 10'000.0;           // the mapper's limit
-constexpr time::Duration kRestartGap{1'000'000'000};  // stamps further back are those of a source that began anew
-
-std::optional<double> parse(const std::string& text) {
-  double value = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size()) return std::nullopt;
-  return value;
-}
+constexpr double kMaxDistance_m = 10'000.0;  // the mapper's limit
 
 std::map<std::uint16_t, std::string> class_names(const mapping::LabelList& labels) {
   std::map<std::uint16_t, std::string> names;
@@ -35,16 +26,16 @@ std::map<std::uint16_t, std::string> class_names(const mapping::LabelList& label
   return names;
 }
 
-/// Share of the plain fusion's voxels that a map holds for occupied.
-std::optional<double> share_of(const LabelledVoxels& fusion, const LabelledVoxels& map) {
-  if (fusion.voxels.empty()) return std::nullopt;
-  std::size_t common = 0;
-  auto it = map.voxels.begin();
-  for (const auto& voxel : fusion.voxels) {
-    while (it != map.voxels.end() && is_before(it->index, voxel.index)) ++it;
-    if (it != map.voxels.end() && it->index == voxel.index) ++common;
+Trajectory keyframes_of(const lapis_msgs::msg::PoseGraph& graph) {
+  Trajectory trajectory;
+  for (const auto& node : graph.nodes()) {
+    const time::Time stamp = messages::from_message(node.stamp());
+    const auto T_map_camera = messages::from_message(node.pose());
+    if (T_map_camera && (trajectory.empty() || trajectory.back().stamp < stamp)) {
+      trajectory.push_back({stamp, *T_map_camera});
+    }
   }
-  return static_cast<double>(common) / static_cast<double>(fusion.voxels.size());
+  return trajectory;
 }
 
 }  // namespace
@@ -82,7 +73,7 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
 
 // The camera's frames, not slam's: a frame that slam had to drop, or never got, is a frame without a pose.
 void EvaluatorComponent::count_frame(time::Time stamp) {
-  const bool is_repeated = camera_stamp_ && stamp <= *camera_stamp_ && *camera_stamp_ - stamp < kRestartGap;
+  const bool is_repeated = camera_stamp_ && stamp <= *camera_stamp_ && *camera_stamp_ - stamp <= time::kRestartGap;
   if (is_repeated) return;  // lock-step may repeat one
   camera_stamp_ = stamp;
   ++frames_total_;
@@ -99,12 +90,7 @@ void EvaluatorComponent::count_contact(bool is_in_contact) {
 void EvaluatorComponent::on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message) {
   for (const auto& status : message.status()) {
     if (status.name() != context_.frame(status.hardware_id())) continue;  // another robot's, or no process of Lapis
-    auto& figures = processes_[status.hardware_id()];
-    for (const auto& pair : status.values()) {
-      if (pair.key() == "cpu_s") figures.cpu_s = parse(pair.value());
-      if (pair.key() == "peak_rss_mb") figures.peak_rss_mb = parse(pair.value());
-      if (pair.key() == "frames") figures.frames = parse(pair.value());
-    }
+    costs_.add(status);
   }
 }
 
@@ -311,18 +297,6 @@ Trajectory EvaluatorComponent::truth_in_map() const {
   return T_map_world_ ? express_in(*T_map_world_, truth_world_) : Trajectory{};
 }
 
-Trajectory EvaluatorComponent::keyframes() const {
-  Trajectory trajectory;
-  for (const auto& node : graph_.nodes()) {
-    const time::Time stamp = messages::from_message(node.stamp());
-    const auto T_map_camera = messages::from_message(node.pose());
-    if (T_map_camera && (trajectory.empty() || trajectory.back().stamp < stamp)) {
-      trajectory.push_back({stamp, *T_map_camera});
-    }
-  }
-  return trajectory;
-}
-
 RunMetrics EvaluatorComponent::metrics() const {
   RunMetrics m;
   // A camera info that was lost on its way here is a frame, too, and so is a frame that slam answered.
@@ -336,7 +310,7 @@ RunMetrics EvaluatorComponent::metrics() const {
   const Trajectory truth = truth_in_map();
   if (!truth.empty()) {
     m.online = trajectory_figures(truth, estimate_);
-    m.keyframes = trajectory_figures(truth, keyframes());
+    m.keyframes = trajectory_figures(truth, keyframes_of(graph_));
     m.path_length_m = path_length_m(truth);
     if (*m.path_length_m > 0.0 && m.online.ate_raw_rmse_m)
       m.ate_per_metre = *m.online.ate_raw_rmse_m / *m.path_length_m;
@@ -346,11 +320,7 @@ RunMetrics EvaluatorComponent::metrics() const {
     m.wall_time_s = std::chrono::duration<double>(newest_ - *began_).count();
     if (*m.wall_time_s > 0.0) m.real_time_factor = *m.duration_s / *m.wall_time_s;
   }
-  for (const auto& [name, figures] : processes_) {
-    m.peak_rss_mb[name] = figures.peak_rss_mb;
-    const bool has_rate = figures.cpu_s && figures.frames && *figures.frames > 0.0;
-    m.cpu_ms_per_frame[name] = has_rate ? std::optional<double>(1e3 * *figures.cpu_s / *figures.frames) : std::nullopt;
-  }
+  costs_.write_to(m);
   m.collisions = collisions_;
   m.time_to_80_s = time_to_reach(timeline_, 0.8);
   m.time_to_90_s = time_to_reach(timeline_, 0.9);
@@ -378,7 +348,7 @@ void EvaluatorComponent::add_map_figures(RunMetrics& m) const {
   const auto names = class_names(label_list_);
   const auto classes = scene_truth_ ? scene_truth_->top_classes : std::vector<std::uint16_t>{};
   m.map = map_figures(reference.occupied, estimate.occupied, names, classes);
-  m.reference_fusion_share = share_of(plain_fusion_.voxels(), reference.occupied);
+  m.reference_fusion_share = plain_fusion_.share_in(reference.occupied);
   if (!scene_truth_) return;
   m.explored_share = coverage(scene_truth_->mesh, estimate).explored_share;
   m.mesh_map = map_figures(scene_truth_->mesh.occupied, estimate.occupied, names, classes);

@@ -17,6 +17,7 @@
 #include "evaluator/core/plain_fusion.hpp"
 #include "evaluator/core/timeline.hpp"
 #include "evaluator/evaluator_config.hpp"
+#include "evaluator/process_costs.hpp"
 
 namespace lapis::evaluator {
 
@@ -38,13 +39,6 @@ class EvaluatorComponent {
   using Tracked = lapis_msgs::msg::TrackedFrame;
   using Odometry = nav_msgs::msg::Odometry;
 
-  /// Newest figures that a process told on /diagnostics.
-  struct ProcessFigures {
-    std::optional<double> cpu_s;
-    std::optional<double> peak_rss_mb;
-    std::optional<double> frames;
-  };
-
   void count_frame(time::Time stamp);
   void count_contact(bool is_in_contact);
   void on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message);
@@ -65,7 +59,6 @@ class EvaluatorComponent {
   void add_shares();
   mapping::BeliefReader belief_reader() const;
   Trajectory truth_in_map() const;
-  Trajectory keyframes() const;
   RunMetrics metrics() const;
   void add_map_figures(RunMetrics& metrics) const;
   std::optional<LabelledVoxels> load_ideal() const;
@@ -82,7 +75,7 @@ class EvaluatorComponent {
   mapping::LabelList label_list_;
   mapping::MapMirror mirror_;
   lapis_msgs::msg::PoseGraph graph_;
-  std::map<std::string, ProcessFigures> processes_;
+  ProcessCosts costs_;
 
   std::optional<std::int64_t> session_;        // of the first frame: the one that is judged
   std::optional<std::int64_t> map_session_;    // of the newest map state

@@ -110,4 +110,16 @@ LabelledVoxels PlainFusion::voxels() const {
   return make_labelled_voxels(config_.resolution_m, std::move(voxels));
 }
 
+std::optional<double> PlainFusion::share_in(const LabelledVoxels& map) const {
+  const LabelledVoxels own = voxels();
+  if (own.voxels.empty()) return std::nullopt;
+  std::size_t common = 0;
+  auto it = map.voxels.begin();
+  for (const auto& voxel : own.voxels) {
+    while (it != map.voxels.end() && is_before(it->index, voxel.index)) ++it;
+    if (it != map.voxels.end() && it->index == voxel.index) ++common;
+  }
+  return static_cast<double>(common) / static_cast<double>(own.voxels.size());
+}
+
 }  // namespace lapis::evaluator

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <utility>
 #include <vector>
@@ -33,6 +34,8 @@ class PlainFusion {
 
   /// Occupied voxels so far. Ties of labels go to the smaller id, but a class goes before "unlabelled".
   LabelledVoxels voxels() const;
+  /// Share of these voxels that `map` holds, too, whatever their labels; none when there are none.
+  std::optional<double> share_in(const LabelledVoxels& map) const;
 
  private:
   /// Pixels per label; a voxel rarely has more than three.

@@ -1,6 +1,7 @@
 #include "simulator/set_up.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <numbers>
 #include <stdexcept>
@@ -147,8 +148,10 @@ SimulationConfig simulation_config(const SimulatorConfig& config) {
 StartPose start_pose(const World& world, const SimulatorConfig& config) {
   if (config.start.empty()) return draw_start(world, config.robot.radius_m, static_cast<std::uint64_t>(config.seed));
   std::string_view text = config.start;
-  const auto x = to_float(take_word(text)), y = to_float(take_word(text)), yaw_deg = to_float(take_word(text));
-  if (!x || !y || !yaw_deg || !trimmed(text).empty()) {
+  const auto x = to_number<double>(take_word(text)), y = to_number<double>(take_word(text)),
+             yaw_deg = to_number<double>(take_word(text));
+  const bool is_pose = x && y && yaw_deg && std::isfinite(*x + *y + *yaw_deg) && trimmed(text).empty();
+  if (!is_pose) {
     throw std::runtime_error(R"(simulator.start: must be "x y yaw_deg", not ")" + config.start + "\"");
   }
   return {{*x, *y}, *yaw_deg * std::numbers::pi / 180.0};

@@ -1,4 +1,4 @@
-// Scene files, tours and label lists. Small buildings are built, too; large ones would take too long.
+// Scene files, tours and label lists. Some small buildings are built, too; it takes a thousand times as long.
 
 #include <fstream>
 #include <numeric>
@@ -38,13 +38,20 @@ class SceneFolder {
 };
 
 bool is_small(const SceneSpec& spec) {
-  constexpr double kArea_m2 = 9.0, kSize_m = 2.0;
+  constexpr double kArea_m2 = 20.0, kSize_m = 2.0;
   const double area = std::accumulate(spec.rooms.begin(), spec.rooms.end(), 0.0, [&](double sum, const RoomSpec& room) {
-    return sum + signed_area(room.polygon) * (1.0 + room.height_m.value_or(spec.height_m) / 3.0);
+    return sum + signed_area(room.polygon) * (1.0 + room.height_m.value_or(spec.height_m));
   });
-  return area < 2 * kArea_m2 && spec.furniture.size() + spec.pictures.size() + spec.openings.size() < 6 &&
+  return area < kArea_m2 && spec.furniture.size() + spec.pictures.size() + spec.openings.size() < 6 &&
          std::all_of(spec.furniture.begin(), spec.furniture.end(),
                      [](const FurnitureSpec& item) { return !item.size_m || item.size_m->maxCoeff() < kSize_m; });
+}
+
+/// One input in 256, always the same ones [FNV-1a].
+bool is_chosen(std::string_view text) {
+  std::uint32_t hash = 2166136261U;
+  for (const char c : text) hash = (hash ^ static_cast<std::uint8_t>(c)) * 16777619U;
+  return hash >> 24U == 0;
 }
 
 }  // namespace
@@ -64,7 +71,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   attempt([&] {
     const SceneSpec spec = normalised(read_scene_yaml(file));
     plan_walls(spec);
-    if (is_small(spec)) fuzz::check(build_scene(spec, {}));
+    if (is_small(spec) && is_chosen({reinterpret_cast<const char*>(data), size})) fuzz::check(build_scene(spec, {}));
   });
   return 0;
 }

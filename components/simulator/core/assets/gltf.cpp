@@ -131,10 +131,12 @@ void GltfReader::refuse_extensions() const {
     if (name == "KHR_draco_mesh_compression" || name == "EXT_meshopt_compression") {
       what = "the geometry is compressed (" + name + ")", remedy = "export without compression";
     } else if (name == "KHR_texture_basisu" || name == "GOOGLE_texture_basis") {
-      what = "the textures are compressed (" + name + ", KTX2)", remedy = "export them as PNG or JPEG";
+      what = "the textures are compressed (KTX2: " + name + ")", remedy = "export them as PNG or JPEG";
     }
-    file_.fail(what + ", which is not read; " + remedy +
-               " (required extensions that are read: KHR_materials_unlit, KHR_mesh_quantization)");
+    what += ", which is not read; ";
+    what += remedy;
+    what += " (required extensions that are read: KHR_materials_unlit, KHR_mesh_quantization)";
+    file_.fail(what);
   }
 }
 

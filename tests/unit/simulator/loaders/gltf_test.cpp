@@ -251,7 +251,7 @@ TEST(Gltf, RequiredExtensionsAreKnownOrRefused) {
   EXPECT_EQ(error("KHR_mesh_quantization"), "");
   EXPECT_THAT(error("KHR_draco_mesh_compression"), HasSubstr("export without compression"));
   EXPECT_THAT(error("EXT_meshopt_compression"), HasSubstr("export without compression"));
-  EXPECT_THAT(error("KHR_texture_basisu"), HasSubstr("(KHR_texture_basisu, KTX2), which is not read; export them as"));
+  EXPECT_THAT(error("KHR_texture_basisu"), HasSubstr("(KTX2: KHR_texture_basisu), which is not read; export them as"));
   EXPECT_THAT(error("KHR_texture_transform"),
               testing::AllOf(HasSubstr("memory/a.glb: the file requires KHR_texture_transform"),
                              HasSubstr("are read: KHR_materials_unlit, KHR_mesh_quantization")));

@@ -56,7 +56,7 @@ inline constexpr Topic<sensor_msgs::msg::Image> kLabelConfidence{"/camera/semant
                                                                  "optional; 32FC1 or mono8"};
 inline constexpr Topic<vision_msgs::msg::LabelInfo> kLabelInfo{
     "/camera/semantic/label_info", dds::kLatched, "camera, or a segmentation", "once", "names of the class ids"};
-inline constexpr Topic<nav_msgs::msg::Odometry> kWheelOdometry{"/odom", dds::kState, "robot", "50 Hz",
+inline constexpr Topic<nav_msgs::msg::Odometry> kWheelOdometry{"/odom", dds::kBurst, "robot", "50 Hz",
                                                                "optional; wheel odometry, drifting"};
 inline constexpr Topic<sensor_msgs::msg::Imu> kImu{"/imu", dds::kBurst, "robot", "200 Hz", "optional"};
 

@@ -25,6 +25,11 @@ COLUMNS = {  # of the table: format, and what it shows of metrics.json
 }
 
 
+def has_ended_well(folder):
+    """benchmark.sh writes the file when the run has succeeded; a run that ended early has metrics, too."""
+    return (folder / "identity").exists()
+
+
 def row_of(folder):
     """Values of one run, by column; None where the run did not give one."""
     try:
@@ -55,22 +60,25 @@ def line(title, row):
 
 def main():
     target, folders = pathlib.Path(sys.argv[1]), [pathlib.Path(name) for name in sys.argv[2:]]
-    scenes = {}
+    scenes, failed = {}, set()
     for folder in folders:
         scene, _, seed = folder.name.rpartition("_")
         scenes.setdefault(scene, {})[seed] = row_of(folder)
+        if not has_ended_well(folder):
+            failed.add((scene, seed))
     print("| scene, seed | " + " | ".join(COLUMNS) + " |")
     print("| --- |" + " --- |" * len(COLUMNS))
     for scene, rows in scenes.items():
         for seed, row in rows.items():
-            print(line(f"{scene}, {seed}" + ("" if row["frames"] else " FAILED"), row))
-        print(line(f"{scene}, median", median_of(rows.values())))
+            print(line(f"{scene}, {seed}" + (" FAILED" if (scene, seed) in failed else ""), row))
+        whole = [row for seed, row in rows.items() if (scene, seed) not in failed]
+        print(line(f"{scene}, median of {len(whole)}", median_of(whole)))
     with target.open("w", newline="") as stream:
         writer = csv.writer(stream)
-        writer.writerow(["scene", "seed", *COLUMNS])
+        writer.writerow(["scene", "seed", "failed", *COLUMNS])
         for scene, rows in scenes.items():
-            writer.writerows([scene, seed, *row.values()] for seed, row in rows.items())
-    return 0 if all(row["frames"] for rows in scenes.values() for row in rows.values()) else 1
+            writer.writerows([scene, seed, (scene, seed) in failed, *row.values()] for seed, row in rows.items())
+    return 1 if failed else 0
 
 
 if __name__ == "__main__":

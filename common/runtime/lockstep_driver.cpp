@@ -48,6 +48,8 @@ void LockstepDriver::restart() {
   last_ack_.clear();
   newcomers_.clear();
   outputs_.clear();
+  cpu_ms_.clear();
+  longest_tick_s_ = 0.0;
   number_ = 0;
   stage_ = 0;
   is_final_ = false;

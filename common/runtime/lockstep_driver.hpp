@@ -53,7 +53,7 @@ class LockstepDriver {
   double longest_tick_s() const { return longest_tick_s_; }
   /// CPU time of each participant, from one answer to the next [ms].
   const std::map<std::string, double>& cpu_ms() const { return cpu_ms_; }
-  /// Participants without which the run went on, and the tick that they did not answer.
+  /// Participants without which this run or one before it went on, and the tick that they did not answer.
   const std::map<std::string, std::uint64_t>& demoted() const { return demoted_; }
 
  private:

@@ -46,7 +46,7 @@ bool LockstepParticipant::is_active() const { return run_ != dds::Gid{} && ticks
 // process that drives is always free.
 bool LockstepParticipant::is_free() const {
   const bool drives = ticks_.is_participant_matched(context_.participant().gid());
-  return !is_active() && (ticks_.matched() == 0 || drives || is_bystander_);
+  return !is_active() && (ticks_.matched() == 0 || drives || (is_bystander_ && ticks_.is_matched(watched_)));
 }
 
 void LockstepParticipant::on_tick(const Tick& tick) {
@@ -57,7 +57,8 @@ void LockstepParticipant::on_tick(const Tick& tick) {
     first_watched_ = tick.tick();
   }
   is_bystander_ = !is_due && (tick.tick() == 0 || tick.tick() > first_watched_ + 1);  // tick 0 names everybody
-  if (!is_due) return;
+  if (!is_due) return leave_if_demoted(tick);
+  last_due_ = tick.tick();
   const std::pair<std::uint64_t, std::uint32_t> number(tick.tick(), tick.stage());
   const bool is_new_run = tick.run_gid() != run_;
   if (is_new_run) {
@@ -77,6 +78,14 @@ void LockstepParticipant::on_tick(const Tick& tick) {
   }
   pending_ = tick;
   if (!has_joined_) say_busy();
+}
+
+// The driver went on without us while we were silent: from here on we run freely, as one that has been restarted does.
+void LockstepParticipant::leave_if_demoted(const Tick& tick) {
+  if (tick.run_gid() != run_ || tick.tick() <= last_due_ + 1) return;
+  spdlog::warn("lock-step goes on without this process since tick {}: it works on what comes by itself", last_due_);
+  run_ = {};
+  pending_.reset();
 }
 
 void LockstepParticipant::answer_pending() {

@@ -26,6 +26,7 @@ class LockstepParticipant {
   using Tick = lapis_msgs::msg::Tick;
 
   void on_tick(const Tick& tick);
+  void leave_if_demoted(const Tick& tick);
   void answer_pending();
   bool is_active() const;
   bool is_free() const;
@@ -42,6 +43,7 @@ class LockstepParticipant {
   bool has_joined_ = false;                                          // has answered a tick of this run
   std::optional<Tick> pending_;                                      // received, not answered
   std::optional<std::pair<std::uint64_t, std::uint32_t>> answered_;  // tick and stage
+  std::uint64_t last_due_ = 0;                                       // tick
   // The run of the last tick, whoever was due, its first tick that came here, and whether it does without us.
   dds::Gid watched_{};
   std::uint64_t first_watched_ = 0;

@@ -7,29 +7,27 @@
 
 namespace lapis::simulator {
 
-Run::Run(const World& world, const StartPose& start, const SimulatorConfig& config, SimulatorFrameIds ids)
+Run::Run(const World& world, const StartPose& start, const SimulatorConfig& config, std::optional<TourFollower> tour,
+         SimulatorFrameIds ids)
     : world_(world), start_(start), config_(config), ids_(std::move(ids)),
-      simulation_(world, simulation_config(config), start), tour_(plan_tour(world, start, config)),
-      ideal_map_(truth_config(config)) {
+      simulation_(world, simulation_config(config), start), tour_(std::move(tour)), ideal_map_(truth_config(config)) {
   begin_next();
 }
 
 void Run::command(const DriveCommand& command) {
-  if (!tour_) command_ = command;
+  if (!tour_ && step_) command_ = command;
 }
 
 void Run::advance() {
+  if (const auto problem = tour_ ? tour_->stalled() : ""; !problem.empty()) {
+    throw std::runtime_error("scene " + world_.scene().name + ": " + problem);
+  }
   const bool was_in_contact = is_in_contact();
   step_ = next_.get();
   const SensorFrame& frame = step_->frame;
   has_contact_changed_ = frame.tick == 1 || frame.is_in_contact != was_in_contact;
   if (frame.is_in_contact && !was_in_contact) ++collisions_;
-  if (tour_) {
-    command_ = tour_->command(frame.robot);
-    if (const auto problem = tour_->stalled(); !problem.empty()) {
-      throw std::runtime_error("scene " + world_.scene().name + ": " + problem);
-    }
-  }
+  if (tour_) command_ = tour_->command(frame.robot);
   is_over_ =
       (tour_ && tour_->is_finished()) || (config_.duration_s > 0.0 && frame.stamp.seconds() >= config_.duration_s);
   if (!is_over_) begin_next();

@@ -17,10 +17,13 @@ namespace lapis::simulator {
 class Run {
  public:
   /// @param world must outlive the run.
-  /// @throws std::runtime_error when the robot does not fit at the start, or the tour cannot be driven.
-  Run(const World& world, const StartPose& start, const SimulatorConfig& config, SimulatorFrameIds ids);
+  /// @param tour that the robot drives by itself; without one it obeys commands.
+  /// @throws std::runtime_error when the robot does not fit at the start.
+  Run(const World& world, const StartPose& start, const SimulatorConfig& config, std::optional<TourFollower> tour,
+      SimulatorFrameIds ids);
 
-  /// From the next frame but one on, because the next one is under way. Not on a tour.
+  /// From the next frame but one on, because the next one is under way. Ignored on a tour, and before the first frame,
+  /// which no command can be an answer to.
   void command(const DriveCommand& command);
   /// Waits for the next frame, and has the one after it simulated, too.
   /// @throws whatever went wrong there; std::runtime_error when the robot is stuck on its tour.

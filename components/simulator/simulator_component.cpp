@@ -44,7 +44,7 @@ std::optional<int> SimulatorComponent::run_tool(const Config& config) { return r
 
 SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), world_(open_world(config)), start_(start_pose(world_, config)),
-      camera_(context, {.has_labels = true, .has_ground_truth = true}),
+      tour_(plan_tour(world_, start_, config)), camera_(context, {.has_labels = true, .has_ground_truth = true}),
       wheels_(context.advertise(topics::kWheelOdometry)), collision_(context.advertise(topics::kCollision)) {
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "simulator.output_dir");
   describe_scene(world_);
@@ -92,23 +92,31 @@ void SimulatorComponent::serve() {
 }
 
 void SimulatorComponent::pause() {
-  if (!paused_at_) paused_at_ = Clock::now();
+  is_paused_ = true;
+  ran_s_ = wall_s();
+  running_since_.reset();
 }
 
 void SimulatorComponent::go_on() {
-  if (paused_at_ && began_) *began_ += Clock::now() - *paused_at_;  // real-time factors are of the time that ran
-  paused_at_.reset();
+  is_paused_ = false;
   steps_ = 0;
   due_ = Clock::now();
+}
+
+/// Wall time since the first frame, without pauses.
+double SimulatorComponent::wall_s() const {
+  return running_since_ ? ran_s_ + seconds_between(*running_since_, Clock::now()) : ran_s_;
 }
 
 /// At the start again, with time 0.
 void SimulatorComponent::begin() {
   run_.reset();  // before the next one takes its memory
-  run_ = std::make_unique<Run>(world_, start_, config_, SimulatorFrameIds{camera_.ids(), context_.frame("odom")});
+  run_ =
+      std::make_unique<Run>(world_, start_, config_, tour_, SimulatorFrameIds{camera_.ids(), context_.frame("odom")});
   has_ended_ = false;
   steps_ = 0;
-  began_.reset();
+  ran_s_ = 0.0;
+  running_since_.reset();
   due_ = Clock::now();
   camera_.publish_latched(robot::camera_mount(config_.robot.camera), world_.scene().labels, time::Time{});
 }
@@ -131,8 +139,8 @@ void SimulatorComponent::work() {
 /// False while paused, while readers are awaited, or before the wall-clock time of the next tick, at which it wakes the
 /// executor.
 bool SimulatorComponent::may_tick() {
-  if (paused_at_ && steps_ == 0) return false;
-  if (!driver_ && !began_ && !camera_.has_readers(static_cast<std::size_t>(config_.wait_for_readers))) {
+  if (is_paused_ && steps_ == 0) return false;
+  if (!driver_ && run_->frames() == 0 && !camera_.has_readers(static_cast<std::size_t>(config_.wait_for_readers))) {
     context_.executor().at(Clock::now() + kMatchingPeriod, [] {});
     return false;
   }
@@ -145,7 +153,7 @@ bool SimulatorComponent::may_tick() {
     const std::chrono::duration<double> period(1.0 / (pace * config_.robot.camera.rate_hz));
     due_ = std::max(due_ + std::chrono::duration_cast<Clock::duration>(period), Clock::now());  // lost time stays lost
   }
-  if (paused_at_) --steps_;
+  if (is_paused_) --steps_;
   return true;
 }
 
@@ -155,7 +163,7 @@ void SimulatorComponent::tick() {
     report_progress(true);
     return context_.finish();
   }
-  if (!began_) began_ = reported_ = Clock::now();
+  if (!is_paused_ && !running_since_) running_since_ = reported_ = Clock::now();
   has_ended_ = run_->is_over();
   if (!has_ended_) {
     run_->advance();
@@ -189,8 +197,8 @@ void SimulatorComponent::report_progress(bool is_last) {
   const auto now = Clock::now();
   if (!is_last && seconds_between(reported_, now) < kProgressPeriod_s) return;
   reported_ = now;
-  const double elapsed_s = std::max(seconds_between(*began_, now), 1e-3), simulated_s = run_->stamp().seconds();
-  spdlog::info("{:.1f} s simulated, real-time factor {:.2f}", simulated_s, simulated_s / elapsed_s);
+  const double simulated_s = run_->stamp().seconds();
+  spdlog::info("{:.1f} s simulated, real-time factor {:.2f}", simulated_s, simulated_s / std::max(wall_s(), 1e-3));
 }
 
 /// The ground truth of the scene, in a thread of its own: the run does not wait for it.
@@ -205,6 +213,12 @@ void SimulatorComponent::finish() {
   if (const auto refused = run_->commands_refused(); refused > 0) {
     spdlog::warn("commands refused, because they are not finite: {}", refused);
   }
+  try {
+    if (truth_.valid()) truth_.get();
+  } catch (const std::exception& error) {
+    failure_ = error.what();
+    context_.fail(failure_);
+  }
   if (!config_.output_dir.empty()) write_files();
 }
 
@@ -213,7 +227,7 @@ void SimulatorComponent::write_files() {
   summary.exit_reason = !failure_.empty() ? failure_ : has_ended_ ? "completed" : "stopped";
   summary.frames = run_->frames();
   summary.simulated_s = run_->stamp().seconds();
-  if (began_) summary.wall_s = seconds_between(*began_, paused_at_.value_or(Clock::now()));
+  summary.wall_s = wall_s();
   summary.collisions = run_->collisions();
   if (driver_) {
     summary.cpu_ms = driver_->cpu_ms();
@@ -221,7 +235,6 @@ void SimulatorComponent::write_files() {
   }
   files::replace_text(std::filesystem::path(config_.output_dir) / "simulation.yaml",
                       to_yaml(summary, world_, start_, config_));
-  if (truth_.valid()) truth_.get();
   write_ideal_map(truth_folder(config_), world_.scene(), run_->ideal_map());
 }
 

@@ -38,6 +38,7 @@ class SimulatorComponent {
   void serve();
   void pause();
   void go_on();
+  double wall_s() const;
   void begin();
   void work();
   bool may_tick();
@@ -52,6 +53,7 @@ class SimulatorComponent {
   runtime::Context& context_;
   const World world_;
   const StartPose start_;
+  const std::optional<TourFollower> tour_;  // at its beginning
   runtime::CameraPublisher camera_;
   dds::Publisher<nav_msgs::msg::Odometry>& wheels_;
   dds::Publisher<std_msgs::msg::Bool>& collision_;
@@ -60,10 +62,11 @@ class SimulatorComponent {
   std::unique_ptr<Run> run_;
   std::string failure_;
   bool has_ended_ = false;  // the tick after the last frame is out
-  std::optional<Clock::time_point> paused_at_;
-  int steps_ = 0;  // asked for while paused
-  std::optional<Clock::time_point> began_;
-  Clock::time_point due_;  // of the next tick by the wall clock
+  bool is_paused_ = false;
+  int steps_ = 0;                                   // asked for while paused
+  double ran_s_ = 0.0;                              // by the wall clock, up to the last pause
+  std::optional<Clock::time_point> running_since_;  // the first frame, or the last pause
+  Clock::time_point due_;                           // of the next tick by the wall clock
   Clock::time_point reported_;
   std::future<void> truth_;  // of the scene is being written; last: its thread uses what is above
 };

@@ -9,8 +9,9 @@
 #include "seeds.hpp"
 
 // The names that CMakeLists.txt gives to LLVMFuzzerTestOneInput of each fuzzer.
-#define LAPIS_FUZZERS(do) \
-  do (catalog) do(gltf) do(hm3d) do(house) do(image) do(obj) do(ply) do(replica) do(scene) do(text) do(zip)
+#define LAPIS_FUZZERS(apply)                                                                                         \
+  apply(catalog) apply(gltf) apply(hm3d) apply(house) apply(image) apply(obj) apply(ply) apply(replica) apply(scene) \
+      apply(text) apply(zip)
 #define LAPIS_DECLARE(name) int fuzz_##name(const std::uint8_t* data, std::size_t size);
 extern "C" {
 LAPIS_FUZZERS(LAPIS_DECLARE)

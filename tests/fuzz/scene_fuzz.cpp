@@ -6,7 +6,7 @@
 #include "check_scene.hpp"
 #include "simulator/core/building/build_scene.hpp"
 #include "simulator/core/building/floor_plan.hpp"
-#include "simulator/core/building/polygon.hpp"
+#include "simulator/core/scene/polygon.hpp"
 #include "simulator/scene_yaml.hpp"
 #include "tests/support/temporary_folder.hpp"
 

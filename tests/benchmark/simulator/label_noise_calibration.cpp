@@ -85,6 +85,7 @@ void calibrate(const std::string& scene) {
   while (!tour->is_finished()) {
     const SensorFrame frame = simulation.next(command);
     command = tour->command(frame.robot);
+    if (const auto problem = tour->stalled(); !problem.empty()) throw std::runtime_error(problem);
     if (frame.tick % kEvery != 0) continue;
     const geometry::Pose T = frame.T_world_base * T_base_camera;
     const auto depth = to_metres(frame.images.depth_mm);

@@ -69,6 +69,29 @@ TEST(LockstepSilence, DemoteGoesOnWithout) {
   EXPECT_EQ(run.driver().demoted(), (Demoted{{"test_follower", 2}}));
 }
 
+TEST(LockstepSilence, ADemotedOneThatComesBackWorksByItself) {
+  ChildProcess echo(kEcho);
+  ChildProcess follower(kFollower);
+  ASSERT_TRUE(wait_until_ready(echo) && wait_until_ready(follower)) << echo.log() << follower.log();
+  Driven run(two_stages("demote", kShortPatience_s, 0.5));
+  ASSERT_TRUE(run.wait_for(State::kIdle));
+  ASSERT_TRUE(run.step());
+  follower.signal(SIGSTOP);
+  ASSERT_TRUE(run.step());
+  follower.signal(SIGCONT);
+  EXPECT_EQ(run.driver().demoted(), (Demoted{{"test_follower", 2}}));
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(run.step()) << i;
+  const auto has_followed = [&] {
+    return !run.frames.empty() &&
+           messages::from_message(run.frames.back().header().stamp()) == Driven::stamp(run.ticks);
+  };
+  EXPECT_TRUE(run.wait_until([&] {
+    if (!has_followed()) run.step();  // more ticks than the two by which it sees that it was left behind
+    return has_followed() || run.ticks > 20;
+  }));
+  EXPECT_TRUE(has_followed()) << follower.log();
+}
+
 TEST(LockstepSilence, DemotedByAllTheRunFails) {
   Driven run(two_stages("demote", 1.0, 0.5));
   ASSERT_TRUE(run.wait_for(State::kFailed));

@@ -92,8 +92,9 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   const auto& names = probe.collect(topics::kLabelInfo);
   ChildProcess simulator(kSimulator, arguments({"--mode", "freerun", "--set", "simulator.wait_for_readers=1", "--set",
                                                 "robot.camera.rate_hz=5"}));
-  ASSERT_TRUE(probe.wait_until([&] { return labels.size() > 5 && truth.size() > 5 && wheels.size() > 20; }))
-      << simulator.log();
+  ASSERT_TRUE(probe.wait_until([&] {
+    return std::min({color.size(), depth.size(), labels.size(), info.size(), truth.size()}) > 5 && wheels.size() > 20;
+  })) << simulator.log();
   // It began when the readers were there: nothing is missing from the first frame on.
   for (std::size_t i = 0; i < 5; ++i) {
     const auto stamp = time::Time{static_cast<std::int64_t>(i + 1) * 200'000'000};
@@ -103,7 +104,7 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
     EXPECT_EQ(stamp_of(info[i]), stamp);
     EXPECT_EQ(stamp_of(truth[i]), stamp);
   }
-  ASSERT_TRUE(probe.wait_until([&] { return !mount.empty() && !names.empty() && !info.empty(); }));
+  ASSERT_TRUE(probe.wait_until([&] { return !mount.empty() && !names.empty(); }));
   EXPECT_EQ(names[0].class_map().size(), 10U);
   const auto camera = messages::from_message(info[0]);
   ASSERT_TRUE(camera);
@@ -234,54 +235,82 @@ TEST_F(SimulatorContract, SlowLateAndWrongAnswersDoNotMoveTheClock) {
   expect_every_frame_once(stamps_of(truth));
 }
 
-TEST_F(SimulatorContract, PauseStepRunAndReset) {
-  TopicProbe probe;
-  const auto& depth = probe.collect(topics::kDepth);
-  auto& pause = probe.client(topics::kPause);
-  auto& step = probe.client(topics::kStep);
-  auto& run = probe.client(topics::kRun);
-  auto& reset = probe.client(topics::kReset);
-  ChildProcess echo(kEcho);
-  ChildProcess simulator(kSimulator, with_stages("[test_echo]", {"--set", "simulator.max_real_time_factor=1"}));
-  ASSERT_TRUE(probe.wait_until([&] {
-    return pause.is_ready() && step.is_ready() && run.is_ready() && reset.is_ready() && depth.size() > 3;
-  })) << simulator.log();
-  /// Answers with the number of the tick that the reply names, 0 when it names none.
-  const auto call = [&](auto& client) -> std::uint64_t {
+/// The simulator with an echo, and its services.
+class SimulatorServices : public SimulatorContract {
+ protected:
+  void start() {
+    ASSERT_TRUE(probe.wait_until([&] {
+      return pause.is_ready() && step.is_ready() && run.is_ready() && reset.is_ready() && depth.size() > 3;
+    })) << simulator.log();
+  }
+  std_srvs::srv::Trigger_Response call(dds::ServiceClient<std_srvs::srv::Trigger>& client) {
     const auto number = client.call({});
     std::optional<std_srvs::srv::Trigger_Response> reply;
     EXPECT_TRUE(probe.wait_until([&] { return (reply = client.take_reply(*number)).has_value(); })) << simulator.log();
-    EXPECT_TRUE(reply && reply->success());
-    const std::string text = reply ? reply->message() : "";
-    const auto at = text.find("tick ");
-    return at == std::string::npos ? 0 : std::stoull(text.substr(at + 5));
-  };
-  const auto last_frame = [&] {
+    return reply.value_or(std_srvs::srv::Trigger_Response());
+  }
+  /// Stands still, and says at which tick.
+  std::uint64_t paused_at() {
+    const std::string text = call(pause).message(), begin = "paused at tick ";
+    EXPECT_EQ(text.substr(0, begin.size()), begin);
+    return text.size() > begin.size() ? std::stoull(text.substr(begin.size())) : 0;
+  }
+  std::uint64_t last_frame() const {
     return static_cast<std::uint64_t>(std::lround(depth.empty() ? 0.0 : 15.0 * stamp_of(depth.back()).seconds()));
-  };
-  const std::uint64_t paused = call(pause);
-  ASSERT_GT(paused, 3U);
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(call(step), paused);  // what it says is where it was, and that stands still
-  EXPECT_TRUE(probe.wait_until([&] { return last_frame() == paused + 3; })) << simulator.log();
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(call(pause), paused + 3);
-  call(run);
-  EXPECT_TRUE(probe.wait_until([&] { return last_frame() > paused + 20; })) << simulator.log();
+  }
+  bool wait_for_frame(std::uint64_t number) {
+    return probe.wait_until([&] { return last_frame() == number; });
+  }
+
+  TopicProbe probe;
+  const std::vector<sensor_msgs::msg::Image>& depth = probe.collect(topics::kDepth);
+  dds::ServiceClient<std_srvs::srv::Trigger>& pause = probe.client(topics::kPause);
+  dds::ServiceClient<std_srvs::srv::Trigger>& step = probe.client(topics::kStep);
+  dds::ServiceClient<std_srvs::srv::Trigger>& run = probe.client(topics::kRun);
+  dds::ServiceClient<std_srvs::srv::Trigger>& reset = probe.client(topics::kReset);
+  ChildProcess echo{kEcho};
+  ChildProcess simulator{kSimulator, with_stages("[test_echo]", {"--set", "simulator.max_real_time_factor=1"})};
+};
+
+TEST_F(SimulatorServices, PauseStepAndRun) {
+  start();
+  const std::uint64_t tick = paused_at();
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(call(step).success());
+  EXPECT_TRUE(wait_for_frame(tick + 3)) << simulator.log();
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(paused_at(), tick + 3);
+  EXPECT_TRUE(call(run).success());
+  EXPECT_TRUE(wait_for_frame(tick + 10)) << simulator.log();
+}
+
+TEST_F(SimulatorServices, AResetBeginsTheSameRunAgain) {
+  start();
+  ASSERT_TRUE(wait_for_frame(25)) << simulator.log();
   const auto first_run = images_by_stamp(depth);
-  const std::size_t before = depth.size();
-  EXPECT_EQ(call(reset), 0U);
-  ASSERT_TRUE(probe.wait_until([&] { return depth.size() > before + 15 && last_frame() > 10; })) << simulator.log();
+  paused_at();
+  EXPECT_TRUE(call(reset).success());
+  EXPECT_EQ(paused_at(), 0U) << "still paused";
+  call(step);
+  ASSERT_TRUE(wait_for_frame(1)) << simulator.log();
+  const auto second_run = depth.end() - depth.begin() - 1;
+  call(run);
+  ASSERT_TRUE(wait_for_frame(16)) << simulator.log();
   // The same start, seed and (no) commands: the same bytes.
-  const auto went_back = std::adjacent_find(depth.begin(), depth.end(),
-                                            [](const auto& a, const auto& b) { return stamp_of(b) < stamp_of(a); });
-  ASSERT_NE(went_back, depth.end());
   std::size_t compared = 0;
-  for (const auto& [stamp, bytes] : images_by_stamp({went_back + 1, depth.end()})) {
+  for (const auto& [stamp, bytes] : images_by_stamp({depth.begin() + second_run, depth.end()})) {
     const auto known = first_run.find(stamp);
     if (known == first_run.end()) continue;
     EXPECT_EQ(known->second, bytes) << "at " << stamp.seconds() << " s";
     ++compared;
   }
   EXPECT_GT(compared, 5U);
+  const std::uint64_t frames = paused_at();
+  EXPECT_EQ(simulator.stop(SIGTERM), 0) << simulator.log();
+  EXPECT_THAT(summary(), HasSubstr("frames: " + std::to_string(frames) + "\n"));
+  const auto value = [this](const std::string& key) {
+    return std::stod(summary().substr(summary().find(key) + key.size()));
+  };
+  EXPECT_GT(value("\nwall_s: "), 0.5) << "15 frames at 15 Hz";
+  EXPECT_LT(value("\nreal_time_factor: "), 1.5) << "max_real_time_factor is 1, and the first frame takes no time";
 }
 
 TEST_F(SimulatorContract, AResetThatConsumersWouldTakeForDisorderIsRefused) {
@@ -297,6 +326,24 @@ TEST_F(SimulatorContract, AResetThatConsumersWouldTakeForDisorderIsRefused) {
   EXPECT_FALSE(reply->success());
   slam.answer(slam.ticks.back());
   EXPECT_TRUE(slam.wait_for_tick(2)) << "the run goes on";
+}
+
+/// A robot whose watchdog stops it at once, and again after every command, does not get anywhere.
+TEST_F(SimulatorContract, ATourThatIsStuckEndsTheRunAndNamesTheWayPoint) {
+  ChildProcess simulator(kSimulator,
+                         with_stages("[]", {"--tour", "bundled", "--set", "robot.camera.rate_hz=0.1", "--set",
+                                            "robot.command_timeout_s=0.05", "--set", "robot.max_speed_m_s=0.01"}));
+  EXPECT_EQ(simulator.wait(Seconds(60)), 1) << simulator.log();
+  EXPECT_THAT(simulator.log(), HasSubstr("way-point 1"));
+  EXPECT_THAT(summary(), HasSubstr("way-point 1"));
+}
+
+TEST_F(SimulatorContract, GroundTruthThatCannotBeWrittenEndsTheRun) {
+  std::ofstream(folder.path() / "ground_truth") << "a file where the folder should be";
+  ChildProcess simulator(kSimulator, with_stages("[]"));
+  EXPECT_EQ(simulator.wait(Seconds(60)), 1) << simulator.log();
+  EXPECT_THAT(simulator.log(), HasSubstr("ground_truth"));
+  EXPECT_THAT(summary(), HasSubstr("ground_truth"));
 }
 
 TEST_F(SimulatorContract, BadScenesAreNamedBeforeAnythingIsPublished) {

@@ -28,7 +28,10 @@ std::vector<Cell> open_cells(const NavMap& map, double radius_m) {
 std::vector<StartPose> starts_of(const Scene& scene, const NavMap& map, double radius_m) {
   if (!scene.starts.empty()) return scene.starts;
   const auto cells = open_cells(map, radius_m);
-  if (cells.empty()) throw std::runtime_error("scene " + scene.name + ": the robot fits nowhere");
+  if (cells.empty())
+    throw std::runtime_error(
+        "scene " + scene.name +
+        ": the robot fits nowhere with 0.2 m of room; name starts, or try a smaller robot.radius_m");
   const auto most_open = std::max_element(cells.begin(), cells.end(),
                                           [&](Cell a, Cell b) { return map.distance_at(a) < map.distance_at(b); });
   return {{map.grid().center(*most_open), 0.0}};

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <fstream>
@@ -14,6 +13,7 @@
 
 #include "box_scene.hpp"
 #include "common/mapping/crc32.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -43,18 +43,17 @@ void write(const fs::path& file, const std::vector<std::uint8_t>& bytes) {
 
 class LightCache : public testing::Test {
  protected:
-  LightCache() {
-    std::string pattern = (fs::temp_directory_path() / "lapis_light_XXXXXX").string();
-    if (mkdtemp(pattern.data()) == nullptr) throw std::runtime_error("no temporary folder");
-    folder_ = pattern;
-  }
-  ~LightCache() override { fs::remove_all(folder_); }
   std::set<fs::path> files() const {
     std::set<fs::path> names;
     for (const auto& entry : fs::directory_iterator(folder_)) names.insert(entry.path());
     return names;
   }
-  fs::path folder_;
+
+ private:
+  lapis::test::TemporaryFolder temporary_;
+
+ protected:
+  const fs::path folder_ = temporary_.path();
 };
 
 TEST_F(LightCache, ReadsWhatItKept) {

@@ -7,8 +7,9 @@ namespace {
 
 using nlohmann::json;
 
-[[noreturn]] void fail(const std::string& file, const std::string& key, const std::string& what) {
-  throw std::runtime_error(file + ": '" + key + "' must be " + what + "; correct it or export the file again");
+[[noreturn]] void fail(const std::string& file, std::string_view key, const std::string& what) {
+  throw std::runtime_error(file + ": '" + std::string(key) + "' must be " + what +
+                           "; correct it or export the file again");
 }
 
 }  // namespace
@@ -26,14 +27,14 @@ json parse_json_object(std::string_view text, const std::string& file) {
   }
 }
 
-const json& member(const json& object, const std::string& key) {
+const json& member(const json& object, std::string_view key) {
   static const json kNull;
   if (!object.is_object()) return kNull;
   const auto it = object.find(key);
   return it == object.end() ? kNull : *it;
 }
 
-const json& array_member(const json& object, const std::string& key, const std::string& file) {
+const json& array_member(const json& object, std::string_view key, const std::string& file) {
   static const json kEmpty = json::array();
   const json& value = member(object, key);
   if (value.is_null()) return kEmpty;
@@ -41,7 +42,7 @@ const json& array_member(const json& object, const std::string& key, const std::
   return value;
 }
 
-std::string text_member(const json& object, const std::string& key, const std::string& file,
+std::string text_member(const json& object, std::string_view key, const std::string& file,
                         const std::string& fallback) {
   const json& value = member(object, key);
   if (value.is_null()) return fallback;
@@ -49,14 +50,14 @@ std::string text_member(const json& object, const std::string& key, const std::s
   return value.get<std::string>();
 }
 
-std::size_t index_member(const json& object, const std::string& key, const std::string& file, std::size_t fallback) {
+std::size_t index_member(const json& object, std::string_view key, const std::string& file, std::size_t fallback) {
   const json& value = member(object, key);
   if (value.is_null()) return fallback;
   if (!value.is_number_unsigned()) fail(file, key, "a whole number from 0");
   return value.get<std::size_t>();
 }
 
-void read_numbers(const json& object, const std::string& key, const std::string& file, std::span<double> values) {
+void read_numbers(const json& object, std::string_view key, const std::string& file, std::span<double> values) {
   const json& array = member(object, key);
   if (array.is_null()) return;
   if (!array.is_array() || array.size() != values.size()) fail(file, key, std::to_string(values.size()) + " numbers");

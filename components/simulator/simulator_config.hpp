@@ -61,7 +61,7 @@ void describe(Field& field, NoiseConfig& c) {
   field("color", c.color, config::anything(), "noise of the colour camera");
   field("wheels", c.wheels, config::anything(), "noise and systematic errors of wheel odometry");
   field("drift", c.drift, config::one_of({"nominal", "hard"}),
-        "how hard localisation is: texture, dropouts, blur, and wheel noise together");
+        "how hard localisation is: texture, blur, noise and dropouts of depth, and wheel noise together");
 }
 
 template <class Field>

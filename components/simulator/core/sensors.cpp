@@ -12,6 +12,7 @@ void apply_drift(DriftPreset preset, SensorConfig& config) {
   config.color.contrast *= scales.texture;
   config.color.shutter += scales.blur;
   config.depth.extra_dropout += scales.dropout;
+  config.depth.noise_multiplier *= scales.depth;
   config.wheels.scale *= scales.wheel;
 }
 

@@ -187,10 +187,12 @@ TEST(DriftPreset, NominalChangesNothingAndHardIsHarderInEveryRespect) {
   EXPECT_EQ(nominal.texture, 1.0);
   EXPECT_EQ(nominal.dropout, 0.0);
   EXPECT_EQ(nominal.blur, 0.0);
+  EXPECT_EQ(nominal.depth, 1.0);
   EXPECT_EQ(nominal.wheel, 1.0);
   EXPECT_LT(hard.texture, nominal.texture);
   EXPECT_GT(hard.dropout, nominal.dropout);
   EXPECT_GT(hard.blur, nominal.blur);
+  EXPECT_GT(hard.depth, nominal.depth);
   EXPECT_GT(hard.wheel, nominal.wheel);
 }
 

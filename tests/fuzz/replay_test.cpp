@@ -38,7 +38,7 @@ TEST(FuzzReplay, EveryFuzzerHasSeeds) {
 
 TEST(FuzzReplay, SeedsAndSpoiltCopiesDoNoHarm) {
   constexpr std::size_t kBeginnings = 16;
-  constexpr int kSpoilt = 40;
+  constexpr int kSpoilt = 300;
   std::mt19937 random(1);
   for (const auto& [name, inputs] : seeds()) {
     const Fuzzer fuzzer = fuzzers().at(name);

@@ -360,10 +360,10 @@ std::vector<int> decode_images(GltfModel& scene, int max_texture_px) {
     scene.images[i] = {};
   }
   if (!unreadable.empty()) {
-    scene.model.warnings.push_back(scene.file + ": " + std::to_string(unreadable.size()) + " textures ('" +
-                                   unreadable.front() + "' for one) are missing or no PNG or JPEG, " +
-                                   std::to_string(basis) + " of them are in the Basis format (KTX2); grey stands in; " +
-                                   "put them there, or convert them to PNG");
+    std::string what = scene.file + ": " + std::to_string(unreadable.size()) + " textures ('" + unreadable.front() +
+                       "' for one) are missing or no PNG or JPEG";
+    if (basis > 0) what += " (" + std::to_string(basis) + " of them are in the Basis format, KTX2)";
+    scene.model.warnings.push_back(what + "; grey stands in; put them there, or convert them to PNG");
   }
   return texture_of;
 }

@@ -12,8 +12,8 @@ namespace lapis::simulator {
 
 enum class LabelModel { kNone, kDefault };
 
-/// With the default 64 % of the pixels on the apartment's tour have their true class, and 0.25 m maps have an IoU of 0.70
-/// with their ideal in the 8 most frequent classes, 0.56 with 10 cm of pose error (lapis_label_noise_calibration).
+/// With the default 64 % of the pixels on the apartment's tour have their true class, and 0.25 m maps have an IoU of
+/// 0.70 with their ideal in the 8 most frequent classes, 0.56 with 10 cm of pose error (lapis_label_noise_calibration).
 struct LabelNoiseConfig {
   LabelModel model = LabelModel::kDefault;
   double accuracy = 0.75;          ///< of an ordinary class close by, 0 to 1

@@ -80,11 +80,11 @@ float volume(const Mesh& mesh) {
   return sum;
 }
 
-const Material& material_named(const Mesh& mesh, const std::string& name) {
+const Material& material_named(const Mesh& mesh, std::string_view name) {
   for (const auto& material : mesh.materials) {
     if (material.name == name) return material;
   }
-  throw std::logic_error("no material " + name);
+  throw std::logic_error("no material " + std::string(name));
 }
 
 TEST(Obj, CubeKeepsAreaVolumeAndLooks) {

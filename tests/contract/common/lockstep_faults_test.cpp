@@ -33,18 +33,28 @@ TEST(LockstepSilence, FrameAndTickAreRepeatedAndReceiversDropWhatTheyHad) {
   expect_complete(run, 3);
 }
 
-TEST(LockstepSilence, AbortNamesTheSilentOne) {
-  ChildProcess echo(kEcho);
-  ChildProcess follower(kFollower);
-  ASSERT_TRUE(wait_until_ready(echo) && wait_until_ready(follower)) << echo.log() << follower.log();
-  Driven run(two_stages("abort", kShortPatience_s, 0.5));
-  ASSERT_TRUE(run.wait_for(State::kIdle));
-  ASSERT_TRUE(run.step());
+/// A run of two stages whose first tick all have answered.
+class LockstepLoss : public ::testing::Test {
+ protected:
+  void begin(const std::string& policy) {
+    ASSERT_TRUE(wait_until_ready(echo) && wait_until_ready(follower)) << echo.log() << follower.log();
+    run = std::make_unique<Driven>(two_stages(policy, kShortPatience_s, 0.5));
+    ASSERT_TRUE(run->wait_for(State::kIdle));
+    ASSERT_TRUE(run->step());
+  }
+
+  ChildProcess echo{kEcho};
+  ChildProcess follower{kFollower};
+  std::unique_ptr<Driven> run;
+};
+
+TEST_F(LockstepLoss, AbortNamesTheSilentOne) {
+  ASSERT_NO_FATAL_FAILURE(begin("abort"));
   follower.stop(SIGKILL);
-  run.begin();
-  ASSERT_TRUE(run.wait_for(State::kFailed));
-  EXPECT_THAT(run.driver().failure(), HasSubstr("no answer of test_follower to tick 2"));
-  EXPECT_THAT(run.driver().failure(), Not(HasSubstr("test_echo")));
+  run->begin();
+  ASSERT_TRUE(run->wait_for(State::kFailed));
+  EXPECT_THAT(run->driver().failure(), HasSubstr("no answer of test_follower to tick 2"));
+  EXPECT_THAT(run->driver().failure(), Not(HasSubstr("test_echo")));
 }
 
 TEST(LockstepSilence, AbortNamesTheOneThatNeverCame) {
@@ -55,39 +65,29 @@ TEST(LockstepSilence, AbortNamesTheOneThatNeverCame) {
   EXPECT_THAT(run.driver().failure(), HasSubstr("lockstep.stages"));
 }
 
-TEST(LockstepSilence, DemoteGoesOnWithout) {
-  ChildProcess echo(kEcho);
-  ChildProcess follower(kFollower);
-  ASSERT_TRUE(wait_until_ready(echo) && wait_until_ready(follower)) << echo.log() << follower.log();
-  Driven run(two_stages("demote", kShortPatience_s, 0.5));
-  ASSERT_TRUE(run.wait_for(State::kIdle));
-  ASSERT_TRUE(run.step());
+TEST_F(LockstepLoss, DemoteGoesOnWithout) {
+  ASSERT_NO_FATAL_FAILURE(begin("demote"));
   follower.stop(SIGKILL);
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(run.step()) << i;
-  EXPECT_EQ(run.odometry.size(), 4u);
-  EXPECT_EQ(run.frames.size(), 1u);
-  EXPECT_EQ(run.driver().demoted(), (Demoted{{"test_follower", 2}}));
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(run->step()) << i;
+  EXPECT_EQ(run->odometry.size(), 4u);
+  EXPECT_EQ(run->frames.size(), 1u);
+  EXPECT_EQ(run->driver().demoted(), (Demoted{{"test_follower", 2}}));
 }
 
-TEST(LockstepSilence, ADemotedOneThatComesBackWorksByItself) {
-  ChildProcess echo(kEcho);
-  ChildProcess follower(kFollower);
-  ASSERT_TRUE(wait_until_ready(echo) && wait_until_ready(follower)) << echo.log() << follower.log();
-  Driven run(two_stages("demote", kShortPatience_s, 0.5));
-  ASSERT_TRUE(run.wait_for(State::kIdle));
-  ASSERT_TRUE(run.step());
+TEST_F(LockstepLoss, ADemotedOneThatComesBackWorksByItself) {
+  ASSERT_NO_FATAL_FAILURE(begin("demote"));
   follower.signal(SIGSTOP);
-  ASSERT_TRUE(run.step());
+  ASSERT_TRUE(run->step());
   follower.signal(SIGCONT);
-  EXPECT_EQ(run.driver().demoted(), (Demoted{{"test_follower", 2}}));
-  for (int i = 0; i < 3; ++i) ASSERT_TRUE(run.step()) << i;
+  EXPECT_EQ(run->driver().demoted(), (Demoted{{"test_follower", 2}}));
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(run->step()) << i;
   const auto has_followed = [&] {
-    return !run.frames.empty() &&
-           messages::from_message(run.frames.back().header().stamp()) == Driven::stamp(run.ticks);
+    return !run->frames.empty() &&
+           messages::from_message(run->frames.back().header().stamp()) == Driven::stamp(run->ticks);
   };
-  EXPECT_TRUE(run.wait_until([&] {
-    if (!has_followed()) run.step();  // more ticks than the two by which it sees that it was left behind
-    return has_followed() || run.ticks > 20;
+  EXPECT_TRUE(run->wait_until([&] {
+    if (!has_followed()) run->step();  // more ticks than the two by which it sees that it was left behind
+    return has_followed() || run->ticks > 20;
   }));
   EXPECT_TRUE(has_followed()) << follower.log();
 }

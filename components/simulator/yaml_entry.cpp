@@ -17,7 +17,8 @@ namespace {
 }  // namespace
 
 YAML::Node load_yaml(const std::filesystem::path& file) {
-  if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": not found");
+  if (!std::filesystem::exists(file)) throw std::runtime_error(file.string() + ": not found");
+  if (!std::filesystem::is_regular_file(file)) throw std::runtime_error(file.string() + ": is not a file");
   try {
     return YAML::LoadFile(file.string());
   } catch (const YAML::Exception& error) {

@@ -130,6 +130,7 @@ TEST(SceneYaml, MistakesNameFileAndLine) {
   }
   EXPECT_NE(test::error_of([] { read_scene_yaml("/nowhere/scene.yaml"); }).find("/nowhere/scene.yaml: not found"),
             std::string::npos);
+  EXPECT_NE(test::error_of([] { read_scene_yaml("/dev/null"); }).find("/dev/null: is not a file"), std::string::npos);
 }
 
 TEST(SceneYaml, PolygonsHaveThreeToTwoHundredCorners) {

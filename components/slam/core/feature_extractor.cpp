@@ -11,9 +11,8 @@
 namespace lapis::slam {
 namespace {
 
-// ORB's descriptor reads a rotated 31 px patch; one pixel more for rounding.
 constexpr int kPatchRadius = 15;
-constexpr int kBorder = kPatchRadius + 4;
+constexpr int kBorder = kFeatureBorder_px;
 
 struct Level {
   cv::Mat image;

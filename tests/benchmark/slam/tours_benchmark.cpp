@@ -1,0 +1,173 @@
+// How good slam is on tours of simulated scenes, without DDS: frames lost, errors of the trajectory, honesty of the
+// information, time. A row per run, failures included.
+//   lapis_slam_tours --scenes apartment --seeds 1,2,3 --set slam.bundle.window=8 --set simulator.noise.drift=hard
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <exception>
+#include <map>
+
+#include <CLI/CLI.hpp>
+#include <opencv2/core/utility.hpp>
+
+#include "common/config/yaml.hpp"
+#include "evaluator/core/ate.hpp"
+#include "simulator/set_up.hpp"
+#include "slam/core/rgbd_slam.hpp"
+#include "slam/slam_config.hpp"
+#include "tests/benchmark/slam/tour_recording.hpp"
+
+namespace lapis::slam::benchmark {
+namespace {
+
+struct Options {
+  std::vector<std::string> scenes{"apartment"};
+  std::vector<int> seeds{1, 2, 3, 4, 5};
+  std::vector<std::string> overrides;
+  std::string folder;
+};
+
+struct Run {
+  int frames = 0, tracked = 0;
+  std::vector<double> milliseconds;              // CPU time of each frame
+  std::vector<double> online_errors_m;           // of every frame as told at its time
+  std::map<std::int64_t, geometry::Pose> truth;  // T_map_camera by stamp
+  TrackingResult last;
+  geometry::Pose T_last_true = geometry::Pose::Identity();
+  PoseGraphSnapshot graph;
+  std::size_t landmarks = 0;
+};
+
+double cpu_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
+}
+
+double rms(const std::vector<double>& values) {
+  double squares = 0.0;
+  for (const double v : values) squares += v * v;
+  return values.empty() ? NAN : std::sqrt(squares / static_cast<double>(values.size()));
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return NAN;
+  std::sort(values.begin(), values.end());
+  return values[static_cast<std::size_t>(share * static_cast<double>(values.size() - 1))];
+}
+
+double mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double v : values) sum += v;
+  return values.empty() ? NAN : sum / static_cast<double>(values.size());
+}
+
+// Squared error in units of its information, per degree of freedom: 1 on average when the information is honest.
+double nees(const geometry::Pose& estimate, const geometry::Pose& truth, const geometry::Matrix6d& information) {
+  const geometry::Vector6d error = geometry::se3_log(estimate.inverse() * truth);
+  return error.dot(information * error) / 6.0;
+}
+
+Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, const std::string& folder) {
+  Run run;
+  RgbdSlam slam(config, geometry::T_base_camera(camera_mount(scene.robot.camera)));
+  play_tour(scene, folder, [&](const TourFrame& tour_frame) {
+    const double before_ms = cpu_ms();
+    const TrackingResult result = slam.process(tour_frame.frame);
+    run.milliseconds.push_back(cpu_ms() - before_ms);
+    ++run.frames;
+    run.truth[tour_frame.frame.stamp.nanoseconds] = tour_frame.T_map_camera;
+    if (result.state != TrackingState::kTracking) return;
+    ++run.tracked;
+    const geometry::Pose T_map_camera = result.T_map_keyframe * result.T_keyframe_camera;
+    run.online_errors_m.push_back((T_map_camera.translation() - tour_frame.T_map_camera.translation()).norm());
+    run.last = result;
+    run.T_last_true = tour_frame.T_map_camera;
+  });
+  run.graph = slam.pose_graph();
+  run.landmarks = slam.landmark_count();
+  return run;
+}
+
+void print_header() {
+  std::printf("%-15s %4s %11s %7s | %6s %6s %6s %6s | %6s %6s %6s | %5s %5s %6s | %5s %5s %6s\n", "scene", "seed",
+              "tracked", "ms/frm", "online", "kf raw", "kf se3", "worst", "odo", "covis", "end", "edges", "loops",
+              "wheel", "kfs", "p95", "max");
+}
+
+void print_row(const std::string& scene, int seed, const Run& run) {
+  std::vector<double> keyframe_errors_m;
+  std::vector<Eigen::Vector3d> estimated, actual;
+  for (const auto& node : run.graph.nodes) {
+    estimated.push_back(node.T_map_camera.translation());
+    actual.push_back(run.truth.at(node.stamp.nanoseconds).translation());
+    keyframe_errors_m.push_back((estimated.back() - actual.back()).norm());
+  }
+  std::vector<double> aligned_m;
+  if (!estimated.empty()) {
+    const geometry::Pose T = evaluator::align_points(actual, estimated);
+    for (std::size_t i = 0; i < actual.size(); ++i) aligned_m.push_back((actual[i] - T * estimated[i]).norm());
+  }
+  std::map<EdgeType, std::vector<double>> edges;
+  std::map<std::uint64_t, geometry::Pose> truth;
+  for (const auto& node : run.graph.nodes) truth[node.id] = run.truth.at(node.stamp.nanoseconds);
+  for (const auto& edge : run.graph.edges) {
+    edges[edge.type].push_back(nees(edge.T_from_to, truth[edge.from].inverse() * truth[edge.to], edge.information));
+  }
+  const double end =
+      nees(run.last.T_map_keyframe * run.last.T_keyframe_camera, run.T_last_true, run.last.map_covariance.inverse());
+  std::printf(
+      "%-15s %4d %5d/%5d %7.1f | %6.1f %6.1f %6.1f %6.1f | %6.2f %6.2f %6.2f | %5zu %5zu %6zu | %5zu %5.1f %6.1f\n",
+      scene.c_str(), seed, run.tracked, run.frames, quantile(run.milliseconds, 0.5), 100.0 * rms(run.online_errors_m),
+      100.0 * rms(keyframe_errors_m), 100.0 * rms(aligned_m), 100.0 * quantile(keyframe_errors_m, 1.0),
+      mean(edges[EdgeType::kOdometry]), mean(edges[EdgeType::kCovisibility]), end, run.graph.edges.size(),
+      edges[EdgeType::kLoopClosure].size(), edges[EdgeType::kWheelOdometry].size(), run.graph.nodes.size(),
+      quantile(run.milliseconds, 0.95), quantile(run.milliseconds, 1.0));
+  std::fflush(stdout);
+}
+
+int run(const Options& options) {
+  print_header();
+  for (const std::string& scene : options.scenes) {
+    for (const int seed : options.seeds) {
+      simulator::SimulatorConfig simulated;
+      SlamComponentConfig slam;
+      config::Schema schema;
+      schema("simulator", simulated);
+      schema("robot", simulated.robot);
+      schema("slam", slam);
+      simulated.scene = scene;
+      simulated.seed = seed;
+      simulated.tour = "bundled";
+      for (const std::string& assignment : options.overrides) config::apply_override(schema, assignment);
+      config::check(schema);
+      print_row(scene, seed, play(simulated, slam.method, options.folder));
+    }
+  }
+  std::printf(
+      "errors in cm (position, map frame, no alignment unless se3); odo, covis, end: NEES per degree of freedom\n");
+  return 0;
+}
+
+}  // namespace
+}  // namespace lapis::slam::benchmark
+
+int main(int argc, char** argv) {
+  using lapis::slam::benchmark::Options;
+  CLI::App app("Tours of simulated scenes through slam, without DDS: a table of errors, honesty and time.");
+  Options options;
+  app.add_option("--scenes", options.scenes, "bundled names or files")->delimiter(',');
+  app.add_option("--seeds", options.seeds, "a run each")->delimiter(',');
+  app.add_option("--set", options.overrides, "slam.KEY=VALUE, simulator.KEY=VALUE or robot.KEY=VALUE");
+  app.add_option("--recordings", options.folder,
+                 "keep the frames of tours here, 0.7 MB each, and read them the next time instead of rendering");
+  CLI11_PARSE(app, argc, argv);
+  cv::setNumThreads(1);
+  try {
+    return lapis::slam::benchmark::run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

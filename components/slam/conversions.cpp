@@ -49,7 +49,7 @@ lapis_msgs::msg::TrackedFrame to_tracked_frame(const TrackingResult& result, con
   message.state(static_cast<std::uint8_t>(result.state));
   message.reason(result.reason);
   message.graph_version(result.graph_version);
-  if (result.state != TrackingState::kTracking) return message;
+  if (!has_pose(result)) return message;
   message.is_keyframe(result.is_keyframe);
   message.keyframe_id(result.keyframe_id);
   message.keyframe_pose(messages::to_message(result.T_map_keyframe));

@@ -32,6 +32,7 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "slam.output_dir");
   color_.on_restart([this] { end_map(); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
+  context.subscribe(topics::kWheelOdometry, [this](const auto& m) { add_odometry(m); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
 
@@ -90,7 +91,7 @@ bool SlamComponent::prepare(const Image& color) {
     }
   }
   frame_.session = session_;
-  slam_ = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera);
+  slam_ = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, frame_.T_base_camera);
   graph_version_ = 0;
   return true;
 }
@@ -105,6 +106,22 @@ void SlamComponent::track(const Image& color, const Image& depth, const Info& in
   publish(result);
 }
 
+void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
+  if (slam_ == nullptr) return;  // motions are of use between frames only
+  const auto T_odom_base = messages::from_message(message.pose().pose());
+  std::string problem;
+  if (message.child_frame_id() != ids_.base) {
+    problem = "its child frame is '" + message.child_frame_id() + "', not '" + ids_.base + "'";
+  } else if (!T_odom_base) {
+    problem = T_odom_base.reason;
+  } else if (!slam_->add_odometry(messages::from_message(message.header().stamp()), *T_odom_base)) {
+    problem = "its stamp is not later than the one before";
+  }
+  if (problem.empty()) return;
+  context_.status().count("odometry dropped: " + problem);
+  if (context_.rate_limit().pass("odometry")) spdlog::warn("odometry dropped: {}", problem);
+}
+
 /// A frame that cannot be used is a frame without a pose, and those who wait for its pose are told so.
 void SlamComponent::drop(time::Time stamp, const std::string& reason) {
   ++frames_total_;
@@ -113,7 +130,7 @@ void SlamComponent::drop(time::Time stamp, const std::string& reason) {
   if (context_.rate_limit().pass(reason)) spdlog::warn("frame dropped: {}", reason);
   if (slam_ == nullptr) return;  // no session yet to which it could belong
   frame_.stamp = stamp;
-  publish(slam_->skip(reason));
+  publish(slam_->skip(stamp, reason));
 }
 
 void SlamComponent::end_map() {
@@ -127,7 +144,7 @@ void SlamComponent::end_map() {
 
 void SlamComponent::publish(const TrackingResult& result) {
   tracked_frame_.publish(to_tracked_frame(result, frame_, ids_));
-  if (result.state == TrackingState::kTracking) publish_odometry(result);
+  if (has_pose(result)) publish_odometry(result);
   publish_status(result);
 }
 

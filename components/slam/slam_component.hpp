@@ -30,6 +30,7 @@ class SlamComponent {
   bool next_frame(const runtime::Cycle& cycle);
   bool prepare(const Image& color);
   void track(const Image& color, const Image& depth, const Info& info, time::Time stamp);
+  void add_odometry(const nav_msgs::msg::Odometry& message);
   void drop(time::Time stamp, const std::string& reason);
   void end_map();
   void publish(const TrackingResult& result);

@@ -64,6 +64,8 @@ void describe(Field& field, TrackerConfig& c) {
   field("ransac_iterations", c.ransac_iterations, config::in_range(10, 10000), "rounds of PnP with RANSAC");
   field("ransac_error_px", c.ransac_error_px, config::in_range(0.5, 20), "PnP inlier threshold");
   field("refine_iterations", c.refine_iterations, config::in_range(1, 50), "Levenberg-Marquardt steps per round");
+  field("max_blind_frames", c.max_blind_frames, config::in_range(1, 1000),
+        "frames in a row with enough features but no pose, before the map goes on where odometry says");
   field("max_prediction_s", c.max_prediction_s, config::in_range(0.01, 5), "longest gap that the motion model bridges");
 }
 
@@ -95,6 +97,18 @@ void describe(Field& field, PoseGraphConfig& c) {
 }
 
 template <class Field>
+void describe(Field& field, OdometryConfig& c) {
+  field("distance_sigma", c.distance_sigma, config::in_range(0, 1), "of wheel odometry along the way, after 1 m [m]");
+  field("turn_sigma", c.turn_sigma, config::in_range(0, 1), "of its heading, after a turn of 1 rad [rad]");
+  field("turn_sigma_per_m", c.turn_sigma_per_m, config::in_range(0, 1), "of its heading, after 1 m [rad]");
+  field("scale_sigma", c.scale_sigma, config::in_range(0, 0.5), "share of way and turn by which the wheels always err");
+  field("vertical_sigma", c.vertical_sigma, config::in_range(0, 1), "how far the floor rises or sinks in 1 m [m]");
+  field("tilt_sigma", c.tilt_sigma, config::in_range(0, 1), "change of roll and pitch in 1 m [rad]");
+  field("least_sigma", c.least_sigma, config::in_range(1e-6, 0.1), "of every motion [m], [rad]");
+  field("max_gap_s", c.max_gap_s, config::in_range(0.01, 5), "between readings that belong together [s]");
+}
+
+template <class Field>
 void describe(Field& field, SlamComponentConfig& c) {
   field("features", c.method.features);
   field("noise", c.method.noise);
@@ -104,6 +118,7 @@ void describe(Field& field, SlamComponentConfig& c) {
   field("keyframe", c.method.keyframe);
   field("bundle", c.method.bundle);
   field("pose_graph", c.method.pose_graph);
+  field("odometry", c.method.odometry);
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
         "between colour, depth and camera info of one frame [s]");
   field("graph_period_s", c.graph_period_s, config::in_range(0.0, 60.0),

@@ -44,6 +44,7 @@ struct TrackerConfig {
   int ransac_iterations = 200;    ///< PnP [10, 10000]
   double ransac_error_px = 4.0;   ///< PnP inlier threshold [0.5, 20]
   int refine_iterations = 4;      ///< Levenberg-Marquardt steps per round [1, 50]
+  int max_blind_frames = 8;       ///< in a row with enough features, before the map goes on by odometry [1, 1000]
   double max_prediction_s = 0.5;  ///< longest gap that the motion model bridges [0.01, 5]
 };
 
@@ -70,6 +71,20 @@ struct PoseGraphConfig {
   double max_information = 1e8;    ///< [1/m^2, 1/rad^2] [1, 1e12]
 };
 
+/// Wheel odometry. Standard deviations of a random walk are those after the first metre or radian: they grow with its
+/// square root. Right for a robot with wheels on floors without steps; a robot that climbs wants a larger
+/// vertical_sigma and tilt_sigma.
+struct OdometryConfig {
+  double distance_sigma = 0.02;    ///< along the way [m] after 1 m [0, 1]
+  double turn_sigma = 0.02;        ///< of the heading [rad] after a turn of 1 rad [0, 1]
+  double turn_sigma_per_m = 0.01;  ///< of the heading [rad] after 1 m [0, 1]
+  double scale_sigma = 0.01;       ///< share of way and turn by which the wheels always err [0, 0.5]
+  double vertical_sigma = 0.001;   ///< [m] after 1 m [0, 1]
+  double tilt_sigma = 0.0005;      ///< of roll and pitch [rad] after 1 m [0, 1]
+  double least_sigma = 1e-4;       ///< of every motion [m], [rad] [1e-6, 0.1]
+  double max_gap_s = 0.2;          ///< between readings that belong together [0.01, 5]
+};
+
 struct SlamConfig {
   FeatureConfig features;
   NoiseConfig noise;
@@ -79,6 +94,7 @@ struct SlamConfig {
   KeyframeConfig keyframe;
   BundleConfig bundle;
   PoseGraphConfig pose_graph;
+  OdometryConfig odometry;
 };
 
 }  // namespace lapis::slam

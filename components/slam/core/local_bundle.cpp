@@ -65,7 +65,7 @@ void add_observations(const SlamConfig& config, const Map& map, LocalMap& local)
   }
 }
 
-LocalMap cut_out(const SlamConfig& config, const std::vector<SurfaceLink>& links, const Map& map) {
+LocalMap cut_out(const SlamConfig& config, const std::vector<KeyframeLink>& links, const Map& map) {
   LocalMap local;
   const KeyframeId newest = map.keyframes().back().id;
   std::vector<KeyframeId> window = map.covisible(newest, static_cast<std::size_t>(config.bundle.window - 1));
@@ -78,7 +78,7 @@ LocalMap cut_out(const SlamConfig& config, const std::vector<SurfaceLink>& links
     local.problem.cameras[local.cameras.at(oldest)].is_fixed = true;
   }
   add_observations(config, map, local);
-  for (const SurfaceLink& link : links) {
+  for (const KeyframeLink& link : links) {
     const auto from = local.cameras.find(link.from);
     const auto to = local.cameras.find(link.to);
     if (from == local.cameras.end() || to == local.cameras.end()) continue;
@@ -101,7 +101,7 @@ void remove_outliers(const SlamConfig& config, const LocalMap& local, Map& map) 
 
 }  // namespace
 
-bool adjust_local_map(const SlamConfig& config, const std::vector<SurfaceLink>& links, Map& map) {
+bool adjust_local_map(const SlamConfig& config, const std::vector<KeyframeLink>& links, Map& map) {
   if (map.keyframes().size() < 2) return false;
   LocalMap local = cut_out(config, links, map);
   if (local.observations.empty() || !adjust_bundle(config.bundle, config.noise, local.problem).is_usable) return false;

@@ -8,8 +8,8 @@
 
 namespace lapis::slam {
 
-/// Relative pose of two key-frames as their surfaces give it.
-struct SurfaceLink {
+/// Relative pose of two key-frames as something else than features gives it: surfaces, wheels.
+struct KeyframeLink {
   KeyframeId from = 0;
   KeyframeId to = 0;
   geometry::Pose T_from_to = geometry::Pose::Identity();
@@ -19,6 +19,6 @@ struct SurfaceLink {
 /// Adjusts the newest key-frame, its covisible ones and their landmarks; key-frames outside the window that see the
 /// same landmarks are fixed, and the oldest of the window when there are none. Observations that fit badly afterwards
 /// are removed. False when nothing was changed.
-bool adjust_local_map(const SlamConfig& config, const std::vector<SurfaceLink>& links, Map& map);
+bool adjust_local_map(const SlamConfig& config, const std::vector<KeyframeLink>& links, Map& map);
 
 }  // namespace lapis::slam

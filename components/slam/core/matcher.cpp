@@ -45,9 +45,11 @@ bool depth_agrees(const Feature& feature, double predicted_m) {
 
 // Features of a level keep away from the image's edge. A landmark that projects so near to it that only a feature
 // further inside could show it would pull the pose: such pairs are left out.
-bool can_show(const FeatureConfig& config, const geometry::PinholeCamera& camera, const Eigen::Vector2d& pixel, int octave) {
+bool can_show(const FeatureConfig& config, const geometry::PinholeCamera& camera, const Eigen::Vector2d& pixel,
+              int octave) {
   const double margin = (kFeatureBorder_px + 3.0) * std::pow(config.scale_factor, octave);
-  return pixel.x() >= margin && pixel.y() >= margin && pixel.x() <= camera.width - 1 - margin && pixel.y() <= camera.height - 1 - margin;
+  return pixel.x() >= margin && pixel.y() >= margin && pixel.x() <= camera.width - 1 - margin &&
+         pixel.y() <= camera.height - 1 - margin;
 }
 
 std::optional<Candidate> most_similar(const SlamConfig& config, const Landmark& landmark, const Frame& frame,

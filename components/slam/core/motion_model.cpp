@@ -2,24 +2,54 @@
 
 namespace lapis::slam {
 
-void MotionModel::update(const Map& map, time::Time stamp, KeyframeId reference,
-                         const geometry::Pose& T_reference_camera) {
-  Last next{stamp, reference, T_reference_camera, geometry::Vector6d::Zero()};
+using geometry::Matrix6d;
+using geometry::Pose;
+
+void MotionModel::update(const Map& map, time::Time stamp, const RelativeCamera& camera) {
+  Last next{stamp, camera, geometry::Vector6d::Zero()};
   const double elapsed_s = last_ ? (stamp - last_->stamp).seconds() : 0.0;
   if (elapsed_s > 0.0 && elapsed_s <= max_gap_s_) {
-    const geometry::Pose T_map_last = map.keyframe(last_->reference).T_map_camera * last_->T_reference_camera;
-    const geometry::Pose T_map_camera = map.keyframe(reference).T_map_camera * T_reference_camera;
+    const Pose T_map_last = map.keyframe(last_->camera.reference).T_map_camera * last_->camera.T_reference_camera;
+    const Pose T_map_camera = map.keyframe(camera.reference).T_map_camera * camera.T_reference_camera;
     next.velocity = geometry::se3_log(T_map_last.inverse() * T_map_camera) / elapsed_s;
   }
   last_ = next;
 }
 
-std::optional<geometry::Pose> MotionModel::predict(const Map& map, time::Time stamp) const {
+std::optional<Pose> MotionModel::predict(const Map& map, time::Time stamp) const {
+  if (const auto reckoned = dead_reckon(stamp)) {
+    return map.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera;
+  }
   if (!last_) return std::nullopt;
   const double elapsed_s = (stamp - last_->stamp).seconds();
   if (elapsed_s < 0.0 || elapsed_s > max_gap_s_) return std::nullopt;
-  return map.keyframe(last_->reference).T_map_camera * last_->T_reference_camera *
+  return map.keyframe(last_->camera.reference).T_map_camera * last_->camera.T_reference_camera *
          geometry::se3_exp(last_->velocity * elapsed_s);
+}
+
+std::optional<RelativeCamera> MotionModel::dead_reckon(time::Time stamp) const {
+  if (!last_) return std::nullopt;
+  const auto motion = odometry_between(last_->stamp, stamp);
+  if (!motion) return std::nullopt;
+  const auto& [reference, T_reference_camera, covariance] = last_->camera;
+  return RelativeCamera{reference, T_reference_camera * motion->T_from_to,
+                        compound_covariance(covariance, motion->T_from_to, motion->covariance)};
+}
+
+std::optional<OdometryMotion> MotionModel::odometry_between(time::Time from, time::Time to) const {
+  auto motion = odometry_.between(from, to);
+  if (!motion) return std::nullopt;
+  const Pose T_camera_base = T_base_camera_.inverse();
+  motion->T_from_to = T_camera_base * motion->T_from_to * T_base_camera_;
+  const Matrix6d move = geometry::adjoint(T_camera_base);
+  motion->covariance = move * motion->covariance * move.transpose();
+  return motion;
+}
+
+Matrix6d compound_covariance(const Matrix6d& covariance_a, const Pose& B, const Matrix6d& covariance_b) {
+  // A exp(a) B exp(b) = A B exp(Ad(B^-1) a) exp(b)
+  const Matrix6d move = geometry::adjoint(B.inverse());
+  return move * covariance_a * move.transpose() + covariance_b;
 }
 
 }  // namespace lapis::slam

@@ -5,27 +5,52 @@
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
 #include "slam/core/map.hpp"
+#include "slam/core/odometry_track.hpp"
 
 namespace lapis::slam {
 
-/// Constant velocity. Remembers the last pose relative to a key-frame, so that it follows when key-frames move.
+/// Where a camera is relative to a key-frame, and how well that is known (right perturbation).
+struct RelativeCamera {
+  KeyframeId reference = 0;
+  geometry::Pose T_reference_camera = geometry::Pose::Identity();
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+};
+
+/// Guesses the camera's pose from the last one that was tracked: by wheel odometry where there is any, else by constant
+/// velocity. Remembers poses relative to a key-frame, so that they follow when key-frames move.
 class MotionModel {
  public:
-  explicit MotionModel(double max_gap_s) : max_gap_s_(max_gap_s) {}
+  /// `T_base_camera`: pose of the camera on the robot, for odometry.
+  MotionModel(double max_gap_s, const OdometryConfig& odometry, const geometry::Pose& T_base_camera)
+      : max_gap_s_(max_gap_s), odometry_(odometry), T_base_camera_(T_base_camera) {}
 
-  void update(const Map& map, time::Time stamp, KeyframeId reference, const geometry::Pose& T_reference_camera);
-  /// T_map_camera at a stamp; none before the first update and when the last one is too long ago or in the future.
+  /// See OdometryTrack::add.
+  bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base) { return odometry_.add(stamp, T_odom_base); }
+  /// The pose of a frame was found.
+  void update(const Map& map, time::Time stamp, const RelativeCamera& camera);
+  /// T_map_camera at a stamp; none before the first update and when neither odometry nor velocity reaches so far.
   std::optional<geometry::Pose> predict(const Map& map, time::Time stamp) const;
+  /// Where odometry alone says the camera is; the covariance grows with the way since the last update.
+  std::optional<RelativeCamera> dead_reckon(time::Time stamp) const;
+  /// Motion of the camera between two stamps by odometry, with the covariance in the tangent of the later pose.
+  std::optional<OdometryMotion> odometry_between(time::Time from, time::Time to) const;
+  /// Odometry before `stamp` will not be asked for.
+  void forget_before(time::Time stamp) { odometry_.forget_before(stamp); }
 
  private:
   struct Last {
     time::Time stamp;
-    KeyframeId reference = 0;
-    geometry::Pose T_reference_camera = geometry::Pose::Identity();
+    RelativeCamera camera;
     geometry::Vector6d velocity = geometry::Vector6d::Zero();  // [m/s, rad/s], camera frame
   };
   double max_gap_s_;
+  OdometryTrack odometry_;
+  geometry::Pose T_base_camera_;
   std::optional<Last> last_;
 };
+
+/// Covariance of A * B for independent right perturbations.
+geometry::Matrix6d compound_covariance(const geometry::Matrix6d& covariance_a, const geometry::Pose& B,
+                                       const geometry::Matrix6d& covariance_b);
 
 }  // namespace lapis::slam

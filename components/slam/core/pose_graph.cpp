@@ -5,7 +5,11 @@
 namespace lapis::slam {
 
 geometry::Matrix6d edge_information(const PoseGraphConfig& config, const geometry::Matrix6d& information) {
-  const geometry::Matrix6d symmetric = 0.5 * config.information_share * (information + information.transpose());
+  return bounded_information(config, config.information_share * information);
+}
+
+geometry::Matrix6d bounded_information(const PoseGraphConfig& config, const geometry::Matrix6d& information) {
+  const geometry::Matrix6d symmetric = 0.5 * (information + information.transpose());
   const Eigen::SelfAdjointEigenSolver<geometry::Matrix6d> solver(symmetric);
   const geometry::Vector6d values =
       solver.eigenvalues().cwiseMax(config.min_information).cwiseMin(config.max_information);

@@ -34,7 +34,9 @@ struct PoseGraphSnapshot {
   std::vector<PoseGraphEdge> edges;
 };
 
-/// Information of an edge from that of an alignment: times the configured share, eigenvalues within the bounds.
+/// Information of an edge from that of an alignment: times the configured share, and bounded.
 geometry::Matrix6d edge_information(const PoseGraphConfig& config, const geometry::Matrix6d& information);
+/// The same matrix with its eigenvalues within the configured bounds, so that no edge is blind or too sure.
+geometry::Matrix6d bounded_information(const PoseGraphConfig& config, const geometry::Matrix6d& information);
 
 }  // namespace lapis::slam

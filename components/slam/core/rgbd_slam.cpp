@@ -36,32 +36,29 @@ std::optional<std::string> find_fault(const RgbdFrame& frame, const NoiseConfig&
   return std::nullopt;
 }
 
-// Covariance of A * B for independent right perturbations: A exp(a) B exp(b) = A B exp(Ad(B^-1) a) exp(b).
-Matrix6d compound(const Matrix6d& covariance_a, const Pose& B, const Matrix6d& covariance_b) {
-  const Matrix6d move = geometry::adjoint(B.inverse());
-  return move * covariance_a * move.transpose() + covariance_b;
-}
-
 }  // namespace
 
 class RgbdSlam::Implementation {
  public:
-  Implementation(const SlamConfig& config, const Pose& T_map_first_camera)
+  Implementation(const SlamConfig& config, const Pose& T_map_first_camera, const Pose& T_base_camera)
       : config_(config), T_map_first_camera_(T_map_first_camera), extractor_(config.features), tracker_(config),
-        motion_(config.tracker.max_prediction_s) {}
+        motion_(config.tracker.max_prediction_s, config.odometry, T_base_camera) {}
+
+  bool add_odometry(time::Time stamp, const Pose& T_odom_base) { return motion_.add_odometry(stamp, T_odom_base); }
 
   TrackingResult process(const RgbdFrame& input) {
-    if (const auto fault = find_fault(input, config_.noise)) return without_pose(*fault);
+    if (const auto fault = find_fault(input, config_.noise)) return without_vision(input.stamp, *fault);
     const Frame frame = make_frame(input, extractor_, config_.noise);
     if (map_.empty()) return start_map(frame);
 
     TrackOutcome outcome = tracker_.track(map_, frame, motion_.predict(map_, input.stamp));
-    if (!outcome.is_tracked) return without_pose(outcome.reason, &frame);
+    if (!outcome.is_tracked) return continue_blind(frame, outcome.reason);
+    blind_frames_ = 0;
     ++frames_since_keyframe_;
     follow_reference(outcome);
     TrackingResult result = with_pose(frame, outcome);
-    if (needs_keyframe(config_.keyframe, evidence(outcome))) insert_keyframe(frame, outcome, result);
-    motion_.update(map_, input.stamp, result.keyframe_id, result.T_keyframe_camera);
+    if (needs_keyframe(config_.keyframe, evidence(outcome))) insert_keyframe(frame, &outcome, result);
+    motion_.update(map_, input.stamp, {result.keyframe_id, result.T_keyframe_camera, result.covariance});
     return result;
   }
 
@@ -76,24 +73,51 @@ class RgbdSlam::Implementation {
   std::uint64_t version() const { return version_; }
   std::size_t keyframe_count() const { return map_.keyframes().size(); }
   std::size_t landmark_count() const { return map_.landmark_count(); }
-  TrackingResult without_pose(const std::string& reason, const Frame* frame = nullptr) const {
+  TrackingResult without_vision(time::Time stamp, const std::string& reason, const Frame* frame = nullptr) const {
     TrackingResult result;
     result.state = map_.empty() ? TrackingState::kInitializing : TrackingState::kLost;
     result.reason = reason;
     result.graph_version = version_;
     if (frame != nullptr) result.features = static_cast<std::uint32_t>(frame->features.size());
+    const auto reckoned = motion_.dead_reckon(stamp);
+    if (!reckoned) return result;
+    result.state = TrackingState::kDeadReckoning;
+    set_pose(*reckoned, result);
     return result;
+  }
+
+ private:
+  // The view has changed altogether, or there is nothing to see. When there is, and the wheels tell where, the map goes
+  // on from there.
+  TrackingResult continue_blind(const Frame& frame, const std::string& reason) {
+    TrackingResult result = without_vision(frame.input->stamp, reason, &frame);
+    const bool could_start = frame.features_with_depth >= config_.tracker.min_matches;
+    blind_frames_ = could_start ? blind_frames_ + 1 : 0;
+    if (result.state != TrackingState::kDeadReckoning || blind_frames_ < config_.tracker.max_blind_frames)
+      return result;
+    result.state = TrackingState::kTracking;
+    result.reason.clear();
+    insert_keyframe(frame, nullptr, result);
+    motion_.update(map_, frame.input->stamp, {result.keyframe_id, result.T_keyframe_camera, result.covariance});
+    return result;
+  }
+
+  void set_pose(const RelativeCamera& camera, TrackingResult& result) const {
+    result.keyframe_id = camera.reference;
+    result.T_map_keyframe = map_.keyframe(camera.reference).T_map_camera;
+    result.T_keyframe_camera = camera.T_reference_camera;
+    result.covariance = camera.covariance;
+    result.map_covariance =
+        compound_covariance(covariances_[camera.reference], camera.T_reference_camera, camera.covariance);
   }
 
   TrackingResult with_pose(const Frame& frame, const TrackOutcome& outcome) const {
     TrackingResult result;
     result.state = TrackingState::kTracking;
-    result.keyframe_id = outcome.reference;
     result.graph_version = version_;
-    result.T_map_keyframe = map_.keyframe(outcome.reference).T_map_camera;
-    result.T_keyframe_camera = outcome.alignment.T_reference_camera;
-    result.covariance = edge_information(config_.pose_graph, outcome.alignment.information).inverse();
-    result.map_covariance = compound(covariances_[outcome.reference], result.T_keyframe_camera, result.covariance);
+    set_pose({outcome.reference, outcome.alignment.T_reference_camera,
+              edge_information(config_.pose_graph, outcome.alignment.information).inverse()},
+             result);
     result.features = static_cast<std::uint32_t>(frame.features.size());
     result.matches = static_cast<std::uint32_t>(outcome.matches);
     result.inliers = static_cast<std::uint32_t>(outcome.alignment.inliers);
@@ -103,15 +127,16 @@ class RgbdSlam::Implementation {
 
   TrackingResult start_map(const Frame& frame) {
     if (frame.features_with_depth < config_.tracker.min_matches) {
-      return without_pose(std::to_string(frame.features_with_depth) + " features with depth, " +
-                              std::to_string(config_.tracker.min_matches) + " needed",
-                          &frame);
+      return without_vision(frame.input->stamp,
+                            std::to_string(frame.features_with_depth) + " features with depth, " +
+                                std::to_string(config_.tracker.min_matches) + " needed",
+                            &frame);
     }
     const KeyframeId id = add_keyframe(frame, T_map_first_camera_);
     covariances_.emplace_back(Matrix6d::Zero());
     add_landmarks(id);
     tracker_.set_reference(map_, id);
-    motion_.update(map_, frame.input->stamp, id, Pose::Identity());
+    motion_.update(map_, frame.input->stamp, {id, Pose::Identity(), Matrix6d::Zero()});
     TrackingResult result;
     result.state = TrackingState::kTracking;
     result.features = static_cast<std::uint32_t>(frame.features.size());
@@ -143,19 +168,37 @@ class RgbdSlam::Implementation {
     return evidence;
   }
 
-  // Landmarks, edge, local bundle adjustment; afterwards the frame is its own reference.
-  void insert_keyframe(const Frame& frame, const TrackOutcome& outcome, TrackingResult& result) {
+  // Landmarks, edges, local bundle adjustment; afterwards the frame is its own reference. `outcome`: how it was
+  // tracked, null when only odometry knows its pose.
+  void insert_keyframe(const Frame& frame, const TrackOutcome* outcome, TrackingResult& result) {
+    const KeyframeId previous = map_.keyframes().back().id;
     const KeyframeId id = add_keyframe(frame, result.T_map_keyframe * result.T_keyframe_camera);
     covariances_.push_back(result.map_covariance);
-    for (const Match& match : outcome.inliers) map_.add_observation(match.landmark, {id, match.feature});
+    if (outcome != nullptr) {
+      for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
+      add_visual_edge(id, *outcome);
+    }
     add_landmarks(id);
+    add_wheel_edge(previous, id);
+    adjust_local_map(config_, links_, map_);
+    tracker_.set_reference(map_, id);
+    become_keyframe(id, result);
+  }
+
+  void add_visual_edge(KeyframeId id, const TrackOutcome& outcome) {
     const Alignment& alignment = outcome.alignment;
     edges_.push_back({outcome.reference, id, EdgeType::kOdometry, alignment.T_reference_camera,
                       edge_information(config_.pose_graph, alignment.information)});
     links_.push_back({outcome.reference, id, alignment.T_reference_camera, alignment.surface_information});
-    adjust_local_map(config_, links_, map_);
-    tracker_.set_reference(map_, id);
-    become_keyframe(id, result);
+  }
+
+  void add_wheel_edge(KeyframeId from, KeyframeId to) {
+    const auto motion = motion_.odometry_between(map_.keyframe(from).stamp, map_.keyframe(to).stamp);
+    motion_.forget_before(map_.keyframe(to).stamp);
+    if (!motion) return;
+    const Matrix6d information = bounded_information(config_.pose_graph, motion->covariance.inverse());
+    edges_.push_back({from, to, EdgeType::kWheelOdometry, motion->T_from_to, information});
+    links_.push_back({from, to, motion->T_from_to, information});
   }
 
   void become_keyframe(KeyframeId id, TrackingResult& result) {
@@ -202,19 +245,25 @@ class RgbdSlam::Implementation {
   MotionModel motion_;
   Map map_;
   std::vector<PoseGraphEdge> edges_;
-  std::vector<SurfaceLink> links_;
+  std::vector<KeyframeLink> links_;
   std::vector<Matrix6d> covariances_;  // of each key-frame's pose in the map
   KeyframeId reference_ = 0;
   int frames_since_keyframe_ = 0;
+  int blind_frames_ = 0;  // in a row, with enough to see
   std::uint64_t version_ = 0;
 };
 
-RgbdSlam::RgbdSlam(const SlamConfig& config, const Pose& T_map_first_camera)
-    : implementation_(std::make_unique<Implementation>(config, T_map_first_camera)) {}
+RgbdSlam::RgbdSlam(const SlamConfig& config, const Pose& T_map_first_camera, const Pose& T_base_camera)
+    : implementation_(std::make_unique<Implementation>(config, T_map_first_camera, T_base_camera)) {}
 RgbdSlam::~RgbdSlam() = default;
 
 TrackingResult RgbdSlam::process(const RgbdFrame& frame) { return implementation_->process(frame); }
-TrackingResult RgbdSlam::skip(const std::string& reason) const { return implementation_->without_pose(reason); }
+bool RgbdSlam::add_odometry(time::Time stamp, const Pose& T_odom_base) {
+  return implementation_->add_odometry(stamp, T_odom_base);
+}
+TrackingResult RgbdSlam::skip(time::Time stamp, const std::string& reason) const {
+  return implementation_->without_vision(stamp, reason);
+}
 PoseGraphSnapshot RgbdSlam::pose_graph() const { return implementation_->pose_graph(); }
 std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(); }
 std::size_t RgbdSlam::keyframe_count() const { return implementation_->keyframe_count(); }

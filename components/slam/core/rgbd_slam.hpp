@@ -13,7 +13,7 @@
 
 namespace lapis::slam {
 
-/// kDeadReckoning is for odometry without images; this version never reports it.
+/// kDeadReckoning: vision has no pose, wheel odometry carries the last one on. kLost: nothing is known.
 enum class TrackingState : std::uint8_t { kInitializing, kTracking, kDeadReckoning, kLost };
 
 /// What one frame gave. Poses are those of the camera's optical frame.
@@ -23,8 +23,8 @@ struct TrackingResult {
   bool is_keyframe = false;
   std::uint64_t keyframe_id = 0;  ///< reference key-frame; the frame itself when is_keyframe
   std::uint64_t graph_version = 0;
-  geometry::Pose T_map_keyframe = geometry::Pose::Identity();     ///< valid only when tracking
-  geometry::Pose T_keyframe_camera = geometry::Pose::Identity();  ///< valid only when tracking; never corrected later
+  geometry::Pose T_map_keyframe = geometry::Pose::Identity();     ///< valid only when tracking or dead reckoning
+  geometry::Pose T_keyframe_camera = geometry::Pose::Identity();  ///< the same; never corrected later
   /// Covariance of T_keyframe_camera, right perturbation (translation, rotation); zero for a key-frame itself.
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   /// Covariance of T_map_keyframe * T_keyframe_camera: `covariance` on top of the edges back to the first key-frame.
@@ -35,19 +35,29 @@ struct TrackingResult {
   double rms_px = 0.0;  ///< reprojection error of the inliers
 };
 
+/// True when the result says where the camera is.
+inline bool has_pose(const TrackingResult& result) {
+  return result.state == TrackingState::kTracking || result.state == TrackingState::kDeadReckoning;
+}
+
 /// RGB-D key-frame odometry: features and surfaces aligned with a local map, local bundle adjustment, pose graph.
 /// Deterministic: the same frames give the same bits.
 class RgbdSlam {
  public:
-  /// `T_map_first_camera`: pose given to the first key-frame.
-  RgbdSlam(const SlamConfig& config, const geometry::Pose& T_map_first_camera);
+  /// `T_map_first_camera`: pose given to the first key-frame; `T_base_camera`: where the camera is on the robot, for
+  /// wheel odometry.
+  RgbdSlam(const SlamConfig& config, const geometry::Pose& T_map_first_camera,
+           const geometry::Pose& T_base_camera = geometry::Pose::Identity());
   ~RgbdSlam();
 
+  /// Wheel odometry: the pose of base_link in a frame that may drift. Readings come in the order of their stamps and,
+  /// to be of use for a frame, before it. False when the reading cannot be used.
+  bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base);
   /// Tracks one frame; frames come in the order of their stamps. Bad frames give a result with a reason.
   TrackingResult process(const RgbdFrame& frame);
 
-  /// What to tell of a frame that cannot be processed: it has no pose.
-  TrackingResult skip(const std::string& reason) const;
+  /// What to tell of a frame that cannot be processed: it has the pose of dead reckoning or none.
+  TrackingResult skip(time::Time stamp, const std::string& reason) const;
   PoseGraphSnapshot pose_graph() const;
   /// Grows with every new key-frame and every change of a key-frame's pose.
   std::uint64_t graph_version() const;

@@ -26,6 +26,7 @@ struct Options {
   std::vector<int> seeds{1, 2, 3, 4, 5};
   std::vector<std::string> overrides;
   std::string folder;
+  bool no_wheels = false;
 };
 
 struct Run {
@@ -69,10 +70,20 @@ double nees(const geometry::Pose& estimate, const geometry::Pose& truth, const g
   return error.dot(information * error) / 6.0;
 }
 
-Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, const std::string& folder) {
+geometry::Pose pose_of(const simulator::WheelSample& wheel) {
+  return geometry::make_pose({wheel.position.x(), wheel.position.y(), 0.0},
+                             Eigen::Quaterniond(Eigen::AngleAxisd(wheel.yaw_rad, Eigen::Vector3d::UnitZ())));
+}
+
+Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, const std::string& folder,
+         bool with_wheels) {
   Run run;
-  RgbdSlam slam(config, geometry::T_base_camera(camera_mount(scene.robot.camera)));
+  const geometry::Pose T_base_camera = geometry::T_base_camera(camera_mount(scene.robot.camera));
+  RgbdSlam slam(config, T_base_camera, T_base_camera);
   play_tour(scene, folder, [&](const TourFrame& tour_frame) {
+    for (const auto& wheel : tour_frame.wheels) {
+      if (with_wheels) slam.add_odometry(wheel.stamp, pose_of(wheel));
+    }
     const double before_ms = cpu_ms();
     const TrackingResult result = slam.process(tour_frame.frame);
     run.milliseconds.push_back(cpu_ms() - before_ms);
@@ -142,7 +153,7 @@ int run(const Options& options) {
       simulated.tour = "bundled";
       for (const std::string& assignment : options.overrides) config::apply_override(schema, assignment);
       config::check(schema);
-      print_row(scene, seed, play(simulated, slam.method, options.folder));
+      print_row(scene, seed, play(simulated, slam.method, options.folder, !options.no_wheels));
     }
   }
   std::printf(
@@ -162,6 +173,7 @@ int main(int argc, char** argv) {
   app.add_option("--set", options.overrides, "slam.KEY=VALUE, simulator.KEY=VALUE or robot.KEY=VALUE");
   app.add_option("--recordings", options.folder,
                  "keep the frames of tours here, 0.7 MB each, and read them the next time instead of rendering");
+  app.add_flag("--no-wheels", options.no_wheels, "slam gets no wheel odometry");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
   try {

@@ -80,19 +80,19 @@ class MotionModelTest : public ::testing::Test {
   static time::Time stamp(double t_s) { return time::Time::from_seconds(10.0 + t_s); }
 
   Map map_ = three_keyframes();
-  MotionModel motion_{0.5};
+  MotionModel motion_{0.5, OdometryConfig{}, geometry::Pose::Identity()};
 };
 
 TEST_F(MotionModelTest, ContinuesASteadyMotionOverUnevenStamps) {
   EXPECT_FALSE(motion_.predict(map_, stamp(0.0)));
-  motion_.update(map_, stamp(0.0), 0, at(0.0));
-  motion_.update(map_, stamp(0.1), 0, at(0.1));
+  motion_.update(map_, stamp(0.0), {0, at(0.0)});
+  motion_.update(map_, stamp(0.1), {0, at(0.1)});
   EXPECT_TRUE(motion_.predict(map_, stamp(0.25))->isApprox(at(0.25), 1e-9));
 }
 
 TEST_F(MotionModelTest, FollowsItsKeyframeAndForgets) {
-  motion_.update(map_, stamp(0.0), 0, at(0.0));
-  motion_.update(map_, stamp(0.1), 0, at(0.1));
+  motion_.update(map_, stamp(0.0), {0, at(0.0)});
+  motion_.update(map_, stamp(0.1), {0, at(0.1)});
   map_.set_pose(0, at(3.0));
   EXPECT_TRUE(motion_.predict(map_, stamp(0.2))->isApprox(at(3.0) * at(0.2), 1e-9));
   EXPECT_FALSE(motion_.predict(map_, stamp(0.7)));

@@ -1,0 +1,75 @@
+#include "slam/core/odometry_track.hpp"
+
+#include <algorithm>
+
+namespace lapis::slam {
+namespace {
+
+using geometry::Matrix6d;
+using geometry::Pose;
+
+double squared(double x) { return x * x; }
+
+// Random walk with the way and the turn [after Thrun, Burgard, Fox, Probabilistic Robotics, 5.4], and a share of both
+// for what the wheels' size and distance are not known to.
+Matrix6d motion_covariance(const OdometryConfig& c, double way_m, double turned_rad) {
+  const double along = squared(c.distance_sigma) * way_m + squared(c.scale_sigma * way_m);
+  const double yaw =
+      squared(c.turn_sigma) * turned_rad + squared(c.turn_sigma_per_m) * way_m + squared(c.scale_sigma * turned_rad);
+  const double least = squared(c.least_sigma);
+  Matrix6d covariance = Matrix6d::Zero();
+  // Sideways a robot errs because its heading does, on average half of the way.
+  covariance.diagonal() << along + least, 0.25 * yaw * squared(way_m) + least,
+      squared(c.vertical_sigma) * way_m + least, squared(c.tilt_sigma) * way_m + least,
+      squared(c.tilt_sigma) * way_m + least, yaw + least;
+  return covariance;
+}
+
+}  // namespace
+
+bool OdometryTrack::add(time::Time stamp, const Pose& T_odom_base) {
+  if (!geometry::is_valid(T_odom_base)) return false;
+  if (!readings_.empty() && stamp <= readings_.back().stamp) return false;
+  if (!readings_.empty() && (stamp - readings_.back().stamp).seconds() > config_.max_gap_s) readings_.clear();
+  Reading reading{stamp, T_odom_base};
+  if (!readings_.empty()) {
+    const Pose step = readings_.back().T_odom_base.inverse() * T_odom_base;
+    reading.way_m = readings_.back().way_m + step.translation().norm();
+    reading.turned_rad = readings_.back().turned_rad + geometry::rotation_angle(step.linear());
+  }
+  readings_.push_back(reading);
+  return true;
+}
+
+void OdometryTrack::forget_before(time::Time stamp) {
+  while (readings_.size() > 2 && readings_[1].stamp <= stamp) readings_.pop_front();
+}
+
+std::optional<time::Time> OdometryTrack::newest() const {
+  if (readings_.empty()) return std::nullopt;
+  return readings_.back().stamp;
+}
+
+std::optional<OdometryTrack::Reading> OdometryTrack::at(time::Time stamp) const {
+  if (readings_.size() < 2 || stamp < readings_.front().stamp) return std::nullopt;
+  if ((stamp - readings_.back().stamp).seconds() > 0.5 * config_.max_gap_s) return std::nullopt;
+  auto after = std::lower_bound(readings_.begin() + 1, readings_.end(), stamp,
+                                [](const Reading& r, time::Time t) { return r.stamp < t; });
+  if (after == readings_.end()) --after;
+  const Reading& a = *(after - 1);
+  const Reading& b = *after;
+  const double share = (stamp - a.stamp).seconds() / (b.stamp - a.stamp).seconds();
+  const geometry::Vector6d step = geometry::se3_log(a.T_odom_base.inverse() * b.T_odom_base);
+  return Reading{stamp, a.T_odom_base * geometry::se3_exp(share * step), a.way_m + share * (b.way_m - a.way_m),
+                 a.turned_rad + share * (b.turned_rad - a.turned_rad)};
+}
+
+std::optional<OdometryMotion> OdometryTrack::between(time::Time from, time::Time to) const {
+  const auto a = at(from);
+  const auto b = at(to);
+  if (!a || !b || to < from) return std::nullopt;
+  return OdometryMotion{a->T_odom_base.inverse() * b->T_odom_base,
+                        motion_covariance(config_, b->way_m - a->way_m, b->turned_rad - a->turned_rad)};
+}
+
+}  // namespace lapis::slam

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "common/geometry/se3.hpp"
+#include "common/time/time.hpp"
+#include "slam/core/config.hpp"
+
+namespace lapis::slam {
+
+/// How the robot has moved between two stamps, as its wheels say.
+struct OdometryMotion {
+  geometry::Pose T_from_to = geometry::Pose::Identity();       ///< of base_link
+  geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< right perturbation (translation, rotation)
+};
+
+/// Wheel odometry of the recent past. Its pose drifts without bound, so only motions are taken from it; their
+/// covariance is that of OdometryConfig, because the one in the messages of most robots is a constant.
+class OdometryTrack {
+ public:
+  explicit OdometryTrack(const OdometryConfig& config) : config_(config) {}
+
+  /// The next reading: `T_odom_base` at `stamp`. False when it cannot be used: it is not later than the last one, or no
+  /// rigid transform. A gap of more than OdometryConfig::max_gap_s begins a new track, because what happened in it is
+  /// not known.
+  bool add(time::Time stamp, const geometry::Pose& T_odom_base);
+  /// Readings before `stamp` are not needed any more, but for the one that it may have to be interpolated from.
+  void forget_before(time::Time stamp);
+
+  /// Motion between two stamps, `from` not later than `to`; interpolated between readings, carried on for at most half
+  /// of OdometryConfig::max_gap_s after the newest. None outside of what is known.
+  std::optional<OdometryMotion> between(time::Time from, time::Time to) const;
+  std::optional<time::Time> newest() const;
+
+ private:
+  struct Reading {
+    time::Time stamp;
+    geometry::Pose T_odom_base;
+    double way_m = 0.0;       // since the track began, forwards and backwards alike
+    double turned_rad = 0.0;  // the same
+  };
+  std::optional<Reading> at(time::Time stamp) const;
+
+  OdometryConfig config_;
+  std::deque<Reading> readings_;
+};
+
+}  // namespace lapis::slam

@@ -41,6 +41,21 @@ nav_msgs::msg::Odometry to_message(const WheelSample& sample, const SimulatorFra
   return message;
 }
 
+tf2_msgs::msg::TFMessage to_transforms(const nav_msgs::msg::Odometry& odometry) {
+  geometry_msgs::msg::TransformStamped transform;
+  transform.header(odometry.header());
+  transform.child_frame_id(odometry.child_frame_id());
+  const auto& position = odometry.pose().pose().position();
+  auto& translation = transform.transform().translation();
+  translation.x(position.x());
+  translation.y(position.y());
+  translation.z(position.z());
+  transform.transform().rotation(odometry.pose().pose().orientation());
+  tf2_msgs::msg::TFMessage message;
+  message.transforms().push_back(transform);
+  return message;
+}
+
 sensor_msgs::msg::Imu to_message(const ImuSample& sample, const SimulatorFrameIds& ids) {
   sensor_msgs::msg::Imu message;
   message.header(messages::header(sample.stamp, ids.camera.base));
@@ -70,7 +85,10 @@ SensorMessages to_messages(const SensorFrame& frame, const geometry::PinholeCame
   twist.linear().x(frame.robot.velocity.x());
   twist.linear().y(frame.robot.velocity.y());
   twist.angular().z(frame.turn_rate_rad_s);
-  for (const auto& sample : frame.wheels) out.wheels.push_back(to_message(sample, ids));
+  for (const auto& sample : frame.wheels) {
+    out.wheels.push_back(to_message(sample, ids));
+    out.transforms.push_back(to_transforms(out.wheels.back()));
+  }
   for (const auto& sample : frame.imu) out.imu.push_back(to_message(sample, ids));
   return out;
 }

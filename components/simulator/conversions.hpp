@@ -18,6 +18,7 @@ struct SimulatorFrameIds {
 struct SensorMessages {
   messages::CameraMessages camera;
   std::vector<nav_msgs::msg::Odometry> wheels;
+  std::vector<tf2_msgs::msg::TFMessage> transforms;  ///< odom -> base_link, one with each of `wheels`
   std::vector<sensor_msgs::msg::Imu> imu;
 };
 

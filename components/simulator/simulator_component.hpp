@@ -56,6 +56,7 @@ class SimulatorComponent {
   const std::optional<TourFollower> tour_;  // at its beginning
   runtime::CameraPublisher camera_;
   dds::Publisher<nav_msgs::msg::Odometry>& wheels_;
+  dds::Publisher<tf2_msgs::msg::TFMessage>& transforms_;
   dds::Publisher<std_msgs::msg::Bool>& collision_;
   dds::Publisher<sensor_msgs::msg::Imu>* imu_ = nullptr;
   std::unique_ptr<runtime::LockstepDriver> driver_;

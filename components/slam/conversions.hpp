@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "common/geometry/se3.hpp"
@@ -37,8 +38,11 @@ lapis_msgs::msg::TrackedFrame to_tracked_frame(const TrackingResult& result, con
 /// `previous`, in base_link, when that is known.
 nav_msgs::msg::Odometry to_odometry(const TrackingResult& result, const FrameContext& context, const FrameIds& ids);
 void set_twist(const geometry::Pose& T_previous_base, time::Duration elapsed, nav_msgs::msg::Odometry& odometry);
-/// map -> odom (identity: nobody else publishes odometry) and odom -> base_link.
-tf2_msgs::msg::TFMessage to_transforms(const nav_msgs::msg::Odometry& odometry, const FrameIds& ids);
+/// map -> odom, and with `with_base` odom -> base_link. Without odometry `T_odom_base` is what slam says, and odom the
+/// map.
+tf2_msgs::msg::TFMessage to_transforms(const nav_msgs::msg::Odometry& odometry,
+                                       const std::optional<geometry::Pose>& T_odom_base, bool with_base,
+                                       const FrameIds& ids);
 lapis_msgs::msg::PoseGraph to_message(const PoseGraphSnapshot& graph, const FrameContext& context, const FrameIds& ids);
 /// Key-frame trajectory of base_link.
 nav_msgs::msg::Path to_path(const PoseGraphSnapshot& graph, const FrameContext& context, const FrameIds& ids);

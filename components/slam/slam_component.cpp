@@ -156,7 +156,17 @@ void SlamComponent::publish_odometry(const TrackingResult& result) {
   }
   last_pose_.emplace(frame_.stamp, T_map_base);
   odometry_.publish(message);
-  transforms_.publish(to_transforms(message, ids_));
+  publish_transforms(message);
+}
+
+/// A robot with odometry has odom -> base_link from there; then map -> odom is told as long as the odometry is known.
+void SlamComponent::publish_transforms(const nav_msgs::msg::Odometry& odometry) {
+  const auto T_odom_base = slam_->odometry_at(frame_.stamp);
+  has_odometry_ = has_odometry_ || T_odom_base;
+  const bool with_base =
+      config_.publish_odom_frame == "always" || (config_.publish_odom_frame == "auto" && !has_odometry_);
+  if (!with_base && !T_odom_base) return;
+  transforms_.publish(to_transforms(odometry, T_odom_base, with_base, ids_));
 }
 
 void SlamComponent::publish_graph(bool is_final) {

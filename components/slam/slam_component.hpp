@@ -35,6 +35,7 @@ class SlamComponent {
   void end_map();
   void publish(const TrackingResult& result);
   void publish_odometry(const TrackingResult& result);
+  void publish_transforms(const nav_msgs::msg::Odometry& odometry);
   void publish_graph(bool is_final);
   void publish_status(const TrackingResult& result);
   void write_files() const;
@@ -57,6 +58,7 @@ class SlamComponent {
   std::unique_ptr<RgbdSlam> slam_;  // exists once the camera's mount is known
   FrameContext frame_;              // of the newest frame
   std::int64_t session_ = -1;
+  bool has_odometry_ = false;                                       // somebody else publishes odom -> base_link
   std::optional<std::pair<time::Time, geometry::Pose>> last_pose_;  // T_map_base
   std::optional<time::Time> graph_stamp_;
   std::uint64_t graph_version_ = 0;  // published last

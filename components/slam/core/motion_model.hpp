@@ -34,6 +34,8 @@ class MotionModel {
   std::optional<RelativeCamera> dead_reckon(time::Time stamp) const;
   /// Motion of the camera between two stamps by odometry, with the covariance in the tangent of the later pose.
   std::optional<OdometryMotion> odometry_between(time::Time from, time::Time to) const;
+  /// See OdometryTrack::pose_at.
+  std::optional<geometry::Pose> odometry_at(time::Time stamp) const { return odometry_.pose_at(stamp); }
   /// Odometry before `stamp` will not be asked for.
   void forget_before(time::Time stamp) { odometry_.forget_before(stamp); }
 

@@ -45,9 +45,10 @@ void OdometryTrack::forget_before(time::Time stamp) {
   while (readings_.size() > 2 && readings_[1].stamp <= stamp) readings_.pop_front();
 }
 
-std::optional<time::Time> OdometryTrack::newest() const {
-  if (readings_.empty()) return std::nullopt;
-  return readings_.back().stamp;
+std::optional<Pose> OdometryTrack::pose_at(time::Time stamp) const {
+  const auto reading = at(stamp);
+  if (!reading) return std::nullopt;
+  return reading->T_odom_base;
 }
 
 std::optional<OdometryTrack::Reading> OdometryTrack::at(time::Time stamp) const {

@@ -31,7 +31,8 @@ class OdometryTrack {
   /// Motion between two stamps, `from` not later than `to`; interpolated between readings, carried on for at most half
   /// of OdometryConfig::max_gap_s after the newest. None outside of what is known.
   std::optional<OdometryMotion> between(time::Time from, time::Time to) const;
-  std::optional<time::Time> newest() const;
+  /// T_odom_base at a stamp, known as far as motions are.
+  std::optional<geometry::Pose> pose_at(time::Time stamp) const;
 
  private:
   struct Reading {

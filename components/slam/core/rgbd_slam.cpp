@@ -62,6 +62,8 @@ class RgbdSlam::Implementation {
     return result;
   }
 
+  std::optional<Pose> odometry_at(time::Time stamp) const { return motion_.odometry_at(stamp); }
+
   PoseGraphSnapshot pose_graph() const {
     PoseGraphSnapshot snapshot{version_, {}, edges_};
     for (const Keyframe& keyframe : map_.keyframes()) {
@@ -261,6 +263,7 @@ TrackingResult RgbdSlam::process(const RgbdFrame& frame) { return implementation
 bool RgbdSlam::add_odometry(time::Time stamp, const Pose& T_odom_base) {
   return implementation_->add_odometry(stamp, T_odom_base);
 }
+std::optional<Pose> RgbdSlam::odometry_at(time::Time stamp) const { return implementation_->odometry_at(stamp); }
 TrackingResult RgbdSlam::skip(time::Time stamp, const std::string& reason) const {
   return implementation_->without_vision(stamp, reason);
 }

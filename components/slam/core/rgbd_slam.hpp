@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 
 #include "common/geometry/se3.hpp"
@@ -56,6 +57,8 @@ class RgbdSlam {
   /// Tracks one frame; frames come in the order of their stamps. Bad frames give a result with a reason.
   TrackingResult process(const RgbdFrame& frame);
 
+  /// T_odom_base at a stamp, where there is odometry.
+  std::optional<geometry::Pose> odometry_at(time::Time stamp) const;
   /// What to tell of a frame that cannot be processed: it has the pose of dead reckoning or none.
   TrackingResult skip(time::Time stamp, const std::string& reason) const;
   PoseGraphSnapshot pose_graph() const;

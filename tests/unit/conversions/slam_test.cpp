@@ -141,10 +141,23 @@ TEST(SlamConversions, TransformsComposeToTheOdometry) {
   std::mt19937 engine(4);
   const auto odometry = to_odometry(tracking_result(engine), context_of(engine), kIds);
   messages::StaticTransforms transforms;
-  transforms.add(to_transforms(odometry, kIds));
+  transforms.add(to_transforms(odometry, std::nullopt, true, kIds));
   const auto T_map_base = transforms.find("map", "base_link");
   ASSERT_TRUE(T_map_base);
   EXPECT_TRUE(T_map_base->isApprox(*messages::from_message(odometry.pose().pose()), 1e-9));
+}
+
+TEST(SlamConversions, WithOdometryMapToOdomIsTheCorrection) {
+  std::mt19937 engine(7);
+  const auto odometry = to_odometry(tracking_result(engine), context_of(engine), kIds);
+  const geometry::Pose T_odom_base = random_pose(engine);
+  const auto message = to_transforms(odometry, T_odom_base, false, kIds);
+  ASSERT_EQ(message.transforms().size(), 1U);
+  EXPECT_EQ(message.transforms()[0].header().frame_id(), "map");
+  EXPECT_EQ(message.transforms()[0].child_frame_id(), "odom");
+  const auto T_map_odom = messages::from_message(message.transforms()[0].transform());
+  ASSERT_TRUE(T_map_odom);
+  EXPECT_TRUE((*T_map_odom * T_odom_base).isApprox(*messages::from_message(odometry.pose().pose()), 1e-9));
 }
 
 TEST(SlamConversions, TwistIsTheMeanMotionInTheBodyFrame) {

@@ -22,6 +22,7 @@ using ::testing::HasSubstr;
 
 constexpr const char* kSlam = "lapis_slam";
 constexpr auto kTracking = lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
+constexpr auto kDeadReckoning = lapis_msgs::msg::TrackedFrame_Constants::STATE_DEAD_RECKONING;
 constexpr auto kLost = lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST;
 
 bool is_finite(const Odometry& message) {
@@ -180,6 +181,47 @@ TEST_F(SlamContract, FrameWithoutDepthInRangeIsLostWithTheReasonAndFoundAgain) {
   })) << slam.log();
   EXPECT_EQ(odometry.size(), tracked) << "no pose is told while lost";
   EXPECT_TRUE(std::all_of(odometry.begin(), odometry.end(), is_finite));
+}
+
+TEST_F(SlamContract, OdometryCarriesThePoseOnAndMakesTheOdomFrameItsOwn) {
+  auto& wheels = probe.advertise(topics::kWheelOdometry);
+  const auto& transforms = probe.collect(topics::kTransforms);
+  ASSERT_TRUE(probe.wait_until([&] { return wheels.matched() > 0; })) << slam.log();
+  ASSERT_TRUE(probe.wait_until_known_by("slam")) << slam.log();
+  const auto feel = [&](int index, const std::string& child) {
+    Odometry message;
+    message.header().stamp(messages::to_message(CameraFeed::stamp(index)));
+    message.header().frame_id("odom");
+    message.child_frame_id(child);
+    message.pose().pose(messages::to_message(T_base_camera() * slow_motion(index) * T_base_camera().inverse()));
+    wheels.publish(message);
+  };
+  ASSERT_TRUE(track(0)) << slam.log();
+  feel(0, "wheel");
+  EXPECT_TRUE(wait_for_count("child frame is 'wheel'", 1)) << slam.log();
+  int index = 1;
+  const auto is_dead_reckoning = [&] {
+    feel(index, "base_link");
+    auto blind = feed.frame(index);
+    std::fill(blind.color->data().begin(), blind.color->data().end(), std::uint8_t{0});
+    return answers(blind, index) && frames.back().state() == kDeadReckoning;
+  };
+  // Odometry and images come on different topics: a few frames may overtake the first readings.
+  ASSERT_TRUE(probe.wait_until([&] {
+    feel(index, "base_link");
+    if (!track(index)) return false;
+    ++index;
+    return index > 5 && is_dead_reckoning();
+  })) << slam.log();
+  EXPECT_THAT(frames.back().reason(), HasSubstr("features"));
+  ASSERT_TRUE(probe.wait_until([&] {
+    return messages::from_message(odometry.back().header().stamp()) == CameraFeed::stamp(index) &&
+           messages::from_message(transforms.back().transforms().at(0).header().stamp()) == CameraFeed::stamp(index);
+  })) << slam.log();
+  EXPECT_TRUE(is_finite(odometry.back()));
+  const auto& newest = transforms.back().transforms();
+  ASSERT_EQ(newest.size(), 1U) << "odom -> base_link is the robot's";
+  EXPECT_EQ(newest[0].child_frame_id(), "odom");
 }
 
 TEST_F(SlamContract, DuplicateAndBackwardStampsAreDropped) {

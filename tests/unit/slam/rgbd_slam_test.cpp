@@ -83,6 +83,73 @@ TEST(RgbdSlam, IsLostWithAReasonInTheDarkAndRecovers) {
   EXPECT_LT(distance_m(result, 5), 0.02);
 }
 
+// Odometry of a robot that carries the camera through the room.
+class RgbdSlamOnWheels : public ::testing::Test {
+ protected:
+  static Pose T_base_camera() { return Pose(Eigen::Translation3d(0.1, 0.2, 0.3)); }
+  void feel(int from, int to) {
+    for (int i = from; i <= to; ++i) slam_.add_odometry(stamp(i), test::room_path(i) * T_base_camera().inverse());
+  }
+  RgbdSlam slam_{{}, test::room_path(0), T_base_camera()};
+};
+
+TEST_F(RgbdSlamOnWheels, DeadReckonsInTheDarkWithGrowingCovariance) {
+  feel(0, 40);
+  for (int i = 0; i < 10; ++i) ASSERT_EQ(slam_.process(room_frame(i)).state, TrackingState::kTracking);
+  const auto version = slam_.graph_version();
+  double trace = 0.0;
+  for (int i = 10; i < 40; ++i) {
+    const TrackingResult result = slam_.process(black_frame(i));
+    ASSERT_EQ(result.state, TrackingState::kDeadReckoning) << i;
+    EXPECT_EQ(result.reason, "0 features, 15 needed");
+    EXPECT_LT(distance_m(result, i), 0.02) << i;
+    EXPECT_GT(result.map_covariance.trace(), trace) << i;
+    trace = result.map_covariance.trace();
+  }
+  EXPECT_EQ(slam_.graph_version(), version) << "the map is not touched";
+  EXPECT_EQ(slam_.skip(stamp(40), "colour is missing").state, TrackingState::kDeadReckoning);
+  const TrackingResult back = slam_.process(room_frame(40));
+  ASSERT_EQ(back.state, TrackingState::kTracking) << back.reason;
+  EXPECT_LT(distance_m(back, 40), 0.02);
+}
+
+TEST_F(RgbdSlamOnWheels, GoesOnElsewhereByAnEdgeOfTheWheels) {
+  const int turned = 120;  // about 120 degrees further: no common view
+  feel(0, turned + 20);
+  for (int i = 0; i < 5; ++i) slam_.process(room_frame(i));
+  const auto keyframes = slam_.keyframe_count();
+  const int patience = SlamConfig{}.tracker.max_blind_frames;
+  for (int i = turned; i < turned + patience; ++i) {
+    const TrackingResult result = slam_.process(room_frame(i));
+    const bool is_last = i == turned + patience - 1;
+    EXPECT_EQ(result.state, is_last ? TrackingState::kTracking : TrackingState::kDeadReckoning) << i;
+    EXPECT_LT(distance_m(result, i), 0.05) << i;
+  }
+  ASSERT_EQ(slam_.keyframe_count(), keyframes + 1);
+  const PoseGraphSnapshot graph = slam_.pose_graph();
+  EXPECT_EQ(graph.edges.back().type, EdgeType::kWheelOdometry);
+  EXPECT_EQ(graph.edges.back().to, graph.nodes.back().id);
+  const TrackingResult next = slam_.process(room_frame(turned + patience));
+  EXPECT_EQ(next.state, TrackingState::kTracking) << next.reason;
+  EXPECT_EQ(next.keyframe_id, graph.nodes.back().id);
+}
+
+TEST_F(RgbdSlamOnWheels, KeyframesHaveEdgesOfVisionAndOfWheels) {
+  feel(0, 60);
+  for (int i = 0; i < 60; ++i) slam_.process(room_frame(i));
+  const PoseGraphSnapshot graph = slam_.pose_graph();
+  ASSERT_GE(graph.nodes.size(), 3U);
+  std::size_t wheels = 0;
+  for (const PoseGraphEdge& edge : graph.edges) {
+    if (edge.type != EdgeType::kWheelOdometry) continue;
+    ++wheels;
+    EXPECT_EQ(edge.to, edge.from + 1);
+    const Pose between = graph.nodes[edge.from].T_map_camera.inverse() * graph.nodes[edge.to].T_map_camera;
+    EXPECT_LT(geometry::se3_log(edge.T_from_to.inverse() * between).norm(), 0.01);
+  }
+  EXPECT_EQ(wheels, graph.nodes.size() - 1);
+}
+
 TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {
   RgbdSlam slam({}, Pose::Identity());
   EXPECT_EQ(slam.process(black_frame(0)).state, TrackingState::kInitializing);

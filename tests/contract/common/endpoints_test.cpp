@@ -64,7 +64,7 @@ const std::vector<Lines> kReplay = {writers(topics::kColor, topics::kDepth, topi
                                             topics::kClock, topics::kGroundTruth)};
 
 const std::vector<Lines> kSimulator = {kReplay[0],
-                                       writers(topics::kWheelOdometry, topics::kCollision),
+                                       writers(topics::kWheelOdometry, topics::kTransforms, topics::kCollision),
                                        readers(topics::kCommand),
                                        server(topics::kPause),
                                        server(topics::kRun),
@@ -80,7 +80,7 @@ const std::vector<Process> kProcesses = {
     {"slam",
      "slam",
      {},
-     {readers(topics::kColor, topics::kDepth, topics::kColorInfo, topics::kStaticTransforms),
+     {readers(topics::kColor, topics::kDepth, topics::kColorInfo, topics::kStaticTransforms, topics::kWheelOdometry),
       writers(topics::kSlamOdometry, topics::kTrackedFrame, topics::kTransforms, topics::kKeyframePath,
               topics::kPoseGraph, topics::kSlamStatus)}},
     {"semantic_mapper",

@@ -111,8 +111,8 @@ void print_row(const std::string& scene, int seed, const Run& run) {
   std::vector<double> keyframe_errors_m;
   std::vector<Eigen::Vector3d> estimated, actual;
   for (const auto& node : run.graph.nodes) {
-    estimated.push_back(node.T_map_camera.translation());
-    actual.push_back(run.truth.at(node.stamp.nanoseconds).translation());
+    estimated.emplace_back(node.T_map_camera.translation());
+    actual.emplace_back(run.truth.at(node.stamp.nanoseconds).translation());
     keyframe_errors_m.push_back((estimated.back() - actual.back()).norm());
   }
   std::vector<double> aligned_m;

@@ -22,7 +22,7 @@ Pose somewhere() { return geometry::se3_exp((Vector6d() << 3.0, -1.0, 0.2, 0.1, 
 
 OdometryTrack arc_track(const OdometryConfig& config = {}, double until_s = 4.0) {
   OdometryTrack track(config);
-  for (int i = 0; i <= static_cast<int>(until_s / 0.1 + 0.5); ++i) {
+  for (int i = 0; 0.1 * i < until_s + 0.05; ++i) {
     EXPECT_TRUE(track.add(at_s(0.1 * i), somewhere() * arc(0.1 * i)));
   }
   return track;

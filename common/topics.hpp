@@ -68,7 +68,7 @@ inline constexpr Topic<std_msgs::msg::Bool> kCollision{"/ground_truth/collision"
 
 // Transforms.
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kTransforms{
-    "/tf", dds::kBurst, "slam, robot", "camera rate", "map -> odom -> base_link", true};
+    "/tf", dds::kBurst, "slam, robot", "camera rate; 50 Hz from a robot", "map -> odom -> base_link", true};
 inline constexpr Topic<tf2_msgs::msg::TFMessage> kStaticTransforms{
     "/tf_static", dds::kLatchedByMany, "camera", "once", "base_link -> camera_link -> optical frame", true};
 

@@ -81,7 +81,7 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   const auto info_match = info_.match(now, tolerance, cycle.inputs_complete, info);
   if (depth_match == Match::kWait || label_match == Match::kWait || info_match == Match::kWait) return false;
   if (tracked.state() != lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING) {
-    drop("slam has no pose");
+    drop("slam does not track");
   } else if (depth == nullptr) {
     drop("no depth image for a tracked frame");
   } else if (info == nullptr) {

@@ -85,18 +85,23 @@ void set_twist(const geometry::Pose& T_previous_base, time::Duration elapsed, na
   angular.z(twist[5]);
 }
 
-tf2_msgs::msg::TFMessage to_transforms(const nav_msgs::msg::Odometry& odometry,
-                                       const std::optional<geometry::Pose>& T_odom_base, bool with_base,
-                                       const FrameIds& ids) {
+tf2_msgs::msg::TFMessage to_transforms(const nav_msgs::msg::Odometry& odometry, const FrameIds& ids) {
   std_msgs::msg::Header in_odom = odometry.header();
   in_odom.frame_id(ids.odom);
   tf2_msgs::msg::TFMessage message;
-  const auto T_map_base = messages::from_message(odometry.pose().pose());
-  if (!T_map_base) return message;
-  const geometry::Pose T_map_odom = T_odom_base ? *T_map_base * T_odom_base->inverse() : geometry::Pose::Identity();
-  message.transforms().push_back(stamped_transform(odometry.header(), ids.odom, T_map_odom));
-  if (with_base)
-    message.transforms().push_back(stamped_transform(in_odom, ids.base, T_odom_base.value_or(*T_map_base)));
+  message.transforms().push_back(stamped_transform(odometry.header(), ids.odom, geometry::Pose::Identity()));
+  if (const auto T_map_base = messages::from_message(odometry.pose().pose())) {
+    message.transforms().push_back(stamped_transform(in_odom, ids.base, *T_map_base));
+  }
+  return message;
+}
+
+tf2_msgs::msg::TFMessage to_correction(const nav_msgs::msg::Odometry& odometry, const geometry::Pose& T_odom_base,
+                                       const FrameIds& ids) {
+  tf2_msgs::msg::TFMessage message;
+  if (const auto T_map_base = messages::from_message(odometry.pose().pose())) {
+    message.transforms().push_back(stamped_transform(odometry.header(), ids.odom, *T_map_base * T_odom_base.inverse()));
+  }
   return message;
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "common/geometry/se3.hpp"
@@ -38,10 +37,10 @@ lapis_msgs::msg::TrackedFrame to_tracked_frame(const TrackingResult& result, con
 /// `previous`, in base_link, when that is known.
 nav_msgs::msg::Odometry to_odometry(const TrackingResult& result, const FrameContext& context, const FrameIds& ids);
 void set_twist(const geometry::Pose& T_previous_base, time::Duration elapsed, nav_msgs::msg::Odometry& odometry);
-/// map -> odom, and with `with_base` odom -> base_link. Without odometry `T_odom_base` is what slam says, and odom the
-/// map.
-tf2_msgs::msg::TFMessage to_transforms(const nav_msgs::msg::Odometry& odometry,
-                                       const std::optional<geometry::Pose>& T_odom_base, bool with_base,
+/// Where slam is the one who says odom -> base_link: that, and map -> odom as identity.
+tf2_msgs::msg::TFMessage to_transforms(const nav_msgs::msg::Odometry& odometry, const FrameIds& ids);
+/// Where wheel odometry says odom -> base_link: map -> odom alone, so that both together are slam's pose.
+tf2_msgs::msg::TFMessage to_correction(const nav_msgs::msg::Odometry& odometry, const geometry::Pose& T_odom_base,
                                        const FrameIds& ids);
 lapis_msgs::msg::PoseGraph to_message(const PoseGraphSnapshot& graph, const FrameContext& context, const FrameIds& ids);
 /// Key-frame trajectory of base_link.

@@ -107,22 +107,26 @@ void SlamComponent::track(const Image& color, const Image& depth, const Info& in
 }
 
 void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
-  if (slam_ == nullptr) return;  // motions are of use between frames only
   const auto T_odom_base = messages::from_message(message.pose().pose());
   std::string problem;
   if (message.child_frame_id() != ids_.base) {
     problem = "its child frame is '" + message.child_frame_id() + "', not '" + ids_.base + "'";
+  } else if (message.header().frame_id() != ids_.odom) {
+    problem = "its frame is '" + message.header().frame_id() + "', not '" + ids_.odom + "'";
   } else if (!T_odom_base) {
     problem = T_odom_base.reason;
-  } else if (!slam_->add_odometry(messages::from_message(message.header().stamp()), *T_odom_base)) {
+  } else if (slam_ != nullptr && !slam_->add_odometry(messages::from_message(message.header().stamp()), *T_odom_base)) {
     problem = "its stamp is not later than the one before";
   }
-  if (problem.empty()) return;
+  if (problem.empty()) {
+    has_odometry_ = true;
+    return;
+  }
   context_.status().count("odometry dropped: " + problem);
   if (context_.rate_limit().pass("odometry")) spdlog::warn("odometry dropped: {}", problem);
 }
 
-/// A frame that cannot be used is a frame without a pose, and those who wait for its pose are told so.
+/// A frame that cannot be used is one that was not tracked, and those who wait for its pose are told so.
 void SlamComponent::drop(time::Time stamp, const std::string& reason) {
   ++frames_total_;
   ++frames_dropped_;
@@ -161,12 +165,11 @@ void SlamComponent::publish_odometry(const TrackingResult& result) {
 
 /// A robot with odometry has odom -> base_link from there; then map -> odom is told as long as the odometry is known.
 void SlamComponent::publish_transforms(const nav_msgs::msg::Odometry& odometry) {
-  const auto T_odom_base = slam_->odometry_at(frame_.stamp);
-  has_odometry_ = has_odometry_ || T_odom_base;
-  const bool with_base =
-      config_.publish_odom_frame == "always" || (config_.publish_odom_frame == "auto" && !has_odometry_);
-  if (!with_base && !T_odom_base) return;
-  transforms_.publish(to_transforms(odometry, T_odom_base, with_base, ids_));
+  if (config_.publish_odom_frame == "always" || (config_.publish_odom_frame == "auto" && !has_odometry_)) {
+    transforms_.publish(to_transforms(odometry, ids_));
+  } else if (const auto T_odom_base = slam_->odometry_at(frame_.stamp)) {
+    transforms_.publish(to_correction(odometry, *T_odom_base, ids_));
+  }
 }
 
 void SlamComponent::publish_graph(bool is_final) {
@@ -187,7 +190,8 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   context_.status().value("frames", frames_total_);
   context_.status().value("frames_tracked", frames_tracked_);
   const bool has_changed = !reported_ || reported_->second != result.state;
-  if (has_changed && !is_tracking) spdlog::warn("tracking lost: {}", result.reason);
+  const bool was_tracking = !reported_ || reported_->second == TrackingState::kTracking;
+  if (has_changed && !is_tracking && was_tracking) spdlog::warn("tracking lost: {}", result.reason);
   if (has_changed && is_tracking && reported_) spdlog::info("tracking again");
   if (!has_changed && frame_.stamp - reported_->first < kStatusPeriod) return;
   reported_.emplace(frame_.stamp, result.state);

@@ -107,6 +107,8 @@ void describe(Field& field, OdometryConfig& c) {
   field("tilt_sigma", c.tilt_sigma, config::in_range(0, 1), "change of roll and pitch in 1 m [rad]");
   field("least_sigma", c.least_sigma, config::in_range(1e-6, 0.1), "of every motion [m], [rad]");
   field("max_gap_s", c.max_gap_s, config::in_range(0.01, 5), "between readings that belong together [s]");
+  field("max_speed_m_s", c.max_speed_m_s, config::in_range(0.1, 50), "faster steps are no motion of the robot [m/s]");
+  field("max_turn_rate_rad_s", c.max_turn_rate_rad_s, config::in_range(0.1, 100), "the same [rad/s]");
 }
 
 template <class Field>

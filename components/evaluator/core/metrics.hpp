@@ -41,8 +41,8 @@ struct MapFigures {
 /// simulated or recorded seconds unless named otherwise.
 struct RunMetrics {
   std::optional<std::string> exit_reason;
-  std::optional<std::int64_t> frames_total;    ///< frames without a pose count too
-  std::optional<std::int64_t> frames_tracked;  ///< frames with a pose
+  std::optional<std::int64_t> frames_total;    ///< frames that were not tracked count too
+  std::optional<std::int64_t> frames_tracked;  ///< frames with a pose from vision: dead reckoning is none
   std::optional<double> lost_time_s;
   std::optional<std::int64_t> loop_closures;
   TrajectoryFigures online;     ///< every frame's pose as published at its time

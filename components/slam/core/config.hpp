@@ -75,14 +75,16 @@ struct PoseGraphConfig {
 /// square root. Right for a robot with wheels on floors without steps; a robot that climbs wants a larger
 /// vertical_sigma and tilt_sigma.
 struct OdometryConfig {
-  double distance_sigma = 0.02;    ///< along the way [m] after 1 m [0, 1]
-  double turn_sigma = 0.02;        ///< of the heading [rad] after a turn of 1 rad [0, 1]
-  double turn_sigma_per_m = 0.01;  ///< of the heading [rad] after 1 m [0, 1]
-  double scale_sigma = 0.01;       ///< share of way and turn by which the wheels always err [0, 0.5]
-  double vertical_sigma = 0.001;   ///< [m] after 1 m [0, 1]
-  double tilt_sigma = 0.0005;      ///< of roll and pitch [rad] after 1 m [0, 1]
-  double least_sigma = 1e-4;       ///< of every motion [m], [rad] [1e-6, 0.1]
-  double max_gap_s = 0.2;          ///< between readings that belong together [0.01, 5]
+  double distance_sigma = 0.02;       ///< along the way [m] after 1 m [0, 1]
+  double turn_sigma = 0.02;           ///< of the heading [rad] after a turn of 1 rad [0, 1]
+  double turn_sigma_per_m = 0.01;     ///< of the heading [rad] after 1 m [0, 1]
+  double scale_sigma = 0.01;          ///< share of way and turn by which the wheels always err [0, 0.5]
+  double vertical_sigma = 0.001;      ///< [m] after 1 m [0, 1]
+  double tilt_sigma = 0.0005;         ///< of roll and pitch [rad] after 1 m [0, 1]
+  double least_sigma = 1e-4;          ///< of every motion [m], [rad] [1e-6, 0.1]
+  double max_gap_s = 0.2;             ///< between readings that belong together [0.01, 5]
+  double max_speed_m_s = 5.0;         ///< faster steps are no motion of the robot [0.1, 50]
+  double max_turn_rate_rad_s = 15.0;  ///< the same [0.1, 100]
 };
 
 struct SlamConfig {

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "common/time/stamp_buffer.hpp"
+
 namespace lapis::slam {
 namespace {
 
@@ -29,8 +31,9 @@ Matrix6d motion_covariance(const OdometryConfig& c, double way_m, double turned_
 
 bool OdometryTrack::add(time::Time stamp, const Pose& T_odom_base) {
   if (!geometry::is_valid(T_odom_base)) return false;
+  if (!readings_.empty() && readings_.back().stamp - stamp > time::kRestartGap) readings_.clear();
   if (!readings_.empty() && stamp <= readings_.back().stamp) return false;
-  if (!readings_.empty() && (stamp - readings_.back().stamp).seconds() > config_.max_gap_s) readings_.clear();
+  if (!readings_.empty() && !continues(stamp, T_odom_base)) readings_.clear();
   Reading reading{stamp, T_odom_base};
   if (!readings_.empty()) {
     const Pose step = readings_.back().T_odom_base.inverse() * T_odom_base;
@@ -38,7 +41,16 @@ bool OdometryTrack::add(time::Time stamp, const Pose& T_odom_base) {
     reading.turned_rad = readings_.back().turned_rad + geometry::rotation_angle(step.linear());
   }
   readings_.push_back(reading);
+  if (readings_.size() > kMostReadings) readings_.pop_front();
   return true;
+}
+
+// Whether a robot can have come there from the newest reading.
+bool OdometryTrack::continues(time::Time stamp, const Pose& T_odom_base) const {
+  const double elapsed_s = (stamp - readings_.back().stamp).seconds();
+  const Pose step = readings_.back().T_odom_base.inverse() * T_odom_base;
+  return elapsed_s <= config_.max_gap_s && step.translation().norm() <= config_.max_speed_m_s * elapsed_s &&
+         geometry::rotation_angle(step.linear()) <= config_.max_turn_rate_rad_s * elapsed_s;
 }
 
 void OdometryTrack::forget_before(time::Time stamp) {

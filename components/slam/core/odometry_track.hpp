@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <deque>
 #include <optional>
 
@@ -19,11 +20,14 @@ struct OdometryMotion {
 /// covariance is that of OdometryConfig, because the one in the messages of most robots is a constant.
 class OdometryTrack {
  public:
+  static constexpr std::size_t kMostReadings = 100'000;  ///< half an hour at 50 Hz
+
   explicit OdometryTrack(const OdometryConfig& config) : config_(config) {}
 
   /// The next reading: `T_odom_base` at `stamp`. False when it cannot be used: it is not later than the last one, or no
-  /// rigid transform. A gap of more than OdometryConfig::max_gap_s begins a new track, because what happened in it is
-  /// not known.
+  /// rigid transform. A new track begins, because what happened is not known: after a gap of more than
+  /// OdometryConfig::max_gap_s, after a step faster than a robot can move (wheel odometry that was set anew), and when
+  /// stamps go back by more than a second (a source that began anew). At most kMostReadings are kept.
   bool add(time::Time stamp, const geometry::Pose& T_odom_base);
   /// Readings before `stamp` are not needed any more, but for the one that it may have to be interpolated from.
   void forget_before(time::Time stamp);
@@ -41,6 +45,7 @@ class OdometryTrack {
     double way_m = 0.0;       // since the track began, forwards and backwards alike
     double turned_rad = 0.0;  // the same
   };
+  bool continues(time::Time stamp, const geometry::Pose& T_odom_base) const;
   std::optional<Reading> at(time::Time stamp) const;
 
   OdometryConfig config_;

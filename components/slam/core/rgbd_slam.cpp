@@ -179,9 +179,12 @@ class RgbdSlam::Implementation {
     if (outcome != nullptr) {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
       add_visual_edge(id, *outcome);
+      add_wheel_edge(previous, id);
+    } else {
+      edges_.push_back({result.keyframe_id, id, EdgeType::kWheelOdometry, result.T_keyframe_camera,
+                        bounded_information(config_.pose_graph, result.covariance.inverse())});
     }
     add_landmarks(id);
-    add_wheel_edge(previous, id);
     adjust_local_map(config_, links_, map_);
     tracker_.set_reference(map_, id);
     become_keyframe(id, result);

@@ -139,6 +139,7 @@ void print_row(const std::string& scene, int seed, const Run& run) {
 }
 
 int run(const Options& options) {
+  bool are_complete = true;
   print_header();
   for (const std::string& scene : options.scenes) {
     for (const int seed : options.seeds) {
@@ -148,17 +149,22 @@ int run(const Options& options) {
       schema("simulator", simulated);
       schema("robot", simulated.robot);
       schema("slam", slam);
-      simulated.scene = scene;
-      simulated.seed = seed;
       simulated.tour = "bundled";
       for (const std::string& assignment : options.overrides) config::apply_override(schema, assignment);
       config::check(schema);
-      print_row(scene, seed, play(simulated, slam.method, options.folder, !options.no_wheels));
+      simulated.scene = scene;
+      simulated.seed = seed;
+      try {
+        print_row(scene, seed, play(simulated, slam.method, options.folder, !options.no_wheels));
+      } catch (const std::exception& error) {
+        std::printf("%-15s %4d failed: %s\n", scene.c_str(), seed, error.what());
+        are_complete = false;
+      }
     }
   }
   std::printf(
       "errors in cm (position, map frame, no alignment unless se3); odo, covis, end: NEES per degree of freedom\n");
-  return 0;
+  return are_complete ? 0 : 1;
 }
 
 }  // namespace
@@ -171,8 +177,10 @@ int main(int argc, char** argv) {
   app.add_option("--scenes", options.scenes, "bundled names or files")->delimiter(',');
   app.add_option("--seeds", options.seeds, "a run each")->delimiter(',');
   app.add_option("--set", options.overrides, "slam.KEY=VALUE, simulator.KEY=VALUE or robot.KEY=VALUE");
-  app.add_option("--recordings", options.folder,
-                 "keep the frames of tours here, 0.7 MB each, and read them the next time instead of rendering");
+  app.add_option(
+      "--recordings", options.folder,
+      "keep the frames of tours here, 0.7 MB each, and read them the next time instead of rendering; they know "
+      "the configuration, not the simulator: empty the folder when that changes");
   app.add_flag("--no-wheels", options.no_wheels, "slam gets no wheel odometry");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);

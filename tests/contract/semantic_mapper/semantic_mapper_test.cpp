@@ -155,7 +155,7 @@ TEST_F(MapperContract, GarbageIsCountedAndMappingGoesOn) {
   for (const char* reason :
        {"depth encoding 'rgb8'", "depth image has not step x height bytes", "label encoding '32FC1'",
         "depth size differs", "keyframe_pose: quaternion is not a unit one",
-        "pose_in_keyframe: pose has numbers that are not finite", "more than 10 km", "slam has no pose"}) {
+        "pose_in_keyframe: pose has numbers that are not finite", "more than 10 km", "slam does not track"}) {
     EXPECT_TRUE(wait_for_count(reason, 1)) << reason << mapper.log();
   }
   EXPECT_EQ(sum_of(newest_values(diagnostics, "semantic_mapper"), "frames dropped"), 8);

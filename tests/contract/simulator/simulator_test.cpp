@@ -10,6 +10,7 @@
 #include <set>
 
 #include "common/messages/camera.hpp"
+#include "common/messages/geometry.hpp"
 #include "common/messages/time.hpp"
 #include "common/topics.hpp"
 #include "tests/support/child_process.hpp"
@@ -88,12 +89,14 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   const auto& info = probe.collect(topics::kColorInfo);
   const auto& truth = probe.collect(topics::kGroundTruth);
   const auto& wheels = probe.collect(topics::kWheelOdometry);
+  const auto& transforms = probe.collect(topics::kTransforms);
   const auto& mount = probe.collect(topics::kStaticTransforms);
   const auto& names = probe.collect(topics::kLabelInfo);
   ChildProcess simulator(kSimulator, arguments({"--mode", "freerun", "--set", "simulator.wait_for_readers=1", "--set",
                                                 "robot.camera.rate_hz=5"}));
   ASSERT_TRUE(probe.wait_until([&] {
-    return std::min({color.size(), depth.size(), labels.size(), info.size(), truth.size()}) > 5 && wheels.size() > 20;
+    return std::min({color.size(), depth.size(), labels.size(), info.size(), truth.size()}) > 5 &&
+           std::min(wheels.size(), transforms.size()) > 20;
   })) << simulator.log();
   // It began when the readers were there: nothing is missing from the first frame on.
   for (std::size_t i = 0; i < 5; ++i) {
@@ -117,6 +120,20 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   EXPECT_EQ(color.back().header().frame_id(), "camera_color_optical_frame");
   EXPECT_EQ(truth.back().child_frame_id(), "base_link");
   EXPECT_EQ(wheels.back().header().frame_id(), "odom");
+  for (std::size_t i = 0; i < 20; ++i) {  // odom -> base_link is told with each reading
+    ASSERT_EQ(transforms[i].transforms().size(), 1U);
+    const auto& transform = transforms[i].transforms()[0];
+    EXPECT_EQ(transform.header().frame_id(), "odom");
+    EXPECT_EQ(transform.child_frame_id(), "base_link");
+    const auto reading = std::find_if(wheels.begin(), wheels.end(), [&](const auto& m) {
+      return stamp_of(m) == messages::from_message(transform.header().stamp());
+    });
+    ASSERT_NE(reading, wheels.end());
+    const auto T_odom_base = messages::from_message(transform.transform());
+    const auto expected = messages::from_message(reading->pose().pose());
+    ASSERT_TRUE(T_odom_base && expected);
+    EXPECT_TRUE(T_odom_base->isApprox(*expected, 1e-12));
+  }
   for (std::size_t i = 1; i < wheels.size(); ++i) {
     EXPECT_EQ((stamp_of(wheels[i]) - stamp_of(wheels[i - 1])).nanoseconds, 20'000'000);
   }

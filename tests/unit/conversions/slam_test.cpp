@@ -141,7 +141,7 @@ TEST(SlamConversions, TransformsComposeToTheOdometry) {
   std::mt19937 engine(4);
   const auto odometry = to_odometry(tracking_result(engine), context_of(engine), kIds);
   messages::StaticTransforms transforms;
-  transforms.add(to_transforms(odometry, std::nullopt, true, kIds));
+  transforms.add(to_transforms(odometry, kIds));
   const auto T_map_base = transforms.find("map", "base_link");
   ASSERT_TRUE(T_map_base);
   EXPECT_TRUE(T_map_base->isApprox(*messages::from_message(odometry.pose().pose()), 1e-9));
@@ -151,7 +151,7 @@ TEST(SlamConversions, WithOdometryMapToOdomIsTheCorrection) {
   std::mt19937 engine(7);
   const auto odometry = to_odometry(tracking_result(engine), context_of(engine), kIds);
   const geometry::Pose T_odom_base = random_pose(engine);
-  const auto message = to_transforms(odometry, T_odom_base, false, kIds);
+  const auto message = to_correction(odometry, T_odom_base, kIds);
   ASSERT_EQ(message.transforms().size(), 1U);
   EXPECT_EQ(message.transforms()[0].header().frame_id(), "map");
   EXPECT_EQ(message.transforms()[0].child_frame_id(), "odom");

@@ -65,15 +65,31 @@ TEST(OdometryTrack, VarianceGrowsWithTheWayAlsoOnTheSpotAndBackwards) {
 TEST(OdometryTrack, RefusesWhatCannotBeUsedAndBeginsAnewAfterAGap) {
   OdometryTrack track = arc_track();
   EXPECT_FALSE(track.add(at_s(4.0), arc(4.0))) << "same stamp";
-  EXPECT_FALSE(track.add(at_s(3.0), arc(3.0))) << "earlier";
+  EXPECT_FALSE(track.add(at_s(3.5), arc(3.5))) << "earlier";
   Pose broken = arc(4.1);
   broken.translation().x() = std::numeric_limits<double>::quiet_NaN();
   EXPECT_FALSE(track.add(at_s(4.1), broken));
   EXPECT_TRUE(track.between(at_s(1.0), at_s(4.0)));
-  EXPECT_TRUE(track.add(at_s(4.5), arc(9.0)));
+  EXPECT_TRUE(track.add(at_s(4.5), arc(4.5)));
   EXPECT_FALSE(track.between(at_s(3.9), at_s(4.5))) << "nobody knows what happened in between";
-  EXPECT_TRUE(track.add(at_s(4.6), arc(9.1)));
+  EXPECT_TRUE(track.add(at_s(4.6), arc(4.6)));
   EXPECT_TRUE(track.between(at_s(4.5), at_s(4.6))->T_from_to.isApprox(arc(0.1), 1e-9));
+}
+
+TEST(OdometryTrack, AJumpOfThePoseIsNoMotion) {
+  OdometryTrack track = arc_track();
+  EXPECT_TRUE(track.add(at_s(4.1), Pose::Identity())) << "the robot's odometry was set to zero";
+  EXPECT_FALSE(track.between(at_s(3.9), at_s(4.1)));
+  EXPECT_TRUE(track.add(at_s(4.2), arc(0.1)));
+  EXPECT_TRUE(track.between(at_s(4.1), at_s(4.2))->T_from_to.isApprox(arc(0.1), 1e-9));
+}
+
+TEST(OdometryTrack, ASourceThatBeganAnewIsHeard) {
+  OdometryTrack track = arc_track();
+  EXPECT_TRUE(track.add(at_s(50.0), arc(50.0))) << "one stamp from the future";
+  EXPECT_TRUE(track.add(at_s(4.1), arc(4.1)));
+  EXPECT_TRUE(track.add(at_s(4.2), arc(4.2)));
+  EXPECT_TRUE(track.between(at_s(4.1), at_s(4.2)));
 }
 
 TEST(OdometryTrack, ForgetsNothingThatIsStillNeeded) {

@@ -134,6 +134,22 @@ TEST_F(RgbdSlamOnWheels, GoesOnElsewhereByAnEdgeOfTheWheels) {
   EXPECT_EQ(next.keyframe_id, graph.nodes.back().id);
 }
 
+TEST_F(RgbdSlamOnWheels, TheGraphStaysConnectedWhenOdometryBeganAfterTheLastKeyframe) {
+  const int turned = 120;
+  slam_.process(room_frame(0));  // the only key-frame
+  feel(1, turned + 20);
+  slam_.process(room_frame(1));
+  slam_.process(room_frame(2));
+  ASSERT_EQ(slam_.keyframe_count(), 1U);
+  for (int i = turned; slam_.keyframe_count() == 1U && i < turned + 20; ++i) slam_.process(room_frame(i));
+  const PoseGraphSnapshot graph = slam_.pose_graph();
+  ASSERT_EQ(graph.edges.size(), 1U);
+  EXPECT_EQ(graph.edges[0].from, 0U);
+  EXPECT_EQ(graph.edges[0].to, 1U);
+  const Pose between = graph.nodes[0].T_map_camera.inverse() * graph.nodes[1].T_map_camera;
+  EXPECT_LT(geometry::se3_log(graph.edges[0].T_from_to.inverse() * between).norm(), 1e-9);
+}
+
 TEST_F(RgbdSlamOnWheels, KeyframesHaveEdgesOfVisionAndOfWheels) {
   feel(0, 60);
   for (int i = 0; i < 60; ++i) slam_.process(room_frame(i));

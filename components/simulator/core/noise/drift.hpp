@@ -14,7 +14,7 @@ struct DriftScales {
   double wheel = 1.0;    ///< factor on all standard deviations of wheel odometry (WheelNoiseConfig::scale)
 };
 
-/// kHard gives slam without loop closures an ATE of 15 to 30 cm on the tour of large_building
+/// kHard gives slam without loop closures and without wheels an ATE of 15 to 30 cm on the tour of large_building
 /// (docs/decisions/0019-what-hard-drift-is.md).
 constexpr DriftScales drift_scales(DriftPreset preset) {
   if (preset == DriftPreset::kHard) return {.texture = 0.9, .dropout = 0.05, .blur = 0.2, .depth = 3.7, .wheel = 3.0};

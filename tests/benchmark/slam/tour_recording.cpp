@@ -44,6 +44,7 @@ void drive(const SimulatorConfig& config, const std::function<void(const TourFra
   const simulator::World world = simulator::open_world(config);
   const simulator::StartPose start = simulator::start_pose(world, config);
   auto tour = simulator::plan_tour(world, start, config);
+  if (!tour) throw std::runtime_error("simulator.tour: a tour is needed, \"bundled\" or a file");
   simulator::Simulation simulation(world, simulator::simulation_config(config), start);
   const geometry::Pose T_base_camera = geometry::T_base_camera(camera_mount(config.robot.camera));
   std::optional<geometry::Pose> T_map_world;

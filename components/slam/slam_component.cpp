@@ -139,6 +139,7 @@ void SlamComponent::drop(time::Time stamp, const std::string& reason) {
 
 void SlamComponent::end_map() {
   spdlog::warn("the camera's stamps went back, so it has started anew: a new map begins");
+  slam_->settle();
   write_files();
   slam_.reset();
   last_pose_.reset();
@@ -204,6 +205,9 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   message.inliers(result.inliers);
   message.keyframes(static_cast<std::uint32_t>(slam_->keyframe_count()));
   message.landmarks(static_cast<std::uint32_t>(slam_->landmark_count()));
+  const LoopSummary loops = slam_->loops();
+  message.loop_closures(static_cast<std::uint32_t>(loops.closures));
+  if (loops.last) message.last_loop_closure(messages::to_message(*loops.last));
   message.frames_total(frames_total_);
   message.frames_tracked(frames_tracked_);
   message.frames_dropped(frames_dropped_);
@@ -214,6 +218,7 @@ void SlamComponent::finish() {
   spdlog::info("{} of {} frames tracked, {} dropped", frames_tracked_, frames_total_, frames_dropped_);
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
   if (slam_ == nullptr) return;
+  slam_->settle();
   publish_graph(true);
   pose_graph_.wait_until_acknowledged(kFarewell_s);
   write_files();

@@ -98,6 +98,37 @@ void describe(Field& field, PoseGraphConfig& c) {
 }
 
 template <class Field>
+void describe(Field& field, LoopConfig& c) {
+  field("enabled", c.enabled, config::anything(), "recognise places seen before and close loops");
+  field("candidates", c.candidates, config::in_range(1, 20), "most similar key-frames that are verified");
+  field("min_gap", c.min_gap, config::in_range(1, 1000), "the newest key-frames, which make no loop");
+  field("near_m", c.near_m, config::in_range(0, 10), "a key-frame this near in the map is tried too [m]");
+  field("near_rad", c.near_rad, config::in_range(0, 3.2), "the same for the direction of view [rad]");
+  field("min_inliers", c.min_inliers, config::in_range(10, 1000), "of the alignment with the older key-frame");
+  field("min_inlier_share", c.min_inlier_share, config::in_range(0, 1), "of its matches");
+  field("max_sigma_m", c.max_sigma_m, config::in_range(1e-3, 1),
+        "an alignment less sure in any direction makes no loop [m]");
+  field("max_sigma_rad", c.max_sigma_rad, config::in_range(1e-3, 1), "the same for the rotation [rad]");
+  field("confirm_within", c.confirm_within, config::in_range(1, 100),
+        "key-frames within which a second one has to say the same");
+  field("max_disagreement_m", c.max_disagreement_m, config::in_range(0.01, 2), "between the two [m]");
+  field("max_disagreement_rad", c.max_disagreement_rad, config::in_range(0.01, 1), "between the two [rad]");
+  field("spacing_m", c.spacing_m, config::in_range(0, 100), "way between pairs of loops [m]");
+  field("latency_frames", c.latency_frames, config::in_range(1, 1000), "from a loop to the corrected map");
+}
+
+template <class Field>
+void describe(Field& field, RelocalizationConfig& c) {
+  field("min_inliers", c.min_inliers, config::in_range(10, 1000), "of the alignment with a recognised key-frame");
+  field("confirmations", c.confirmations, config::in_range(0, 100),
+        "frames that have to find the same pose again, unless motion leads there");
+  field("near_m", c.near_m, config::in_range(0.01, 5), "distance of poses that are the same [m]");
+  field("near_rad", c.near_rad, config::in_range(0.01, 3), "angle of poses that are the same [rad]");
+  field("speed_m_s", c.speed_m_s, config::in_range(0, 10), "between such frames, when no wheels tell [m/s]");
+  field("memory_s", c.memory_s, config::in_range(0.01, 10), "longest time between such frames [s]");
+}
+
+template <class Field>
 void describe(Field& field, OdometryConfig& c) {
   field("distance_sigma", c.distance_sigma, config::in_range(0, 1), "of wheel odometry along the way, after 1 m [m]");
   field("turn_sigma", c.turn_sigma, config::in_range(0, 1), "of its heading, after a turn of 1 rad [rad]");
@@ -121,6 +152,8 @@ void describe(Field& field, SlamComponentConfig& c) {
   field("keyframe", c.method.keyframe);
   field("bundle", c.method.bundle);
   field("pose_graph", c.method.pose_graph);
+  field("loop", c.method.loop);
+  field("relocalization", c.method.relocalization);
   field("odometry", c.method.odometry);
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
         "between colour, depth and camera info of one frame [s]");

@@ -66,9 +66,37 @@ struct BundleConfig {
 /// From the Hessian of an alignment to the information of an edge. The share is calibrated on the recorded sequences
 /// (normalised estimation error squared near its expectation); the bounds keep an edge from being blind or too sure.
 struct PoseGraphConfig {
-  double information_share = 0.1;  ///< of the residuals that count as independent [1e-3, 1]
-  double min_information = 1.0;    ///< [1/m^2, 1/rad^2] [1e-6, 1e6]
-  double max_information = 1e8;    ///< [1/m^2, 1/rad^2] [1, 1e12]
+  double information_share = 0.25;  ///< of the residuals that count as independent [1e-3, 1]
+  double min_information = 1.0;     ///< [1/m^2, 1/rad^2] [1e-6, 1e6]
+  double max_information = 1e8;     ///< [1/m^2, 1/rad^2] [1, 1e12]
+};
+
+/// Recognition of places that were seen before, at key-frames.
+struct LoopConfig {
+  bool enabled = true;
+  int candidates = 3;                  ///< most similar key-frames that are verified [1, 20]
+  int min_gap = 10;                    ///< younger key-frames are no loops [1, 1000]
+  double near_m = 1.5;                 ///< a key-frame this near in the map is tried too [0, 10]
+  double near_rad = 0.7;               ///< the same, at the same place [0, 3.2]
+  int min_inliers = 30;                ///< of the alignment [10, 1000]
+  double min_inlier_share = 0.4;       ///< of the matches [0, 1]
+  double max_sigma_m = 0.06;           ///< an alignment that is less sure of any direction is refused [1e-3, 1]
+  double max_sigma_rad = 0.03;         ///< the same [1e-3, 1]
+  int confirm_within = 3;              ///< key-frames, in which a second one has to say the same [1, 100]
+  double max_disagreement_m = 0.1;     ///< between the two [0.01, 2]
+  double max_disagreement_rad = 0.05;  ///< between the two [0.01, 1]
+  double spacing_m = 5.0;              ///< way between pairs of loops along one passage [0, 100]
+  int latency_frames = 15;             ///< from a loop to the corrected map [1, 1000]
+};
+
+/// When a pose that was found by recognising a place is believed.
+struct RelocalizationConfig {
+  int min_inliers = 25;    ///< of the alignment with the recognised key-frame [10, 1000]
+  int confirmations = 2;   ///< frames that have to find the same again, unless motion leads there [0, 100]
+  double near_m = 0.25;    ///< what "the same" is, and where motion leads [0.01, 5]
+  double near_rad = 0.2;   ///< the same [0.01, 3]
+  double speed_m_s = 1.0;  ///< between frames, when no wheels tell [0, 10]
+  double memory_s = 0.5;   ///< longest time between frames that confirm each other [0.01, 10]
 };
 
 /// Wheel odometry. Standard deviations of a random walk are those after the first metre or radian: they grow with its
@@ -96,6 +124,8 @@ struct SlamConfig {
   KeyframeConfig keyframe;
   BundleConfig bundle;
   PoseGraphConfig pose_graph;
+  LoopConfig loop;
+  RelocalizationConfig relocalization;
   OdometryConfig odometry;
 };
 

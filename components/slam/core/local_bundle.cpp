@@ -101,16 +101,21 @@ void remove_outliers(const SlamConfig& config, const LocalMap& local, Map& map) 
 
 }  // namespace
 
-bool adjust_local_map(const SlamConfig& config, const std::vector<KeyframeLink>& links, Map& map) {
-  if (map.keyframes().size() < 2) return false;
+std::vector<KeyframeId> adjust_local_map(const SlamConfig& config, const std::vector<KeyframeLink>& links, Map& map) {
+  std::vector<KeyframeId> moved;
+  if (map.keyframes().size() < 2) return moved;
   LocalMap local = cut_out(config, links, map);
-  if (local.observations.empty() || !adjust_bundle(config.bundle, config.noise, local.problem).is_usable) return false;
-  for (const auto& [id, camera] : local.cameras) map.set_pose(id, local.problem.cameras[camera].T_map_camera);
+  if (local.observations.empty() || !adjust_bundle(config.bundle, config.noise, local.problem).is_usable) return moved;
+  for (const auto& [id, camera] : local.cameras) {
+    if (local.problem.cameras[camera].is_fixed) continue;
+    map.set_pose(id, local.problem.cameras[camera].T_map_camera);
+    moved.push_back(id);
+  }
   for (std::size_t i = 0; i < local.landmarks.size(); ++i) {
     map.set_position(local.landmarks[i], local.problem.points_map[i]);
   }
   remove_outliers(config, local, map);
-  return true;
+  return moved;
 }
 
 }  // namespace lapis::slam

@@ -46,6 +46,16 @@ void Map::set_pose(KeyframeId id, const geometry::Pose& T_map_camera) {
   keyframes_[static_cast<std::size_t>(id)].T_map_camera = T_map_camera;
 }
 
+void Map::move(const std::vector<geometry::Pose>& moves) {
+  for (Keyframe& keyframe : keyframes_) {
+    keyframe.T_map_camera = moves[static_cast<std::size_t>(keyframe.id)] * keyframe.T_map_camera;
+  }
+  for (Landmark& landmark : landmarks_) {
+    if (landmark.observations.empty()) continue;
+    landmark.p_map = moves[static_cast<std::size_t>(landmark.observations.front().keyframe)] * landmark.p_map;
+  }
+}
+
 std::vector<KeyframeId> Map::covisible(KeyframeId id, std::size_t most) const {
   std::vector<std::size_t> shared(keyframes_.size(), 0);
   for (const LandmarkId landmark : keyframe(id).landmarks) {

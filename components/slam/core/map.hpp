@@ -57,6 +57,9 @@ class Map {
   const Landmark& landmark(LandmarkId id) const { return landmarks_[id]; }
   std::size_t landmark_count() const { return alive_; }
   void set_pose(KeyframeId id, const geometry::Pose& T_map_camera);
+  /// Moves every key-frame by its transform of the map (T_map_camera becomes moves[id] * T_map_camera), and every
+  /// landmark by that of the key-frame that saw it first.
+  void move(const std::vector<geometry::Pose>& moves);
   void set_position(LandmarkId id, const Eigen::Vector3d& p_map) { landmarks_[id].p_map = p_map; }
 
   /// Key-frames that share landmarks with `id`: most shared first, then the newest. Without `id` itself.

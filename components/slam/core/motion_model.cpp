@@ -16,15 +16,24 @@ void MotionModel::update(const Map& map, time::Time stamp, const RelativeCamera&
   last_ = next;
 }
 
-std::optional<Pose> MotionModel::predict(const Map& map, time::Time stamp) const {
+std::optional<MotionModel::Expected> MotionModel::expect(const Map& map, time::Time stamp) const {
   if (const auto reckoned = dead_reckon(stamp)) {
-    return map.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera;
+    return Expected{map.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera,
+                    reckoned->covariance};
   }
   if (!last_) return std::nullopt;
   const double elapsed_s = (stamp - last_->stamp).seconds();
   if (elapsed_s < 0.0 || elapsed_s > max_gap_s_) return std::nullopt;
-  return map.keyframe(last_->camera.reference).T_map_camera * last_->camera.T_reference_camera *
-         geometry::se3_exp(last_->velocity * elapsed_s);
+  const geometry::Vector6d moved = last_->velocity * elapsed_s;
+  return Expected{
+      map.keyframe(last_->camera.reference).T_map_camera * last_->camera.T_reference_camera * geometry::se3_exp(moved),
+      last_->camera.covariance + Matrix6d(moved.cwiseAbs2().asDiagonal())};
+}
+
+std::optional<Pose> MotionModel::predict(const Map& map, time::Time stamp) const {
+  const auto expected = expect(map, stamp);
+  if (!expected) return std::nullopt;
+  return expected->T_map_camera;
 }
 
 std::optional<RelativeCamera> MotionModel::dead_reckon(time::Time stamp) const {

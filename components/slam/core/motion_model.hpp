@@ -28,6 +28,13 @@ class MotionModel {
   bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base) { return odometry_.add(stamp, T_odom_base); }
   /// The pose of a frame was found.
   void update(const Map& map, time::Time stamp, const RelativeCamera& camera);
+  /// Where motion leads, and how surely: by odometry as dead_reckon says; by constant velocity with a standard
+  /// deviation of as much as the camera has moved since. None as in predict.
+  struct Expected {
+    geometry::Pose T_map_camera = geometry::Pose::Identity();
+    geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
+  };
+  std::optional<Expected> expect(const Map& map, time::Time stamp) const;
   /// T_map_camera at a stamp; none before the first update and when neither odometry nor velocity reaches so far.
   std::optional<geometry::Pose> predict(const Map& map, time::Time stamp) const;
   /// Where odometry alone says the camera is; the covariance grows with the way since the last update.

@@ -1,16 +1,21 @@
 #include "slam/core/rgbd_slam.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <optional>
 #include <utility>
 #include <vector>
 
 #include <Eigen/LU>
 
+#include "slam/core/graph_worker.hpp"
 #include "slam/core/keyframe_rule.hpp"
 #include "slam/core/local_bundle.hpp"
+#include "slam/core/loop_detector.hpp"
 #include "slam/core/motion_model.hpp"
 #include "slam/core/noise_model.hpp"
+#include "slam/core/relocalizer.hpp"
+#include "slam/core/slam_graph.hpp"
 #include "slam/core/tracker.hpp"
 
 namespace lapis::slam {
@@ -42,16 +47,19 @@ class RgbdSlam::Implementation {
  public:
   Implementation(const SlamConfig& config, const Pose& T_map_first_camera, const Pose& T_base_camera)
       : config_(config), T_map_first_camera_(T_map_first_camera), extractor_(config.features), tracker_(config),
-        motion_(config.tracker.max_prediction_s, config.odometry, T_base_camera) {}
+        motion_(config.tracker.max_prediction_s, config.odometry, T_base_camera), graph_(config.pose_graph),
+        loops_(config), relocalizer_(config.relocalization) {}
 
   bool add_odometry(time::Time stamp, const Pose& T_odom_base) { return motion_.add_odometry(stamp, T_odom_base); }
 
   TrackingResult process(const RgbdFrame& input) {
+    ++frame_count_;
+    if (const auto correction = worker_.take(frame_count_)) correct(*correction);
     if (const auto fault = find_fault(input, config_.noise)) return without_vision(input.stamp, *fault);
     const Frame frame = make_frame(input, extractor_, config_.noise);
     if (map_.empty()) return start_map(frame);
 
-    TrackOutcome outcome = tracker_.track(map_, frame, motion_.predict(map_, input.stamp));
+    const TrackOutcome outcome = find_pose(frame);
     if (!outcome.is_tracked) return continue_blind(frame, outcome.reason);
     blind_frames_ = 0;
     ++frames_since_keyframe_;
@@ -64,14 +72,12 @@ class RgbdSlam::Implementation {
 
   std::optional<Pose> odometry_at(time::Time stamp) const { return motion_.odometry_at(stamp); }
 
-  PoseGraphSnapshot pose_graph() const {
-    PoseGraphSnapshot snapshot{version_, {}, edges_};
-    for (const Keyframe& keyframe : map_.keyframes()) {
-      snapshot.nodes.push_back({keyframe.id, keyframe.stamp, keyframe.T_map_camera});
-    }
-    return snapshot;
+  void settle() {
+    while (const auto correction = worker_.take(std::numeric_limits<std::uint64_t>::max())) correct(*correction);
   }
 
+  PoseGraphSnapshot pose_graph() const { return graph_.snapshot(map_, version_); }
+  LoopSummary loops() const { return loop_summary_; }
   std::uint64_t version() const { return version_; }
   std::size_t keyframe_count() const { return map_.keyframes().size(); }
   std::size_t landmark_count() const { return map_.landmark_count(); }
@@ -89,6 +95,20 @@ class RgbdSlam::Implementation {
   }
 
  private:
+  // Near where motion leads, or else anywhere in the map; believed only when motion or the next frames agree.
+  TrackOutcome find_pose(const Frame& frame) {
+    TrackOutcome outcome = tracker_.track(map_, frame, motion_.predict(map_, frame.input->stamp));
+    if (!outcome.is_tracked) {
+      TrackOutcome found = relocalizer_.search(map_, loops_, tracker_, frame);
+      if (!found.is_tracked) return outcome;
+      outcome = std::move(found);
+    }
+    if (relocalizer_.believes(map_, motion_, frame.input->stamp, outcome)) return outcome;
+    outcome.is_tracked = false;
+    outcome.reason = "a recognised place awaits confirmation";
+    return outcome;
+  }
+
   // The view has changed altogether, or there is nothing to see. When there is, and the wheels tell where, the map goes
   // on from there.
   TrackingResult continue_blind(const Frame& frame, const std::string& reason) {
@@ -110,7 +130,7 @@ class RgbdSlam::Implementation {
     result.T_keyframe_camera = camera.T_reference_camera;
     result.covariance = camera.covariance;
     result.map_covariance =
-        compound_covariance(covariances_[camera.reference], camera.T_reference_camera, camera.covariance);
+        compound_covariance(graph_.covariance(camera.reference), camera.T_reference_camera, camera.covariance);
   }
 
   TrackingResult with_pose(const Frame& frame, const TrackOutcome& outcome) const {
@@ -135,7 +155,8 @@ class RgbdSlam::Implementation {
                             &frame);
     }
     const KeyframeId id = add_keyframe(frame, T_map_first_camera_);
-    covariances_.emplace_back(Matrix6d::Zero());
+    graph_.add_root();
+    loops_.add(map_, graph_, tracker_, frame, id);
     add_landmarks(id);
     tracker_.set_reference(map_, id);
     motion_.update(map_, frame.input->stamp, {id, Pose::Identity(), Matrix6d::Zero()});
@@ -175,26 +196,44 @@ class RgbdSlam::Implementation {
   void insert_keyframe(const Frame& frame, const TrackOutcome* outcome, TrackingResult& result) {
     const KeyframeId previous = map_.keyframes().back().id;
     const KeyframeId id = add_keyframe(frame, result.T_map_keyframe * result.T_keyframe_camera);
-    covariances_.push_back(result.map_covariance);
+    const EdgeType type = outcome != nullptr ? EdgeType::kOdometry : EdgeType::kWheelOdometry;
+    graph_.add_keyframe({result.keyframe_id, id, type, result.T_keyframe_camera,
+                         bounded_information(config_.pose_graph, result.covariance.inverse())},
+                        result.covariance, result.map_covariance);
     if (outcome != nullptr) {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
-      add_visual_edge(id, *outcome);
+      graph_.add_link(
+          {outcome->reference, id, outcome->alignment.T_reference_camera, outcome->alignment.surface_information});
       add_wheel_edge(previous, id);
-    } else {
-      edges_.push_back({result.keyframe_id, id, EdgeType::kWheelOdometry, result.T_keyframe_camera,
-                        bounded_information(config_.pose_graph, result.covariance.inverse())});
     }
     add_landmarks(id);
-    adjust_local_map(config_, links_, map_);
+    graph_.follow(map_, adjust_local_map(config_, graph_.links(), map_));
+    close_loops(frame, id);
     tracker_.set_reference(map_, id);
     become_keyframe(id, result);
   }
 
-  void add_visual_edge(KeyframeId id, const TrackOutcome& outcome) {
-    const Alignment& alignment = outcome.alignment;
-    edges_.push_back({outcome.reference, id, EdgeType::kOdometry, alignment.T_reference_camera,
-                      edge_information(config_.pose_graph, alignment.information)});
-    links_.push_back({outcome.reference, id, alignment.T_reference_camera, alignment.surface_information});
+  void close_loops(const Frame& frame, KeyframeId id) {
+    const std::vector<PoseGraphEdge> found = loops_.add(map_, graph_, tracker_, frame, id);
+    for (const PoseGraphEdge& loop : found) graph_.add_edge(loop);
+    if (found.empty()) return;
+    loop_summary_.last = frame.input->stamp;
+    must_optimize_ = true;
+    optimize();
+  }
+
+  void optimize() {
+    if (!must_optimize_ || worker_.is_busy()) return;
+    must_optimize_ = false;
+    worker_.start(pose_graph(), frame_count_ + static_cast<std::uint64_t>(config_.loop.latency_frames));
+  }
+
+  void correct(const GraphCorrection& correction) {
+    graph_.apply(correction, map_);
+    tracker_.set_reference(map_, reference_);
+    ++version_;
+    loop_summary_.closures = graph_.count(EdgeType::kLoopClosure);
+    optimize();
   }
 
   void add_wheel_edge(KeyframeId from, KeyframeId to) {
@@ -202,8 +241,8 @@ class RgbdSlam::Implementation {
     motion_.forget_before(map_.keyframe(to).stamp);
     if (!motion) return;
     const Matrix6d information = bounded_information(config_.pose_graph, motion->covariance.inverse());
-    edges_.push_back({from, to, EdgeType::kWheelOdometry, motion->T_from_to, information});
-    links_.push_back({from, to, motion->T_from_to, information});
+    graph_.add_edge({from, to, EdgeType::kWheelOdometry, motion->T_from_to, information});
+    graph_.add_link({from, to, motion->T_from_to, information});
   }
 
   void become_keyframe(KeyframeId id, TrackingResult& result) {
@@ -249,10 +288,14 @@ class RgbdSlam::Implementation {
   Tracker tracker_;
   MotionModel motion_;
   Map map_;
-  std::vector<PoseGraphEdge> edges_;
-  std::vector<KeyframeLink> links_;
-  std::vector<Matrix6d> covariances_;  // of each key-frame's pose in the map
+  SlamGraph graph_;
+  LoopDetector loops_;
+  Relocalizer relocalizer_;
+  GraphWorker worker_;
+  LoopSummary loop_summary_;
+  bool must_optimize_ = false;  // there are loops that no optimisation knows
   KeyframeId reference_ = 0;
+  std::uint64_t frame_count_ = 0;
   int frames_since_keyframe_ = 0;
   int blind_frames_ = 0;  // in a row, with enough to see
   std::uint64_t version_ = 0;
@@ -270,6 +313,8 @@ std::optional<Pose> RgbdSlam::odometry_at(time::Time stamp) const { return imple
 TrackingResult RgbdSlam::skip(time::Time stamp, const std::string& reason) const {
   return implementation_->without_vision(stamp, reason);
 }
+void RgbdSlam::settle() { implementation_->settle(); }
+LoopSummary RgbdSlam::loops() const { return implementation_->loops(); }
 PoseGraphSnapshot RgbdSlam::pose_graph() const { return implementation_->pose_graph(); }
 std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(); }
 std::size_t RgbdSlam::keyframe_count() const { return implementation_->keyframe_count(); }

@@ -41,8 +41,14 @@ inline bool has_pose(const TrackingResult& result) {
   return result.state == TrackingState::kTracking || result.state == TrackingState::kDeadReckoning;
 }
 
-/// RGB-D key-frame odometry: features and surfaces aligned with a local map, local bundle adjustment, pose graph.
-/// Deterministic: the same frames give the same bits.
+/// Loops that the map has closed.
+struct LoopSummary {
+  std::size_t closures = 0;        ///< edges of the optimised graph
+  std::optional<time::Time> last;  ///< stamp of the key-frame that found the newest
+};
+
+/// RGB-D SLAM: features and surfaces aligned with a local map, local bundle adjustment, loop closure, pose graph.
+/// Deterministic: the same frames give the same bits, although the graph is optimised in another thread.
 class RgbdSlam {
  public:
   /// `T_map_first_camera`: pose given to the first key-frame; `T_base_camera`: where the camera is on the robot, for
@@ -61,7 +67,10 @@ class RgbdSlam {
   std::optional<geometry::Pose> odometry_at(time::Time stamp) const;
   /// What to tell of a frame that cannot be processed: it has the pose of dead reckoning or none.
   TrackingResult skip(time::Time stamp, const std::string& reason) const;
+  /// Waits for optimisations under way and applies them: what the map is at the end.
+  void settle();
   PoseGraphSnapshot pose_graph() const;
+  LoopSummary loops() const;
   /// Grows with every new key-frame and every change of a key-frame's pose.
   std::uint64_t graph_version() const;
   std::size_t keyframe_count() const;

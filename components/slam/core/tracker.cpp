@@ -48,8 +48,9 @@ TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optio
     return best.is_tracked && best.inliers.size() >= static_cast<std::size_t>(config_.tracker.min_matches);
   };
   if (predicted) {
-    if (is_convincing(track_projected(map, frame, *predicted, config_.matcher.search_radius_px))) return best;
-    if (is_convincing(track_projected(map, frame, *predicted, config_.matcher.wide_search_radius_px))) return best;
+    if (is_convincing(track_projected(map, frame, local_, *predicted, config_.matcher.search_radius_px))) return best;
+    if (is_convincing(track_projected(map, frame, local_, *predicted, config_.matcher.wide_search_radius_px)))
+      return best;
   }
   if (is_convincing(track_brute_force(map, frame, local_)) || best.is_tracked) return best;
   const auto count = std::min(map.keyframes().size(), static_cast<std::size_t>(config_.tracker.recovery_keyframes));
@@ -61,10 +62,17 @@ TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optio
   return best;
 }
 
-TrackOutcome Tracker::track_projected(const Map& map, const Frame& frame, const Pose& predicted,
+TrackOutcome Tracker::recognize(const Map& map, const Frame& frame, KeyframeId keyframe,
+                                const std::optional<Pose>& T_map_camera) const {
+  const LocalMap local = local_map(map, keyframe);
+  if (!T_map_camera) return track_brute_force(map, frame, local);
+  return track_projected(map, frame, local, *T_map_camera, config_.matcher.wide_search_radius_px);
+}
+
+TrackOutcome Tracker::track_projected(const Map& map, const Frame& frame, const LocalMap& local, const Pose& predicted,
                                       double radius_px) const {
-  const auto matches = match_by_projection(config_, map, local_.landmarks, frame, predicted, radius_px);
-  return align(map, frame, local_, matches, map.keyframe(local_.reference).T_map_camera.inverse() * predicted);
+  const auto matches = match_by_projection(config_, map, local.landmarks, frame, predicted, radius_px);
+  return align(map, frame, local, matches, map.keyframe(local.reference).T_map_camera.inverse() * predicted);
 }
 
 TrackOutcome Tracker::track_brute_force(const Map& map, const Frame& frame, const LocalMap& local) const {

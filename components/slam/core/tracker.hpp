@@ -31,6 +31,10 @@ class Tracker {
   /// Tries, in this order, until one is convincing: projection with the predicted pose, the same with a wider search,
   /// brute force with the reference key-frame, brute force with the newest key-frames.
   TrackOutcome track(const Map& map, const Frame& frame, const std::optional<geometry::Pose>& predicted) const;
+  /// Pose of a frame relative to a key-frame anywhere in the map, by brute force; where the pose is about known
+  /// (`T_map_camera`), by projection. No neighbour is tried.
+  TrackOutcome recognize(const Map& map, const Frame& frame, KeyframeId keyframe,
+                         const std::optional<geometry::Pose>& T_map_camera = std::nullopt) const;
 
  private:
   /// What frames near a key-frame are compared with.
@@ -41,8 +45,8 @@ class Tracker {
   };
 
   LocalMap local_map(const Map& map, KeyframeId reference) const;
-  TrackOutcome track_projected(const Map& map, const Frame& frame, const geometry::Pose& predicted,
-                               double radius_px) const;
+  TrackOutcome track_projected(const Map& map, const Frame& frame, const LocalMap& local,
+                               const geometry::Pose& predicted, double radius_px) const;
   TrackOutcome track_brute_force(const Map& map, const Frame& frame, const LocalMap& local) const;
   TrackOutcome align(const Map& map, const Frame& frame, const LocalMap& local, const std::vector<Match>& matches,
                      const geometry::Pose& T_reference_camera) const;

@@ -1,0 +1,44 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "slam/core/place_index.hpp"
+#include "slam/core/slam_graph.hpp"
+#include "slam/core/tracker.hpp"
+
+namespace lapis::slam {
+
+/// Recognises, at a new key-frame, places that were seen before. What the place index proposes, and what is near in the
+/// map, is verified in 3-D; a loop counts when a second key-frame soon after says the same.
+class LoopDetector {
+ public:
+  explicit LoopDetector(const SlamConfig& config) : config_(config) {}
+
+  /// The key-frames that are most similar to a frame, for relocalisation; best first.
+  std::vector<KeyframeId> resembling(const Frame& frame) const;
+  /// The key-frame has got its place in the map and the graph: looks for older ones that show the same, and remembers
+  /// it. Returns the edges that close loops: none, or those of a pair of key-frames that agree.
+  std::vector<PoseGraphEdge> add(const Map& map, const SlamGraph& graph, const Tracker& tracker, const Frame& frame,
+                                 KeyframeId id);
+  /// Key-frames whose revisit was recognised and confirmed, whether or not that made an edge.
+  std::size_t revisits() const { return revisits_; }
+
+ private:
+  struct Candidate {
+    KeyframeId keyframe = 0;
+    std::optional<geometry::Pose> T_map_camera;  // where the frame is if the map is right; none: by appearance alone
+  };
+  std::vector<Candidate> candidates(const Map& map, const Frame& frame, KeyframeId id) const;
+  std::optional<PoseGraphEdge> verify(const Map& map, const SlamGraph& graph, const Tracker& tracker,
+                                      const Frame& frame, KeyframeId id) const;
+  bool agrees(const Map& map, const PoseGraphEdge& earlier, const PoseGraphEdge& later) const;
+
+  SlamConfig config_;
+  PlaceIndex index_;
+  std::optional<PoseGraphEdge> pending_;  // verified, not yet confirmed by a second one
+  std::optional<KeyframeId> closed_;      // newest key-frame that made an edge
+  std::size_t revisits_ = 0;
+};
+
+}  // namespace lapis::slam

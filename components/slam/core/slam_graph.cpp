@@ -1,0 +1,91 @@
+#include "slam/core/slam_graph.hpp"
+
+#include <algorithm>
+
+namespace lapis::slam {
+
+using geometry::Matrix6d;
+using geometry::Pose;
+
+namespace {
+
+constexpr double kLeastWeight = 0.5;  // of an edge that stays
+
+}  // namespace
+
+void SlamGraph::add_root() {
+  parents_.emplace_back();
+  covariances_.emplace_back(Matrix6d::Zero());
+}
+
+void SlamGraph::add_keyframe(const PoseGraphEdge& edge, const Matrix6d& covariance, const Matrix6d& map_covariance) {
+  edges_.push_back(edge);
+  parents_.push_back({edge.from, covariance});
+  covariances_.push_back(map_covariance);
+}
+
+void SlamGraph::follow(const Map& map, const std::vector<KeyframeId>& moved) {
+  const auto has_moved = [&](KeyframeId id) { return std::find(moved.begin(), moved.end(), id) != moved.end(); };
+  for (PoseGraphEdge& edge : edges_) {
+    if (edge.type != EdgeType::kOdometry || !(has_moved(edge.from) || has_moved(edge.to))) continue;
+    edge.T_from_to = map.keyframe(edge.from).T_map_camera.inverse() * map.keyframe(edge.to).T_map_camera;
+  }
+}
+
+Matrix6d SlamGraph::chain_covariance(const Map& map, KeyframeId from, KeyframeId to) const {
+  const auto T_between = [&](KeyframeId a, KeyframeId b) {
+    return Pose(map.keyframe(a).T_map_camera.inverse() * map.keyframe(b).T_map_camera);
+  };
+  Matrix6d of_from = Matrix6d::Zero();  // covariance of T_ancestor_from
+  Matrix6d of_to = Matrix6d::Zero();    // covariance of T_ancestor_to
+  KeyframeId a = from;
+  KeyframeId b = to;
+  while (a != b) {
+    KeyframeId& younger = a > b ? a : b;
+    Matrix6d& covariance = a > b ? of_from : of_to;
+    const Parent& parent = parents_[static_cast<std::size_t>(younger)];
+    covariance = compound_covariance(parent.covariance, T_between(younger, a > b ? from : to), covariance);
+    younger = parent.id;
+  }
+  // T_from_to = (T_ancestor_from exp(f))^-1 T_ancestor_to exp(t)
+  const Matrix6d move = geometry::adjoint(T_between(to, from));
+  return move * of_from * move.transpose() + of_to;
+}
+
+void SlamGraph::apply(const GraphCorrection& correction, Map& map) {
+  std::vector<Pose> moves;  // of each key-frame, in the map
+  for (const Keyframe& keyframe : map.keyframes()) {
+    const auto i = static_cast<std::size_t>(keyframe.id);
+    const bool is_known = i < correction.T_map_camera.size();
+    moves.push_back(is_known ? Pose(correction.T_map_camera[i] * correction.T_map_before[i].inverse())
+                             : moves[static_cast<std::size_t>(parents_[i].id)]);
+    if (is_known) {
+      covariances_[i] = correction.covariances[i].value_or(covariances_[i]);
+    } else {
+      const Parent& parent = parents_[i];
+      const Pose T_parent_keyframe = map.keyframe(parent.id).T_map_camera.inverse() * keyframe.T_map_camera;
+      covariances_[i] = compound_covariance(covariance(parent.id), T_parent_keyframe, parent.covariance);
+    }
+  }
+  map.move(moves);
+  std::vector<PoseGraphEdge> kept;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    if (i >= correction.weights.size() || correction.weights[i] >= kLeastWeight) kept.push_back(edges_[i]);
+  }
+  edges_ = std::move(kept);
+}
+
+std::size_t SlamGraph::count(EdgeType type) const {
+  return static_cast<std::size_t>(
+      std::count_if(edges_.begin(), edges_.end(), [&](const PoseGraphEdge& edge) { return edge.type == type; }));
+}
+
+PoseGraphSnapshot SlamGraph::snapshot(const Map& map, std::uint64_t version) const {
+  PoseGraphSnapshot snapshot{version, {}, edges_};
+  for (const Keyframe& keyframe : map.keyframes()) {
+    snapshot.nodes.push_back({keyframe.id, keyframe.stamp, keyframe.T_map_camera});
+  }
+  return snapshot;
+}
+
+}  // namespace lapis::slam

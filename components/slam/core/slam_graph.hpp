@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "slam/core/local_bundle.hpp"
+#include "slam/core/map.hpp"
+#include "slam/core/motion_model.hpp"
+#include "slam/core/pose_graph.hpp"
+
+namespace lapis::slam {
+
+/// What an optimisation of the pose graph made of it.
+struct GraphCorrection {
+  std::vector<geometry::Pose> T_map_camera;                    ///< of each key-frame that the optimisation knew
+  std::vector<geometry::Pose> T_map_before;                    ///< the same, when it began
+  std::vector<std::optional<geometry::Matrix6d>> covariances;  ///< the same, relative to the first key-frame
+  std::vector<double> weights;                                 ///< of each edge that it knew, 0 = an outlier
+};
+
+/// Edges between the key-frames of a map, and what follows from them: how well each pose is known. Every key-frame but
+/// the first has a parent, the older key-frame that its pose was found from; so the graph is connected.
+class SlamGraph {
+ public:
+  explicit SlamGraph(const PoseGraphConfig& config) : config_(config) {}
+
+  /// The first key-frame: its pose is the gauge.
+  void add_root();
+  /// The next key-frame, with the edge to its parent. `covariance`: of edge.T_from_to, right perturbation.
+  void add_keyframe(const PoseGraphEdge& edge, const geometry::Matrix6d& covariance,
+                    const geometry::Matrix6d& map_covariance);
+  void add_edge(const PoseGraphEdge& edge) { edges_.push_back(edge); }
+  void add_link(const KeyframeLink& link) { links_.push_back(link); }
+
+  /// Visual edges are what the local map says: those of key-frames that bundle adjustment has moved follow.
+  void follow(const Map& map, const std::vector<KeyframeId>& moved);
+  /// Covariance of T_from_to by the parents' edges alone, as if no loop were closed: an upper bound.
+  geometry::Matrix6d chain_covariance(const Map& map, KeyframeId from, KeyframeId to) const;
+  /// Moves key-frames and landmarks of the map; younger key-frames follow their parents. Edges that turned out to be
+  /// outliers are removed.
+  void apply(const GraphCorrection& correction, Map& map);
+
+  std::size_t count(EdgeType type) const;
+  const std::vector<KeyframeLink>& links() const { return links_; }
+  /// Of the key-frame's pose in the map.
+  const geometry::Matrix6d& covariance(KeyframeId id) const { return covariances_[static_cast<std::size_t>(id)]; }
+  PoseGraphSnapshot snapshot(const Map& map, std::uint64_t version) const;
+
+ private:
+  struct Parent {
+    KeyframeId id = 0;
+    geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // of T_parent_keyframe
+  };
+  PoseGraphConfig config_;
+  std::vector<PoseGraphEdge> edges_;
+  std::vector<KeyframeLink> links_;
+  std::vector<Parent> parents_;                  // of each key-frame; the first is its own
+  std::vector<geometry::Matrix6d> covariances_;  // of each key-frame's pose in the map
+};
+
+}  // namespace lapis::slam

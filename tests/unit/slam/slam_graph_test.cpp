@@ -1,0 +1,122 @@
+#include "slam/core/slam_graph.hpp"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace lapis::slam {
+namespace {
+
+using geometry::Matrix6d;
+using geometry::Pose;
+using geometry::Vector6d;
+
+// A chain of key-frames with a branch: 0 - 1 - 2 - 3, and 4 whose parent is 1.
+class SlamGraphTest : public ::testing::Test {
+ protected:
+  SlamGraphTest() {
+    for (std::size_t i = 0; i < steps_.size() + 1; ++i) {
+      Keyframe keyframe;
+      keyframe.features.resize(1);
+      keyframe.T_map_camera =
+          i == 0 ? random_pose(1.0) : Pose(map_.keyframe(parent_[i - 1]).T_map_camera * steps_[i - 1]);
+      const KeyframeId id = map_.add_keyframe(keyframe);
+      map_.add_observation(map_.add_landmark(keyframe.T_map_camera * Eigen::Vector3d(0, 0, 2), 2.0), {id, 0});
+      if (i == 0) {
+        graph_.add_root();
+        continue;
+      }
+      graph_.add_keyframe({parent_[i - 1], id, EdgeType::kOdometry, steps_[i - 1], covariance_.inverse()}, covariance_,
+                          static_cast<double>(i) * covariance_);
+    }
+  }
+  Pose random_pose(double size) {
+    Vector6d xi;
+    for (double& x : xi) x = size * normal_(engine_);
+    return geometry::se3_exp(xi);
+  }
+  static Matrix6d make_covariance() {
+    Vector6d sigma;
+    sigma << 0.01, 0.02, 0.015, 0.004, 0.002, 0.006;
+    return sigma.cwiseAbs2().asDiagonal();
+  }
+
+  std::mt19937 engine_{3};
+  std::normal_distribution<double> normal_{0.0, 1.0};
+  std::vector<KeyframeId> parent_{0, 1, 2, 1};
+  std::vector<Pose> steps_{random_pose(0.3), random_pose(0.3), random_pose(0.3), random_pose(0.3)};
+  Matrix6d covariance_ = make_covariance();
+  Map map_;
+  SlamGraph graph_{{}};
+};
+
+// Against the sample covariance of chains whose steps are disturbed.
+TEST_F(SlamGraphTest, ChainCovarianceIsThatOfDisturbedChains) {
+  const KeyframeId from = 3, to = 4;  // over their ancestor 1
+  const Pose truth = map_.keyframe(from).T_map_camera.inverse() * map_.keyframe(to).T_map_camera;
+  const Vector6d sigma = covariance_.diagonal().cwiseSqrt();
+  const int samples = 40000;
+  Matrix6d sum = Matrix6d::Zero();
+  for (int k = 0; k < samples; ++k) {
+    const auto disturbed = [&](std::size_t step) {
+      Vector6d xi;
+      for (int i = 0; i < 6; ++i) xi[i] = sigma[i] * normal_(engine_);
+      return Pose(steps_[step] * geometry::se3_exp(xi));
+    };
+    const Pose sample = (disturbed(1) * disturbed(2)).inverse() * disturbed(3);
+    const Vector6d error = geometry::se3_log(truth.inverse() * sample);
+    sum += error * error.transpose() / samples;
+  }
+  const Matrix6d closed = graph_.chain_covariance(map_, from, to);
+  EXPECT_LT((closed - sum).norm(), 0.03 * sum.norm());
+  EXPECT_TRUE(closed.isApprox(closed.transpose()));
+  EXPECT_TRUE(graph_.chain_covariance(map_, 2, 2).isZero());
+  EXPECT_TRUE(graph_.chain_covariance(map_, 2, 3).isApprox(covariance_));
+}
+
+TEST_F(SlamGraphTest, YoungerKeyframesAndLandmarksFollowACorrection) {
+  std::vector<Pose> before;
+  std::vector<Eigen::Vector3d> seen;
+  for (const Keyframe& keyframe : map_.keyframes()) {
+    before.push_back(keyframe.T_map_camera);
+    seen.push_back(keyframe.T_map_camera.inverse() * map_.landmark(keyframe.landmarks[0]).p_map);
+  }
+  GraphCorrection correction;  // knows the first three
+  for (std::size_t i = 0; i < 3; ++i) {
+    correction.T_map_before.push_back(before[i]);
+    correction.T_map_camera.push_back(i == 0 ? before[0] : Pose(before[i] * random_pose(0.1)));
+    correction.covariances.emplace_back(i == 0 ? Matrix6d::Zero() : Matrix6d(0.5 * covariance_));
+  }
+  graph_.add_edge({0, 2, EdgeType::kLoopClosure, random_pose(1.0), Matrix6d::Identity()});
+  graph_.add_edge({0, 3, EdgeType::kLoopClosure, random_pose(1.0), Matrix6d::Identity()});
+  correction.weights = {1, 1, 1, 1, 0, 1};
+  graph_.apply(correction, map_);
+  for (KeyframeId id = 0; id < 3; ++id) {
+    EXPECT_TRUE(map_.keyframe(id).T_map_camera.isApprox(correction.T_map_camera[id], 1e-12)) << id;
+  }
+  const auto step = [&](KeyframeId a, KeyframeId b) {
+    return Pose(map_.keyframe(a).T_map_camera.inverse() * map_.keyframe(b).T_map_camera);
+  };
+  EXPECT_TRUE(step(2, 3).isApprox(steps_[2], 1e-9)) << "follows its parent";
+  EXPECT_TRUE(step(1, 4).isApprox(steps_[3], 1e-9)) << "follows its parent";
+  for (const Keyframe& keyframe : map_.keyframes()) {
+    const Eigen::Vector3d p = keyframe.T_map_camera.inverse() * map_.landmark(keyframe.landmarks[0]).p_map;
+    EXPECT_LT((p - seen[static_cast<std::size_t>(keyframe.id)]).norm(), 1e-9);
+  }
+  EXPECT_EQ(graph_.count(EdgeType::kLoopClosure), 1U) << "the outlier is gone";
+  EXPECT_EQ(graph_.snapshot(map_, 7).edges.size(), 5U);
+  EXPECT_TRUE(graph_.covariance(2).isApprox(0.5 * covariance_));
+  EXPECT_TRUE(graph_.covariance(3).isApprox(compound_covariance(graph_.covariance(2), step(2, 3), covariance_)));
+}
+
+TEST_F(SlamGraphTest, VisualEdgesFollowWhatBundleAdjustmentMoved) {
+  map_.set_pose(3, map_.keyframe(3).T_map_camera * random_pose(0.01));
+  graph_.follow(map_, {3});
+  const auto edges = graph_.snapshot(map_, 0).edges;
+  const Pose moved = map_.keyframe(2).T_map_camera.inverse() * map_.keyframe(3).T_map_camera;
+  EXPECT_TRUE(edges[2].T_from_to.isApprox(moved, 1e-12));
+  EXPECT_TRUE(edges[1].T_from_to.isApprox(steps_[1], 1e-12));
+}
+
+}  // namespace
+}  // namespace lapis::slam

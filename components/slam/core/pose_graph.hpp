@@ -32,6 +32,7 @@ struct PoseGraphSnapshot {
   std::uint64_t version = 0;
   std::vector<PoseGraphNode> nodes;
   std::vector<PoseGraphEdge> edges;
+  bool is_planar = false;  ///< from a file of poses in the plane: only x, y and the turn about z are free
 };
 
 /// Information of an edge from that of an alignment: times the configured share, and bounded.

@@ -1,5 +1,6 @@
 #include "slam/core/pose_graph_file.hpp"
 
+#include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
@@ -8,6 +9,7 @@
 #include <ostream>
 #include <set>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 namespace lapis::slam {
@@ -16,10 +18,30 @@ namespace {
 using geometry::Matrix6d;
 using geometry::Pose;
 
-constexpr std::string_view kVertex = "VERTEX_SE3:QUAT";
-constexpr std::string_view kEdge = "EDGE_SE3:QUAT";
-constexpr std::size_t kPoseNumbers = 7;
 constexpr std::size_t kInformationNumbers = 21;
+constexpr double kMaxCoordinate = 1e9, kMaxInformation = 1e18;
+// Rounding of decimals may make an eigenvalue of zero this negative, as a share of the trace.
+constexpr double kRounding = 1e-6;
+
+// Forms of a vertex: g2o's and TORO's, in the plane and in space.
+enum class Form { kPlanar, kSpatial, kToroPlanar, kToroSpatial };
+
+struct Tag {
+  std::string_view word;
+  Form form;
+  bool is_vertex;
+};
+constexpr std::array kTags = {Tag{"VERTEX_SE2", Form::kPlanar, true},       Tag{"EDGE_SE2", Form::kPlanar, false},
+                              Tag{"VERTEX_SE3:QUAT", Form::kSpatial, true}, Tag{"EDGE_SE3:QUAT", Form::kSpatial, false},
+                              Tag{"VERTEX2", Form::kToroPlanar, true},      Tag{"EDGE2", Form::kToroPlanar, false},
+                              Tag{"VERTEX3", Form::kToroSpatial, true},     Tag{"EDGE3", Form::kToroSpatial, false}};
+
+bool is_planar(Form form) { return form == Form::kPlanar || form == Form::kToroPlanar; }
+std::size_t pose_numbers(Form form) {
+  if (is_planar(form)) return 3;
+  return form == Form::kSpatial ? 7 : 6;
+}
+std::size_t information_numbers(Form form) { return is_planar(form) ? 6 : kInformationNumbers; }
 
 // Scale of row or column i between a rotation vector (ours) and the vector part of a quaternion (the file's).
 double file_scale(int i) { return i < 3 ? 1.0 : 2.0; }
@@ -32,10 +54,22 @@ void append_number(std::string& line, double value) {
   line.append(buffer.data(), end);
 }
 
-void append_pose(std::string& line, const Pose& T) {
+void append_pose(std::string& line, const Pose& T, bool planar) {
+  for (int i = 0; i < (planar ? 2 : 3); ++i) append_number(line, T.translation()[i]);
+  if (planar) return append_number(line, std::atan2(T(1, 0), T(0, 0)));
   const Eigen::Quaterniond q = geometry::unit_quaternion(T);
-  for (int i = 0; i < 3; ++i) append_number(line, T.translation()[i]);
   for (const double value : {q.x(), q.y(), q.z(), q.w()}) append_number(line, value);
+}
+
+void append_information(std::string& line, const Matrix6d& information, bool planar) {
+  const auto is_left_out = [planar](int i) { return planar && i >= 2 && i <= 4; };
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) {
+      if (is_left_out(row) || is_left_out(column)) continue;
+      const double scale = planar ? 1.0 : file_scale(row) * file_scale(column);
+      append_number(line, information(row, column) * scale);
+    }
+  }
 }
 
 std::vector<std::string_view> split(std::string_view line) {
@@ -73,23 +107,41 @@ class LineReader {
     ++next_;
     return *value;
   }
-  double number() {
+  double number(double limit) {
     const auto value = parse<double>(words_[next_]);
     if (!value || !std::isfinite(*value)) fail("is not a finite number");
+    if (std::abs(*value) > limit) fail("is too large");
     ++next_;
     return *value;
   }
-  Pose pose() {
-    std::array<double, kPoseNumbers> v{};
-    for (double& value : v) value = number();
-    const Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
+  Pose pose(Form form) {
+    std::array<double, 7> v{};
+    for (std::size_t i = 0; i < pose_numbers(form); ++i) v[i] = number(kMaxCoordinate);
+    if (is_planar(form)) return geometry::make_pose({v[0], v[1], 0.0}, turn(v[2], Eigen::Vector3d::UnitZ()));
+    Eigen::Quaterniond q(v[6], v[3], v[4], v[5]);
+    if (form == Form::kToroSpatial) {
+      q = turn(v[5], Eigen::Vector3d::UnitZ()) * turn(v[4], Eigen::Vector3d::UnitY()) *
+          turn(v[3], Eigen::Vector3d::UnitX());
+    }
     if (!(q.norm() > 1e-6 && q.norm() < 1e6)) throw PoseGraphFileError{"quaternion has no length"};
     return geometry::make_pose({v[0], v[1], v[2]}, q);
   }
-  Matrix6d information() {
-    Matrix6d result;
-    for (int i = 0; i < 6; ++i) {
-      for (int j = i; j < 6; ++j) result(i, j) = result(j, i) = number() / (file_scale(i) * file_scale(j));
+  Matrix6d information(Form form) {
+    Matrix6d result = Matrix6d::Identity();
+    const auto next = [&] { return number(kMaxInformation); };
+    const auto set = [&](int i, int j, double value) { result(i, j) = result(j, i) = value; };
+    if (form == Form::kToroPlanar) {
+      for (const auto& [i, j] : {std::pair(0, 0), {0, 1}, {1, 1}, {5, 5}, {0, 5}, {1, 5}}) set(i, j, next());
+    } else if (form == Form::kPlanar) {
+      for (const auto& [i, j] : {std::pair(0, 0), {0, 1}, {0, 5}, {1, 1}, {1, 5}, {5, 5}}) set(i, j, next());
+    } else {
+      for (int i = 0; i < 6; ++i) {
+        for (int j = i; j < 6; ++j) set(i, j, next() / (form == Form::kSpatial ? file_scale(i) * file_scale(j) : 1.0));
+      }
+    }
+    const Matrix6d raised = result + kRounding * result.trace() * Matrix6d::Identity();
+    if (result != Matrix6d::Zero() && raised.llt().info() != Eigen::Success) {
+      throw PoseGraphFileError{"information is not positive semi-definite"};
     }
     return result;
   }
@@ -99,64 +151,100 @@ class LineReader {
     throw PoseGraphFileError{"'" + std::string(words_[next_].substr(0, 40)) + "' " + what};
   }
 
+  static Eigen::Quaterniond turn(double angle, const Eigen::Vector3d& axis) {
+    return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
+  }
+
   std::vector<std::string_view> words_;
   std::size_t next_ = 1;
 };
 
-void read_line(std::string_view line, PoseGraphSnapshot& graph, std::set<std::uint64_t>& ids) {
-  const std::vector<std::string_view> words = split(line);
-  if (words.empty() || (words[0] != kVertex && words[0] != kEdge)) return;
-  LineReader reader(words);
-  if (words[0] == kVertex) {
-    reader.expect(1, kPoseNumbers);
-    PoseGraphNode node;
-    node.id = reader.id();
-    node.T_map_camera = reader.pose();
-    if (!ids.insert(node.id).second) throw PoseGraphFileError{"vertex " + std::to_string(node.id) + " appears twice"};
-    graph.nodes.push_back(node);
-    return;
+// What has been read so far.
+struct Reading {
+  PoseGraphSnapshot graph;
+  std::set<std::uint64_t> ids;
+};
+
+void read_vertex(LineReader& reader, Form form, Reading& reading) {
+  reader.expect(1, pose_numbers(form));
+  PoseGraphNode node;
+  node.id = reader.id();
+  node.T_map_camera = reader.pose(form);
+  if (!reading.ids.insert(node.id).second) {
+    throw PoseGraphFileError{"vertex " + std::to_string(node.id) + " appears twice"};
   }
-  reader.expect(2, kPoseNumbers + kInformationNumbers);
+  reading.graph.nodes.push_back(node);
+}
+
+void read_edge(LineReader& reader, Form form, Reading& reading) {
+  reader.expect(2, pose_numbers(form) + information_numbers(form));
   PoseGraphEdge edge;
   edge.from = reader.id();
   edge.to = reader.id();
-  edge.T_from_to = reader.pose();
-  edge.information = reader.information();
-  graph.edges.push_back(edge);
+  if (edge.from == edge.to) throw PoseGraphFileError{"edge from vertex " + std::to_string(edge.to) + " to itself"};
+  edge.T_from_to = reader.pose(form);
+  edge.information = reader.information(form);
+  reading.graph.edges.push_back(edge);
+}
+
+void read_line(std::string_view line, Reading& reading) {
+  const std::vector<std::string_view> words = split(line);
+  if (words.empty()) return;
+  const auto tag = std::find_if(kTags.begin(), kTags.end(), [&](const Tag& t) { return t.word == words[0]; });
+  if (tag == kTags.end()) return;
+  PoseGraphSnapshot& graph = reading.graph;
+  if (graph.nodes.empty() && graph.edges.empty()) graph.is_planar = is_planar(tag->form);
+  if (graph.is_planar != is_planar(tag->form)) throw PoseGraphFileError{"poses in the plane and in space are mixed"};
+  if (std::max(graph.nodes.size(), graph.edges.size()) >= kMaxGraphFileElements) {
+    throw PoseGraphFileError{"more than " + std::to_string(kMaxGraphFileElements) + " vertices or edges"};
+  }
+  LineReader reader(words);
+  if (tag->is_vertex) {
+    read_vertex(reader, tag->form, reading);
+  } else {
+    read_edge(reader, tag->form, reading);
+  }
+}
+
+// getline that keeps no more than it may; throws for a longer line.
+bool next_line(std::istream& stream, std::string& line) {
+  line.clear();
+  for (auto c = stream.rdbuf()->sbumpc(); c != std::istream::traits_type::eof(); c = stream.rdbuf()->sbumpc()) {
+    if (c == '\n') return true;
+    if (line.size() >= kMaxGraphFileLine) throw PoseGraphFileError{"the line is too long"};
+    line.push_back(std::istream::traits_type::to_char_type(c));
+  }
+  return !line.empty();
 }
 
 }  // namespace
 
 void write_g2o(std::ostream& stream, const PoseGraphSnapshot& graph) {
+  const bool planar = graph.is_planar;
   for (const PoseGraphNode& node : graph.nodes) {
-    std::string line = std::string(kVertex) + " " + std::to_string(node.id);
-    append_pose(line, node.T_map_camera);
+    std::string line = (planar ? "VERTEX_SE2 " : "VERTEX_SE3:QUAT ") + std::to_string(node.id);
+    append_pose(line, node.T_map_camera, planar);
     stream << line << '\n';
   }
   for (const PoseGraphEdge& edge : graph.edges) {
-    std::string line = std::string(kEdge) + " " + std::to_string(edge.from) + " " + std::to_string(edge.to);
-    append_pose(line, edge.T_from_to);
-    for (int row = 0; row < 6; ++row) {
-      for (int column = row; column < 6; ++column) {
-        append_number(line, edge.information(row, column) * file_scale(row) * file_scale(column));
-      }
-    }
+    std::string line =
+        (planar ? "EDGE_SE2 " : "EDGE_SE3:QUAT ") + std::to_string(edge.from) + " " + std::to_string(edge.to);
+    append_pose(line, edge.T_from_to, planar);
+    append_information(line, edge.information, planar);
     stream << line << '\n';
   }
 }
 
 std::variant<PoseGraphSnapshot, PoseGraphFileError> read_g2o(std::istream& stream) {
-  PoseGraphSnapshot graph;
-  std::set<std::uint64_t> ids;
+  Reading reading;
   std::string line;
-  for (std::size_t number = 1; std::getline(stream, line); ++number) {
-    try {
-      read_line(line, graph, ids);
-    } catch (const PoseGraphFileError& error) {
-      return PoseGraphFileError{"line " + std::to_string(number) + ": " + error.message};
-    }
+  std::size_t number = 1;
+  try {
+    for (; next_line(stream, line); ++number) read_line(line, reading);
+  } catch (const PoseGraphFileError& error) {
+    return PoseGraphFileError{"line " + std::to_string(number) + ": " + error.message};
   }
-  return graph;
+  return std::move(reading.graph);
 }
 
 }  // namespace lapis::slam

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "slam/core/block_cholesky.hpp"
+#include "slam/core/pose_graph.hpp"
+
+namespace lapis::slam {
+
+/// Which nodes a pose graph's edges join, by place in `nodes`, and which nodes are free: all but the first node of each
+/// connected component.
+struct PoseGraphTopology {
+  struct Edge {
+    std::size_t from = 0, to = 0;
+    int pair = -1;  ///< in `pairs`; -1 where an end is fixed
+  };
+  std::vector<Edge> edges;
+  std::vector<int> free;               ///< place among the free nodes, by node; -1: fixed
+  std::vector<std::size_t> component;  ///< place of the fixed node of a node's component, by node
+  std::vector<BlockPair> pairs;        ///< of free nodes
+  std::vector<int> order;              ///< of their elimination
+};
+
+/// Throws std::invalid_argument where an edge names a node that the graph lacks, or the same node twice, and where two
+/// nodes have one id.
+PoseGraphTopology pose_graph_topology(const PoseGraphSnapshot& graph);
+
+/// Place of a node in `nodes`; nothing when the graph lacks it.
+class NodePlaces {
+ public:
+  explicit NodePlaces(const PoseGraphSnapshot& graph);
+  std::optional<std::size_t> find(std::uint64_t id) const;
+
+ private:
+  std::vector<std::pair<std::uint64_t, std::size_t>> sorted_;
+};
+
+}  // namespace lapis::slam

@@ -1,0 +1,96 @@
+#include "slam/optimise_tool.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <ctime>
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+#include <stdexcept>
+
+#include "common/files/atomic_file.hpp"
+#include "slam/core/pose_graph_file.hpp"
+#include "slam/core/pose_graph_initialization.hpp"
+#include "slam/core/pose_graph_optimizer.hpp"
+
+namespace lapis::slam {
+namespace {
+
+constexpr int kBadSetup = 2;
+constexpr std::string_view kTool = "optimise";
+// A file's poses may be far from where they belong.
+constexpr int kMaxIterations = 1000;
+
+struct Arguments {
+  std::string file, out;
+  bool is_robust = false;
+};
+
+double cpu_seconds() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+PoseGraphSnapshot read_graph(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw std::runtime_error(file + ": cannot be read");
+  auto result = read_g2o(stream);
+  if (const auto* error = std::get_if<PoseGraphFileError>(&result)) {
+    throw std::runtime_error(file + ": " + error->message);
+  }
+  PoseGraphSnapshot graph = std::get<PoseGraphSnapshot>(std::move(result));
+  if (graph.edges.empty()) {
+    throw std::runtime_error(file + ": has no edges; expected g2o text (EDGE_SE3:QUAT or EDGE_SE2)");
+  }
+  return graph;
+}
+
+void optimise(const Arguments& arguments, std::ostream& out) {
+  PoseGraphSnapshot graph = read_graph(arguments.file);
+  const bool has_poses = add_missing_nodes(graph) == 0;
+  mark_loop_closures(graph);
+  if (has_poses) out << "chi2 of file  " << std::setprecision(10) << pose_graph_chi2(graph) << '\n';
+  const double begin = cpu_seconds();
+  initialize_poses(graph);
+  const OptimizerReport report = optimize_pose_graph({kMaxIterations, 1e-6, arguments.is_robust}, graph);
+  const double seconds = cpu_seconds() - begin;
+  if (!arguments.out.empty()) {
+    std::ostringstream text;
+    write_g2o(text, graph);
+    files::replace_text(arguments.out, text.str());
+  }
+  out << "initial chi2  " << report.initial_chi2 << "\nfinal chi2    " << report.final_chi2 << "\niterations    "
+      << report.iterations << (report.has_converged ? "" : " (not converged)") << "\nCPU time      "
+      << std::setprecision(3) << seconds << " s\n";
+  if (!arguments.is_robust) return;
+  const auto out_of = std::count(report.weights.begin(), report.weights.end(), 0.0);
+  out << "edges without weight: " << out_of << " of " << graph.edges.size() << '\n';
+}
+
+}  // namespace
+
+bool is_file_tool(std::string_view word) { return word == kTool; }
+
+int run_file_tool(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
+  CLI::App app("RGB-D SLAM: tools on files", "lapis_slam");
+  app.require_subcommand(1);
+  Arguments arguments;
+  CLI::App* tool = app.add_subcommand(std::string(kTool), "optimise the pose graph of a g2o file");
+  tool->add_option("file", arguments.file, "g2o text: EDGE_SE3:QUAT or EDGE_SE2, vertices where there are")->required();
+  tool->add_option("--out", arguments.out, "write the optimised graph into this file");
+  tool->add_flag("--robust", arguments.is_robust,
+                 "expect wrong loop closures (edges between ids that are not neighbours)");
+  tool->callback([&] { optimise(arguments, out); });
+  try {
+    app.parse(argc, argv);
+    return 0;
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error, out, err) == 0 ? 0 : kBadSetup;
+  } catch (const std::exception& error) {
+    err << "lapis_slam: " << error.what() << '\n';
+    return kBadSetup;
+  }
+}
+
+}  // namespace lapis::slam

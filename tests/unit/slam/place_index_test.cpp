@@ -56,7 +56,7 @@ TEST_F(PlaceIndexTest, KeepsToOlderKeyframesAndNamesOnlyTheBestOfNeighbours) {
   ASSERT_GE(candidates.size(), 2U);
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     EXPECT_LT(candidates[i].keyframe, 12U);
-    if (i > 0) EXPECT_LE(candidates[i].score, candidates[i - 1].score);
+    EXPECT_LE(candidates[i].score, candidates[i > 0 ? i - 1 : 0].score);
     for (std::size_t j = 0; j < i; ++j) {
       const auto a = static_cast<int>(candidates[i].keyframe), b = static_cast<int>(candidates[j].keyframe);
       EXPECT_GT(std::abs(a - b), 2);

@@ -63,10 +63,11 @@ struct BundleConfig {
   int max_iterations = 5;    ///< Levenberg-Marquardt [1, 100]
 };
 
-/// From the Hessian of an alignment to the information of an edge. The share is calibrated on the recorded sequences
-/// (normalised estimation error squared near its expectation); the bounds keep an edge from being blind or too sure.
+/// From the Hessian of an alignment to the information of an edge: docs/decisions/0025. The bounds keep an edge from
+/// being blind or too sure.
 struct PoseGraphConfig {
-  double information_share = 0.25;  ///< of the residuals that count as independent [1e-3, 1]
+  double information_share = 0.25;  ///< of an alignment, so that no observation is spent twice [1e-3, 1]
+  double adjusted_gain = 2.0;       ///< of the edges that bundle adjustment refines; calibrated [0.1, 10]
   double min_information = 1.0;     ///< [1/m^2, 1/rad^2] [1e-6, 1e6]
   double max_information = 1e8;     ///< [1/m^2, 1/rad^2] [1, 1e12]
 };

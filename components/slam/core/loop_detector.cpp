@@ -50,7 +50,8 @@ std::vector<PoseGraphEdge> LoopDetector::add(const Map& map, const SlamGraph& gr
   if (!found) return loops;
   if (pending_ && id - pending_->to <= static_cast<KeyframeId>(config_.loop.confirm_within) &&
       agrees(map, *pending_, *found)) {
-    ++revisits_;
+    if (revisits_.empty() || revisits_.back().to != pending_->to) revisits_.push_back({pending_->from, pending_->to});
+    revisits_.push_back({found->from, id});
     if (!closed_ || way_m(map, *closed_, id) >= config_.loop.spacing_m) {
       loops = {*pending_, *found};
       closed_ = id;

@@ -9,6 +9,12 @@
 
 namespace lapis::slam {
 
+/// Key-frame `to` shows what the older key-frame `from` shows.
+struct Revisit {
+  KeyframeId from = 0;
+  KeyframeId to = 0;
+};
+
 /// Recognises, at a new key-frame, places that were seen before. What the place index proposes, and what is near in the
 /// map, is verified in 3-D; a loop counts when a second key-frame soon after says the same.
 class LoopDetector {
@@ -21,8 +27,8 @@ class LoopDetector {
   /// it. Returns the edges that close loops: none, or those of a pair of key-frames that agree.
   std::vector<PoseGraphEdge> add(const Map& map, const SlamGraph& graph, const Tracker& tracker, const Frame& frame,
                                  KeyframeId id);
-  /// Key-frames whose revisit was recognised and confirmed, whether or not that made an edge.
-  std::size_t revisits() const { return revisits_; }
+  /// What was recognised and confirmed, in the order of time, whether or not it made an edge.
+  const std::vector<Revisit>& revisits() const { return revisits_; }
 
  private:
   struct Candidate {
@@ -38,7 +44,7 @@ class LoopDetector {
   PlaceIndex index_;
   std::optional<PoseGraphEdge> pending_;  // verified, not yet confirmed by a second one
   std::optional<KeyframeId> closed_;      // newest key-frame that made an edge
-  std::size_t revisits_ = 0;
+  std::vector<Revisit> revisits_;
 };
 
 }  // namespace lapis::slam

@@ -77,7 +77,7 @@ class RgbdSlam::Implementation {
   }
 
   PoseGraphSnapshot pose_graph() const { return graph_.snapshot(map_, version_); }
-  LoopSummary loops() const { return loop_summary_; }
+  LoopSummary loops() const { return {graph_.count(EdgeType::kLoopClosure), last_loop_, loops_.revisits()}; }
   std::uint64_t version() const { return version_; }
   std::size_t keyframe_count() const { return map_.keyframes().size(); }
   std::size_t landmark_count() const { return map_.landmark_count(); }
@@ -197,9 +197,10 @@ class RgbdSlam::Implementation {
     const KeyframeId previous = map_.keyframes().back().id;
     const KeyframeId id = add_keyframe(frame, result.T_map_keyframe * result.T_keyframe_camera);
     const EdgeType type = outcome != nullptr ? EdgeType::kOdometry : EdgeType::kWheelOdometry;
-    graph_.add_keyframe({result.keyframe_id, id, type, result.T_keyframe_camera,
-                         bounded_information(config_.pose_graph, result.covariance.inverse())},
-                        result.covariance, result.map_covariance);
+    const Matrix6d information =
+        bounded_information(config_.pose_graph, (outcome != nullptr ? config_.pose_graph.adjusted_gain : 1.0) *
+                                                    result.covariance.inverse());
+    graph_.add_keyframe({result.keyframe_id, id, type, result.T_keyframe_camera, information});
     if (outcome != nullptr) {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
       graph_.add_link(
@@ -217,7 +218,7 @@ class RgbdSlam::Implementation {
     const std::vector<PoseGraphEdge> found = loops_.add(map_, graph_, tracker_, frame, id);
     for (const PoseGraphEdge& loop : found) graph_.add_edge(loop);
     if (found.empty()) return;
-    loop_summary_.last = frame.input->stamp;
+    last_loop_ = frame.input->stamp;
     must_optimize_ = true;
     optimize();
   }
@@ -232,7 +233,6 @@ class RgbdSlam::Implementation {
     graph_.apply(correction, map_);
     tracker_.set_reference(map_, reference_);
     ++version_;
-    loop_summary_.closures = graph_.count(EdgeType::kLoopClosure);
     optimize();
   }
 
@@ -292,7 +292,7 @@ class RgbdSlam::Implementation {
   LoopDetector loops_;
   Relocalizer relocalizer_;
   GraphWorker worker_;
-  LoopSummary loop_summary_;
+  std::optional<time::Time> last_loop_;
   bool must_optimize_ = false;  // there are loops that no optimisation knows
   KeyframeId reference_ = 0;
   std::uint64_t frame_count_ = 0;

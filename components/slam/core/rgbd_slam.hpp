@@ -10,6 +10,7 @@
 #include "common/time/time.hpp"
 #include "slam/core/config.hpp"
 #include "slam/core/frame.hpp"
+#include "slam/core/loop_detector.hpp"
 #include "slam/core/pose_graph.hpp"
 
 namespace lapis::slam {
@@ -43,8 +44,9 @@ inline bool has_pose(const TrackingResult& result) {
 
 /// Loops that the map has closed.
 struct LoopSummary {
-  std::size_t closures = 0;        ///< edges of the optimised graph
+  std::size_t closures = 0;        ///< edges of the graph
   std::optional<time::Time> last;  ///< stamp of the key-frame that found the newest
+  std::vector<Revisit> revisits;   ///< recognised and confirmed, more than there are edges
 };
 
 /// RGB-D SLAM: features and surfaces aligned with a local map, local bundle adjustment, loop closure, pose graph.

@@ -18,10 +18,11 @@ void SlamGraph::add_root() {
   covariances_.emplace_back(Matrix6d::Zero());
 }
 
-void SlamGraph::add_keyframe(const PoseGraphEdge& edge, const Matrix6d& covariance, const Matrix6d& map_covariance) {
+void SlamGraph::add_keyframe(const PoseGraphEdge& edge) {
   edges_.push_back(edge);
+  const Matrix6d covariance = edge.information.inverse();
   parents_.push_back({edge.from, covariance});
-  covariances_.push_back(map_covariance);
+  covariances_.push_back(compound_covariance(this->covariance(edge.from), edge.T_from_to, covariance));
 }
 
 void SlamGraph::follow(const Map& map, const std::vector<KeyframeId>& moved) {

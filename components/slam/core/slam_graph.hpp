@@ -27,9 +27,8 @@ class SlamGraph {
 
   /// The first key-frame: its pose is the gauge.
   void add_root();
-  /// The next key-frame, with the edge to its parent. `covariance`: of edge.T_from_to, right perturbation.
-  void add_keyframe(const PoseGraphEdge& edge, const geometry::Matrix6d& covariance,
-                    const geometry::Matrix6d& map_covariance);
+  /// The next key-frame, with the edge to its parent.
+  void add_keyframe(const PoseGraphEdge& edge);
   void add_edge(const PoseGraphEdge& edge) { edges_.push_back(edge); }
   void add_link(const KeyframeLink& link) { links_.push_back(link); }
 

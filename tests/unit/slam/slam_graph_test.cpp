@@ -26,8 +26,7 @@ class SlamGraphTest : public ::testing::Test {
         graph_.add_root();
         continue;
       }
-      graph_.add_keyframe({parent_[i - 1], id, EdgeType::kOdometry, steps_[i - 1], covariance_.inverse()}, covariance_,
-                          static_cast<double>(i) * covariance_);
+      graph_.add_keyframe({parent_[i - 1], id, EdgeType::kOdometry, steps_[i - 1], covariance_.inverse()});
     }
   }
   Pose random_pose(double size) {

@@ -7,6 +7,7 @@
 #include <ctime>
 #include <exception>
 #include <map>
+#include <set>
 
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utility.hpp>
@@ -29,6 +30,14 @@ struct Options {
   bool no_wheels = false;
 };
 
+// Points that a key-frame sees, for what it shares with others.
+struct View {
+  geometry::PinholeCamera camera;
+  geometry::Pose T_map_camera;  // true
+  geometry::DepthImage depth;
+  std::vector<Eigen::Vector3d> points;  // in the camera
+};
+
 struct Run {
   int frames = 0, tracked = 0;
   std::vector<double> milliseconds;              // CPU time of each frame
@@ -37,6 +46,8 @@ struct Run {
   TrackingResult last;
   geometry::Pose T_last_true = geometry::Pose::Identity();
   PoseGraphSnapshot graph;
+  std::vector<View> views;  // of the key-frames
+  LoopSummary loops;
   std::size_t landmarks = 0;
 };
 
@@ -75,6 +86,81 @@ geometry::Pose pose_of(const simulator::WheelSample& wheel) {
                              Eigen::Quaterniond(Eigen::AngleAxisd(wheel.yaw_rad, Eigen::Vector3d::UnitZ())));
 }
 
+View make_view(const TourFrame& tour_frame) {
+  constexpr int kStep_px = 16;
+  View view{tour_frame.frame.camera, tour_frame.T_map_camera, tour_frame.frame.depth, {}};
+  for (int y = kStep_px / 2; y < view.depth.height; y += kStep_px) {
+    for (int x = kStep_px / 2; x < view.depth.width; x += kStep_px) {
+      const double z = view.depth(x, y);
+      if (z > 0.0) view.points.push_back(view.camera.unproject(x, y, z));
+    }
+  }
+  return view;
+}
+
+// Share of what `a` sees that `b` sees, too.
+double common_surface(const View& a, const View& b) {
+  constexpr double kSame_m = 0.1;
+  const geometry::Pose T_b_a = b.T_map_camera.inverse() * a.T_map_camera;
+  std::size_t common = 0;
+  for (const Eigen::Vector3d& point : a.points) {
+    const Eigen::Vector3d p = T_b_a * point;
+    if (p.z() <= 0.0) continue;
+    const auto x = static_cast<int>(std::lround(b.camera.fx * p.x() / p.z() + b.camera.cx));
+    const auto y = static_cast<int>(std::lround(b.camera.fy * p.y() / p.z() + b.camera.cy));
+    if (x < 0 || y < 0 || x >= b.depth.width || y >= b.depth.height) continue;
+    if (std::abs(b.depth(x, y) - p.z()) < kSame_m) ++common;
+  }
+  return a.points.empty() ? 0.0 : static_cast<double>(common) / static_cast<double>(a.points.size());
+}
+
+bool is_revisit(const View& older, const View& newer) {
+  constexpr double kWithin_m = 1.0, kWithin_rad = M_PI / 6.0, kCommon = 0.3;
+  const geometry::Pose T = older.T_map_camera.inverse() * newer.T_map_camera;
+  return T.translation().norm() <= kWithin_m && geometry::rotation_angle(T.linear()) <= kWithin_rad &&
+         std::min(common_surface(older, newer), common_surface(newer, older)) >= kCommon;
+}
+
+bool is_wrong(const PoseGraphEdge& loop, const std::vector<View>& views) {
+  const geometry::Pose truth = views[loop.from].T_map_camera.inverse() * views[loop.to].T_map_camera;
+  const geometry::Pose error = truth.inverse() * loop.T_from_to;
+  return error.translation().norm() > 0.2 || geometry::rotation_angle(error.linear()) > 0.1;
+}
+
+// Revisits by the truth: key-frames within 1 m, 30 degrees and 30 % common surface of one so much older that it is no
+// neighbour. A passage is a row of such key-frames.
+struct Recall {
+  std::size_t keyframes = 0, recognised = 0, passages = 0, closed = 0, wrong = 0;
+};
+
+Recall recall_of(const Run& run) {
+  constexpr std::size_t kNeighbours = 20;
+  Recall recall;
+  std::set<KeyframeId> recognised;
+  for (const Revisit& revisit : run.loops.revisits) recognised.insert(revisit.to);
+  for (const PoseGraphEdge& edge : run.graph.edges) {
+    if (edge.type == EdgeType::kLoopClosure && is_wrong(edge, run.views)) ++recall.wrong;
+  }
+  bool in_passage = false, is_closed = false;
+  for (std::size_t id = kNeighbours; id < run.views.size(); ++id) {
+    const auto last = run.views.begin() + static_cast<std::ptrdiff_t>(id - kNeighbours);
+    const bool revisits =
+        std::any_of(run.views.begin(), last, [&](const View& v) { return is_revisit(v, run.views[id]); });
+    if (revisits && !in_passage) {
+      ++recall.passages;
+      is_closed = false;
+    }
+    in_passage = revisits;
+    if (!revisits) continue;
+    ++recall.keyframes;
+    if (!recognised.contains(id)) continue;
+    ++recall.recognised;
+    if (!is_closed) ++recall.closed;
+    is_closed = true;
+  }
+  return recall;
+}
+
 Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, const std::string& folder,
          bool with_wheels) {
   Run run;
@@ -89,6 +175,7 @@ Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, cons
     run.milliseconds.push_back(cpu_ms() - before_ms);
     ++run.frames;
     run.truth[tour_frame.frame.stamp.nanoseconds] = tour_frame.T_map_camera;
+    if (result.is_keyframe) run.views.push_back(make_view(tour_frame));
     if (result.state != TrackingState::kTracking) return;
     ++run.tracked;
     const geometry::Pose T_map_camera = result.T_map_keyframe * result.T_keyframe_camera;
@@ -98,14 +185,15 @@ Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, cons
   });
   slam.settle();
   run.graph = slam.pose_graph();
+  run.loops = slam.loops();
   run.landmarks = slam.landmark_count();
   return run;
 }
 
 void print_header() {
-  std::printf("%-15s %4s %11s %7s | %6s %6s %6s %6s | %6s %6s %6s %6s | %5s %5s %6s | %5s %5s %6s\n", "scene", "seed",
-              "tracked", "ms/frm", "online", "kf raw", "kf se3", "worst", "odo", "loop", "wheel", "end", "edges",
-              "loops", "wheel", "kfs", "p95", "max");
+  std::printf("%-15s %4s %11s %7s | %6s %6s %6s %6s | %8s %8s %5s | %6s %6s %6s %6s | %5s %5s %6s | %5s %5s %6s\n",
+              "scene", "seed", "tracked", "ms/frm", "online", "kf raw", "kf se3", "worst", "revisits", "passages",
+              "wrong", "odo", "loop", "wheel", "end", "edges", "loops", "wheel", "kfs", "p95", "max");
 }
 
 void print_row(const std::string& scene, int seed, const Run& run) {
@@ -129,11 +217,14 @@ void print_row(const std::string& scene, int seed, const Run& run) {
   }
   const double end =
       nees(run.last.T_map_keyframe * run.last.T_keyframe_camera, run.T_last_true, run.last.map_covariance.inverse());
+  const Recall recall = recall_of(run);
   std::printf(
-      "%-15s %4d %5d/%5d %7.1f | %6.1f %6.1f %6.1f %6.1f | %6.2f %6.2f %6.2f %6.2f | %5zu %5zu %6zu | %5zu %5.1f "
+      "%-15s %4d %5d/%5d %7.1f | %6.1f %6.1f %6.1f %6.1f | %4zu/%3zu %4zu/%3zu %5zu | %6.2f %6.2f %6.2f %6.2f | %5zu "
+      "%5zu %6zu | %5zu %5.1f "
       "%6.1f\n",
       scene.c_str(), seed, run.tracked, run.frames, quantile(run.milliseconds, 0.5), 100.0 * rms(run.online_errors_m),
       100.0 * rms(keyframe_errors_m), 100.0 * rms(aligned_m), 100.0 * quantile(keyframe_errors_m, 1.0),
+      recall.recognised, recall.keyframes, recall.closed, recall.passages, recall.wrong,
       mean(edges[EdgeType::kOdometry]), mean(edges[EdgeType::kLoopClosure]), mean(edges[EdgeType::kWheelOdometry]), end,
       run.graph.edges.size(), edges[EdgeType::kLoopClosure].size(), edges[EdgeType::kWheelOdometry].size(),
       run.graph.nodes.size(), quantile(run.milliseconds, 0.95), quantile(run.milliseconds, 1.0));
@@ -166,7 +257,9 @@ int run(const Options& options) {
   }
   std::printf(
       "errors in cm (position, map frame, no alignment unless se3); odo, loop, wheel, end: NEES per degree of "
-      "freedom\n");
+      "freedom\nrevisits: key-frames that truly show an old place again, recognised of all; passages: rows of such, "
+      "closed of "
+      "all; wrong: loops\n");
   return are_complete ? 0 : 1;
 }
 

@@ -64,7 +64,8 @@ TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optio
 
 TrackOutcome Tracker::recognize(const Map& map, const Frame& frame, KeyframeId keyframe,
                                 const std::optional<Pose>& T_map_camera) const {
-  const LocalMap local = local_map(map, keyframe);
+  LocalMap local = local_map(map, keyframe);
+  local.surface.clear();
   if (!T_map_camera) return track_brute_force(map, frame, local);
   return track_projected(map, frame, local, *T_map_camera, config_.matcher.wide_search_radius_px);
 }

@@ -32,7 +32,8 @@ class Tracker {
   /// brute force with the reference key-frame, brute force with the newest key-frames.
   TrackOutcome track(const Map& map, const Frame& frame, const std::optional<geometry::Pose>& predicted) const;
   /// Pose of a frame relative to a key-frame anywhere in the map, by brute force; where the pose is about known
-  /// (`T_map_camera`), by projection. No neighbour is tried.
+  /// (`T_map_camera`), by projection. No neighbour is tried. By features alone: surfaces that are seen from metres
+  /// apart are paired with others that are parallel, which errs by centimetres and does not show in the residuals.
   TrackOutcome recognize(const Map& map, const Frame& frame, KeyframeId keyframe,
                          const std::optional<geometry::Pose>& T_map_camera = std::nullopt) const;
 

@@ -28,6 +28,7 @@ struct Options {
   std::vector<std::string> overrides;
   std::string folder;
   bool no_wheels = false;
+  bool with_loops = false;
 };
 
 // Points that a key-frame sees, for what it shares with others.
@@ -190,6 +191,24 @@ Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, cons
   return run;
 }
 
+void print_loops(const Run& run) {
+  for (const PoseGraphEdge& edge : run.graph.edges) {
+    if (edge.type != EdgeType::kLoopClosure) continue;
+    const geometry::Pose truth = run.views[edge.from].T_map_camera.inverse() * run.views[edge.to].T_map_camera;
+    const geometry::Pose error = truth.inverse() * edge.T_from_to;
+    const geometry::Matrix6d covariance = edge.information.inverse();
+    std::printf(
+        "  loop %4zu -> %4zu: %5.2f m, %5.1f deg apart; error %5.1f mm, %5.2f deg; sigma %5.1f mm, %5.2f deg; NEES "
+        "%.2f\n",
+        static_cast<std::size_t>(edge.from), static_cast<std::size_t>(edge.to), truth.translation().norm(),
+        geometry::rotation_angle(truth.linear()) * 180.0 / M_PI, 1e3 * error.translation().norm(),
+        geometry::rotation_angle(error.linear()) * 180.0 / M_PI,
+        1e3 * std::sqrt(covariance.topLeftCorner<3, 3>().trace()),
+        std::sqrt(covariance.bottomRightCorner<3, 3>().trace()) * 180.0 / M_PI,
+        nees(edge.T_from_to, truth, edge.information));
+  }
+}
+
 void print_header() {
   std::printf("%-15s %4s %11s %7s | %6s %6s %6s %6s | %8s %8s %5s | %6s %6s %6s %6s | %5s %5s %6s | %5s %5s %6s\n",
               "scene", "seed", "tracked", "ms/frm", "online", "kf raw", "kf se3", "worst", "revisits", "passages",
@@ -248,7 +267,9 @@ int run(const Options& options) {
       simulated.scene = scene;
       simulated.seed = seed;
       try {
-        print_row(scene, seed, play(simulated, slam.method, options.folder, !options.no_wheels));
+        const Run tour = play(simulated, slam.method, options.folder, !options.no_wheels);
+        print_row(scene, seed, tour);
+        if (options.with_loops) print_loops(tour);
       } catch (const std::exception& error) {
         std::printf("%-15s %4d failed: %s\n", scene.c_str(), seed, error.what());
         are_complete = false;
@@ -278,6 +299,7 @@ int main(int argc, char** argv) {
       "keep the frames of tours here, 0.7 MB each, and read them the next time instead of rendering; they know "
       "the configuration, not the simulator: empty the folder when that changes");
   app.add_flag("--no-wheels", options.no_wheels, "slam gets no wheel odometry");
+  app.add_flag("--loops", options.with_loops, "also a row for each loop");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
   try {

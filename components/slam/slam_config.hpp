@@ -92,9 +92,7 @@ void describe(Field& field, BundleConfig& c) {
 template <class Field>
 void describe(Field& field, PoseGraphConfig& c) {
   field("information_share", c.information_share, config::in_range(1e-3, 1),
-        "share of an alignment's information that an edge gets, so that no observation is spent twice");
-  field("adjusted_gain", c.adjusted_gain, config::in_range(0.1, 10),
-        "by which bundle adjustment makes an edge better than its alignment; calibrated on apartment, seed 1");
+        "share of an alignment's information that its edge gets");
   field("min_information", c.min_information, config::in_range(1e-6, 1e6), "[1/m^2, 1/rad^2]");
   field("max_information", c.max_information, config::in_range(1, 1e12), "[1/m^2, 1/rad^2]");
 }

@@ -66,10 +66,9 @@ struct BundleConfig {
 /// From the Hessian of an alignment to the information of an edge: docs/decisions/0025. The bounds keep an edge from
 /// being blind or too sure.
 struct PoseGraphConfig {
-  double information_share = 0.25;  ///< of an alignment, so that no observation is spent twice [1e-3, 1]
-  double min_information = 1.0;     ///< [1/m^2, 1/rad^2] [1e-6, 1e6]
-  double max_information = 1e8;     ///< [1/m^2, 1/rad^2] [1, 1e12]
-  double adjusted_gain = 2.0;       ///< of the edges that bundle adjustment refines; calibrated [0.1, 10]
+  double information_share = 0.5;  ///< of an alignment's information that its edge gets [1e-3, 1]
+  double min_information = 1.0;    ///< [1/m^2, 1/rad^2] [1e-6, 1e6]
+  double max_information = 1e8;    ///< [1/m^2, 1/rad^2] [1, 1e12]
 };
 
 /// Recognition of places that were seen before, at key-frames.

@@ -197,9 +197,7 @@ class RgbdSlam::Implementation {
     const KeyframeId previous = map_.keyframes().back().id;
     const KeyframeId id = add_keyframe(frame, result.T_map_keyframe * result.T_keyframe_camera);
     const EdgeType type = outcome != nullptr ? EdgeType::kOdometry : EdgeType::kWheelOdometry;
-    const Matrix6d information =
-        bounded_information(config_.pose_graph, (outcome != nullptr ? config_.pose_graph.adjusted_gain : 1.0) *
-                                                    result.covariance.inverse());
+    const Matrix6d information = bounded_information(config_.pose_graph, result.covariance.inverse());
     graph_.add_keyframe({result.keyframe_id, id, type, result.T_keyframe_camera, information});
     if (outcome != nullptr) {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});

@@ -5,11 +5,13 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
 #include "slam/core/config.hpp"
 #include "slam/core/frame.hpp"
+#include "slam/core/map.hpp"
 #include "slam/core/pose_graph.hpp"
 
 namespace lapis::slam {
@@ -66,6 +68,9 @@ class RgbdSlam {
   std::uint64_t graph_version() const;
   std::size_t keyframe_count() const;
   std::size_t landmark_count() const;
+  const Map& map() const;
+  /// As Map::take_changed_landmarks.
+  std::vector<LandmarkId> take_changed_landmarks();
 
  private:
   class Implementation;

@@ -40,9 +40,9 @@ bool LandmarkPublisher::wants(std::uint64_t graph_version, time::Time stamp, boo
   return is_announced_ && is_due && graph_version != graph_version_;
 }
 
-void LandmarkPublisher::begin_version(const Map& map, std::span<const LandmarkId> changed, std::uint64_t graph_version,
+void LandmarkPublisher::begin_version(const Map& map, std::uint64_t graph_version,
                                       const std_msgs::msg::Header& header) {
-  auto tiles = landmarks_.update(map, changed, graph_version);
+  auto tiles = landmarks_.update(map, graph_version);
   std::size_t omitted = 0;
   for (auto& tile : tiles) {
     omitted += tile.omitted;

@@ -4,7 +4,6 @@
 #include <deque>
 #include <optional>
 #include <set>
-#include <span>
 
 #include "common/runtime/context.hpp"
 #include "slam/core/landmark_tiles.hpp"
@@ -22,9 +21,8 @@ class LandmarkPublisher {
   void begin_session(std::int64_t session);
   /// True when the version before is out, the period is over, or nothing follows, and `graph_version` is new.
   bool wants(std::uint64_t graph_version, time::Time stamp, bool is_final) const;
-  /// Begins a version. `changed`: landmarks of the map that have changed since the last call.
-  void begin_version(const Map& map, std::span<const LandmarkId> changed, std::uint64_t graph_version,
-                     const std_msgs::msg::Header& header);
+  /// Begins a version: finds the tiles that differ from those of the version before.
+  void begin_version(const Map& map, std::uint64_t graph_version, const std_msgs::msg::Header& header);
   /// Publishes the part that belongs to the frame with that stamp; does nothing when that was done before.
   void publish_part(time::Time stamp);
   /// Publishes all that is left of the version.

@@ -191,8 +191,7 @@ void SlamComponent::publish_landmarks(bool is_final) {
   if (is_final) landmarks_.publish_rest();
   const bool is_graph_out = slam_->graph_version() == graph_version_;
   if (is_graph_out && landmarks_.wants(graph_version_, frame_.stamp, is_final)) {
-    landmarks_.begin_version(slam_->map(), slam_->take_changed_landmarks(), graph_version_,
-                             messages::header(frame_.stamp, ids_.map));
+    landmarks_.begin_version(slam_->map(), graph_version_, messages::header(frame_.stamp, ids_.map));
   }
   landmarks_.publish_part(frame_.stamp);
   if (is_final) landmarks_.publish_rest();

@@ -8,12 +8,6 @@ namespace {
 using mapping::LandmarkTile;
 using mapping::TileIndex;
 
-void insert(LandmarkId id, std::vector<LandmarkId>& ids) {
-  ids.insert(std::lower_bound(ids.begin(), ids.end(), id), id);
-}
-
-void erase(LandmarkId id, std::vector<LandmarkId>& ids) { ids.erase(std::lower_bound(ids.begin(), ids.end(), id)); }
-
 // The landmarks that most key-frames see, and of those the oldest, as many as fit; ascending.
 std::vector<LandmarkId> choose(const Map& map, std::vector<LandmarkId> ids, std::size_t max_bytes) {
   const auto observers = [&](LandmarkId id) { return map.landmark(id).observations.size(); };
@@ -58,43 +52,46 @@ bool LandmarkTiles::is_same(const Sent& a, const Sent& b) const {
   return a.observers == b.observers && (a.p_map - b.p_map).cast<double>().norm() <= config_.tolerance_m;
 }
 
-void LandmarkTiles::follow(const Map& map, LandmarkId id, std::set<TileIndex>& stale) {
-  if (id >= sent_.size()) sent_.resize(std::size_t{id} + 1);
-  Sent& sent = sent_[id];
-  const Sent now = as_now(map.landmark(id));
-  if (is_same(sent, now)) return;
-  if (sent.is_in_tile) {
-    const TileIndex tile = mapping::landmark_tile_of(sent.p_map, config_.edge_m);
-    erase(id, members_[tile]);
-    stale.insert(tile);
+/// Takes over what has changed; returns the tiles concerned with all their landmarks. Looking at every landmark takes a
+/// few milliseconds (lapis_slam_snapshot_benchmark), and no change can be missed.
+LandmarkTiles::Members LandmarkTiles::follow(const Map& map) {
+  Members members;
+  sent_.resize(map.landmarks().size());
+  for (std::size_t id = 0; id < sent_.size(); ++id) {
+    Sent& sent = sent_[id];
+    Sent now = as_now(map.landmarks()[id]);
+    if (is_same(sent, now)) continue;
+    if (sent.is_in_tile) members[sent.tile];
+    if (now.is_in_tile) {
+      now.tile = mapping::landmark_tile_of(now.p_map, config_.edge_m);
+      members[now.tile];
+    }
+    sent = now;
   }
-  if (now.is_in_tile) {
-    const TileIndex tile = mapping::landmark_tile_of(now.p_map, config_.edge_m);
-    insert(id, members_[tile]);
-    stale.insert(tile);
+  for (std::size_t id = 0; id < sent_.size(); ++id) {
+    if (!sent_[id].is_in_tile) continue;
+    const auto tile = members.find(sent_[id].tile);
+    if (tile != members.end()) tile->second.push_back(static_cast<LandmarkId>(id));
   }
-  sent = now;
+  return members;
 }
 
-std::vector<LandmarkTile> LandmarkTiles::update(const Map& map, std::span<const LandmarkId> changed,
-                                                std::uint64_t graph_version) {
-  std::set<TileIndex> stale;
-  for (const LandmarkId id : changed) follow(map, id, stale);
+std::vector<LandmarkTile> LandmarkTiles::update(const Map& map, std::uint64_t graph_version) {
+  graph_version_ = graph_version;
   std::vector<LandmarkTile> tiles;
-  tiles.reserve(stale.size());
-  for (const TileIndex& index : stale) {
-    tiles.push_back(make_tile(map, index, graph_version));
+  for (const auto& [index, members] : follow(map)) {
+    tiles.push_back(make_tile(map, index, members));
     versions_.set(index, graph_version);
   }
-  graph_version_ = graph_version;
+  std::sort(tiles.begin(), tiles.end(), [](const LandmarkTile& a, const LandmarkTile& b) { return a.index < b.index; });
   return tiles;
 }
 
-LandmarkTile LandmarkTiles::make_tile(const Map& map, const TileIndex& index, std::uint64_t graph_version) const {
-  const std::vector<LandmarkId>& members = members_.at(index);
+LandmarkTile LandmarkTiles::make_tile(const Map& map, const TileIndex& index,
+                                      const std::vector<LandmarkId>& members) const {
   LandmarkTile tile;
   tile.index = index;
-  tile.graph_version = graph_version;
+  tile.graph_version = graph_version_;
   tile.ids = choose(map, members, config_.max_tile_bytes);
   tile.omitted = static_cast<std::uint32_t>(members.size() - tile.ids.size());
   tile.positions_m.reserve(tile.ids.size());

@@ -2,9 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
-#include <set>
-#include <span>
+#include <unordered_map>
 #include <vector>
 
 #include "common/mapping/landmark_tile.hpp"
@@ -26,12 +24,11 @@ class LandmarkTiles {
   explicit LandmarkTiles(const LandmarkTileConfig& config) : config_(config) {}
 
   /// Follows the map to `graph_version`, which grows from call to call, and returns the tiles that differ from those
-  /// returned before, ascending. `changed`: at least the landmarks that have changed since the last call. A tile
-  /// that has lost its last landmark is returned empty and goes on to exist. Afterwards every landmark with
-  /// observations is in the one tile around the position that it was sent with, at most `tolerance_m` from where it
-  /// is. Left out are positions that are not finite or beyond mapping::kMaxLandmarkCoordinate_m.
-  std::vector<mapping::LandmarkTile> update(const Map& map, std::span<const LandmarkId> changed,
-                                            std::uint64_t graph_version);
+  /// returned before, ascending. Landmarks of the map are never fewer than at the call before. A tile that has lost its
+  /// last landmark is returned empty and goes on to exist. Afterwards every landmark with observations is in the one
+  /// tile around the position that it was sent with, at most `tolerance_m` from where it is. Left out are positions
+  /// that are not finite or beyond mapping::kMaxLandmarkCoordinate_m.
+  std::vector<mapping::LandmarkTile> update(const Map& map, std::uint64_t graph_version);
   /// After the last update; its session is left to the caller.
   mapping::LandmarkState state() const;
 
@@ -39,18 +36,21 @@ class LandmarkTiles {
   // A landmark as it was sent.
   struct Sent {
     bool is_in_tile = false;
+    mapping::TileIndex tile;
     Eigen::Vector3f p_map = Eigen::Vector3f::Zero();
     std::uint64_t observers = 0;  // sum of hashes
   };
+  // Landmarks of tiles, ascending.
+  using Members = std::unordered_map<mapping::TileIndex, std::vector<LandmarkId>, mapping::GridIndexHash>;
 
   static Sent as_now(const Landmark& landmark);
   bool is_same(const Sent& a, const Sent& b) const;
-  void follow(const Map& map, LandmarkId id, std::set<mapping::TileIndex>& stale);
-  mapping::LandmarkTile make_tile(const Map& map, const mapping::TileIndex& index, std::uint64_t graph_version) const;
+  Members follow(const Map& map);
+  mapping::LandmarkTile make_tile(const Map& map, const mapping::TileIndex& index,
+                                  const std::vector<LandmarkId>& members) const;
 
   LandmarkTileConfig config_;
-  std::vector<Sent> sent_;                                         // by id
-  std::map<mapping::TileIndex, std::vector<LandmarkId>> members_;  // ascending
+  std::vector<Sent> sent_;  // by id
   mapping::TileVersions versions_;
   std::uint64_t graph_version_ = 0;
 };

@@ -14,7 +14,6 @@ KeyframeId Map::add_keyframe(Keyframe keyframe) {
 
 LandmarkId Map::add_landmark(const Eigen::Vector3d& p_map, double finest_distance_m) {
   landmarks_.push_back({p_map, {}, finest_distance_m, {}});
-  is_changed_.push_back(false);
   return static_cast<LandmarkId>(landmarks_.size() - 1);
 }
 
@@ -29,7 +28,6 @@ bool Map::add_observation(LandmarkId landmark, const Observation& observation) {
   observations.push_back(observation);
   keyframe.landmarks[feature] = landmark;
   landmarks_[landmark].descriptor = keyframe.features[feature].descriptor;
-  note_change(landmark);
   return true;
 }
 
@@ -42,23 +40,6 @@ void Map::remove_observation(LandmarkId landmark, const Observation& observation
   keyframes_[static_cast<std::size_t>(observation.keyframe)].landmarks[static_cast<std::size_t>(observation.feature)] =
       kNoLandmark;
   if (observations.empty()) --alive_;
-  note_change(landmark);
-}
-
-void Map::set_position(LandmarkId id, const Eigen::Vector3d& p_map) {
-  landmarks_[id].p_map = p_map;
-  note_change(id);
-}
-
-void Map::note_change(LandmarkId id) {
-  if (is_changed_[id]) return;
-  is_changed_[id] = true;
-  changed_.push_back(id);
-}
-
-std::vector<LandmarkId> Map::take_changed_landmarks() {
-  for (const LandmarkId id : changed_) is_changed_[id] = false;
-  return std::exchange(changed_, {});
 }
 
 void Map::set_pose(KeyframeId id, const geometry::Pose& T_map_camera) {

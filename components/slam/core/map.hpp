@@ -55,11 +55,11 @@ class Map {
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const Keyframe& keyframe(KeyframeId id) const { return keyframes_[static_cast<std::size_t>(id)]; }
   const Landmark& landmark(LandmarkId id) const { return landmarks_[id]; }
+  /// By id, the dead among them.
+  const std::vector<Landmark>& landmarks() const { return landmarks_; }
   std::size_t landmark_count() const { return alive_; }
   void set_pose(KeyframeId id, const geometry::Pose& T_map_camera);
-  void set_position(LandmarkId id, const Eigen::Vector3d& p_map);
-  /// Landmarks that came, moved, died, or are shown by other key-frames than at the last call; each once.
-  std::vector<LandmarkId> take_changed_landmarks();
+  void set_position(LandmarkId id, const Eigen::Vector3d& p_map) { landmarks_[id].p_map = p_map; }
 
   /// Key-frames that share landmarks with `id`: most shared first, then the newest. Without `id` itself.
   std::vector<KeyframeId> covisible(KeyframeId id, std::size_t most) const;
@@ -67,13 +67,9 @@ class Map {
   std::vector<LandmarkId> landmarks_of(const std::vector<KeyframeId>& keyframes) const;
 
  private:
-  void note_change(LandmarkId id);
-
   std::vector<Keyframe> keyframes_;
   std::vector<Landmark> landmarks_;
   std::size_t alive_ = 0;
-  std::vector<LandmarkId> changed_;
-  std::vector<bool> is_changed_;  // of each landmark: it is in changed_
 };
 
 }  // namespace lapis::slam

@@ -76,7 +76,6 @@ class RgbdSlam::Implementation {
   std::size_t keyframe_count() const { return map_.keyframes().size(); }
   std::size_t landmark_count() const { return map_.landmark_count(); }
   const Map& map() const { return map_; }
-  std::vector<LandmarkId> take_changed_landmarks() { return map_.take_changed_landmarks(); }
   TrackingResult without_vision(time::Time stamp, const std::string& reason, const Frame* frame = nullptr) const {
     TrackingResult result;
     result.state = map_.empty() ? TrackingState::kInitializing : TrackingState::kLost;
@@ -277,6 +276,5 @@ std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(
 std::size_t RgbdSlam::keyframe_count() const { return implementation_->keyframe_count(); }
 std::size_t RgbdSlam::landmark_count() const { return implementation_->landmark_count(); }
 const Map& RgbdSlam::map() const { return implementation_->map(); }
-std::vector<LandmarkId> RgbdSlam::take_changed_landmarks() { return implementation_->take_changed_landmarks(); }
 
 }  // namespace lapis::slam

@@ -5,7 +5,6 @@
 #include <memory>
 #include <optional>
 #include <string>
-#include <vector>
 
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
@@ -69,8 +68,6 @@ class RgbdSlam {
   std::size_t keyframe_count() const;
   std::size_t landmark_count() const;
   const Map& map() const;
-  /// As Map::take_changed_landmarks.
-  std::vector<LandmarkId> take_changed_landmarks();
 
  private:
   class Implementation;

@@ -140,7 +140,7 @@ TEST(LandmarkTiles, MirrorTheMapThroughAThousandEdits) {
     for (int edit = 0; edit < 1000; ++edit) {
       edited.edit();
       if (edited.pick(3) > 0) continue;  // an update follows one edit or several
-      const auto updates = incremental.update(edited.map, edited.map.take_changed_landmarks(), ++version);
+      const auto updates = incremental.update(edited.map, ++version);
       for (const LandmarkTile& tile : updates) {
         EXPECT_EQ(tile.graph_version, version);
         const auto before = tiles.find(tile.index);
@@ -166,12 +166,10 @@ TEST(LandmarkTiles, WithoutToleranceTheyAreThoseMadeFromScratch) {
   Tiles tiles;
   for (std::uint64_t version = 1; version <= 50; ++version) {
     for (int i = 0; i < 20; ++i) edited.edit();
-    receive(incremental.update(edited.map, edited.map.take_changed_landmarks(), version), tiles);
+    receive(incremental.update(edited.map, version), tiles);
 
-    std::vector<LandmarkId> all;
-    for (LandmarkId id = 0; id < edited.landmarks(); ++id) all.push_back(id);
     Tiles scratch;
-    receive(LandmarkTiles(exact).update(edited.map, all, version), scratch);
+    receive(LandmarkTiles(exact).update(edited.map, version), scratch);
     for (const auto& [index, tile] : tiles) {
       if (tile.ids.empty()) {
         EXPECT_FALSE(scratch.contains(index));
@@ -197,7 +195,7 @@ class OneLandmark : public ::testing::Test {
     map.add_observation(id, {0, 0});
     EXPECT_EQ(update().size(), 1U);
   }
-  std::vector<LandmarkTile> update() { return tiles.update(map, map.take_changed_landmarks(), ++version); }
+  std::vector<LandmarkTile> update() { return tiles.update(map, ++version); }
   void move_to(double x) { map.set_position(id, {x, 1.0, 1.0}); }
 
   Map map;
@@ -270,7 +268,7 @@ TEST(LandmarkTiles, AFullTileKeepsWhatMostKeyframesSee) {
   }
   LandmarkTileConfig config;
   config.max_tile_bytes = 2000;
-  const auto updates = LandmarkTiles(config).update(map, map.take_changed_landmarks(), 1);
+  const auto updates = LandmarkTiles(config).update(map, 1);
   ASSERT_EQ(updates.size(), 1U);
   const LandmarkTile& tile = updates[0];
   const std::size_t bytes = mapping::landmark_tile_bytes(tile.ids.size(), tile.observers.size());

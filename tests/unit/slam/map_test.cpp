@@ -51,20 +51,6 @@ TEST(Map, ALandmarkDiesWithItsLastObservation) {
   EXPECT_EQ(map.landmark_count(), 5U);
 }
 
-TEST(Map, TellsOfChangedLandmarksOnce) {
-  Map map = three_keyframes();
-  EXPECT_EQ(map.take_changed_landmarks(), (std::vector<LandmarkId>{0, 1, 2, 3, 4, 5}));
-  EXPECT_TRUE(map.take_changed_landmarks().empty());
-  map.set_position(4, Eigen::Vector3d::Ones());
-  map.remove_observation(2, {1, 2});
-  map.remove_observation(2, {1, 2});  // unknown by now
-  map.set_position(4, Eigen::Vector3d::Zero());
-  EXPECT_FALSE(map.add_observation(0, {1, 9}));  // shown already
-  EXPECT_EQ(map.take_changed_landmarks(), (std::vector<LandmarkId>{4, 2}));
-  EXPECT_TRUE(map.add_observation(2, {1, 2}));
-  EXPECT_EQ(map.take_changed_landmarks(), std::vector<LandmarkId>{2});
-}
-
 TEST(KeyframeRule, HasThreeReasonsAndASpacing) {
   const KeyframeConfig config;
   KeyframeEvidence quiet{config.min_frames, 100, 90, geometry::Pose::Identity()};

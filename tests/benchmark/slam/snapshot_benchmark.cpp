@@ -159,8 +159,14 @@ class Snapshots {
     const Stopwatch watch(costs.landmarks_ms);
     if (graph_version_ == world.version && landmarks_.wants(graph_version_, frame_.stamp, false)) {
       landmarks_.begin_version(world.map, graph_version_, messages::header(frame_.stamp, kIds.map));
+      landmark_version_ = graph_version_;
     }
     landmarks_.publish_part(frame_.stamp);
+  }
+  /// Publishes what is left of the landmarks' version; returns its number.
+  std::uint64_t finish() {
+    landmarks_.publish_rest();
+    return landmark_version_;
   }
 
  private:
@@ -181,6 +187,7 @@ class Snapshots {
   FrameContext frame_;
   std::optional<time::Time> graph_stamp_;
   std::uint64_t graph_version_ = 0;
+  std::uint64_t landmark_version_ = 0;
 };
 
 /// Reads what slam says, as a planner would.
@@ -201,18 +208,23 @@ class ReaderComponent {
     context.subscribe(topics::kKeyframePath, [](const auto&) {});
     context.subscribe(topics::kLandmarks, [this](const auto& message) {
       if (auto tile = messages::from_message(message)) mirror_.apply_tile(message.session(), std::move(*tile));
+      tell();
     });
     context.subscribe(topics::kLandmarkState, [this](const auto& message) {
       mirror_.apply_state(messages::from_message(message));
-      if (!mirror_.is_consistent()) return;
-      std::size_t landmarks = 0;
-      for (const auto& [index, tile] : mirror_.tiles()) landmarks += tile.ids.size();
-      spdlog::info("version {}: {} landmarks", message.graph_version(), landmarks);
+      tell();
     });
   }
 
  private:
+  void tell() {
+    if (!mirror_.is_consistent() || told_ == mirror_.state()->graph_version) return;
+    told_ = mirror_.state()->graph_version;
+    spdlog::info("mirrored version {}.", told_);
+  }
+
   mapping::LandmarkMirror mirror_;
+  std::uint64_t told_ = 0;
 };
 
 /// `seconds` of frames by the wall clock.
@@ -275,8 +287,8 @@ void measure(int keyframes, int seconds) {
   const double walk = walk_ms(world);
   print_row(world, "growing", run(world, snapshots, seconds, false), seconds, walk);
   print_row(world, "growing, loop closed", run(world, snapshots, seconds, true), seconds, walk);
-  const std::string last = "version " + std::to_string(world.version);
-  std::cerr << reader.log().substr(reader.log().rfind("version")) << "published last: " << last << '\n';
+  const std::string mirrored = "mirrored version " + std::to_string(snapshots.finish()) + ".";
+  if (!reader.wait_for_line(mirrored)) throw std::runtime_error("no " + mirrored + " in " + reader.log());
 }
 
 int benchmark(int argc, char** argv) {

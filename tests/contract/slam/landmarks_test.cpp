@@ -160,10 +160,13 @@ TEST_F(SlamLandmarks, OfARestartedSlamReplaceAll) {
 }
 
 TEST_F(SlamLandmarks, OfANewMapAfterStampsWentBackReplaceAll) {
-  int index = 100;
+  int index = 150;  // the wall is near; from frame 0 it is further away than a tile is long
   ASSERT_TRUE(map_after(-1, index)) << slam.log();
+  const auto before = early.mirror.tiles();
   index = 0;
   ASSERT_TRUE(map_after(early.mirror.state()->session, index)) << slam.log();
+  const auto is_left = [&](const auto& tile) { return early.mirror.tiles().contains(tile.first); };
+  ASSERT_FALSE(std::all_of(before.begin(), before.end(), is_left)) << "the test needs a tile of the old map only";
   expect_landmarks_of_the_box(early, 0);
   expect_same_for_a_late_joiner(early, frames.back());
 }

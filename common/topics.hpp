@@ -85,8 +85,11 @@ inline constexpr Topic<lapis_msgs::msg::PoseGraph> kPoseGraph{"/slam/pose_graph"
                                                               "on change, at most 2 Hz",
                                                               "nodes and edges with information, one version"};
 inline constexpr Topic<lapis_msgs::msg::LandmarkTile> kLandmarks{"lapis/slam/landmarks", dds::kKeyedTiles, "slam",
-                                                                 "at most 0.5 Hz",
+                                                                 "changed tiles, at most 0.5 Hz",
                                                                  "landmarks and the key-frames that see them, by tile"};
+inline constexpr Topic<lapis_msgs::msg::LandmarkState> kLandmarkState{"/slam/landmark_state", dds::kLatched, "slam",
+                                                                      "after the tiles of a version",
+                                                                      "graph version and checksum of the landmarks"};
 inline constexpr Topic<lapis_msgs::msg::SlamStatus> kSlamStatus{"/slam/status", dds::kLatched, "slam",
                                                                 "1 Hz and on change", "state, reason, counts"};
 
@@ -168,6 +171,7 @@ void for_each(Visitor&& visit) {
   visit(kKeyframePath);
   visit(kPoseGraph);
   visit(kLandmarks);
+  visit(kLandmarkState);
   visit(kSlamStatus);
   visit(kVoxelTiles);
   visit(kMapState);

@@ -8,7 +8,6 @@ bool MapMirror::enter_epoch(std::int64_t epoch) {
     epoch_ = epoch;
     versions_.clear();
     pending_.clear();
-    checksum_ = 0;
   }
   return true;
 }
@@ -19,13 +18,7 @@ TileResult MapMirror::apply_tile(std::int64_t epoch, const TileIndex& index, std
   auto tile = decode_tile(bytes, index);
   if (!tile) return TileResult::kDamaged;
   enter_epoch(epoch);
-  const auto [known, is_new] = versions_.try_emplace(index, version);
-  if (!is_new) {
-    if (known->second >= version) return TileResult::kOutdated;
-    checksum_ -= tile_hash(index, known->second);
-    known->second = version;
-  }
-  checksum_ += tile_hash(index, version);
+  if (!versions_.set(index, version)) return TileResult::kOutdated;
   pending_.insert_or_assign(index, PendingTile{tile->blocks_per_edge, std::move(tile->blocks)});
   serve_if_complete();
   return TileResult::kAccepted;
@@ -40,7 +33,7 @@ void MapMirror::apply_state(const MapState& state) {
 
 void MapMirror::serve_if_complete() {
   if (!newest_ || newest_->epoch != *epoch_ || is_consistent()) return;
-  if (newest_->tiles != versions_.size() || newest_->checksum != checksum_) return;
+  if (newest_->tiles != versions_.size() || newest_->checksum != versions_.checksum()) return;
   if (!(newest_->resolution_m >= kMinResolution_m && newest_->resolution_m <= kMaxResolution_m)) return;
   if (!served_ || served_->epoch != newest_->epoch) map_.emplace(newest_->resolution_m);
   for (auto& [index, tile] : pending_) {

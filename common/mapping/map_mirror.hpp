@@ -5,11 +5,11 @@
 #include <map>
 #include <optional>
 #include <span>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
 #include "common/mapping/tile_codec.hpp"
+#include "common/mapping/tile_versions.hpp"
 #include "common/mapping/voxel_map.hpp"
 
 namespace lapis::mapping {
@@ -55,9 +55,8 @@ class MapMirror {
   void serve_if_complete();
 
   std::optional<std::int64_t> epoch_;
-  std::unordered_map<TileIndex, std::uint64_t, GridIndexHash> versions_;  ///< newest received, of epoch_
-  std::uint64_t checksum_ = 0;                                            ///< over versions_
-  std::map<TileIndex, PendingTile> pending_;                              ///< received, not yet in map_
+  TileVersions versions_;                     ///< newest received, of epoch_
+  std::map<TileIndex, PendingTile> pending_;  ///< received, not yet in map_
   std::optional<MapState> newest_;
   std::optional<MapState> served_;
   std::optional<VoxelMap> map_;

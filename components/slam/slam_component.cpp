@@ -25,7 +25,7 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
       odometry_(context.advertise(topics::kSlamOdometry)), tracked_frame_(context.advertise(topics::kTrackedFrame)),
       transforms_(context.advertise(topics::kTransforms)), path_(context.advertise(topics::kKeyframePath)),
       pose_graph_(context.advertise(topics::kPoseGraph)), status_(context.advertise(topics::kSlamStatus)),
-      color_(context, topics::kColor, "colour", kWaitingMessages),
+      landmarks_(context, config.landmark_period_s), color_(context, topics::kColor, "colour", kWaitingMessages),
       depth_(context, topics::kDepth, "depth", kWaitingMessages),
       info_(context, topics::kColorInfo, "camera info", kWaitingMessages) {
   cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
@@ -39,7 +39,9 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
 void SlamComponent::work(const runtime::Cycle& cycle) {
   while (next_frame(cycle)) {
   }
-  if (slam_ != nullptr) publish_graph(cycle.is_final);
+  if (slam_ == nullptr) return;
+  publish_graph(cycle.is_final);
+  publish_landmarks(cycle.is_final);
 }
 
 /// Joins and processes the oldest colour image; false when its partners may still come.
@@ -93,6 +95,7 @@ bool SlamComponent::prepare(const Image& color) {
   frame_.session = session_;
   slam_ = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, frame_.T_base_camera);
   graph_version_ = 0;
+  landmarks_.begin_session(session_);
   return true;
 }
 
@@ -184,6 +187,17 @@ void SlamComponent::publish_graph(bool is_final) {
   graph_stamp_ = frame_.stamp;
 }
 
+/// Versions of the landmarks are some of those of the pose graph, which comes first.
+void SlamComponent::publish_landmarks(bool is_final) {
+  if (is_final) landmarks_.publish_rest();
+  const bool is_graph_out = slam_->graph_version() == graph_version_;
+  if (is_graph_out && landmarks_.wants(graph_version_, frame_.stamp, is_final)) {
+    landmarks_.begin_version(slam_->map(), graph_version_, messages::header(frame_.stamp, ids_.map));
+  }
+  landmarks_.publish_part(frame_.stamp);
+  if (is_final) landmarks_.publish_rest();
+}
+
 void SlamComponent::publish_status(const TrackingResult& result) {
   const bool is_tracking = result.state == TrackingState::kTracking;
   context_.status().set(is_tracking ? runtime::Status::Level::kOk : runtime::Status::Level::kWarn,
@@ -220,7 +234,9 @@ void SlamComponent::finish() {
   if (slam_ == nullptr) return;
   slam_->settle();
   publish_graph(true);
+  publish_landmarks(true);
   pose_graph_.wait_until_acknowledged(kFarewell_s);
+  landmarks_.wait_until_acknowledged(kFarewell_s);
   write_files();
 }
 

@@ -8,6 +8,7 @@
 #include "common/runtime/stamped_input.hpp"
 #include "slam/conversions.hpp"
 #include "slam/core/rgbd_slam.hpp"
+#include "slam/landmark_publisher.hpp"
 #include "slam/slam_config.hpp"
 
 namespace lapis::slam {
@@ -37,6 +38,7 @@ class SlamComponent {
   void publish_odometry(const TrackingResult& result);
   void publish_transforms(const nav_msgs::msg::Odometry& odometry);
   void publish_graph(bool is_final);
+  void publish_landmarks(bool is_final);
   void publish_status(const TrackingResult& result);
   void write_files() const;
 
@@ -49,6 +51,7 @@ class SlamComponent {
   dds::Publisher<nav_msgs::msg::Path>& path_;
   dds::Publisher<lapis_msgs::msg::PoseGraph>& pose_graph_;
   dds::Publisher<lapis_msgs::msg::SlamStatus>& status_;
+  LandmarkPublisher landmarks_;
 
   runtime::StampedInput<Image> color_;
   runtime::StampedInput<Image> depth_;

@@ -12,6 +12,7 @@ struct SlamComponentConfig {
   SlamConfig method;
   double max_stamp_difference_s = 0.016;
   double graph_period_s = 0.5;
+  double landmark_period_s = 2.0;
   std::string publish_odom_frame = "auto";
   std::string output_dir;
 };
@@ -159,6 +160,8 @@ void describe(Field& field, SlamComponentConfig& c) {
         "between colour, depth and camera info of one frame [s]");
   field("graph_period_s", c.graph_period_s, config::in_range(0.0, 60.0),
         "least time between publications of the pose graph, by the frames' stamps [s]");
+  field("landmark_period_s", c.landmark_period_s, config::in_range(0, 60),
+        "least time between published versions of the landmarks, by the frames' stamps [s]");
   field("publish_odom_frame", c.publish_odom_frame, config::one_of({"auto", "always", "never"}),
         "whether slam is the one who publishes odom -> base_link; auto: while nobody publishes /odom");
   field("output_dir", c.output_dir, config::anything(),

@@ -55,6 +55,8 @@ class Map {
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const Keyframe& keyframe(KeyframeId id) const { return keyframes_[static_cast<std::size_t>(id)]; }
   const Landmark& landmark(LandmarkId id) const { return landmarks_[id]; }
+  /// By id, the dead among them.
+  const std::vector<Landmark>& landmarks() const { return landmarks_; }
   std::size_t landmark_count() const { return alive_; }
   void set_pose(KeyframeId id, const geometry::Pose& T_map_camera);
   /// Moves every key-frame by its transform of the map (T_map_camera becomes moves[id] * T_map_camera), and every

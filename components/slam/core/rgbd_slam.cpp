@@ -81,6 +81,7 @@ class RgbdSlam::Implementation {
   std::uint64_t version() const { return version_; }
   std::size_t keyframe_count() const { return map_.keyframes().size(); }
   std::size_t landmark_count() const { return map_.landmark_count(); }
+  const Map& map() const { return map_; }
   TrackingResult without_vision(time::Time stamp, const std::string& reason, const Frame* frame = nullptr) const {
     TrackingResult result;
     result.state = map_.empty() ? TrackingState::kInitializing : TrackingState::kLost;
@@ -317,5 +318,6 @@ PoseGraphSnapshot RgbdSlam::pose_graph() const { return implementation_->pose_gr
 std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(); }
 std::size_t RgbdSlam::keyframe_count() const { return implementation_->keyframe_count(); }
 std::size_t RgbdSlam::landmark_count() const { return implementation_->landmark_count(); }
+const Map& RgbdSlam::map() const { return implementation_->map(); }
 
 }  // namespace lapis::slam

@@ -11,6 +11,7 @@
 #include "slam/core/config.hpp"
 #include "slam/core/frame.hpp"
 #include "slam/core/loop_detector.hpp"
+#include "slam/core/map.hpp"
 #include "slam/core/pose_graph.hpp"
 
 namespace lapis::slam {
@@ -77,6 +78,7 @@ class RgbdSlam {
   std::uint64_t graph_version() const;
   std::size_t keyframe_count() const;
   std::size_t landmark_count() const;
+  const Map& map() const;
 
  private:
   class Implementation;

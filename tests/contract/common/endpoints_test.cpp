@@ -82,7 +82,7 @@ const std::vector<Process> kProcesses = {
      {},
      {readers(topics::kColor, topics::kDepth, topics::kColorInfo, topics::kStaticTransforms, topics::kWheelOdometry),
       writers(topics::kSlamOdometry, topics::kTrackedFrame, topics::kTransforms, topics::kKeyframePath,
-              topics::kPoseGraph, topics::kSlamStatus)}},
+              topics::kPoseGraph, topics::kLandmarks, topics::kLandmarkState, topics::kSlamStatus)}},
     {"semantic_mapper",
      "semantic_mapper",
      {},

@@ -29,9 +29,9 @@ TEST(TopicTable, RowsAreSound) {
   using namespace topics;  // NOLINT(google-build-using-namespace): the table's rows
   expect_all_sound(kClock, kTick, kAck, kColor, kDepth, kColorInfo, kDepthInfo, kLabels, kLabelConfidence, kLabelInfo,
                    kWheelOdometry, kImu, kGroundTruth, kCollision, kTransforms, kStaticTransforms, kSlamOdometry,
-                   kTrackedFrame, kKeyframePath, kPoseGraph, kLandmarks, kSlamStatus, kVoxelTiles, kMapState,
-                   kObstacles, kOctomap, kMapPoints, kOccupancyGrid, kPlannerPath, kCandidates, kPlannerMarkers,
-                   kPlannerStatus, kCommand, kLocalPath, kControllerStatus, kDiagnostics);
+                   kTrackedFrame, kKeyframePath, kPoseGraph, kLandmarks, kLandmarkState, kSlamStatus, kVoxelTiles,
+                   kMapState, kObstacles, kOctomap, kMapPoints, kOccupancyGrid, kPlannerPath, kCandidates,
+                   kPlannerMarkers, kPlannerStatus, kCommand, kLocalPath, kControllerStatus, kDiagnostics);
 }
 
 TEST(TopicTable, LockStepTopicsRepairLossQuickly) {

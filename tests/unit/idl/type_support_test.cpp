@@ -52,15 +52,15 @@ class EveryPackage : public testing::Test {};
 using Types =
     testing::Types<builtin_interfaces::msg::Time, diagnostic_msgs::msg::DiagnosticArray, geometry_msgs::msg::Twist,
                    lapis_msgs::msg::Ack, lapis_msgs::msg::CandidateSet, lapis_msgs::msg::ControllerStatus,
-                   lapis_msgs::msg::LandmarkTile, lapis_msgs::msg::MapState, lapis_msgs::msg::PlannerStatus,
-                   lapis_msgs::msg::PoseGraph, lapis_msgs::msg::SlamStatus, lapis_msgs::msg::Tick,
-                   lapis_msgs::msg::TrackedFrame, lapis_msgs::msg::VoxelTile, nav_msgs::msg::Odometry,
-                   nav_msgs::srv::GetMap_Response, octomap_msgs::msg::Octomap, octomap_msgs::srv::GetOctomap_Response,
-                   rcl_interfaces::msg::ParameterEvent, rcl_interfaces::srv::DescribeParameters_Response,
-                   rmw_dds_common::msg::ParticipantEntitiesInfo, rosgraph_msgs::msg::Clock, sensor_msgs::msg::Image,
-                   sensor_msgs::msg::PointCloud2, std_msgs::msg::Empty, std_msgs::msg::Header,
-                   std_srvs::srv::Trigger_Request, tf2_msgs::msg::TFMessage, vision_msgs::msg::LabelInfo,
-                   visualization_msgs::msg::MarkerArray>;
+                   lapis_msgs::msg::LandmarkState, lapis_msgs::msg::LandmarkTile, lapis_msgs::msg::MapState,
+                   lapis_msgs::msg::PlannerStatus, lapis_msgs::msg::PoseGraph, lapis_msgs::msg::SlamStatus,
+                   lapis_msgs::msg::Tick, lapis_msgs::msg::TrackedFrame, lapis_msgs::msg::VoxelTile,
+                   nav_msgs::msg::Odometry, nav_msgs::srv::GetMap_Response, octomap_msgs::msg::Octomap,
+                   octomap_msgs::srv::GetOctomap_Response, rcl_interfaces::msg::ParameterEvent,
+                   rcl_interfaces::srv::DescribeParameters_Response, rmw_dds_common::msg::ParticipantEntitiesInfo,
+                   rosgraph_msgs::msg::Clock, sensor_msgs::msg::Image, sensor_msgs::msg::PointCloud2,
+                   std_msgs::msg::Empty, std_msgs::msg::Header, std_srvs::srv::Trigger_Request,
+                   tf2_msgs::msg::TFMessage, vision_msgs::msg::LabelInfo, visualization_msgs::msg::MarkerArray>;
 TYPED_TEST_SUITE(EveryPackage, Types);
 
 TYPED_TEST(EveryPackage, AgreesOnNamesHashAndKeys) {

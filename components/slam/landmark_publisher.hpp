@@ -1,0 +1,52 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <optional>
+#include <set>
+
+#include "common/runtime/context.hpp"
+#include "slam/core/landmark_tiles.hpp"
+
+namespace lapis::slam {
+
+/// Publishes the landmarks version by version: the tiles that changed, a part with each frame so that none takes long
+/// and no socket buffer overflows, and then the state that announces the version.
+class LandmarkPublisher {
+ public:
+  /// `period_s`: least time between two versions, by the frames' stamps.
+  LandmarkPublisher(runtime::Context& context, double period_s);
+
+  /// A new map begins: the tiles of the one before end.
+  void begin_session(std::int64_t session);
+  /// True when the version before is out, the period is over, or nothing follows, and `graph_version` is new.
+  bool wants(std::uint64_t graph_version, time::Time stamp, bool is_final) const;
+  /// Begins a version: finds the tiles that differ from those of the version before.
+  void begin_version(const Map& map, std::uint64_t graph_version, const std_msgs::msg::Header& header);
+  /// Publishes the part that belongs to the frame with that stamp; does nothing when that was done before.
+  void publish_part(time::Time stamp);
+  /// Publishes all that is left of the version.
+  void publish_rest();
+  bool wait_until_acknowledged(double timeout_s);
+
+ private:
+  void publish_next_tile();
+  void publish_state();
+
+  runtime::Context& context_;
+  dds::Publisher<lapis_msgs::msg::LandmarkTile>& tiles_;
+  dds::Publisher<lapis_msgs::msg::LandmarkState>& state_;
+  double period_s_;
+
+  std::int64_t session_ = 0;
+  LandmarkTiles landmarks_{LandmarkTileConfig{}};
+  std::set<mapping::TileIndex> published_;  // of the session
+  std::optional<time::Time> version_stamp_;
+  std::uint64_t graph_version_ = 0;         // of the version begun last
+  std_msgs::msg::Header header_;            // of that version
+  std::deque<mapping::LandmarkTile> left_;  // tiles of it that are still to be published
+  bool is_announced_ = true;                // its state is out
+  std::optional<time::Time> part_stamp_;
+};
+
+}  // namespace lapis::slam

@@ -44,6 +44,29 @@ class RgbdSlam::Implementation {
       : config_(config), T_map_first_camera_(T_map_first_camera), extractor_(config.features), tracker_(config),
         motion_(config.tracker.max_prediction_s, config.odometry, T_base_camera) {}
 
+  Implementation(const SlamConfig& config, const Pose& T_base_camera, SlamState state)
+      : Implementation(config, Pose::Identity(), T_base_camera) {
+    map_ = restore_map(state);
+    edges_ = std::move(state.edges);
+    links_ = std::move(state.links);
+    covariances_ = std::move(state.covariances);
+    reference_ = state.reference;
+    version_ = state.graph_version;
+    saved_keyframes_ = map_.keyframes().size();
+    is_placed_ = false;
+    tracker_.set_reference(map_, reference_);
+  }
+
+  SlamState state() const {
+    SlamState state{
+        config_.features.scale_factor, version_, reference_, map_.keyframes(), {}, edges_, links_, covariances_};
+    state.landmarks.reserve(map_.landmarks().size());
+    for (const Landmark& landmark : map_.landmarks()) {
+      state.landmarks.push_back({landmark.p_map, landmark.finest_distance_m});
+    }
+    return state;
+  }
+
   bool add_odometry(time::Time stamp, const Pose& T_odom_base) { return motion_.add_odometry(stamp, T_odom_base); }
 
   TrackingResult process(const RgbdFrame& input) {
@@ -54,6 +77,7 @@ class RgbdSlam::Implementation {
     TrackOutcome outcome = tracker_.track(map_, frame, motion_.predict(map_, input.stamp));
     if (!outcome.is_tracked) return continue_blind(frame, outcome.reason);
     blind_frames_ = 0;
+    is_placed_ = true;
     ++frames_since_keyframe_;
     follow_reference(outcome);
     TrackingResult result = with_pose(frame, outcome);
@@ -78,7 +102,7 @@ class RgbdSlam::Implementation {
   TrackingResult without_vision(time::Time stamp, const std::string& reason, const Frame* frame = nullptr) const {
     TrackingResult result;
     result.state = map_.empty() ? TrackingState::kInitializing : TrackingState::kLost;
-    result.reason = reason;
+    result.reason = is_placed_ ? reason : "looking for a place in the saved map: " + reason;
     result.graph_version = version_;
     if (frame != nullptr) result.features = static_cast<std::uint32_t>(frame->features.size());
     const auto reckoned = motion_.dead_reckon(stamp);
@@ -179,7 +203,7 @@ class RgbdSlam::Implementation {
     if (outcome != nullptr) {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
       add_visual_edge(id, *outcome);
-      add_wheel_edge(previous, id);
+      if (previous >= saved_keyframes_) add_wheel_edge(previous, id);
     } else {
       edges_.push_back({result.keyframe_id, id, EdgeType::kWheelOdometry, result.T_keyframe_camera,
                         bounded_information(config_.pose_graph, result.covariance.inverse())});
@@ -256,10 +280,14 @@ class RgbdSlam::Implementation {
   int frames_since_keyframe_ = 0;
   int blind_frames_ = 0;  // in a row, with enough to see
   std::uint64_t version_ = 0;
+  std::size_t saved_keyframes_ = 0;  // their stamps are of another time: no odometry leads from them
+  bool is_placed_ = true;            // in a saved map: false until the camera has been found there
 };
 
 RgbdSlam::RgbdSlam(const SlamConfig& config, const Pose& T_map_first_camera, const Pose& T_base_camera)
     : implementation_(std::make_unique<Implementation>(config, T_map_first_camera, T_base_camera)) {}
+RgbdSlam::RgbdSlam(const SlamConfig& config, const Pose& T_base_camera, SlamState state)
+    : implementation_(std::make_unique<Implementation>(config, T_base_camera, std::move(state))) {}
 RgbdSlam::~RgbdSlam() = default;
 
 TrackingResult RgbdSlam::process(const RgbdFrame& frame) { return implementation_->process(frame); }
@@ -271,6 +299,7 @@ TrackingResult RgbdSlam::skip(time::Time stamp, const std::string& reason) const
   return implementation_->without_vision(stamp, reason);
 }
 PoseGraphSnapshot RgbdSlam::pose_graph() const { return implementation_->pose_graph(); }
+SlamState RgbdSlam::state() const { return implementation_->state(); }
 std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(); }
 std::size_t RgbdSlam::keyframe_count() const { return implementation_->keyframe_count(); }
 std::size_t RgbdSlam::landmark_count() const { return implementation_->landmark_count(); }

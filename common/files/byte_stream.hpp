@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -41,8 +42,9 @@ class ByteWriter {
 
  private:
   void fixed(std::uint64_t v, std::size_t size) {
-    bytes_.resize(bytes_.size() + size);
-    set(bytes_.size() - size, v, size);
+    std::array<std::uint8_t, 8> little{};
+    for (std::size_t i = 0; i < size; ++i) little[i] = static_cast<std::uint8_t>(v >> (8 * i));
+    bytes_.insert(bytes_.end(), little.begin(), little.begin() + size);
   }
   void set(std::size_t at, std::uint64_t v, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i) bytes_[at + i] = static_cast<std::uint8_t>(v >> (8 * i));

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import chain
 
-DISK_SIZE = "4m"
+DISK_SIZE = "16m"
 MAP_FILES = ("map.lapis", "map.ot", "map.ply")
 
 

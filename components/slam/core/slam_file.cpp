@@ -148,10 +148,10 @@ class Decoder {
     }
   }
   void get(Matrix6d& m) {
-    for (int row = 0; row < 6; ++row) {
-      for (int column = row; column < 6; ++column) {
-        get(m(row, column));
-        m(column, row) = m(row, column);
+    for (int i = 0; i < 6; ++i) {
+      for (int j = i; j < 6; ++j) {
+        get(m(i, j));
+        m(j, i) = m(i, j);
       }
     }
   }
@@ -266,6 +266,10 @@ std::optional<SlamFile> decode_slam_file(std::span<const std::uint8_t> bytes, st
   sections(section, file);
   error = section.problem();
   if (!error.empty()) return std::nullopt;
+  if (file.session < 0 || file.session > kLastStamp_ns) {
+    error = "has a session out of range";
+    return std::nullopt;
+  }
   if (const auto fault = find_fault(file.state)) {
     error = "holds no sound map: " + *fault;
     return std::nullopt;

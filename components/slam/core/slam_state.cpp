@@ -54,6 +54,8 @@ Fault find_link_fault(const Keyframe& keyframe, std::size_t landmarks) {
 }
 
 Fault find_keyframe_fault(const Keyframe& keyframe, std::size_t landmarks) {
+  const std::int64_t stamp_ns = keyframe.stamp.nanoseconds;
+  if (stamp_ns < 0 || stamp_ns > kLastStamp_ns) return "stamp out of range";
   if (!geometry::is_valid(keyframe.camera)) return "invalid camera";
   if (!geometry::is_valid(keyframe.T_map_camera)) return "pose is no rigid transform";
   if (auto fault = find_link_fault(keyframe, landmarks)) return fault;

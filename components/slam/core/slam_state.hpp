@@ -12,6 +12,9 @@
 
 namespace lapis::slam {
 
+/// Stamps, and sessions, which are named by stamps, are not negative and end where those of messages do, in 2038.
+inline constexpr std::int64_t kLastStamp_ns = 2'147'483'647'999'999'999;
+
 /// A landmark but for the features that show it: key-frames list those.
 struct LandmarkState {
   Eigen::Vector3d p_map = Eigen::Vector3d::Zero();  ///< [m]

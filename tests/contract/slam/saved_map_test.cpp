@@ -89,7 +89,9 @@ class SavedMap : public ::testing::Test {
     last_pose_ = *messages::from_message(run.odometry.back().pose().pose());
     session_ = run.frames.back().session();
     ASSERT_EQ(run.slam().stop(SIGTERM), 0) << run.log();
-    ASSERT_TRUE(run.wait_until([&] { return !run.graphs.empty(); }));
+    ASSERT_TRUE(run.wait_until([&] {
+      return !run.graphs.empty() && run.graphs.back().version() == run.frames.back().graph_version();
+    })) << run.log();
     graph_ = run.graphs.back();
     ASSERT_GE(graph_.nodes().size(), 3U);
     ASSERT_TRUE(fs::exists(file()));

@@ -158,6 +158,7 @@ TEST(SlamFile, AStateThatCannotBeIsRefusedByName) {
       {"covariances differ in number", [](State& s) { s.covariances.pop_back(); }},
       {"covariance 1", [](State& s) { s.covariances[1](2, 2) = -1.0; }},
       {"key-frame 2: wrong id", [](State& s) { s.keyframes[2].id = 7; }},
+      {"key-frame 2: stamp", [](State& s) { s.keyframes[2].stamp.nanoseconds = -1; }},
       {"key-frame 1: invalid camera", [](State& s) { s.keyframes[1].camera.fx = 0.0; }},
       {"key-frame 1: pose", [](State& s) { s.keyframes[1].T_map_camera.translation().x() = kNaN; }},
       {"key-frame 1: pose", [](State& s) { s.keyframes[1].T_map_camera.linear() *= 1.1; }},
@@ -204,6 +205,9 @@ TEST(SlamFile, ErrorsNameFileVersionAndSection) {
   Bytes bytes = encode_slam_file(test::sample_file(1, 2));
   bytes.back() ^= 1U;
   EXPECT_EQ(refusal(bytes), "is damaged: its section LINK has another checksum than when it was written");
+  SlamFile timeless = test::sample_file(1, 1);
+  timeless.session = -1;
+  EXPECT_EQ(refusal(encode_slam_file(timeless)), "has a session out of range");
   bytes[8] = 9;
   EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1");
 }

@@ -26,8 +26,8 @@ a simulated building, and leaves a run folder with trajectory, pose graph, seman
                    What describes the map and how frames enter it goes from semantic_mapper to the references of evaluator
                    and simulator, too. --print-config of each process lists the keys
 
-Results of an earlier run in DIR are removed. Exit status: 0 played to the end, 1 a process failed or no frame came,
-2 bad set-up, 130 and 143 interrupted.
+Results of an earlier run in DIR are removed, but for the map that slam.resume_from names. Exit status: 0 played to the
+end, 1 a process failed or no frame came, 2 bad set-up, 130 and 143 interrupted.
 TEXT
 }
 
@@ -80,7 +80,11 @@ add_setting() {
   esac
 }
 knows_robot() { [ "$1" = semantic_mapper ] || [ "$1" = evaluator ] || [ "$1" = simulator ]; }
-for request in "${requests[@]}"; do add_setting "$request"; done
+resumed="" # map that slam goes on with
+for request in "${requests[@]}"; do
+  add_setting "$request"
+  [[ $request != slam.resume_from=* ]] || resumed=${request#*=}
+done
 
 out=${out:-$repository/out/$(basename "${dataset:-$scene}" .yaml)}
 mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another with --out DIR"
@@ -91,6 +95,9 @@ mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another wi
     ground_truth/{mesh,flood,ideal}.lapis ground_truth/{classes,rooms}.json ground_truth/navmap.{png,yaml} \
     figures/{trajectory,errors,class_iou}.png logs/{slam,semantic_mapper,evaluator,sensor_replay,simulator}.log
 )
+for file in "$out"/slam?(.+([0-9])).lapis; do
+  [ "$file" -ef "$resumed" ] || rm -f "$file"
+done
 if [ "$source" = simulator ]; then
   play=("$scene" --set simulator.tour=bundled "${play[@]}" --set "simulator.output_dir=$out")
   [ -z "$rate" ] || play+=(--mode freerun --set simulator.wait_for_readers=3)

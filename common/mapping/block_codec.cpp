@@ -20,7 +20,7 @@ bool has_only_whole_votes(const VoxelBlock& block) {
   return true;
 }
 
-void write_voxels(const VoxelBlock& block, std::uint32_t unit, ByteWriter& out) {
+void write_voxels(const VoxelBlock& block, std::uint32_t unit, files::ByteWriter& out) {
   VoxelCounts counts;
   for (int offset = 0; offset < kBlockVoxels;) {
     if (!block.has_hits(offset)) {
@@ -41,13 +41,13 @@ void write_voxels(const VoxelBlock& block, std::uint32_t unit, ByteWriter& out) 
   }
 }
 
-std::uint32_t read_count(ByteReader& in, std::uint32_t unit) {
+std::uint32_t read_count(files::ByteReader& in, std::uint32_t unit) {
   const std::uint64_t value = in.varint();
   if (value > std::numeric_limits<std::uint32_t>::max() / unit) in.fail();
   return static_cast<std::uint32_t>(value) * unit;
 }
 
-void read_hits(ByteReader& in, std::uint64_t classes, std::uint32_t unit, int offset, VoxelBlock& block) {
+void read_hits(files::ByteReader& in, std::uint64_t classes, std::uint32_t unit, int offset, VoxelBlock& block) {
   if (classes == 0) in.fail();
   std::int32_t previous = -1;
   for (std::uint64_t i = 0; i < classes && in.is_good(); ++i) {
@@ -59,7 +59,7 @@ void read_hits(ByteReader& in, std::uint64_t classes, std::uint32_t unit, int of
   }
 }
 
-void read_voxels(ByteReader& in, std::uint32_t unit, VoxelBlock& block) {
+void read_voxels(files::ByteReader& in, std::uint32_t unit, VoxelBlock& block) {
   for (int offset = 0; offset < kBlockVoxels && in.is_good();) {
     const std::uint64_t head = in.varint();
     const std::uint32_t passes = read_count(in, unit);
@@ -76,7 +76,7 @@ void read_voxels(ByteReader& in, std::uint32_t unit, VoxelBlock& block) {
 
 }  // namespace
 
-void write_block(const VoxelBlock* block, ByteWriter& out) {
+void write_block(const VoxelBlock* block, files::ByteWriter& out) {
   if (block == nullptr || block->is_empty()) return out.varint(kEmpty);
   if (block->is_uniform()) return out.varint(static_cast<std::uint64_t>(block->passes(0)) << 2 | kUniform);
   const bool is_whole = has_only_whole_votes(*block);
@@ -84,7 +84,7 @@ void write_block(const VoxelBlock* block, ByteWriter& out) {
   write_voxels(*block, is_whole ? kOneVote : 1, out);
 }
 
-VoxelBlock read_block(ByteReader& in) {
+VoxelBlock read_block(files::ByteReader& in) {
   VoxelBlock block;
   const std::uint64_t word = in.varint();
   if ((word & 3u) == kUniform) {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/mapping/byte_stream.hpp"
+#include "common/files/byte_stream.hpp"
 #include "common/mapping/voxel_block.hpp"
 
 namespace lapis::mapping {
@@ -13,9 +13,9 @@ namespace lapis::mapping {
 ///   run << 1      `run` voxels without hits, then their common number of passes
 ///   k << 1 | 1    one voxel with k classes: passes, then k times label (ascending), count (> 0)
 /// Equal blocks give equal bytes. `block` may be null: never observed.
-void write_block(const VoxelBlock* block, ByteWriter& out);
+void write_block(const VoxelBlock* block, files::ByteWriter& out);
 
 /// Inverse of write_block. Malformed input makes the reader fail; the block is then unspecified.
-VoxelBlock read_block(ByteReader& in);
+VoxelBlock read_block(files::ByteReader& in);
 
 }  // namespace lapis::mapping

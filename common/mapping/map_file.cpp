@@ -5,9 +5,9 @@
 #include <string_view>
 
 #include "common/files/atomic_file.hpp"
+#include "common/files/byte_stream.hpp"
+#include "common/files/crc32.hpp"
 #include "common/mapping/block_codec.hpp"
-#include "common/mapping/byte_stream.hpp"
-#include "common/mapping/crc32.hpp"
 #include "common/mapping/zstd_codec.hpp"
 
 namespace lapis::mapping {
@@ -18,7 +18,7 @@ constexpr std::uint32_t kFormatVersion = 1;
 constexpr int kCompressionLevel = 3;
 constexpr std::size_t kMaxContentBytes = std::size_t{8} << 30;
 
-void write_sensor_model(const SensorModel& model, ByteWriter& out) {
+void write_sensor_model(const SensorModel& model, files::ByteWriter& out) {
   for (const double value : {model.hit_gain, model.pass_gain, model.label_accuracy, model.prior_occupied,
                              model.occupancy_limit, model.share_limit})
     out.f64(value);
@@ -28,7 +28,7 @@ void write_sensor_model(const SensorModel& model, ByteWriter& out) {
   for (const double prior : model.class_priors) out.f64(prior);
 }
 
-SensorModel read_sensor_model(ByteReader& in) {
+SensorModel read_sensor_model(files::ByteReader& in) {
   SensorModel model;
   for (double* value : {&model.hit_gain, &model.pass_gain, &model.label_accuracy, &model.prior_occupied,
                         &model.occupancy_limit, &model.share_limit})
@@ -41,7 +41,7 @@ SensorModel read_sensor_model(ByteReader& in) {
   return model;
 }
 
-void write_labels(const LabelList& labels, ByteWriter& out) {
+void write_labels(const LabelList& labels, files::ByteWriter& out) {
   out.varint(labels.size());
   for (const Label& label : labels.labels()) {
     out.varint(label.id);
@@ -52,7 +52,7 @@ void write_labels(const LabelList& labels, ByteWriter& out) {
   }
 }
 
-std::vector<Label> read_labels(ByteReader& in) {
+std::vector<Label> read_labels(files::ByteReader& in) {
   std::vector<Label> labels;
   const std::uint64_t count = in.varint();
   for (std::uint64_t i = 0; i < count && in.is_good(); ++i) {
@@ -70,7 +70,7 @@ std::vector<Label> read_labels(ByteReader& in) {
 }
 
 std::vector<std::uint8_t> encode_content(const MapFile& file) {
-  ByteWriter out;
+  files::ByteWriter out;
   out.f64(file.map.resolution_m());
   write_sensor_model(file.sensor_model, out);
   write_labels(file.labels, out);
@@ -90,7 +90,7 @@ std::vector<std::uint8_t> encode_content(const MapFile& file) {
   return out.take();
 }
 
-void read_blocks(ByteReader& in, VoxelMap& map) {
+void read_blocks(files::ByteReader& in, VoxelMap& map) {
   const std::uint64_t count = in.varint();
   std::optional<BlockIndex> previous;
   for (std::uint64_t i = 0; i < count && in.is_good(); ++i) {
@@ -107,7 +107,7 @@ void read_blocks(ByteReader& in, VoxelMap& map) {
 
 /// Throws std::runtime_error for values out of range (the constructors' own checks).
 std::optional<MapFile> decode_content(std::span<const std::uint8_t> content) {
-  ByteReader in(content);
+  files::ByteReader in(content);
   MapFile file{VoxelMap(in.f64()), {}, {}, {}};
   file.sensor_model = read_sensor_model(in);
   std::vector<Label> labels = read_labels(in);
@@ -125,7 +125,7 @@ std::optional<MapFile> decode_content(std::span<const std::uint8_t> content) {
 
 /// The payload after the header was checked; nothing with a reason otherwise.
 std::optional<std::span<const std::uint8_t>> check_header(std::span<const std::uint8_t> bytes, std::string& error) {
-  ByteReader in(bytes);
+  files::ByteReader in(bytes);
   const auto magic = in.raw(kMagic.size());
   if (!in.is_good() || !std::equal(magic.begin(), magic.end(), kMagic.begin())) {
     error = "is not a Lapis map";
@@ -143,7 +143,7 @@ std::optional<std::span<const std::uint8_t>> check_header(std::span<const std::u
     error = "is truncated or has bytes after its end";
     return std::nullopt;
   }
-  if (crc32(bytes.last(covered)) != crc) {
+  if (files::crc32(bytes.last(covered)) != crc) {
     error = "is damaged: the checksum differs";
     return std::nullopt;
   }
@@ -153,14 +153,14 @@ std::optional<std::span<const std::uint8_t>> check_header(std::span<const std::u
 }  // namespace
 
 std::vector<std::uint8_t> encode_map(const MapFile& file) {
-  ByteWriter checked;
+  files::ByteWriter checked;
   const std::vector<std::uint8_t> payload = zstd_compress(encode_content(file), kCompressionLevel);
   checked.u64(payload.size());
   checked.raw(payload);
-  ByteWriter out;
+  files::ByteWriter out;
   for (const char c : kMagic) out.u8(static_cast<std::uint8_t>(c));
   out.u32(kFormatVersion);
-  out.u32(crc32(checked.bytes()));
+  out.u32(files::crc32(checked.bytes()));
   out.raw(checked.bytes());
   return out.take();
 }

@@ -15,7 +15,7 @@ constexpr std::size_t kCompressAbove = std::size_t{256} << 10;
 constexpr std::size_t kMaxBodyBytes = std::size_t{64} << 20;
 constexpr int kCompressionLevel = 1;
 
-void read_blocks(ByteReader& in, const TileIndex& index, DecodedTile& tile) {
+void read_blocks(files::ByteReader& in, const TileIndex& index, DecodedTile& tile) {
   for (const BlockIndex& block_index : blocks_of(index, tile.blocks_per_edge)) {
     VoxelBlock block = read_block(in);
     if (!in.is_good()) return;
@@ -56,11 +56,11 @@ std::vector<BlockIndex> blocks_of(const TileIndex& tile, int blocks_per_edge) {
 }
 
 std::optional<std::vector<std::uint8_t>> encode_tile(const VoxelMap& map, const TileIndex& tile, int blocks_per_edge) {
-  ByteWriter body;
+  files::ByteWriter body;
   for (const BlockIndex& block : blocks_of(tile, blocks_per_edge)) write_block(map.find(block), body);
   const bool is_large = body.bytes().size() > kCompressAbove;
 
-  ByteWriter out;
+  files::ByteWriter out;
   out.u8(kMagic);
   out.u8(kFormatVersion);
   out.u8(static_cast<std::uint8_t>(blocks_per_edge));
@@ -73,7 +73,7 @@ std::optional<std::vector<std::uint8_t>> encode_tile(const VoxelMap& map, const 
 
 std::optional<DecodedTile> decode_tile(std::span<const std::uint8_t> bytes, const TileIndex& index) {
   if (bytes.size() > kMaxTileBytes) return std::nullopt;
-  ByteReader in(bytes);
+  files::ByteReader in(bytes);
   DecodedTile tile;
   const bool is_known = in.u8() == kMagic && in.u8() == kFormatVersion;
   tile.blocks_per_edge = in.u8();
@@ -86,7 +86,7 @@ std::optional<DecodedTile> decode_tile(std::span<const std::uint8_t> bytes, cons
   if (flags & kCompressed) {
     const auto body = zstd_decompress(in.raw(in.remaining()), kMaxBodyBytes);
     if (!body) return std::nullopt;
-    ByteReader unpacked(*body);
+    files::ByteReader unpacked(*body);
     read_blocks(unpacked, index, tile);
     if (!unpacked.is_good()) return std::nullopt;
   } else {

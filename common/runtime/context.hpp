@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,11 @@ struct Cycle {
   bool inputs_complete = false;
   /// Lock-step: no input follows; finish what is pending.
   bool is_final = false;
+};
+
+/// Thrown where a bad set-up shows only with the first data: the process ends with the same status as for any other.
+struct BadSetup : std::runtime_error {
+  using std::runtime_error::runtime_error;
 };
 
 struct ContextOptions {

@@ -119,6 +119,9 @@ int spin(const ComponentFactory& factory, Context& context, const std::function<
     finish();
     spdlog::info("stopped");
     return context.exit_status();
+  } catch (const BadSetup& error) {
+    spdlog::error("{}", error.what());
+    return kBadSetup;
   } catch (const std::exception& error) {
     spdlog::error("{} failed: {}", factory.name, error.what());
     return kFailedRunning;

@@ -16,6 +16,7 @@ constexpr std::size_t kWaitingMessages = 8;
 constexpr double kFarewell_s = 1.0;
 constexpr const char* kGraphFile = "pose_graph.g2o";
 constexpr const char* kKeyframesFile = "keyframes.txt";
+constexpr const char* kMapFile = "slam.lapis";
 constexpr time::Duration kStatusPeriod{1'000'000'000};
 
 }  // namespace
@@ -30,10 +31,26 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
       info_(context, topics::kColorInfo, "camera info", kWaitingMessages) {
   cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "slam.output_dir");
+  if (!config_.resume_from.empty()) load_map();
   color_.on_restart([this] { end_map(); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
   context.subscribe(topics::kWheelOdometry, [this](const auto& m) { add_odometry(m); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+}
+
+/// Reads the map to go on with; throws with file and remedy.
+void SlamComponent::load_map() {
+  std::string error;
+  resumed_ = read_slam_file(config_.resume_from, error);
+  if (!resumed_) throw std::runtime_error("slam.resume_from: " + error);
+  const double scale = resumed_->state.scale_factor;
+  if (scale != config_.method.features.scale_factor) {
+    throw std::runtime_error("slam.resume_from: " + config_.resume_from + ": slam.features.scale_factor was " +
+                             std::to_string(scale) + " when it was made: set it so again");
+  }
+  session_ = resumed_->session;
+  spdlog::info("{}: {} key-frames, {} landmarks", config_.resume_from, resumed_->state.keyframes.size(),
+               resumed_->state.landmarks.size());
 }
 
 void SlamComponent::work(const runtime::Cycle& cycle) {
@@ -42,6 +59,7 @@ void SlamComponent::work(const runtime::Cycle& cycle) {
   if (slam_ == nullptr) return;
   publish_graph(cycle.is_final);
   publish_landmarks(cycle.is_final);
+  autosave();
 }
 
 /// Joins and processes the oldest colour image; false when its partners may still come.
@@ -86,22 +104,43 @@ bool SlamComponent::prepare(const Image& color) {
   }
   frame_.T_base_camera = *T_base_camera;
   session_ = std::max(messages::from_message(color.header().stamp()).nanoseconds, session_ + 1);
-  if (!config_.output_dir.empty()) {
-    for (const char* name : {kGraphFile, kKeyframesFile}) {
-      if (const auto problem = files::set_aside(std::filesystem::path(config_.output_dir) / name))
-        spdlog::error(*problem);
-    }
-  }
   frame_.session = session_;
-  slam_ = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, frame_.T_base_camera);
+  if (!config_.output_dir.empty()) set_old_files_aside();
+  slam_ = begin_map();
   graph_version_ = 0;
   landmarks_.begin_session(session_);
   return true;
 }
 
+/// Files of the map before stay under another name; but for the file that is gone on with: the new one holds all of it.
+void SlamComponent::set_old_files_aside() {
+  for (const char* name : {kGraphFile, kKeyframesFile, kMapFile}) {
+    const auto file = std::filesystem::path(config_.output_dir) / name;
+    std::error_code error;
+    if (resumed_ && std::filesystem::equivalent(file, config_.resume_from, error)) continue;
+    if (const auto problem = files::set_aside(file)) spdlog::error(*problem);
+  }
+}
+
+/// The first map of the process goes on with the saved one, if there is one.
+std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
+  if (!resumed_) return std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, frame_.T_base_camera);
+  saved_camera_ = resumed_->state.keyframes.back().camera;
+  saved_version_ = resumed_->state.graph_version;
+  auto slam = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, std::move(resumed_->state));
+  resumed_.reset();
+  return slam;
+}
+
 void SlamComponent::track(const Image& color, const Image& depth, const Info& info, time::Time stamp) {
   const auto frame = to_core(color, depth, info, stamp);
   if (!frame) return drop(stamp, frame.reason);
+  if (saved_camera_ && !is_same_camera(*saved_camera_, frame->camera)) {
+    throw runtime::BadSetup("slam.resume_from: " + config_.resume_from + ": was made with another camera, of " +
+                            std::to_string(saved_camera_->width) + " x " + std::to_string(saved_camera_->height) +
+                            " px");
+  }
+  saved_camera_.reset();
   ++frames_total_;
   frame_.stamp = stamp;
   const TrackingResult result = slam_->process(*frame);
@@ -143,8 +182,10 @@ void SlamComponent::drop(time::Time stamp, const std::string& reason) {
 void SlamComponent::end_map() {
   spdlog::warn("the camera's stamps went back, so it has started anew: a new map begins");
   slam_->settle();
-  write_files();
+  if (const auto problem = write_files()) spdlog::error("{}; tracking goes on", *problem);
   slam_.reset();
+  save_stamp_.reset();
+  saved_version_ = 0;
   last_pose_.reset();
   graph_stamp_.reset();
   reported_.reset();
@@ -200,8 +241,12 @@ void SlamComponent::publish_landmarks(bool is_final) {
 
 void SlamComponent::publish_status(const TrackingResult& result) {
   const bool is_tracking = result.state == TrackingState::kTracking;
-  context_.status().set(is_tracking ? runtime::Status::Level::kOk : runtime::Status::Level::kWarn,
-                        is_tracking ? "tracking" : result.reason);
+  using Level = runtime::Status::Level;
+  if (save_problem_.empty()) {
+    context_.status().set(is_tracking ? Level::kOk : Level::kWarn, is_tracking ? "tracking" : result.reason);
+  } else {
+    context_.status().set(Level::kError, "map not saved: " + save_problem_);
+  }
   context_.status().value("frames", frames_total_);
   context_.status().value("frames_tracked", frames_tracked_);
   const bool has_changed = !reported_ || reported_->second != result.state;
@@ -228,6 +273,29 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   status_.publish(message);
 }
 
+/// Saves the map from time to time, in a thread of its own: no frame waits for the disk. A save that fails is tried
+/// again after the next period, and the old file stays as it was.
+void SlamComponent::autosave() {
+  if (const auto save = saver_.take_finished()) note_save(save->problem);
+  if (config_.output_dir.empty() || config_.autosave_period_s == 0.0) return;
+  if (!save_stamp_) save_stamp_ = frame_.stamp;
+  const bool is_due = (frame_.stamp - *save_stamp_).seconds() >= config_.autosave_period_s;
+  if (!is_due || saver_.is_busy() || slam_->graph_version() == saved_version_) return;
+  save_stamp_ = frame_.stamp;
+  saved_version_ = slam_->graph_version();
+  saver_.begin(std::filesystem::path(config_.output_dir) / kMapFile, saved_map());
+}
+
+void SlamComponent::note_save(const std::optional<std::string>& problem) {
+  save_problem_ = problem.value_or("");
+  if (!problem) return;
+  saved_version_ = 0;
+  context_.status().count("map not saved");
+  spdlog::error("map not saved: {}; tracking goes on", *problem);
+}
+
+SlamFile SlamComponent::saved_map() const { return {session_, slam_->state()}; }
+
 void SlamComponent::finish() {
   spdlog::info("{} of {} frames tracked, {} dropped", frames_tracked_, frames_total_, frames_dropped_);
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
@@ -237,11 +305,26 @@ void SlamComponent::finish() {
   publish_landmarks(true);
   pose_graph_.wait_until_acknowledged(kFarewell_s);
   landmarks_.wait_until_acknowledged(kFarewell_s);
-  write_files();
+  if (const auto problem = write_files()) throw std::runtime_error(*problem);
 }
 
-void SlamComponent::write_files() const {
-  if (config_.output_dir.empty() || slam_ == nullptr) return;
+/// All files of the map; the first problem, if any.
+std::optional<std::string> SlamComponent::write_files() {
+  if (const auto save = saver_.wait()) note_save(save->problem);
+  if (config_.output_dir.empty() || slam_ == nullptr) return std::nullopt;
+  std::optional<std::string> problem;
+  if (slam_->keyframe_count() > 0) {
+    problem = write_slam_file((std::filesystem::path(config_.output_dir) / kMapFile).string(), saved_map());
+  }
+  try {
+    write_graph();
+  } catch (const std::runtime_error& error) {
+    if (!problem) problem = error.what();
+  }
+  return problem;
+}
+
+void SlamComponent::write_graph() const {
   const auto graph = slam_->pose_graph();
   std::ostringstream g2o;
   write_g2o(g2o, graph);

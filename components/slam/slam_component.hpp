@@ -8,7 +8,9 @@
 #include "common/runtime/stamped_input.hpp"
 #include "slam/conversions.hpp"
 #include "slam/core/rgbd_slam.hpp"
+#include "slam/core/slam_file.hpp"
 #include "slam/landmark_publisher.hpp"
+#include "slam/map_saver.hpp"
 #include "slam/slam_config.hpp"
 
 namespace lapis::slam {
@@ -29,7 +31,10 @@ class SlamComponent {
 
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
+  void load_map();
   bool prepare(const Image& color);
+  void set_old_files_aside();
+  std::unique_ptr<RgbdSlam> begin_map();
   void track(const Image& color, const Image& depth, const Info& info, time::Time stamp);
   void add_odometry(const nav_msgs::msg::Odometry& message);
   void drop(time::Time stamp, const std::string& reason);
@@ -40,7 +45,11 @@ class SlamComponent {
   void publish_graph(bool is_final);
   void publish_landmarks(bool is_final);
   void publish_status(const TrackingResult& result);
-  void write_files() const;
+  void autosave();
+  void note_save(const std::optional<std::string>& problem);
+  SlamFile saved_map() const;
+  std::optional<std::string> write_files();
+  void write_graph() const;
 
   const Config config_;
   runtime::Context& context_;
@@ -58,14 +67,20 @@ class SlamComponent {
   runtime::StampedInput<Info> info_;
   messages::StaticTransforms static_transforms_;
 
-  std::unique_ptr<RgbdSlam> slam_;  // exists once the camera's mount is known
-  FrameContext frame_;              // of the newest frame
+  std::optional<SlamFile> resumed_;                      // until the first map begins with it
+  std::optional<geometry::PinholeCamera> saved_camera_;  // of the map that was resumed, until a frame has been compared
+  std::unique_ptr<RgbdSlam> slam_;                       // exists once the camera's mount is known
+  FrameContext frame_;                                   // of the newest frame
   std::int64_t session_ = -1;
   bool has_odometry_ = false;                                       // somebody else publishes odom -> base_link
   std::optional<std::pair<time::Time, geometry::Pose>> last_pose_;  // T_map_base
   std::optional<time::Time> graph_stamp_;
   std::uint64_t graph_version_ = 0;  // published last
   std::optional<std::pair<time::Time, TrackingState>> reported_;
+  MapSaver saver_;
+  std::optional<time::Time> save_stamp_;  // from which the period counts
+  std::uint64_t saved_version_ = 0;       // of the graph, handed to the saver last
+  std::string save_problem_;              // of the newest save, if any
   std::uint64_t frames_total_ = 0;
   std::uint64_t frames_tracked_ = 0;
   std::uint64_t frames_dropped_ = 0;

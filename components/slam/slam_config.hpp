@@ -15,6 +15,8 @@ struct SlamComponentConfig {
   double landmark_period_s = 2.0;
   std::string publish_odom_frame = "auto";
   std::string output_dir;
+  std::string resume_from;
+  double autosave_period_s = 60.0;
 };
 
 template <class Field>
@@ -165,7 +167,11 @@ void describe(Field& field, SlamComponentConfig& c) {
   field("publish_odom_frame", c.publish_odom_frame, config::one_of({"auto", "always", "never"}),
         "whether slam is the one who publishes odom -> base_link; auto: while nobody publishes /odom");
   field("output_dir", c.output_dir, config::anything(),
-        "folder for pose_graph.g2o and keyframes.txt, written at the end; empty: none");
+        "folder for slam.lapis, pose_graph.g2o and keyframes.txt; empty: none");
+  field("resume_from", c.resume_from, config::anything(),
+        "slam.lapis of an earlier run, whose map is gone on with; empty: none");
+  field("autosave_period_s", c.autosave_period_s, config::in_range(0.0, 86400.0),
+        "time between saves of slam.lapis, by the frames' stamps; 0: only at the end [s]");
 }
 
 }  // namespace lapis::slam

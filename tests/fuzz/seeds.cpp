@@ -5,6 +5,7 @@
 
 #include "fuzz_files.hpp"
 #include "unit/simulator/loaders/sample_scenes.hpp"
+#include "unit/slam/sample_state.hpp"
 
 namespace lapis::simulator::fuzz {
 namespace {
@@ -120,6 +121,8 @@ Seeds seeds() {
   add_images(seeds["image"]);
   add_texts(seeds["text"]);
   add_scene_files(seeds["scene"]);
+  for (const unsigned keyframes : {1U, 3U})
+    seeds["slam"].push_back(slam::encode_slam_file(slam::test::sample_file(keyframes, keyframes)));
   return seeds;
 }
 

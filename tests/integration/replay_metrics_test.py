@@ -5,7 +5,7 @@ import math
 import chain
 
 FILES = ("manifest.yaml", "trajectory_estimate.txt", "trajectory_ground_truth.txt", "keyframes.txt", "pose_graph.g2o",
-         "map.lapis", "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "metrics.json",
+         "slam.lapis", "map.lapis", "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "metrics.json",
          "figures/trajectory.png", "figures/errors.png",
          *(f"logs/{name}.log" for name in chain.COMPONENTS))
 MEASURED = ("exit_reason", "frames_total", "frames_tracked", "lost_time_s", "loop_closures", "ate_se3_rmse_m",

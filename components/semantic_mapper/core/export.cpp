@@ -8,7 +8,7 @@
 
 #include <octomap/ColorOcTree.h>
 
-#include "common/mapping/byte_stream.hpp"
+#include "common/files/byte_stream.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {
@@ -61,7 +61,7 @@ std::vector<std::uint8_t> encode_ply(std::span<const LabelledPoint> points) {
                              "\nproperty float x\nproperty float y\nproperty float z\n"
                              "property uchar red\nproperty uchar green\nproperty uchar blue\n"
                              "property ushort label\nproperty float probability\nend_header\n";
-  mapping::ByteWriter out;
+  files::ByteWriter out;
   out.raw(to_bytes(header));
   for (const LabelledPoint& point : points) {
     for (const float coordinate : {point.position.x(), point.position.y(), point.position.z()}) out.f32(coordinate);

@@ -42,6 +42,10 @@ std::vector<KeyframeId> LoopDetector::resembling(const Frame& frame) const {
   return found;
 }
 
+void LoopDetector::restore(const Map& map) {
+  for (const Keyframe& keyframe : map.keyframes()) index_.add(keyframe.id, keyframe.features);
+}
+
 std::vector<PoseGraphEdge> LoopDetector::add(const Map& map, const SlamGraph& graph, const Tracker& tracker,
                                              const Frame& frame, KeyframeId id) {
   std::vector<PoseGraphEdge> loops;

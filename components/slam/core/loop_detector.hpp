@@ -21,6 +21,8 @@ class LoopDetector {
  public:
   explicit LoopDetector(const SlamConfig& config) : config_(config) {}
 
+  /// Remembers the key-frames of a saved map.
+  void restore(const Map& map);
   /// The key-frames that are most similar to a frame, for relocalisation; best first.
   std::vector<KeyframeId> resembling(const Frame& frame) const;
   /// The key-frame has got its place in the map and the graph: looks for older ones that show the same, and remembers

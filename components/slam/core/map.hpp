@@ -7,6 +7,7 @@
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
 #include "slam/core/frame.hpp"
+#include "slam/core/shared_array.hpp"
 #include "slam/core/surface.hpp"
 
 namespace lapis::slam {
@@ -35,9 +36,9 @@ struct Keyframe {
   time::Time stamp;
   geometry::PinholeCamera camera;
   geometry::Pose T_map_camera = geometry::Pose::Identity();
-  std::vector<Feature> features;
+  SharedArray<Feature> features;
   std::vector<LandmarkId> landmarks;   ///< of each feature, or kNoLandmark
-  std::vector<SurfaceSample> surface;  ///< in this key-frame's optical frame
+  SharedArray<SurfaceSample> surface;  ///< in this key-frame's optical frame
 };
 
 /// Key-frames, landmarks and who sees what. A key-frame's id is its index; key-frames are never removed.
@@ -55,7 +56,7 @@ class Map {
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const Keyframe& keyframe(KeyframeId id) const { return keyframes_[static_cast<std::size_t>(id)]; }
   const Landmark& landmark(LandmarkId id) const { return landmarks_[id]; }
-  /// By id, the dead among them.
+  /// All that ever were, by id; the dead ones have no observations.
   const std::vector<Landmark>& landmarks() const { return landmarks_; }
   std::size_t landmark_count() const { return alive_; }
   void set_pose(KeyframeId id, const geometry::Pose& T_map_camera);

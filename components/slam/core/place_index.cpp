@@ -29,7 +29,7 @@ std::size_t PlaceIndex::word_of(const std::array<std::uint8_t, kBits>& bits, con
   return word;
 }
 
-void PlaceIndex::add(KeyframeId id, const std::vector<Feature>& features) {
+void PlaceIndex::add(KeyframeId id, std::span<const Feature> features) {
   norms_.resize(static_cast<std::size_t>(id), 1.0);
   std::size_t count = 0;
   for (const Feature& feature : features) {
@@ -42,7 +42,7 @@ void PlaceIndex::add(KeyframeId id, const std::vector<Feature>& features) {
   norms_.push_back(std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1))));
 }
 
-std::vector<PlaceIndex::Candidate> PlaceIndex::query(const std::vector<Feature>& features, KeyframeId before,
+std::vector<PlaceIndex::Candidate> PlaceIndex::query(std::span<const Feature> features, KeyframeId before,
                                                      std::size_t most) const {
   std::vector<double> scores(norms_.size(), 0.0);
   const double keyframes = static_cast<double>(norms_.size());

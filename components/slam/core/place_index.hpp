@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "slam/core/feature_extractor.hpp"
@@ -22,10 +23,10 @@ class PlaceIndex {
 
   PlaceIndex();
   /// Adds a key-frame; ids come in ascending order. Only features with depth count: the others show no landmark.
-  void add(KeyframeId id, const std::vector<Feature>& features);
+  void add(KeyframeId id, std::span<const Feature> features);
   /// The key-frames below `before` that are most similar, best first, at most `most`. Of neighbours in time only the
   /// best.
-  std::vector<Candidate> query(const std::vector<Feature>& features, KeyframeId before, std::size_t most) const;
+  std::vector<Candidate> query(std::span<const Feature> features, KeyframeId before, std::size_t most) const;
 
   std::size_t size() const { return norms_.size(); }
 

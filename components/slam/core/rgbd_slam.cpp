@@ -47,8 +47,33 @@ class RgbdSlam::Implementation {
  public:
   Implementation(const SlamConfig& config, const Pose& T_map_first_camera, const Pose& T_base_camera)
       : config_(config), T_map_first_camera_(T_map_first_camera), extractor_(config.features), tracker_(config),
-        motion_(config.tracker.max_prediction_s, config.odometry, T_base_camera), graph_(config.pose_graph),
-        loops_(config), relocalizer_(config.relocalization) {}
+        motion_(config.tracker.max_prediction_s, config.odometry, T_base_camera), loops_(config),
+        relocalizer_(config.relocalization) {}
+
+  Implementation(const SlamConfig& config, const Pose& T_base_camera, SlamState state)
+      : Implementation(config, Pose::Identity(), T_base_camera) {
+    map_ = restore_map(state);
+    graph_ = SlamGraph(std::move(state.edges), std::move(state.links), std::move(state.covariances));
+    loops_.restore(map_);
+    reference_ = state.reference;
+    version_ = state.graph_version;
+    saved_keyframes_ = map_.keyframes().size();
+    is_placed_ = false;
+    tracker_.set_reference(map_, reference_);
+    must_optimize_ = graph_.count(EdgeType::kLoopClosure) > 0;  // it may have been under way
+    optimize();
+  }
+
+  SlamState state() const {
+    SlamState state{
+        config_.features.scale_factor, version_, reference_, map_.keyframes(), {}, graph_.edges(), graph_.links(),
+        graph_.covariances()};
+    state.landmarks.reserve(map_.landmarks().size());
+    for (const Landmark& landmark : map_.landmarks()) {
+      state.landmarks.push_back({landmark.p_map, landmark.finest_distance_m});
+    }
+    return state;
+  }
 
   bool add_odometry(time::Time stamp, const Pose& T_odom_base) { return motion_.add_odometry(stamp, T_odom_base); }
 
@@ -62,6 +87,7 @@ class RgbdSlam::Implementation {
     const TrackOutcome outcome = find_pose(frame);
     if (!outcome.is_tracked) return continue_blind(frame, outcome.reason);
     blind_frames_ = 0;
+    is_placed_ = true;
     ++frames_since_keyframe_;
     follow_reference(outcome);
     TrackingResult result = with_pose(frame, outcome);
@@ -85,7 +111,7 @@ class RgbdSlam::Implementation {
   TrackingResult without_vision(time::Time stamp, const std::string& reason, const Frame* frame = nullptr) const {
     TrackingResult result;
     result.state = map_.empty() ? TrackingState::kInitializing : TrackingState::kLost;
-    result.reason = reason;
+    result.reason = is_placed_ ? reason : "looking for a place in the saved map: " + reason;
     result.graph_version = version_;
     if (frame != nullptr) result.features = static_cast<std::uint32_t>(frame->features.size());
     const auto reckoned = motion_.dead_reckon(stamp);
@@ -204,7 +230,7 @@ class RgbdSlam::Implementation {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
       graph_.add_link(
           {outcome->reference, id, outcome->alignment.T_reference_camera, outcome->alignment.surface_information});
-      add_wheel_edge(previous, id);
+      if (previous >= saved_keyframes_) add_wheel_edge(previous, id);
     }
     add_landmarks(id);
     graph_.follow(map_, adjust_local_map(config_, graph_.links(), map_));
@@ -298,10 +324,14 @@ class RgbdSlam::Implementation {
   int frames_since_keyframe_ = 0;
   int blind_frames_ = 0;  // in a row, with enough to see
   std::uint64_t version_ = 0;
+  std::size_t saved_keyframes_ = 0;  // their stamps are of another time: no odometry leads from them
+  bool is_placed_ = true;            // in a saved map: false until the camera has been found there
 };
 
 RgbdSlam::RgbdSlam(const SlamConfig& config, const Pose& T_map_first_camera, const Pose& T_base_camera)
     : implementation_(std::make_unique<Implementation>(config, T_map_first_camera, T_base_camera)) {}
+RgbdSlam::RgbdSlam(const SlamConfig& config, const Pose& T_base_camera, SlamState state)
+    : implementation_(std::make_unique<Implementation>(config, T_base_camera, std::move(state))) {}
 RgbdSlam::~RgbdSlam() = default;
 
 TrackingResult RgbdSlam::process(const RgbdFrame& frame) { return implementation_->process(frame); }
@@ -315,6 +345,7 @@ TrackingResult RgbdSlam::skip(time::Time stamp, const std::string& reason) const
 void RgbdSlam::settle() { implementation_->settle(); }
 LoopSummary RgbdSlam::loops() const { return implementation_->loops(); }
 PoseGraphSnapshot RgbdSlam::pose_graph() const { return implementation_->pose_graph(); }
+SlamState RgbdSlam::state() const { return implementation_->state(); }
 std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(); }
 std::size_t RgbdSlam::keyframe_count() const { return implementation_->keyframe_count(); }
 std::size_t RgbdSlam::landmark_count() const { return implementation_->landmark_count(); }

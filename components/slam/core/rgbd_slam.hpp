@@ -13,6 +13,7 @@
 #include "slam/core/loop_detector.hpp"
 #include "slam/core/map.hpp"
 #include "slam/core/pose_graph.hpp"
+#include "slam/core/slam_state.hpp"
 
 namespace lapis::slam {
 
@@ -58,6 +59,9 @@ class RgbdSlam {
   /// wheel odometry.
   RgbdSlam(const SlamConfig& config, const geometry::Pose& T_map_first_camera,
            const geometry::Pose& T_base_camera = geometry::Pose::Identity());
+  /// Goes on with a saved map; `state` is sound (find_fault) and has the configuration's scale factor. It is lost until
+  /// it finds its place in that map. Ids and graph version go on.
+  RgbdSlam(const SlamConfig& config, const geometry::Pose& T_base_camera, SlamState state);
   ~RgbdSlam();
 
   /// Wheel odometry: the pose of base_link in a frame that may drift. Readings come in the order of their stamps and,
@@ -74,6 +78,8 @@ class RgbdSlam {
   void settle();
   PoseGraphSnapshot pose_graph() const;
   LoopSummary loops() const;
+  /// What has to be kept to go on later. The large parts are shared with the map, not copied.
+  SlamState state() const;
   /// Grows with every new key-frame and every change of a key-frame's pose.
   std::uint64_t graph_version() const;
   std::size_t keyframe_count() const;

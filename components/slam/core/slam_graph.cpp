@@ -13,6 +13,20 @@ constexpr double kLeastWeight = 0.5;  // of an edge that stays
 
 }  // namespace
 
+SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink> links,
+                     std::vector<Matrix6d> covariances)
+    : edges_(std::move(edges)), links_(std::move(links)), parents_(covariances.size()),
+      covariances_(std::move(covariances)) {
+  // A key-frame's first edge from an older one is that to its parent.
+  std::vector<bool> has_parent(parents_.size(), false);
+  for (const PoseGraphEdge& edge : edges_) {
+    const auto to = static_cast<std::size_t>(edge.to);
+    if (edge.type == EdgeType::kLoopClosure || has_parent[to]) continue;
+    has_parent[to] = true;
+    parents_[to] = {edge.from, edge.information.inverse()};
+  }
+}
+
 void SlamGraph::add_root() {
   parents_.emplace_back();
   covariances_.emplace_back(Matrix6d::Zero());

@@ -23,7 +23,10 @@ struct GraphCorrection {
 /// the first has a parent, the older key-frame that its pose was found from; so the graph is connected.
 class SlamGraph {
  public:
-  explicit SlamGraph(const PoseGraphConfig& config) : config_(config) {}
+  SlamGraph() = default;
+  /// From what was saved.
+  SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink> links,
+            std::vector<geometry::Matrix6d> covariances);
 
   /// The first key-frame: its pose is the gauge.
   void add_root();
@@ -40,6 +43,8 @@ class SlamGraph {
   /// outliers are removed.
   void apply(const GraphCorrection& correction, Map& map);
 
+  const std::vector<PoseGraphEdge>& edges() const { return edges_; }
+  const std::vector<geometry::Matrix6d>& covariances() const { return covariances_; }
   std::size_t count(EdgeType type) const;
   const std::vector<KeyframeLink>& links() const { return links_; }
   /// Of the key-frame's pose in the map.
@@ -51,7 +56,6 @@ class SlamGraph {
     KeyframeId id = 0;
     geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // of T_parent_keyframe
   };
-  PoseGraphConfig config_;
   std::vector<PoseGraphEdge> edges_;
   std::vector<KeyframeLink> links_;
   std::vector<Parent> parents_;                  // of each key-frame; the first is its own

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "common/files/atomic_file.hpp"
-#include "common/mapping/byte_stream.hpp"
-#include "common/mapping/crc32.hpp"
+#include "common/files/byte_stream.hpp"
+#include "common/files/crc32.hpp"
 #include "common/mapping/zstd_codec.hpp"
 #include "tests/unit/mapping/random_votes.hpp"
 
@@ -103,11 +103,11 @@ TEST_F(MapFileTest, MaliciousContentWithGoodChecksumNeverCrashes) {
       bad[random() % (trial % 2 ? bad.size() : 150)] = static_cast<std::uint8_t>(random());
     if (trial % 5 == 0) bad.resize(random() % bad.size());
     const auto payload = zstd_compress(bad, 1);
-    ByteWriter checked, file;
+    files::ByteWriter checked, file;
     checked.u64(payload.size());
     checked.raw(payload);
     file.raw(std::span(good).first(12));
-    file.u32(crc32(checked.bytes()));
+    file.u32(files::crc32(checked.bytes()));
     file.raw(checked.bytes());
     std::string error;
     const bool is_loaded = decode_map(file.bytes(), error).has_value();
@@ -161,7 +161,7 @@ TEST_F(MapFileTest, OldFileStaysWholeWhenThereIsNoSpace) {
 
 TEST(Crc32, GivesTheStandardCheckValue) {
   const std::string text = "123456789";
-  EXPECT_EQ(crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}), 0xCBF43926u);
+  EXPECT_EQ(files::crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}), 0xCBF43926u);
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ Map three_keyframes() {
   Map map;
   for (int i = 0; i < 3; ++i) {
     Keyframe keyframe;
-    keyframe.features.resize(10);
+    keyframe.features = std::vector<Feature>(10);
     EXPECT_EQ(map.add_keyframe(keyframe), static_cast<KeyframeId>(i));
   }
   // Landmark k: key-frames 0 and 1 share four of them, 1 and 2 share two.

@@ -46,7 +46,7 @@ class SlamGraphTest : public ::testing::Test {
   std::vector<Pose> steps_{random_pose(0.3), random_pose(0.3), random_pose(0.3), random_pose(0.3)};
   Matrix6d covariance_ = make_covariance();
   Map map_;
-  SlamGraph graph_{{}};
+  SlamGraph graph_;
 };
 
 // Against the sample covariance of chains whose steps are disturbed.

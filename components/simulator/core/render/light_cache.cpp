@@ -8,7 +8,7 @@
 #include <type_traits>
 
 #include "common/files/atomic_file.hpp"
-#include "common/mapping/crc32.hpp"
+#include "common/files/crc32.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -99,7 +99,7 @@ std::optional<std::vector<std::uint8_t>> read_light(const std::string& file, std
   std::uint32_t checksum = 0;
   std::memcpy(&checksum, bytes->data() + size, kChecksumBytes);
   bytes->resize(size);
-  if (mapping::crc32(*bytes) != checksum) return std::nullopt;
+  if (files::crc32(*bytes) != checksum) return std::nullopt;
   return bytes;
 }
 
@@ -167,7 +167,7 @@ std::vector<std::uint8_t> cached_light(const Scene& scene, const SceneRaycaster&
   fs::create_directories(folder, ignored);
   auto bytes = light;
   bytes.resize(light.size() + kChecksumBytes);
-  const std::uint32_t checksum = mapping::crc32(light);
+  const std::uint32_t checksum = files::crc32(light);
   std::memcpy(bytes.data() + light.size(), &checksum, kChecksumBytes);
   static_cast<void>(files::replace_file(file, bytes));  // without it the next start takes longer
   prune(folder);

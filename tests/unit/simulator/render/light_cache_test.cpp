@@ -12,7 +12,7 @@
 #include <string>
 
 #include "box_scene.hpp"
-#include "common/mapping/crc32.hpp"
+#include "common/files/crc32.hpp"
 #include "tests/support/temporary_folder.hpp"
 
 namespace lapis::simulator {
@@ -65,7 +65,7 @@ TEST_F(LightCache, ReadsWhatItKept) {
   changed[5] ^= 1U;
   auto bytes = changed;
   bytes.resize(bytes.size() + 4);
-  const std::uint32_t checksum = mapping::crc32(changed);
+  const std::uint32_t checksum = files::crc32(changed);
   std::memcpy(bytes.data() + changed.size(), &checksum, 4);
   write(file, bytes);
   EXPECT_EQ(light_of(lit_box(), folder_), changed);

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <span>
 
-namespace lapis::mapping {
+namespace lapis::files {
 
 /// CRC-32 of IEEE 802.3 (reflected polynomial 0xEDB88320, initial and final inversion): detects every single and double
 /// bit error and every burst up to 32 bits.
@@ -23,4 +23,4 @@ inline std::uint32_t crc32(std::span<const std::uint8_t> bytes) {
   return ~crc;
 }
 
-}  // namespace lapis::mapping
+}  // namespace lapis::files

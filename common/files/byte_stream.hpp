@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -9,12 +10,13 @@
 #include <utility>
 #include <vector>
 
-namespace lapis::mapping {
+namespace lapis::files {
 
 /// Appends little-endian numbers and variable-length integers (seven bits a byte, low bits first) to a buffer.
 class ByteWriter {
  public:
   void u8(std::uint8_t v) { bytes_.push_back(v); }
+  void u16(std::uint16_t v) { fixed(v, 2); }
   void u32(std::uint32_t v) { fixed(v, 4); }
   void u64(std::uint64_t v) { fixed(v, 8); }
   void i32(std::int32_t v) { u32(static_cast<std::uint32_t>(v)); }
@@ -31,12 +33,21 @@ class ByteWriter {
   }
   void raw(std::span<const std::uint8_t> more) { bytes_.insert(bytes_.end(), more.begin(), more.end()); }
 
+  /// Replaces a number written before, at byte `at`.
+  void set_u32(std::size_t at, std::uint32_t v) { set(at, v, 4); }
+  void set_u64(std::size_t at, std::uint64_t v) { set(at, v, 8); }
+
   const std::vector<std::uint8_t>& bytes() const { return bytes_; }
   std::vector<std::uint8_t> take() { return std::move(bytes_); }
 
  private:
-  void fixed(std::uint64_t v, int size) {
-    for (int i = 0; i < size; ++i) u8(static_cast<std::uint8_t>(v >> (8 * i)));
+  void fixed(std::uint64_t v, std::size_t size) {
+    std::array<std::uint8_t, 8> little{};
+    for (std::size_t i = 0; i < size; ++i) little[i] = static_cast<std::uint8_t>(v >> (8 * i));
+    bytes_.insert(bytes_.end(), little.begin(), little.begin() + size);
+  }
+  void set(std::size_t at, std::uint64_t v, std::size_t size) {
+    for (std::size_t i = 0; i < size; ++i) bytes_[at + i] = static_cast<std::uint8_t>(v >> (8 * i));
   }
   std::vector<std::uint8_t> bytes_;
 };
@@ -55,6 +66,7 @@ class ByteReader {
   }
 
   std::uint8_t u8() { return static_cast<std::uint8_t>(fixed(1)); }
+  std::uint16_t u16() { return static_cast<std::uint16_t>(fixed(2)); }
   std::uint32_t u32() { return static_cast<std::uint32_t>(fixed(4)); }
   std::uint64_t u64() { return fixed(8); }
   std::int32_t i32() { return static_cast<std::int32_t>(u32()); }
@@ -97,4 +109,4 @@ class ByteReader {
   bool is_good_ = true;
 };
 
-}  // namespace lapis::mapping
+}  // namespace lapis::files

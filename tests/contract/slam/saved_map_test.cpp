@@ -1,0 +1,222 @@
+// lapis_slam saves its map and goes on with it.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+
+#include "common/files/atomic_file.hpp"
+#include "common/messages/geometry.hpp"
+#include "common/messages/time.hpp"
+#include "tests/support/camera_feed.hpp"
+#include "tests/support/child_process.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace lapis::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+constexpr const char* kSlam = "lapis_slam";
+constexpr auto kTracking = lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
+constexpr auto kLost = lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST;
+constexpr int kFrames = 24;  // of the first run
+
+/// slam with a camera, and somebody who listens. Key-frames are near each other, so that short runs have several.
+class Slam {
+ public:
+  explicit Slam(const fs::path& folder, std::vector<std::string> more = {}) : slam_(kSlam, arguments(folder, more)) {}
+
+  bool is_ready() {
+    return wait_until_ready(slam_) && probe_.wait_until([&] { return feed_.is_matched_by_slam(); }) &&
+           probe_.wait_until_known_by("slam");
+  }
+  /// Sends a frame and waits for what slam says of it.
+  bool answers(const CameraFrame& frame, int index) {
+    feed_.send(frame);
+    return probe_.wait_until([&] {
+      return !frames.empty() && messages::from_message(frames.back().header().stamp()) == CameraFeed::stamp(index);
+    });
+  }
+  bool is_tracked(int index) { return answers(feed_.frame(index), index) && frames.back().state() == kTracking; }
+  bool are_tracked(int from, int to) {
+    for (int i = from; i < to; ++i) {
+      if (!is_tracked(i)) return false;
+    }
+    return true;
+  }
+  CameraFrame frame(int index) const { return feed_.frame(index); }
+  void send(const CameraFrame& frame) { feed_.send(frame); }
+  bool wait_until(const std::function<bool()>& condition) { return probe_.wait_until(condition); }
+  double count(const std::string& what) const { return sum_of(newest_values(diagnostics_, "slam"), what); }
+  ChildProcess& slam() { return slam_; }
+  std::string log() { return slam_.log(); }
+
+ private:
+  static std::vector<std::string> arguments(const fs::path& folder, const std::vector<std::string>& more) {
+    std::vector<std::string> all{"--set", "slam.keyframe.max_translation_m=0.04", "--set",
+                                 "slam.output_dir=" + folder.string()};
+    for (const std::string& setting : more) all.insert(all.end(), {"--set", setting});
+    return all;
+  }
+
+  TopicProbe probe_;
+  CameraFeed feed_{probe_};
+
+ public:
+  const std::vector<lapis_msgs::msg::TrackedFrame>& frames = probe_.collect(topics::kTrackedFrame);
+  const std::vector<lapis_msgs::msg::PoseGraph>& graphs = probe_.collect(topics::kPoseGraph);
+  const std::vector<nav_msgs::msg::Odometry>& odometry = probe_.collect(topics::kSlamOdometry);
+
+ private:
+  const std::vector<diagnostic_msgs::msg::DiagnosticArray>& diagnostics_ = probe_.collect(topics::kDiagnostics);
+  ChildProcess slam_;
+};
+
+class SavedMap : public ::testing::Test {
+ protected:
+  std::string file() const { return (folder_.path() / "slam.lapis").string(); }
+  std::string resume() const { return "slam.resume_from=" + file(); }
+  /// A whole run that leaves its map.
+  void save_a_map() {
+    Slam run(folder_.path(), {"slam.autosave_period_s=0"});
+    ASSERT_TRUE(run.is_ready()) << run.log();
+    ASSERT_TRUE(run.are_tracked(0, kFrames)) << run.log();
+    EXPECT_FALSE(fs::exists(file())) << "autosave is off";
+    ASSERT_TRUE(run.wait_until([&] { return run.odometry.size() == kFrames; })) << run.log();
+    last_pose_ = *messages::from_message(run.odometry.back().pose().pose());
+    session_ = run.frames.back().session();
+    ASSERT_EQ(run.slam().stop(SIGTERM), 0) << run.log();
+    ASSERT_TRUE(run.wait_until([&] {
+      return !run.graphs.empty() && run.graphs.back().version() == run.frames.back().graph_version();
+    })) << run.log();
+    graph_ = run.graphs.back();
+    ASSERT_GE(graph_.nodes().size(), 3U);
+    ASSERT_TRUE(fs::exists(file()));
+  }
+  /// What slam says of a file that it refuses.
+  std::string refusal(const std::string& path, const std::string& setting = "slam.output_dir=") const {
+    ChildProcess slam(kSlam, {"--set", "slam.resume_from=" + path, "--set", setting});
+    EXPECT_EQ(slam.wait(), 2) << slam.log();
+    return slam.log();
+  }
+
+  TemporaryFolder folder_;
+  geometry::Pose last_pose_;
+  std::int64_t session_ = 0;
+  lapis_msgs::msg::PoseGraph graph_;
+};
+
+TEST_F(SavedMap, IsGoneOnWithInANewSessionOfTheSameFrame) {
+  ASSERT_NO_FATAL_FAILURE(save_a_map());
+  Slam run(folder_.path(), {resume()});
+  ASSERT_TRUE(run.is_ready()) << run.log();
+  auto dark = run.frame(kFrames);
+  std::fill(dark.color->data().begin(), dark.color->data().end(), std::uint8_t{0});
+  ASSERT_TRUE(run.answers(dark, kFrames)) << run.log();
+  EXPECT_EQ(run.frames.back().state(), kLost);
+  EXPECT_THAT(run.frames.back().reason(), HasSubstr("looking for a place in the saved map"));
+  EXPECT_GT(run.frames.back().session(), session_);
+
+  ASSERT_TRUE(run.wait_until([&] { return !run.graphs.empty(); })) << "the saved graph is told at once";
+  const auto& saved = run.graphs.front();
+  ASSERT_EQ(saved.nodes().size(), graph_.nodes().size());
+  EXPECT_EQ(saved.edges().size(), graph_.edges().size());
+  EXPECT_EQ(saved.version(), graph_.version());
+  for (std::size_t i = 0; i < saved.nodes().size(); ++i) {
+    EXPECT_EQ(saved.nodes()[i].id(), graph_.nodes()[i].id());
+    EXPECT_EQ(saved.nodes()[i].pose(), graph_.nodes()[i].pose());
+  }
+
+  ASSERT_TRUE(run.are_tracked(kFrames + 1, kFrames + 15)) << run.frames.back().reason() << run.log();
+  EXPECT_GE(run.frames.back().keyframe_id(), saved.nodes().size());
+  ASSERT_TRUE(run.wait_until([&] { return run.odometry.size() == 14; })) << run.log();
+  const auto T_camera = slow_motion(kFrames - 1).inverse() * slow_motion(kFrames + 14);
+  const auto T_expected = T_base_camera() * T_camera * T_base_camera().inverse();
+  const auto T_base = last_pose_.inverse() * *messages::from_message(run.odometry.back().pose().pose());
+  EXPECT_LT((T_base.translation() - T_expected.translation()).norm(), 0.02) << "the frame is not the same";
+  ASSERT_EQ(run.slam().stop(SIGTERM), 0) << run.log();
+  EXPECT_FALSE(fs::exists(folder_.path() / "slam.1.lapis")) << "the new file holds all of the old one";
+  EXPECT_TRUE(fs::exists(folder_.path() / "pose_graph.1.g2o"));
+}
+
+TEST_F(SavedMap, IsSetAsideByANewMap) {
+  ASSERT_NO_FATAL_FAILURE(save_a_map());
+  std::string error;
+  const auto before = files::read_file(file(), error);
+  Slam run(folder_.path());
+  ASSERT_TRUE(run.is_ready()) << run.log();
+  ASSERT_TRUE(run.is_tracked(0)) << run.log();
+  ASSERT_EQ(run.slam().stop(SIGTERM), 0) << run.log();
+  EXPECT_EQ(files::read_file((folder_.path() / "slam.1.lapis").string(), error), before) << error;
+  EXPECT_NE(files::read_file(file(), error), before) << error;
+}
+
+TEST_F(SavedMap, OfAKilledProcessIsTheOneThatItSavedByItself) {
+  int index = 0;
+  {
+    Slam run(folder_.path(), {"slam.autosave_period_s=0.3"});
+    ASSERT_TRUE(run.is_ready()) << run.log();
+    ASSERT_TRUE(run.wait_until([&] { return run.is_tracked(index++) && fs::exists(file()); })) << run.log();
+    run.slam().signal(SIGKILL);
+    EXPECT_EQ(run.slam().wait(), -SIGKILL);
+  }
+  Slam run(folder_.path(), {resume()});
+  ASSERT_TRUE(run.is_ready()) << run.log();
+  ASSERT_TRUE(run.are_tracked(index, index + 3)) << run.frames.back().reason() << run.log();
+}
+
+TEST_F(SavedMap, ThatCannotBeWrittenIsCountedAndTrackingGoesOn) {
+  const fs::path folder = folder_.path() / "gone";
+  Slam run(folder, {"slam.autosave_period_s=0.2"});
+  ASSERT_TRUE(run.is_ready()) << run.log();
+  fs::remove_all(folder);
+  int index = 0;
+  ASSERT_TRUE(run.wait_until([&] { return run.is_tracked(index++) && run.count("map not saved") > 0; })) << run.log();
+  EXPECT_THAT(run.log(), HasSubstr((folder / "slam.lapis").string()));
+  fs::create_directories(folder);
+  ASSERT_TRUE(run.wait_until([&] { return run.is_tracked(index++) && fs::exists(folder / "slam.lapis"); }))
+      << run.log();
+  EXPECT_EQ(run.slam().stop(SIGTERM), 0) << run.log();
+}
+
+TEST_F(SavedMap, ThatIsNoneOrDamagedIsRefusedAtTheStart) {
+  ASSERT_NO_FATAL_FAILURE(save_a_map());
+  const auto with_file = [&](const std::string& reason) { return HasSubstr("slam.resume_from: " + reason); };
+  EXPECT_THAT(refusal("/no/such.lapis"), with_file("/no/such.lapis: cannot be opened"));
+  EXPECT_THAT(refusal(folder_.path().string()), with_file(folder_.path().string() + ": is not a file"));
+  EXPECT_THAT(refusal((folder_.path() / "pose_graph.g2o").string()),
+              with_file((folder_.path() / "pose_graph.g2o").string() + ": is not a map saved by lapis_slam"));
+  EXPECT_THAT(refusal(file(), "slam.features.scale_factor=1.2"),
+              with_file(file() + ": slam.features.scale_factor was"));
+  std::string error;
+  const auto good = *files::read_file(file(), error);
+  const auto spoil = [&](auto change) {
+    auto bytes = good;
+    change(bytes);
+    EXPECT_FALSE(files::replace_file(file(), bytes));
+    return refusal(file());
+  };
+  EXPECT_THAT(spoil([](auto& bytes) { bytes.resize(bytes.size() / 2); }), with_file(file() + ": is damaged"));
+  EXPECT_THAT(spoil([](auto& bytes) { bytes[bytes.size() / 2] ^= 4U; }), HasSubstr("another checksum"));
+  EXPECT_THAT(spoil([](auto& bytes) { bytes[8] = 9; }), HasSubstr("format version 9"));
+}
+
+TEST_F(SavedMap, OfAnotherCameraIsRefusedWithTheFirstFrame) {
+  ASSERT_NO_FATAL_FAILURE(save_a_map());
+  std::string error;
+  const auto before = files::read_file(file(), error);
+  Slam run(folder_.path(), {resume()});
+  ASSERT_TRUE(run.is_ready()) << run.log();
+  auto frame = run.frame(kFrames);
+  frame.info->k()[0] *= 1.5;
+  run.send(frame);
+  EXPECT_EQ(run.slam().wait(), 2) << run.log();
+  EXPECT_THAT(run.log(), HasSubstr("slam.resume_from: " + file() + ": was made with another camera"));
+  EXPECT_EQ(files::read_file(file(), error), before) << error;
+}
+
+}  // namespace
+}  // namespace lapis::test

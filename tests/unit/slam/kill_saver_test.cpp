@@ -1,0 +1,115 @@
+// A process that saves all the time is killed at random instants: slam.lapis is always one of the maps that it saved,
+// and can be gone on with. LAPIS_KILLS says how often, instead of 10 times; more when none of them hit a half-written
+// file.
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <iostream>
+#include <random>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "common/files/atomic_file.hpp"
+#include "slam/core/rgbd_slam.hpp"
+#include "slam/core/slam_file.hpp"
+#include "tests/support/temporary_folder.hpp"
+#include "tests/unit/slam/synthetic_room.hpp"
+
+namespace lapis::slam {
+namespace {
+
+using geometry::Pose;
+
+constexpr int kFrames = 40;
+
+RgbdFrame room_frame(int index) {
+  return test::render_room(test::small_camera(), test::room_path(index), time::Time::from_seconds(1.0 + index / 30.0));
+}
+
+// The same run, saved early and late.
+struct SavedRun {
+  SavedRun() {
+    RgbdSlam slam({}, test::room_path(0));
+    for (int i = 0; i < kFrames; ++i) {
+      slam.process(room_frame(i));
+      if (i == kFrames / 2) early = {1, slam.state()};
+    }
+    late = {1, slam.state()};
+  }
+  SlamFile early, late;
+};
+
+// A process that writes both files in turn until it is killed. It says when it begins.
+class Saver {
+ public:
+  Saver(const SavedRun& run, const std::string& path) {
+    int begun[2];
+    if (::pipe(begun) != 0) std::abort();
+    pid_ = ::fork();
+    if (pid_ == 0) {
+      const char word = '!';
+      if (::write(begun[1], &word, 1) != 1) ::_exit(1);
+      while (!write_slam_file(path, run.late) && !write_slam_file(path, run.early)) {
+      }
+      ::_exit(1);
+    }
+    char word = 0;
+    if (pid_ < 0 || ::read(begun[0], &word, 1) != 1) std::abort();
+    ::close(begun[0]);
+    ::close(begun[1]);
+  }
+  // False when it has ended by itself.
+  bool kill() const {
+    int status = 0;
+    ::kill(pid_, SIGKILL);
+    ::waitpid(pid_, &status, 0);
+    return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
+  }
+
+ private:
+  pid_t pid_ = -1;
+};
+
+TEST(KillSaver, TheFileIsAlwaysWholeAndCanBeGoneOnWith) {
+  const char* const wanted = std::getenv("LAPIS_KILLS");
+  const int kills = wanted != nullptr ? std::atoi(wanted) : 10;
+  const lapis::test::TemporaryFolder folder;
+  const std::string path = (folder.path() / "slam.lapis").string();
+  const SavedRun run;
+  const auto early = encode_slam_file(run.early), late = encode_slam_file(run.late);
+  const auto begin = std::chrono::steady_clock::now();
+  ASSERT_EQ(write_slam_file(path, run.early), std::nullopt);
+  const std::chrono::duration<double> one_save = std::chrono::steady_clock::now() - begin;
+
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> instant(0.0, 6.0);  // in times of one save
+  int i = 0, in_the_middle = 0, with_late = 0;
+  for (; i < kills || (in_the_middle == 0 && i < kills + 100); ++i) {
+    const Saver saver(run, path);
+    std::this_thread::sleep_for(instant(random) * one_save);
+    ASSERT_TRUE(saver.kill());
+    in_the_middle += std::filesystem::exists(path + ".part") ? 1 : 0;
+    std::string error;
+    const auto bytes = files::read_file(path, error);
+    ASSERT_TRUE(bytes) << error;
+    ASSERT_TRUE(*bytes == early || *bytes == late) << "kill " << i << ": a file that nobody has written";
+    with_late += *bytes == late ? 1 : 0;
+    auto file = read_slam_file(path, error);
+    ASSERT_TRUE(file) << error;
+    const int last = *bytes == late ? kFrames : kFrames / 2;
+    RgbdSlam slam({}, Pose::Identity(), std::move(file->state));
+    const TrackingResult result = slam.process(room_frame(last));
+    ASSERT_EQ(result.state, TrackingState::kTracking) << "kill " << i << ": " << result.reason;
+  }
+  std::cout << i << " kills, " << in_the_middle << " while a file was being written; the later map was left "
+            << with_late << " times; a save takes " << 1e3 * one_save.count() << " ms, " << late.size() << " bytes\n";
+  EXPECT_GT(in_the_middle, 0);
+}
+
+}  // namespace
+}  // namespace lapis::slam

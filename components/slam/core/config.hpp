@@ -24,7 +24,7 @@ struct MatcherConfig {
   double search_radius_px = 12.0;       ///< around a predicted pixel, at the finest level [2, 100]
   double wide_search_radius_px = 40.0;  ///< second try [2, 300]
   int max_distance = 70;                ///< Hamming bits of 256 [10, 128]
-  double max_ratio = 0.85;              ///< best / second best distance [0.3, 1]
+  double max_ratio = 0.75;              ///< best / second best distance [0.3, 1]
 };
 
 /// Surface patches of key-frames, aligned with the depth image (point to plane).

@@ -18,21 +18,23 @@ using geometry::Vector6d;
 
 constexpr double kHuber = 2.0;                          // sigmas up to which an error counts in full
 constexpr double kPixelGate = 5.99, kDepthGate = 6.63;  // chi-square, 95 % of 2 and 99 % of 1 degrees of freedom
-constexpr std::array kGateShare{1.0, 0.4, 0.2};         // of the widest surface gate, a round each
 
-// Huber's cost and weight for a squared whitened error. Sec. 5.6 in [Zhang 1997]
-double huber_cost(double squared) {
-  const double error = std::sqrt(squared);
-  return error <= kHuber ? 0.5 * squared : kHuber * (error - 0.5 * kHuber);
-}
-double huber_weight(double squared) { return squared <= kHuber * kHuber ? 1.0 : kHuber / std::sqrt(squared); }
+// A round of the refinement. The first ones only have to bring the last one close: every `stride`th sample will do.
+struct Round {
+  double gate_share;  // of the widest surface gate
+  std::size_t stride;
+};
+constexpr std::array kRounds{Round{1.0, 4}, Round{0.4, 2}, Round{0.2, 1}};
+
+// Huber's cost and weight for the length of a whitened error. Sec. 5.6 in [Zhang 1997]
+double huber_cost(double error) { return error <= kHuber ? 0.5 * error * error : kHuber * (error - 0.5 * kHuber); }
+double huber_weight(double error) { return error <= kHuber ? 1.0 : kHuber / error; }
 
 // Gradient by xi of a function of the point in the camera, from its gradient by the point, for
 // T_reference_camera * exp(xi): the point moves to exp(-xi) * p = p - rho - omega x p.
 Vector6d by_pose(const Eigen::Vector3d& by_point, const Eigen::Vector3d& p_camera) {
-  Vector6d gradient;
-  gradient << -by_point, by_point.cross(p_camera);
-  return gradient;
+  const Eigen::Vector3d turn = by_point.cross(p_camera);
+  return Vector6d{-by_point.x(), -by_point.y(), -by_point.z(), turn.x(), turn.y(), turn.z()};
 }
 
 // Normal equations of one linearisation; points and surface apart, because their residual variances differ.
@@ -66,25 +68,25 @@ class Refinement {
   Refinement(const SlamConfig& config, const AlignmentProblem& problem)
       : config_(config), problem_(problem), is_inlier_(problem.points.size(), true) {}
 
-  Linearisation linearise(const Pose& T, double gate_m) const {
+  Linearisation linearise(const Pose& T, const Round& round) const {
     Linearisation result;
     const Pose T_camera_reference = T.inverse();
     add_points(T_camera_reference, result);
-    if (problem_.depth != nullptr) add_surface(T_camera_reference, gate_m, result);
+    if (problem_.depth != nullptr) add_surface(T_camera_reference, round, result);
     return result;
   }
 
   // Levenberg-Marquardt on the current inliers.
-  Pose optimise(Pose T, double gate_m) const {
+  Pose optimise(Pose T, const Round& round) const {
     double damping = 1e-4;
-    Linearisation current = linearise(T, gate_m);
+    Linearisation current = linearise(T, round);
     for (int i = 0; i < config_.tracker.refine_iterations; ++i) {
       Matrix6d H = (current.points.hessian + current.surface.hessian).selfadjointView<Eigen::Upper>();
       H.diagonal() += damping * H.diagonal() + Vector6d::Constant(1e-9);
       const Vector6d step = H.ldlt().solve(-(current.points.gradient + current.surface.gradient));
       if (!step.allFinite()) break;
       const Pose moved = T * geometry::se3_exp(step);
-      const Linearisation next = linearise(moved, gate_m);
+      const Linearisation next = linearise(moved, round);
       if (next.cost() <= current.cost()) {
         T = moved;
         current = next;
@@ -117,28 +119,31 @@ class Refinement {
       const PointConstraint& point = problem_.points[i];
       const auto residual = point_residual(config_.noise, problem_.camera, point, T_camera_reference);
       if (!residual) continue;
-      const double squared = residual->value.squaredNorm();
-      const double weight = huber_weight(squared);
+      const double error = residual->value.norm();
+      const double weight = huber_weight(error);
       for (int row = 0; row < 3; ++row) {
         term.add(residual->jacobian[static_cast<std::size_t>(row)], residual->value[row], weight);
       }
-      term.cost += huber_cost(squared);
+      term.cost += huber_cost(error);
       term.residuals += point.depth_m > 0.0 ? 3 : 2;
     }
   }
 
-  void add_surface(const Pose& T_camera_reference, double gate_m, Linearisation& result) const {
+  void add_surface(const Pose& T_camera_reference, const Round& round, Linearisation& result) const {
     Term& term = result.surface;
-    for (const SurfaceSample& sample : problem_.surface) {
+    const double gate_m = round.gate_share * config_.surface.max_distance_m;
+    const double share = config_.surface.weight * static_cast<double>(round.stride);
+    for (std::size_t i = 0; i < problem_.surface.size(); i += round.stride) {
+      const SurfaceSample& sample = problem_.surface[i];
       const auto residual =
           surface_residual(config_.noise, problem_.camera, *problem_.depth, sample, T_camera_reference);
       if (!residual || std::abs(residual->distance_m) > gate_m) continue;
-      const double information = 1.0 / (residual->sigma_m * residual->sigma_m);
-      const double squared = residual->distance_m * residual->distance_m * information;
-      const double weight = config_.surface.weight * huber_weight(squared);
-      term.add(residual->jacobian, residual->distance_m, weight * information);
+      const double per_m = 1.0 / residual->sigma_m;
+      const double error = std::abs(residual->distance_m) * per_m;
+      const double weight = share * huber_weight(error);
+      term.add(residual->jacobian, residual->distance_m, weight * per_m * per_m);
       // What counts is the gain over the gate's cost, so that dropping a sample never pays.
-      term.cost += config_.surface.weight * (huber_cost(squared) - huber_cost(gate_m * gate_m * information));
+      term.cost += share * (huber_cost(error) - huber_cost(gate_m * per_m));
       result.surface_squares_m2 += residual->distance_m * residual->distance_m;
       ++term.residuals;
     }
@@ -157,7 +162,7 @@ Matrix6d scaled_information(const Term& term, double effective_residuals) {
 }
 
 Alignment Refinement::summarise(const Pose& T) const {
-  const Linearisation last = linearise(T, kGateShare.back() * config_.surface.max_distance_m);
+  const Linearisation last = linearise(T, kRounds.back());
   Alignment result;
   result.T_reference_camera = T;
   result.surface_information = scaled_information(last.surface, config_.surface.weight * last.surface.residuals);
@@ -180,7 +185,7 @@ Alignment Refinement::summarise(const Pose& T) const {
 
 std::optional<PointResidual> point_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
                                             const PointConstraint& point, const Pose& T_camera_reference) {
-  const Eigen::Vector3d p = T_camera_reference * point.p_reference;
+  const Eigen::Vector3d p = T_camera_reference.linear() * point.p_reference + T_camera_reference.translation();
   if (p.z() < noise.min_depth_m) return std::nullopt;
   const double u_by_x = camera.fx / p.z();
   const double v_by_y = camera.fy / p.z();
@@ -198,11 +203,14 @@ std::optional<PointResidual> point_residual(const NoiseConfig& noise, const geom
 std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
                                                 const geometry::DepthImage& depth, const SurfaceSample& sample,
                                                 const Pose& T_camera_reference) {
-  const Eigen::Vector3d p_sample = T_camera_reference * sample.point;
+  const Eigen::Vector3d p_sample = T_camera_reference.linear() * sample.point + T_camera_reference.translation();
   if (p_sample.z() < noise.min_depth_m) return std::nullopt;
-  const int u = static_cast<int>(std::floor(camera.fx * p_sample.x() / p_sample.z() + camera.cx + 0.5));
-  const int v = static_cast<int>(std::floor(camera.fy * p_sample.y() / p_sample.z() + camera.cy + 0.5));
-  if (u < 0 || v < 0 || u >= depth.width || v >= depth.height) return std::nullopt;
+  const double per_z = 1.0 / p_sample.z();
+  const double column = camera.fx * p_sample.x() * per_z + camera.cx + 0.5;
+  const double row = camera.fy * p_sample.y() * per_z + camera.cy + 0.5;
+  if (!(column >= 0.0 && row >= 0.0 && column < depth.width && row < depth.height)) return std::nullopt;
+  const int u = static_cast<int>(column);  // rounded: half a pixel was added
+  const int v = static_cast<int>(row);
   const double depth_m = depth(u, v);
   if (!is_depth(noise, depth_m)) return std::nullopt;
   const Eigen::Vector3d p = camera.unproject(u, v, depth_m);
@@ -219,8 +227,8 @@ std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const 
 Alignment refine_pose(const SlamConfig& config, const AlignmentProblem& problem, const Pose& T_reference_camera) {
   Refinement refinement(config, problem);
   Pose T = T_reference_camera;
-  for (const double share : kGateShare) {
-    T = refinement.optimise(T, share * config.surface.max_distance_m);
+  for (const Round& round : kRounds) {
+    T = refinement.optimise(T, round);
     refinement.classify(T);
   }
   return refinement.summarise(T);

@@ -24,7 +24,7 @@ struct MatcherConfig {
   double search_radius_px = 12.0;       ///< around a predicted pixel, at the finest level [2, 100]
   double wide_search_radius_px = 40.0;  ///< second try [2, 300]
   int max_distance = 70;                ///< Hamming bits of 256 [10, 128]
-  double max_ratio = 0.75;              ///< best / second best distance [0.3, 1]
+  double max_ratio = 0.85;              ///< best / second best distance [0.3, 1]
 };
 
 /// Surface patches of key-frames, aligned with the depth image (point to plane).
@@ -85,6 +85,7 @@ struct OdometryConfig {
   double max_gap_s = 0.2;             ///< between readings that belong together [0.01, 5]
   double max_speed_m_s = 5.0;         ///< faster steps are no motion of the robot [0.1, 50]
   double max_turn_rate_rad_s = 15.0;  ///< the same [0.1, 100]
+  double max_disagreement = 8.0;      ///< with vision, in sigmas; wheels that disagree more have slipped [1, 100]
 };
 
 struct SlamConfig {

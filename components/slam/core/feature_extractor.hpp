@@ -34,7 +34,7 @@ struct Corner {
 
 /// Takes at most `count` corners such that every cell of a grid with about `count` cells gets its best corner before
 /// any cell gets its second best. Order: rank in the cell, then score, then position; independent of the input order.
-std::vector<Corner> spread_corners(std::vector<Corner> corners, int width, int height, int count);
+std::vector<Corner> spread_corners(const std::vector<Corner>& corners, int width, int height, int count);
 
 /// FAST corners on a pyramid, spread over a grid, with ORB descriptors [Rublee 2011].
 class FeatureExtractor {

@@ -27,7 +27,7 @@ struct Projection {
 
 std::optional<Projection> project(const SlamConfig& config, const geometry::PinholeCamera& camera,
                                   const geometry::Pose& T_camera_map, const Landmark& landmark) {
-  const Eigen::Vector3d p = T_camera_map * landmark.p_map;
+  const Eigen::Vector3d p = T_camera_map.linear() * landmark.p_map + T_camera_map.translation();
   if (p.z() < config.noise.min_depth_m) return std::nullopt;
   Projection projection{camera.project(p), p.z(), 0};
   if (!camera.contains(projection.pixel)) return std::nullopt;

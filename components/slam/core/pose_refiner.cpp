@@ -23,8 +23,9 @@ constexpr double kPixelGate = 5.99, kDepthGate = 6.63;  // chi-square, 95 % of 2
 struct Round {
   double gate_share;  // of the widest surface gate
   std::size_t stride;
+  double least_step;  // [m], [rad]; smaller ones end the round
 };
-constexpr std::array kRounds{Round{1.0, 4}, Round{0.4, 2}, Round{0.2, 1}};
+constexpr std::array kRounds{Round{1.0, 4, 1e-3}, Round{0.4, 2, 1e-3}, Round{0.2, 1, 1e-5}};
 
 // Huber's cost and weight for the length of a whitened error. Sec. 5.6 in [Zhang 1997]
 double huber_cost(double error) { return error <= kHuber ? 0.5 * error * error : kHuber * (error - 0.5 * kHuber); }
@@ -65,43 +66,33 @@ struct Linearisation {
 
 class Refinement {
  public:
-  Refinement(const SlamConfig& config, const AlignmentProblem& problem)
-      : config_(config), problem_(problem), is_inlier_(problem.points.size(), true) {}
-
-  Linearisation linearise(const Pose& T, const Round& round) const {
-    Linearisation result;
-    const Pose T_camera_reference = T.inverse();
-    add_points(T_camera_reference, result);
-    if (problem_.depth != nullptr) add_surface(T_camera_reference, round, result);
-    return result;
-  }
+  Refinement(const SlamConfig& config, const AlignmentProblem& problem, const Pose& T_reference_camera)
+      : config_(config), problem_(problem), T_(T_reference_camera), is_inlier_(problem.points.size(), true) {}
 
   // Levenberg-Marquardt on the current inliers.
-  Pose optimise(Pose T, const Round& round) const {
+  void optimise(const Round& round) {
     double damping = 1e-4;
-    Linearisation current = linearise(T, round);
+    last_ = linearise(T_, round);
     for (int i = 0; i < config_.tracker.refine_iterations; ++i) {
-      Matrix6d H = (current.points.hessian + current.surface.hessian).selfadjointView<Eigen::Upper>();
+      Matrix6d H = (last_.points.hessian + last_.surface.hessian).selfadjointView<Eigen::Upper>();
       H.diagonal() += damping * H.diagonal() + Vector6d::Constant(1e-9);
-      const Vector6d step = H.ldlt().solve(-(current.points.gradient + current.surface.gradient));
+      const Vector6d step = H.ldlt().solve(-(last_.points.gradient + last_.surface.gradient));
       if (!step.allFinite()) break;
-      const Pose moved = T * geometry::se3_exp(step);
+      const Pose moved = T_ * geometry::se3_exp(step);
       const Linearisation next = linearise(moved, round);
-      if (next.cost() <= current.cost()) {
-        T = moved;
-        current = next;
+      if (next.cost() <= last_.cost()) {
+        T_ = moved;
+        last_ = next;
         damping = std::max(1e-7, 0.1 * damping);
-        if (step.norm() < 1e-5) break;
       } else {
         damping *= 10.0;
-        if (step.norm() < 1e-5) break;
       }
+      if (step.norm() < round.least_step) break;
     }
-    return T;
   }
 
-  void classify(const Pose& T) {
-    const Pose T_camera_reference = T.inverse();
+  void classify() {
+    const Pose T_camera_reference = T_.inverse();
     for (std::size_t i = 0; i < is_inlier_.size(); ++i) {
       const auto residual = point_residual(config_.noise, problem_.camera, problem_.points[i], T_camera_reference);
       is_inlier_[i] = residual && residual->value.head<2>().squaredNorm() < kPixelGate &&
@@ -109,11 +100,19 @@ class Refinement {
     }
   }
 
-  Alignment summarise(const Pose& T) const;
+  // After the last round.
+  Alignment summarise() const;
 
  private:
-  void add_points(const Pose& T_camera_reference, Linearisation& result) const {
-    Term& term = result.points;
+  Linearisation linearise(const Pose& T, const Round& round) const {
+    Linearisation result;
+    const Pose T_camera_reference = T.inverse();
+    add_points(T_camera_reference, result.points);
+    if (problem_.depth != nullptr) add_surface(T_camera_reference, round, result);
+    return result;
+  }
+
+  void add_points(const Pose& T_camera_reference, Term& term) const {
     for (std::size_t i = 0; i < is_inlier_.size(); ++i) {
       if (!is_inlier_[i]) continue;
       const PointConstraint& point = problem_.points[i];
@@ -151,6 +150,8 @@ class Refinement {
 
   const SlamConfig& config_;
   const AlignmentProblem& problem_;
+  Pose T_;              // of the camera in the reference
+  Linearisation last_;  // at T_
   std::vector<bool> is_inlier_;
 };
 
@@ -161,23 +162,25 @@ Matrix6d scaled_information(const Term& term, double effective_residuals) {
   return term.full_hessian() / variance;
 }
 
-Alignment Refinement::summarise(const Pose& T) const {
-  const Linearisation last = linearise(T, kRounds.back());
+Alignment Refinement::summarise() const {
+  const Pose T_camera_reference = T_.inverse();
+  Term points;  // once more, because the inliers have changed
+  add_points(T_camera_reference, points);
   Alignment result;
-  result.T_reference_camera = T;
-  result.surface_information = scaled_information(last.surface, config_.surface.weight * last.surface.residuals);
-  result.information = scaled_information(last.points, last.points.residuals) + result.surface_information;
+  result.T_reference_camera = T_;
+  result.surface_information = scaled_information(last_.surface, config_.surface.weight * last_.surface.residuals);
+  result.information = scaled_information(points, points.residuals) + result.surface_information;
   result.is_inlier = is_inlier_;
   result.inliers = static_cast<int>(std::count(is_inlier_.begin(), is_inlier_.end(), true));
   double squares = 0.0;
   for (std::size_t i = 0; i < is_inlier_.size(); ++i) {
     if (!is_inlier_[i]) continue;
-    const Eigen::Vector3d p = T.inverse() * problem_.points[i].p_reference;
+    const Eigen::Vector3d p = T_camera_reference * problem_.points[i].p_reference;
     squares += (problem_.camera.project(p) - problem_.points[i].pixel).squaredNorm();
   }
   result.rms_px = result.inliers > 0 ? std::sqrt(squares / result.inliers) : 0.0;
-  result.surface_matches = last.surface.residuals;
-  if (result.surface_matches > 0) result.surface_rms_m = std::sqrt(last.surface_squares_m2 / result.surface_matches);
+  result.surface_matches = last_.surface.residuals;
+  if (result.surface_matches > 0) result.surface_rms_m = std::sqrt(last_.surface_squares_m2 / result.surface_matches);
   return result;
 }
 
@@ -225,13 +228,12 @@ std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const 
 }
 
 Alignment refine_pose(const SlamConfig& config, const AlignmentProblem& problem, const Pose& T_reference_camera) {
-  Refinement refinement(config, problem);
-  Pose T = T_reference_camera;
+  Refinement refinement(config, problem, T_reference_camera);
   for (const Round& round : kRounds) {
-    T = refinement.optimise(T, round);
-    refinement.classify(T);
+    refinement.optimise(round);
+    refinement.classify();
   }
-  return refinement.summarise(T);
+  return refinement.summarise();
 }
 
 }  // namespace lapis::slam

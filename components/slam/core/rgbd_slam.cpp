@@ -75,6 +75,7 @@ class RgbdSlam::Implementation {
   std::uint64_t version() const { return version_; }
   std::size_t keyframe_count() const { return map_.keyframes().size(); }
   std::size_t landmark_count() const { return map_.landmark_count(); }
+  std::size_t slip_count() const { return slips_; }
   TrackingResult without_vision(time::Time stamp, const std::string& reason, const Frame* frame = nullptr) const {
     TrackingResult result;
     result.state = map_.empty() ? TrackingState::kInitializing : TrackingState::kLost;
@@ -179,7 +180,7 @@ class RgbdSlam::Implementation {
     if (outcome != nullptr) {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
       add_visual_edge(id, *outcome);
-      add_wheel_edge(previous, id);
+      add_wheel_edge(previous, id, *outcome);
     } else {
       edges_.push_back({result.keyframe_id, id, EdgeType::kWheelOdometry, result.T_keyframe_camera,
                         bounded_information(config_.pose_graph, result.covariance.inverse())});
@@ -197,10 +198,18 @@ class RgbdSlam::Implementation {
     links_.push_back({outcome.reference, id, alignment.T_reference_camera, alignment.surface_information});
   }
 
-  void add_wheel_edge(KeyframeId from, KeyframeId to) {
+  // Wheels that slipped are left out: vision is sure of its pose, and theirs is another one.
+  void add_wheel_edge(KeyframeId from, KeyframeId to, const TrackOutcome& outcome) {
     const auto motion = motion_.odometry_between(map_.keyframe(from).stamp, map_.keyframe(to).stamp);
     motion_.forget_before(map_.keyframe(to).stamp);
     if (!motion) return;
+    const Pose T_from_to = map_.keyframe(from).T_map_camera.inverse() * map_.keyframe(to).T_map_camera;
+    const Matrix6d covariance = edge_information(config_.pose_graph, outcome.alignment.information).inverse();
+    const bool vision_is_sure = outcome.alignment.inliers >= config_.tracker.min_matches;
+    if (vision_is_sure && disagreement(*motion, T_from_to, covariance) > config_.odometry.max_disagreement) {
+      ++slips_;
+      return;
+    }
     const Matrix6d information = bounded_information(config_.pose_graph, motion->covariance.inverse());
     edges_.push_back({from, to, EdgeType::kWheelOdometry, motion->T_from_to, information});
     links_.push_back({from, to, motion->T_from_to, information});
@@ -254,6 +263,7 @@ class RgbdSlam::Implementation {
   std::vector<Matrix6d> covariances_;  // of each key-frame's pose in the map
   KeyframeId reference_ = 0;
   int frames_since_keyframe_ = 0;
+  std::size_t slips_ = 0;
   int blind_frames_ = 0;  // in a row, with enough to see
   std::uint64_t version_ = 0;
 };
@@ -274,5 +284,6 @@ PoseGraphSnapshot RgbdSlam::pose_graph() const { return implementation_->pose_gr
 std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(); }
 std::size_t RgbdSlam::keyframe_count() const { return implementation_->keyframe_count(); }
 std::size_t RgbdSlam::landmark_count() const { return implementation_->landmark_count(); }
+std::size_t RgbdSlam::slip_count() const { return implementation_->slip_count(); }
 
 }  // namespace lapis::slam

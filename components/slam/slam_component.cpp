@@ -13,6 +13,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr std::size_t kWaitingMessages = 8;
+constexpr std::size_t kEarlyReadings = 1000;
 constexpr double kFarewell_s = 1.0;
 constexpr const char* kGraphFile = "pose_graph.g2o";
 constexpr const char* kKeyframesFile = "keyframes.txt";
@@ -92,6 +93,8 @@ bool SlamComponent::prepare(const Image& color) {
   }
   frame_.session = session_;
   slam_ = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, frame_.T_base_camera);
+  for (const auto& [stamp, T_odom_base] : early_odometry_) slam_->add_odometry(stamp, T_odom_base);
+  early_odometry_.clear();
   graph_version_ = 0;
   return true;
 }
@@ -115,7 +118,7 @@ void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
     problem = "its frame is '" + message.header().frame_id() + "', not '" + ids_.odom + "'";
   } else if (!T_odom_base) {
     problem = T_odom_base.reason;
-  } else if (slam_ != nullptr && !slam_->add_odometry(messages::from_message(message.header().stamp()), *T_odom_base)) {
+  } else if (!use_odometry(messages::from_message(message.header().stamp()), *T_odom_base)) {
     problem = "its stamp is not later than the one before";
   }
   if (problem.empty()) {
@@ -124,6 +127,14 @@ void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
   }
   context_.status().count("odometry dropped: " + problem);
   if (context_.rate_limit().pass("odometry")) spdlog::warn("odometry dropped: {}", problem);
+}
+
+/// Readings from before the first frame are kept for it. False when the reading cannot be used.
+bool SlamComponent::use_odometry(time::Time stamp, const geometry::Pose& T_odom_base) {
+  if (slam_ != nullptr) return slam_->add_odometry(stamp, T_odom_base);
+  early_odometry_.emplace_back(stamp, T_odom_base);
+  if (early_odometry_.size() > kEarlyReadings) early_odometry_.pop_front();
+  return true;
 }
 
 /// A frame that cannot be used is one that was not tracked, and those who wait for its pose are told so.
@@ -189,6 +200,7 @@ void SlamComponent::publish_status(const TrackingResult& result) {
                         is_tracking ? "tracking" : result.reason);
   context_.status().value("frames", frames_total_);
   context_.status().value("frames_tracked", frames_tracked_);
+  context_.status().value("wheel_slips", slam_->slip_count());
   const bool has_changed = !reported_ || reported_->second != result.state;
   const bool was_tracking = !reported_ || reported_->second == TrackingState::kTracking;
   if (has_changed && !is_tracking && was_tracking) spdlog::warn("tracking lost: {}", result.reason);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
@@ -31,6 +33,7 @@ class SlamComponent {
   bool prepare(const Image& color);
   void track(const Image& color, const Image& depth, const Info& info, time::Time stamp);
   void add_odometry(const nav_msgs::msg::Odometry& message);
+  bool use_odometry(time::Time stamp, const geometry::Pose& T_odom_base);
   void drop(time::Time stamp, const std::string& reason);
   void end_map();
   void publish(const TrackingResult& result);
@@ -55,8 +58,9 @@ class SlamComponent {
   runtime::StampedInput<Info> info_;
   messages::StaticTransforms static_transforms_;
 
-  std::unique_ptr<RgbdSlam> slam_;  // exists once the camera's mount is known
-  FrameContext frame_;              // of the newest frame
+  std::unique_ptr<RgbdSlam> slam_;                                    // exists once the camera's mount is known
+  std::deque<std::pair<time::Time, geometry::Pose>> early_odometry_;  // T_odom_base from before that
+  FrameContext frame_;                                                // of the newest frame
   std::int64_t session_ = -1;
   bool has_odometry_ = false;                                       // somebody else publishes odom -> base_link
   std::optional<std::pair<time::Time, geometry::Pose>> last_pose_;  // T_map_base

@@ -28,13 +28,14 @@ struct Disc {
   std::array<std::array<std::int16_t, kPatchWidth>, 2 * kPatchRadius + 1> column{}, row{};
 
   Disc() {
-    for (int y = -kPatchRadius; y <= kPatchRadius; ++y) {
-      const auto half = static_cast<int>(std::lround(std::sqrt(kPatchRadius * kPatchRadius - y * y)));
-      for (int x = -half; x <= half; ++x) {
-        column.at(static_cast<std::size_t>(y + kPatchRadius)).at(static_cast<std::size_t>(x + kPatchRadius)) =
-            static_cast<std::int16_t>(x);
-        row.at(static_cast<std::size_t>(y + kPatchRadius)).at(static_cast<std::size_t>(x + kPatchRadius)) =
-            static_cast<std::int16_t>(y);
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const int y = static_cast<int>(i) - kPatchRadius;
+      const auto half = std::lround(std::sqrt(kPatchRadius * kPatchRadius - y * y));
+      for (std::size_t j = 0; j < kPatchWidth; ++j) {
+        const int x = static_cast<int>(j) - kPatchRadius;
+        if (std::abs(x) > half) continue;
+        column[i][j] = static_cast<std::int16_t>(x);
+        row[i][j] = static_cast<std::int16_t>(y);
       }
     }
   }

@@ -31,7 +31,8 @@ FeatureIndex::FeatureIndex(const std::vector<Feature>& features, int width, int 
 }
 
 std::size_t FeatureIndex::cell_of(const Eigen::Vector2d& pixel) const {
-  return static_cast<std::size_t>(clamped_cell(pixel.y(), rows_) * columns_ + clamped_cell(pixel.x(), columns_));
+  const int cell = clamped_cell(pixel.y(), rows_) * columns_ + clamped_cell(pixel.x(), columns_);
+  return static_cast<std::size_t>(cell);
 }
 
 void FeatureIndex::find(const Eigen::Vector2d& pixel, double radius_px, std::vector<int>& found) const {

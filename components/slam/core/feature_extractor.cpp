@@ -12,7 +12,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr int kPatchRadius = 15;
-constexpr int kBorder = kFeatureBorder_px;
+constexpr int kBorder = 19;  // that features keep from the level's edge: the descriptor reads a rotated 31 px patch
 
 struct Level {
   cv::Mat image;

@@ -15,9 +15,6 @@ namespace lapis::slam {
 /// 256 bits of an ORB descriptor.
 using Descriptor = std::array<std::uint64_t, 4>;
 
-/// Distance [px of the level] that features keep from the image's edge: ORB's descriptor reads a rotated 31 px patch.
-inline constexpr int kFeatureBorder_px = 19;
-
 /// Corner with a direction, at pixel coordinates of the full image.
 struct Feature {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< [px]

@@ -13,6 +13,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr std::size_t kWaitingMessages = 8;
+constexpr std::size_t kEarlyReadings = 1000;
 constexpr double kFarewell_s = 1.0;
 constexpr const char* kGraphFile = "pose_graph.g2o";
 constexpr const char* kKeyframesFile = "keyframes.txt";
@@ -107,6 +108,8 @@ bool SlamComponent::prepare(const Image& color) {
   frame_.session = session_;
   if (!config_.output_dir.empty()) set_old_files_aside();
   slam_ = begin_map();
+  for (const auto& [stamp, T_odom_base] : early_odometry_) slam_->add_odometry(stamp, T_odom_base);
+  early_odometry_.clear();
   graph_version_ = 0;
   landmarks_.begin_session(session_);
   return true;
@@ -157,7 +160,7 @@ void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
     problem = "its frame is '" + message.header().frame_id() + "', not '" + ids_.odom + "'";
   } else if (!T_odom_base) {
     problem = T_odom_base.reason;
-  } else if (slam_ != nullptr && !slam_->add_odometry(messages::from_message(message.header().stamp()), *T_odom_base)) {
+  } else if (!use_odometry(messages::from_message(message.header().stamp()), *T_odom_base)) {
     problem = "its stamp is not later than the one before";
   }
   if (problem.empty()) {
@@ -166,6 +169,14 @@ void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
   }
   context_.status().count("odometry dropped: " + problem);
   if (context_.rate_limit().pass("odometry")) spdlog::warn("odometry dropped: {}", problem);
+}
+
+/// Readings from before the first frame are kept for it. False when the reading cannot be used.
+bool SlamComponent::use_odometry(time::Time stamp, const geometry::Pose& T_odom_base) {
+  if (slam_ != nullptr) return slam_->add_odometry(stamp, T_odom_base);
+  early_odometry_.emplace_back(stamp, T_odom_base);
+  if (early_odometry_.size() > kEarlyReadings) early_odometry_.pop_front();
+  return true;
 }
 
 /// A frame that cannot be used is one that was not tracked, and those who wait for its pose are told so.
@@ -249,6 +260,7 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   }
   context_.status().value("frames", frames_total_);
   context_.status().value("frames_tracked", frames_tracked_);
+  context_.status().value("wheel_slips", slam_->slip_count());
   const bool has_changed = !reported_ || reported_->second != result.state;
   const bool was_tracking = !reported_ || reported_->second == TrackingState::kTracking;
   if (has_changed && !is_tracking && was_tracking) spdlog::warn("tracking lost: {}", result.reason);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <deque>
 #include <memory>
 #include <optional>
+#include <utility>
 
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
@@ -37,6 +39,7 @@ class SlamComponent {
   std::unique_ptr<RgbdSlam> begin_map();
   void track(const Image& color, const Image& depth, const Info& info, time::Time stamp);
   void add_odometry(const nav_msgs::msg::Odometry& message);
+  bool use_odometry(time::Time stamp, const geometry::Pose& T_odom_base);
   void drop(time::Time stamp, const std::string& reason);
   void end_map();
   void publish(const TrackingResult& result);
@@ -70,7 +73,8 @@ class SlamComponent {
   std::optional<SlamFile> resumed_;                      // until the first map begins with it
   std::optional<geometry::PinholeCamera> saved_camera_;  // of the map that was resumed, until a frame has been compared
   std::unique_ptr<RgbdSlam> slam_;                       // exists once the camera's mount is known
-  FrameContext frame_;                                   // of the newest frame
+  std::deque<std::pair<time::Time, geometry::Pose>> early_odometry_;  // T_odom_base from before that
+  FrameContext frame_;                                                // of the newest frame
   std::int64_t session_ = -1;
   bool has_odometry_ = false;                                       // somebody else publishes odom -> base_link
   std::optional<std::pair<time::Time, geometry::Pose>> last_pose_;  // T_map_base

@@ -143,6 +143,8 @@ void describe(Field& field, OdometryConfig& c) {
   field("max_gap_s", c.max_gap_s, config::in_range(0.01, 5), "between readings that belong together [s]");
   field("max_speed_m_s", c.max_speed_m_s, config::in_range(0.1, 50), "faster steps are no motion of the robot [m/s]");
   field("max_turn_rate_rad_s", c.max_turn_rate_rad_s, config::in_range(0.1, 100), "the same [rad/s]");
+  field("max_disagreement", c.max_disagreement, config::in_range(1, 100),
+        "with vision between key-frames, in sigmas; wheels that disagree more have slipped and are left out");
 }
 
 template <class Field>

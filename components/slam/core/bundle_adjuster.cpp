@@ -15,6 +15,9 @@ using geometry::Matrix6d;
 using geometry::Pose;
 using geometry::Vector6d;
 
+constexpr double kPointHuber = 2.0;  // sigmas up to which an observation counts in full
+constexpr double kLinkHuber = 3.55;  // the same of a link: 95 % of 6 degrees of freedom
+
 // A pose as Ceres keeps it: x y z qx qy qz qw.
 using PoseBlock = std::array<double, 7>;
 using RowMajor37 = Eigen::Matrix<double, 3, 7, Eigen::RowMajor>;
@@ -169,11 +172,12 @@ BundleReport adjust_bundle(const BundleConfig& config, const NoiseConfig& noise,
                          nullptr)) {
       continue;
     }
-    solver.AddResidualBlock(new ObservationCost(noise, camera, observation), new ceres::HuberLoss(2.0),
+    solver.AddResidualBlock(new ObservationCost(noise, camera, observation), new ceres::HuberLoss(kPointHuber),
                             poses[observation.camera].data(), points[observation.point].data());
   }
   for (const BundleLink& link : problem.links) {
-    solver.AddResidualBlock(new LinkCost(link), nullptr, poses[link.from].data(), poses[link.to].data());
+    solver.AddResidualBlock(new LinkCost(link), new ceres::HuberLoss(kLinkHuber), poses[link.from].data(),
+                            poses[link.to].data());
   }
   ceres::Solver::Summary summary;
   ceres::Solve(solver_options(config), &solver, &summary);

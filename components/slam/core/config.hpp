@@ -113,6 +113,7 @@ struct OdometryConfig {
   double max_gap_s = 0.2;             ///< between readings that belong together [0.01, 5]
   double max_speed_m_s = 5.0;         ///< faster steps are no motion of the robot [0.1, 50]
   double max_turn_rate_rad_s = 15.0;  ///< the same [0.1, 100]
+  double max_disagreement = 8.0;      ///< with vision, in sigmas; wheels that disagree more have slipped [1, 100]
 };
 
 struct SlamConfig {

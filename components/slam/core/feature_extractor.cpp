@@ -12,41 +12,53 @@ namespace lapis::slam {
 namespace {
 
 constexpr int kPatchRadius = 15;
-constexpr int kBorder = kFeatureBorder_px;
+constexpr int kBorder = 19;  // that features keep from the level's edge: the descriptor reads a rotated 31 px patch
 
 struct Level {
   cv::Mat image;
-  double scale = 1.0;    // nominal, as cv::ORB computes it
+  double scale = 1.0;    // nominal
   double ratio_x = 1.0;  // size of a level pixel in pixels of the full image: the level's size is rounded
   double ratio_y = 1.0;
 };
 
-// Half widths of the rows of a disc, for the intensity centroid.
-std::array<int, kPatchRadius + 1> disc_half_widths() {
-  std::array<int, kPatchRadius + 1> half{};
-  for (int row = 0; row <= kPatchRadius; ++row) {
-    half[static_cast<std::size_t>(row)] =
-        static_cast<int>(std::lround(std::sqrt(kPatchRadius * kPatchRadius - row * row)));
+// Column and row of each pixel of a disc relative to its centre, 0 outside of it. A row has 32 pixels, the first 15
+// left of the centre, so that compilers can take whole registers.
+constexpr int kPatchWidth = 2 * kPatchRadius + 2;
+struct Disc {
+  std::array<std::array<std::int16_t, kPatchWidth>, 2 * kPatchRadius + 1> column{}, row{};
+
+  Disc() {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const int y = static_cast<int>(i) - kPatchRadius;
+      const auto half = std::lround(std::sqrt(kPatchRadius * kPatchRadius - y * y));
+      for (std::size_t j = 0; j < kPatchWidth; ++j) {
+        const int x = static_cast<int>(j) - kPatchRadius;
+        if (std::abs(x) > half) continue;
+        column[i][j] = static_cast<std::int16_t>(x);
+        row[i][j] = static_cast<std::int16_t>(y);
+      }
+    }
   }
-  return half;
-}
+};
 
 // Direction [degrees] from a corner to the intensity centroid of the disc around it. Eq. 1-3 in [Rublee 2011]
 float corner_angle(const cv::Mat& image, int x, int y) {
-  static const auto kHalf = disc_half_widths();
+  static const Disc kDisc;
   int moment_x = 0;
   int moment_y = 0;
-  for (int row = -kPatchRadius; row <= kPatchRadius; ++row) {
-    const int half = kHalf[static_cast<std::size_t>(std::abs(row))];
-    const std::uint8_t* pixels = image.ptr<std::uint8_t>(y + row) + x;
-    int sum = 0;
-    for (int column = -half; column <= half; ++column) {
-      moment_x += column * pixels[column];
-      sum += pixels[column];
+  for (std::size_t i = 0; i < kDisc.row.size(); ++i) {
+    const std::uint8_t* pixels = image.ptr<std::uint8_t>(y - kPatchRadius + static_cast<int>(i)) + x - kPatchRadius;
+    for (std::size_t j = 0; j < kPatchWidth; ++j) {
+      const std::int16_t pixel = pixels[j];
+      moment_x += kDisc.column[i][j] * pixel;
+      moment_y += kDisc.row[i][j] * pixel;
     }
-    moment_y += row * sum;
   }
   return cv::fastAtan2(static_cast<float>(moment_y), static_cast<float>(moment_x));
+}
+
+bool is_better(const Corner& a, const Corner& b) {
+  return std::tuple(-a.score, a.y, a.x) < std::tuple(-b.score, b.y, b.x);
 }
 
 std::vector<Corner> detect_corners(const cv::Mat& image, int threshold) {
@@ -65,27 +77,29 @@ std::vector<Corner> detect_corners(const cv::Mat& image, int threshold) {
 
 }  // namespace
 
-std::vector<Corner> spread_corners(std::vector<Corner> corners, int width, int height, int count) {
+std::vector<Corner> spread_corners(const std::vector<Corner>& corners, int width, int height, int count) {
   if (count <= 0 || corners.empty()) return {};
-  std::sort(corners.begin(), corners.end(), [](const Corner& a, const Corner& b) {
-    return std::tuple(-a.score, a.y, a.x) < std::tuple(-b.score, b.y, b.x);
-  });
   const double cell = std::max(1.0, std::sqrt(static_cast<double>(width) * height / count));
   const auto columns = static_cast<std::size_t>(width / cell) + 1;
   const auto rows = static_cast<std::size_t>(height / cell) + 1;
-  std::vector<std::size_t> taken(columns * rows, 0);
-  std::vector<std::vector<Corner>> ranks;  // the best of every cell, the second best, ...
+  std::vector<std::vector<Corner>> cells(columns * rows);
+  std::size_t most = 0;
   for (const Corner& corner : corners) {
-    const std::size_t rank =
-        taken[static_cast<std::size_t>(corner.y / cell) * columns + static_cast<std::size_t>(corner.x / cell)]++;
-    if (rank == ranks.size()) ranks.emplace_back();
-    ranks[rank].push_back(corner);
+    auto& members =
+        cells[static_cast<std::size_t>(corner.y / cell) * columns + static_cast<std::size_t>(corner.x / cell)];
+    members.push_back(corner);
+    most = std::max(most, members.size());
   }
+  for (auto& members : cells) std::sort(members.begin(), members.end(), is_better);
   std::vector<Corner> chosen;
-  for (const std::vector<Corner>& rank : ranks) {
-    const std::size_t room = static_cast<std::size_t>(count) - chosen.size();
-    chosen.insert(chosen.end(), rank.begin(), rank.begin() + static_cast<std::ptrdiff_t>(std::min(room, rank.size())));
+  for (std::size_t rank = 0; rank < most && chosen.size() < static_cast<std::size_t>(count); ++rank) {
+    const auto first = static_cast<std::ptrdiff_t>(chosen.size());
+    for (const auto& members : cells) {
+      if (rank < members.size()) chosen.push_back(members[rank]);
+    }
+    std::sort(chosen.begin() + first, chosen.end(), is_better);
   }
+  chosen.resize(std::min(chosen.size(), static_cast<std::size_t>(count)));
   return chosen;
 }
 
@@ -107,30 +121,32 @@ struct FeatureExtractor::Implementation {
     return levels;
   }
 
-  // Key-points as cv::ORB wants them: level coordinates times scale. Levels share the budget by area.
-  std::vector<cv::KeyPoint> detect(const std::vector<Level>& levels) const {
-    double area = 0.0;
-    for (const Level& level : levels) area += 1.0 / (level.scale * level.scale);
+  // Appends the features of a level.
+  void extract(const Level& level, int octave, int count, std::vector<Feature>& features) const {
     std::vector<cv::KeyPoint> points;
-    for (std::size_t i = 0; i < levels.size(); ++i) {
-      const cv::Mat& image = levels[i].image;
-      const double scale = levels[i].scale;
-      const int count = static_cast<int>(std::lround(config.max_features / (scale * scale * area)));
-      for (const Corner& corner :
-           spread_corners(detect_corners(image, config.fast_threshold), image.cols, image.rows, count)) {
-        points.emplace_back(static_cast<float>(corner.x * scale), static_cast<float>(corner.y * scale),
-                            static_cast<float>((2 * kPatchRadius + 1) * scale), corner_angle(image, corner.x, corner.y),
-                            corner.score, static_cast<int>(i));
-      }
+    for (const Corner& corner : spread_corners(detect_corners(level.image, config.fast_threshold), level.image.cols,
+                                               level.image.rows, count)) {
+      points.emplace_back(static_cast<float>(corner.x), static_cast<float>(corner.y), 2.0F * kPatchRadius + 1.0F,
+                          corner_angle(level.image, corner.x, corner.y), corner.score);
     }
-    return points;
+    if (points.empty()) return;
+    cv::Mat descriptors;
+    orb->compute(level.image, points, descriptors);
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      Feature feature;
+      // cv::resize aligns the borders of the images, and the level's size is rounded.
+      feature.pixel = {(points[i].pt.x + 0.5) * level.ratio_x - 0.5, (points[i].pt.y + 0.5) * level.ratio_y - 0.5};
+      feature.octave = octave;
+      std::memcpy(feature.descriptor.data(), descriptors.ptr(static_cast<int>(i)), sizeof(Descriptor));
+      features.push_back(feature);
+    }
   }
 };
 
 FeatureExtractor::FeatureExtractor(const FeatureConfig& config) : implementation_(new Implementation{config, {}}) {
-  implementation_->orb =
-      cv::ORB::create(config.max_features, static_cast<float>(config.scale_factor), config.levels, kPatchRadius + 1, 0,
-                      2, cv::ORB::HARRIS_SCORE, 2 * kPatchRadius + 1, config.fast_threshold);
+  // It only describes, one level at a time: the pyramid is built once, here.
+  implementation_->orb = cv::ORB::create(config.max_features, static_cast<float>(config.scale_factor), 1,
+                                         kPatchRadius + 1, 0, 2, cv::ORB::HARRIS_SCORE, 2 * kPatchRadius + 1);
 }
 
 FeatureExtractor::~FeatureExtractor() = default;
@@ -139,19 +155,14 @@ std::vector<Feature> FeatureExtractor::extract(const geometry::GrayImage& image)
   if (image.width <= 2 * kBorder || image.height <= 2 * kBorder) return {};
   const cv::Mat view(image.height, image.width, CV_8UC1, const_cast<std::uint8_t*>(image.pixels.data()));
   const std::vector<Level> levels = implementation_->build_pyramid(view);
-  std::vector<cv::KeyPoint> points = implementation_->detect(levels);
-  if (points.empty()) return {};
-  cv::Mat descriptors;
-  implementation_->orb->compute(view, points, descriptors);
-
-  std::vector<Feature> features(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    const Level& level = levels[static_cast<std::size_t>(points[i].octave)];
-    // cv::resize aligns the borders of the images, and the level's size is rounded.
-    features[i].pixel = {(points[i].pt.x / level.scale + 0.5) * level.ratio_x - 0.5,
-                         (points[i].pt.y / level.scale + 0.5) * level.ratio_y - 0.5};
-    features[i].octave = points[i].octave;
-    std::memcpy(features[i].descriptor.data(), descriptors.ptr(static_cast<int>(i)), sizeof(Descriptor));
+  double area = 0.0;
+  for (const Level& level : levels) area += 1.0 / (level.scale * level.scale);
+  std::vector<Feature> features;
+  for (std::size_t i = 0; i < levels.size(); ++i) {
+    // Levels share the budget by area.
+    const double share = 1.0 / (levels[i].scale * levels[i].scale * area);
+    implementation_->extract(levels[i], static_cast<int>(i),
+                             static_cast<int>(std::lround(share * implementation_->config.max_features)), features);
   }
   return features;
 }

@@ -15,9 +15,6 @@ namespace lapis::slam {
 /// 256 bits of an ORB descriptor.
 using Descriptor = std::array<std::uint64_t, 4>;
 
-/// Distance [px of the level] that features keep from the image's edge: ORB's descriptor reads a rotated 31 px patch.
-inline constexpr int kFeatureBorder_px = 19;
-
 /// Corner with a direction, at pixel coordinates of the full image.
 struct Feature {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< [px]
@@ -34,7 +31,7 @@ struct Corner {
 
 /// Takes at most `count` corners such that every cell of a grid with about `count` cells gets its best corner before
 /// any cell gets its second best. Order: rank in the cell, then score, then position; independent of the input order.
-std::vector<Corner> spread_corners(std::vector<Corner> corners, int width, int height, int count);
+std::vector<Corner> spread_corners(const std::vector<Corner>& corners, int width, int height, int count);
 
 /// FAST corners on a pyramid, spread over a grid, with ORB descriptors [Rublee 2011].
 class FeatureExtractor {

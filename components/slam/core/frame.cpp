@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "slam/core/noise_model.hpp"
 
@@ -12,7 +13,7 @@ constexpr double kCellSize_px = 20.0;
 // Neighbouring pixels whose depths differ by more than this share lie on different surfaces.
 constexpr float kMaxDepthStep = 0.05F;
 
-int cell_of(double coordinate, int cells) {
+int clamped_cell(double coordinate, int cells) {
   return std::clamp(static_cast<int>(std::floor(coordinate / kCellSize_px)), 0, cells - 1);
 }
 
@@ -20,27 +21,32 @@ int cell_of(double coordinate, int cells) {
 
 FeatureIndex::FeatureIndex(const std::vector<Feature>& features, int width, int height)
     : columns_(static_cast<int>(width / kCellSize_px) + 1), rows_(static_cast<int>(height / kCellSize_px) + 1),
-      cells_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_)) {
-  pixels_.reserve(features.size());
+      entries_(features.size()), begins_(static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_) + 1, 0) {
+  for (const Feature& feature : features) ++begins_[cell_of(feature.pixel) + 1];
+  std::partial_sum(begins_.begin(), begins_.end(), begins_.begin());
+  std::vector<std::size_t> next(begins_.begin(), begins_.end() - 1);
   for (std::size_t i = 0; i < features.size(); ++i) {
-    const Eigen::Vector2d& pixel = features[i].pixel;
-    pixels_.push_back(pixel);
-    const int cell = cell_of(pixel.y(), rows_) * columns_ + cell_of(pixel.x(), columns_);
-    cells_[static_cast<std::size_t>(cell)].push_back(static_cast<int>(i));
+    entries_[next[cell_of(features[i].pixel)]++] = {features[i].pixel, static_cast<int>(i)};
   }
 }
 
+std::size_t FeatureIndex::cell_of(const Eigen::Vector2d& pixel) const {
+  const int cell = clamped_cell(pixel.y(), rows_) * columns_ + clamped_cell(pixel.x(), columns_);
+  return static_cast<std::size_t>(cell);
+}
+
 void FeatureIndex::find(const Eigen::Vector2d& pixel, double radius_px, std::vector<int>& found) const {
-  if (cells_.empty()) return;
-  const int first_column = cell_of(pixel.x() - radius_px, columns_);
-  const int last_column = cell_of(pixel.x() + radius_px, columns_);
-  const int last_row = cell_of(pixel.y() + radius_px, rows_);
-  for (int row = cell_of(pixel.y() - radius_px, rows_); row <= last_row; ++row) {
-    for (int column = first_column; column <= last_column; ++column) {
-      const int cell = row * columns_ + column;
-      for (const int i : cells_[static_cast<std::size_t>(cell)]) {
-        const Eigen::Vector2d offset = pixels_[static_cast<std::size_t>(i)] - pixel;
-        if (offset.cwiseAbs().maxCoeff() <= radius_px) found.push_back(i);
+  if (entries_.empty()) return;
+  const Eigen::Vector2d reach(radius_px, radius_px);
+  const auto columns = static_cast<std::size_t>(columns_);
+  std::size_t first = cell_of(pixel - reach);
+  const std::size_t last = cell_of(pixel + reach);
+  const std::size_t width = last % columns - first % columns;
+  for (; first <= last; first += columns) {  // the cells of a row lie one after the other
+    for (std::size_t i = begins_[first]; i < begins_[first + width + 1]; ++i) {
+      const Entry& entry = entries_[i];
+      if (std::abs(entry.pixel.x() - pixel.x()) <= radius_px && std::abs(entry.pixel.y() - pixel.y()) <= radius_px) {
+        found.push_back(entry.feature);
       }
     }
   }

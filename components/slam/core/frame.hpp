@@ -28,10 +28,16 @@ class FeatureIndex {
   void find(const Eigen::Vector2d& pixel, double radius_px, std::vector<int>& found) const;
 
  private:
+  struct Entry {
+    Eigen::Vector2d pixel;
+    int feature = 0;
+  };
+  std::size_t cell_of(const Eigen::Vector2d& pixel) const;
+
   int columns_ = 0;
   int rows_ = 0;
-  std::vector<Eigen::Vector2d> pixels_;
-  std::vector<std::vector<int>> cells_;
+  std::vector<Entry> entries_;       // cell after cell, row by row
+  std::vector<std::size_t> begins_;  // of each cell in entries_, and the end
 };
 
 /// What tracking needs to know of one RgbdFrame. Refers to its images; the RgbdFrame must outlive it.

@@ -27,7 +27,7 @@ struct Projection {
 
 std::optional<Projection> project(const SlamConfig& config, const geometry::PinholeCamera& camera,
                                   const geometry::Pose& T_camera_map, const Landmark& landmark) {
-  const Eigen::Vector3d p = T_camera_map * landmark.p_map;
+  const Eigen::Vector3d p = T_camera_map.linear() * landmark.p_map + T_camera_map.translation();
   if (p.z() < config.noise.min_depth_m) return std::nullopt;
   Projection projection{camera.project(p), p.z(), 0};
   if (!camera.contains(projection.pixel)) return std::nullopt;
@@ -43,15 +43,6 @@ bool depth_agrees(const Feature& feature, double predicted_m) {
   return feature.depth_m <= 0.0 || std::abs(feature.depth_m - predicted_m) < 0.2 + 0.1 * predicted_m;
 }
 
-// Features of a level keep away from the image's edge. A landmark that projects so near to it that only a feature
-// further inside could show it would pull the pose: such pairs are left out.
-bool can_show(const FeatureConfig& config, const geometry::PinholeCamera& camera, const Eigen::Vector2d& pixel,
-              int octave) {
-  const double margin = (kFeatureBorder_px + 3.0) * std::pow(config.scale_factor, octave);
-  return pixel.x() >= margin && pixel.y() >= margin && pixel.x() <= camera.width - 1 - margin &&
-         pixel.y() <= camera.height - 1 - margin;
-}
-
 std::optional<Candidate> most_similar(const SlamConfig& config, const Landmark& landmark, const Frame& frame,
                                       const Projection& projection, const std::vector<int>& nearby) {
   constexpr int kWorst = 257;
@@ -60,7 +51,6 @@ std::optional<Candidate> most_similar(const SlamConfig& config, const Landmark& 
   for (const int i : nearby) {
     const Feature& feature = frame.features[static_cast<std::size_t>(i)];
     if (std::abs(feature.octave - projection.octave) > 1 || !depth_agrees(feature, projection.depth_m)) continue;
-    if (!can_show(config.features, frame.input->camera, projection.pixel, feature.octave)) continue;
     const int distance = hamming_distance(feature.descriptor, landmark.descriptor);
     if (distance < best.distance) {
       second = best.distance;

@@ -1,6 +1,9 @@
 #include "slam/core/odometry_track.hpp"
 
 #include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
 
 #include "common/time/stamp_buffer.hpp"
 
@@ -28,6 +31,12 @@ Matrix6d motion_covariance(const OdometryConfig& c, double way_m, double turned_
 }
 
 }  // namespace
+
+double disagreement(const OdometryMotion& odometry, const Pose& T_from_to, const Matrix6d& covariance) {
+  const geometry::Vector6d error = geometry::se3_log(odometry.T_from_to.inverse() * T_from_to);
+  const Matrix6d sum = odometry.covariance + covariance;
+  return std::sqrt(std::max(0.0, error.dot(sum.ldlt().solve(error))));
+}
 
 bool OdometryTrack::add(time::Time stamp, const Pose& T_odom_base) {
   if (!geometry::is_valid(T_odom_base)) return false;

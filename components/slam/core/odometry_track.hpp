@@ -16,6 +16,11 @@ struct OdometryMotion {
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< right perturbation (translation, rotation)
 };
 
+/// By how many sigmas two independent measurements of the same motion disagree: the Mahalanobis length of
+/// log(T_odometry^-1 * T_from_to), which for honest covariances is sqrt(6) in the root of its mean square.
+double disagreement(const OdometryMotion& odometry, const geometry::Pose& T_from_to,
+                    const geometry::Matrix6d& covariance);
+
 /// Wheel odometry of the recent past. Its pose drifts without bound, so only motions are taken from it; their
 /// covariance is that of OdometryConfig, because the one in the messages of most robots is a constant.
 class OdometryTrack {

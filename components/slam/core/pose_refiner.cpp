@@ -18,21 +18,24 @@ using geometry::Vector6d;
 
 constexpr double kHuber = 2.0;                          // sigmas up to which an error counts in full
 constexpr double kPixelGate = 5.99, kDepthGate = 6.63;  // chi-square, 95 % of 2 and 99 % of 1 degrees of freedom
-constexpr std::array kGateShare{1.0, 0.4, 0.2};         // of the widest surface gate, a round each
 
-// Huber's cost and weight for a squared whitened error. Sec. 5.6 in [Zhang 1997]
-double huber_cost(double squared) {
-  const double error = std::sqrt(squared);
-  return error <= kHuber ? 0.5 * squared : kHuber * (error - 0.5 * kHuber);
-}
-double huber_weight(double squared) { return squared <= kHuber * kHuber ? 1.0 : kHuber / std::sqrt(squared); }
+// A round of the refinement. The first ones only have to bring the last one close: every `stride`th sample will do.
+struct Round {
+  double gate_share;  // of the widest surface gate
+  std::size_t stride;
+  double least_step;  // [m], [rad]; smaller ones end the round
+};
+constexpr std::array kRounds{Round{1.0, 4, 1e-3}, Round{0.4, 2, 1e-3}, Round{0.2, 1, 1e-5}};
+
+// Huber's cost and weight for the length of a whitened error. Sec. 5.6 in [Zhang 1997]
+double huber_cost(double error) { return error <= kHuber ? 0.5 * error * error : kHuber * (error - 0.5 * kHuber); }
+double huber_weight(double error) { return error <= kHuber ? 1.0 : kHuber / error; }
 
 // Gradient by xi of a function of the point in the camera, from its gradient by the point, for
 // T_reference_camera * exp(xi): the point moves to exp(-xi) * p = p - rho - omega x p.
 Vector6d by_pose(const Eigen::Vector3d& by_point, const Eigen::Vector3d& p_camera) {
-  Vector6d gradient;
-  gradient << -by_point, by_point.cross(p_camera);
-  return gradient;
+  const Eigen::Vector3d turn = by_point.cross(p_camera);
+  return Vector6d{-by_point.x(), -by_point.y(), -by_point.z(), turn.x(), turn.y(), turn.z()};
 }
 
 // Normal equations of one linearisation; points and surface apart, because their residual variances differ.
@@ -63,43 +66,33 @@ struct Linearisation {
 
 class Refinement {
  public:
-  Refinement(const SlamConfig& config, const AlignmentProblem& problem)
-      : config_(config), problem_(problem), is_inlier_(problem.points.size(), true) {}
-
-  Linearisation linearise(const Pose& T, double gate_m) const {
-    Linearisation result;
-    const Pose T_camera_reference = T.inverse();
-    add_points(T_camera_reference, result);
-    if (problem_.depth != nullptr) add_surface(T_camera_reference, gate_m, result);
-    return result;
-  }
+  Refinement(const SlamConfig& config, const AlignmentProblem& problem, const Pose& T_reference_camera)
+      : config_(config), problem_(problem), T_(T_reference_camera), is_inlier_(problem.points.size(), true) {}
 
   // Levenberg-Marquardt on the current inliers.
-  Pose optimise(Pose T, double gate_m) const {
+  void optimise(const Round& round) {
     double damping = 1e-4;
-    Linearisation current = linearise(T, gate_m);
+    last_ = linearise(T_, round);
     for (int i = 0; i < config_.tracker.refine_iterations; ++i) {
-      Matrix6d H = (current.points.hessian + current.surface.hessian).selfadjointView<Eigen::Upper>();
+      Matrix6d H = (last_.points.hessian + last_.surface.hessian).selfadjointView<Eigen::Upper>();
       H.diagonal() += damping * H.diagonal() + Vector6d::Constant(1e-9);
-      const Vector6d step = H.ldlt().solve(-(current.points.gradient + current.surface.gradient));
+      const Vector6d step = H.ldlt().solve(-(last_.points.gradient + last_.surface.gradient));
       if (!step.allFinite()) break;
-      const Pose moved = T * geometry::se3_exp(step);
-      const Linearisation next = linearise(moved, gate_m);
-      if (next.cost() <= current.cost()) {
-        T = moved;
-        current = next;
+      const Pose moved = T_ * geometry::se3_exp(step);
+      const Linearisation next = linearise(moved, round);
+      if (next.cost() <= last_.cost()) {
+        T_ = moved;
+        last_ = next;
         damping = std::max(1e-7, 0.1 * damping);
-        if (step.norm() < 1e-5) break;
       } else {
         damping *= 10.0;
-        if (step.norm() < 1e-5) break;
       }
+      if (step.norm() < round.least_step) break;
     }
-    return T;
   }
 
-  void classify(const Pose& T) {
-    const Pose T_camera_reference = T.inverse();
+  void classify() {
+    const Pose T_camera_reference = T_.inverse();
     for (std::size_t i = 0; i < is_inlier_.size(); ++i) {
       const auto residual = point_residual(config_.noise, problem_.camera, problem_.points[i], T_camera_reference);
       is_inlier_[i] = residual && residual->value.head<2>().squaredNorm() < kPixelGate &&
@@ -107,38 +100,49 @@ class Refinement {
     }
   }
 
-  Alignment summarise(const Pose& T) const;
+  // After the last round.
+  Alignment summarise() const;
 
  private:
-  void add_points(const Pose& T_camera_reference, Linearisation& result) const {
-    Term& term = result.points;
+  Linearisation linearise(const Pose& T, const Round& round) const {
+    Linearisation result;
+    const Pose T_camera_reference = T.inverse();
+    add_points(T_camera_reference, result.points);
+    if (problem_.depth != nullptr) add_surface(T_camera_reference, round, result);
+    return result;
+  }
+
+  void add_points(const Pose& T_camera_reference, Term& term) const {
     for (std::size_t i = 0; i < is_inlier_.size(); ++i) {
       if (!is_inlier_[i]) continue;
       const PointConstraint& point = problem_.points[i];
       const auto residual = point_residual(config_.noise, problem_.camera, point, T_camera_reference);
       if (!residual) continue;
-      const double squared = residual->value.squaredNorm();
-      const double weight = huber_weight(squared);
+      const double error = residual->value.norm();
+      const double weight = huber_weight(error);
       for (int row = 0; row < 3; ++row) {
         term.add(residual->jacobian[static_cast<std::size_t>(row)], residual->value[row], weight);
       }
-      term.cost += huber_cost(squared);
+      term.cost += huber_cost(error);
       term.residuals += point.depth_m > 0.0 ? 3 : 2;
     }
   }
 
-  void add_surface(const Pose& T_camera_reference, double gate_m, Linearisation& result) const {
+  void add_surface(const Pose& T_camera_reference, const Round& round, Linearisation& result) const {
     Term& term = result.surface;
-    for (const SurfaceSample& sample : problem_.surface) {
+    const double gate_m = round.gate_share * config_.surface.max_distance_m;
+    const double share = config_.surface.weight * static_cast<double>(round.stride);
+    for (std::size_t i = 0; i < problem_.surface.size(); i += round.stride) {
+      const SurfaceSample& sample = problem_.surface[i];
       const auto residual =
           surface_residual(config_.noise, problem_.camera, *problem_.depth, sample, T_camera_reference);
       if (!residual || std::abs(residual->distance_m) > gate_m) continue;
-      const double information = 1.0 / (residual->sigma_m * residual->sigma_m);
-      const double squared = residual->distance_m * residual->distance_m * information;
-      const double weight = config_.surface.weight * huber_weight(squared);
-      term.add(residual->jacobian, residual->distance_m, weight * information);
+      const double per_m = 1.0 / residual->sigma_m;
+      const double error = std::abs(residual->distance_m) * per_m;
+      const double weight = share * huber_weight(error);
+      term.add(residual->jacobian, residual->distance_m, weight * per_m * per_m);
       // What counts is the gain over the gate's cost, so that dropping a sample never pays.
-      term.cost += config_.surface.weight * (huber_cost(squared) - huber_cost(gate_m * gate_m * information));
+      term.cost += share * (huber_cost(error) - huber_cost(gate_m * per_m));
       result.surface_squares_m2 += residual->distance_m * residual->distance_m;
       ++term.residuals;
     }
@@ -146,6 +150,8 @@ class Refinement {
 
   const SlamConfig& config_;
   const AlignmentProblem& problem_;
+  Pose T_;              // of the camera in the reference
+  Linearisation last_;  // at T_
   std::vector<bool> is_inlier_;
 };
 
@@ -156,23 +162,25 @@ Matrix6d scaled_information(const Term& term, double effective_residuals) {
   return term.full_hessian() / variance;
 }
 
-Alignment Refinement::summarise(const Pose& T) const {
-  const Linearisation last = linearise(T, kGateShare.back() * config_.surface.max_distance_m);
+Alignment Refinement::summarise() const {
+  const Pose T_camera_reference = T_.inverse();
+  Term points;  // once more, because the inliers have changed
+  add_points(T_camera_reference, points);
   Alignment result;
-  result.T_reference_camera = T;
-  result.surface_information = scaled_information(last.surface, config_.surface.weight * last.surface.residuals);
-  result.information = scaled_information(last.points, last.points.residuals) + result.surface_information;
+  result.T_reference_camera = T_;
+  result.surface_information = scaled_information(last_.surface, config_.surface.weight * last_.surface.residuals);
+  result.information = scaled_information(points, points.residuals) + result.surface_information;
   result.is_inlier = is_inlier_;
   result.inliers = static_cast<int>(std::count(is_inlier_.begin(), is_inlier_.end(), true));
   double squares = 0.0;
   for (std::size_t i = 0; i < is_inlier_.size(); ++i) {
     if (!is_inlier_[i]) continue;
-    const Eigen::Vector3d p = T.inverse() * problem_.points[i].p_reference;
+    const Eigen::Vector3d p = T_camera_reference * problem_.points[i].p_reference;
     squares += (problem_.camera.project(p) - problem_.points[i].pixel).squaredNorm();
   }
   result.rms_px = result.inliers > 0 ? std::sqrt(squares / result.inliers) : 0.0;
-  result.surface_matches = last.surface.residuals;
-  if (result.surface_matches > 0) result.surface_rms_m = std::sqrt(last.surface_squares_m2 / result.surface_matches);
+  result.surface_matches = last_.surface.residuals;
+  if (result.surface_matches > 0) result.surface_rms_m = std::sqrt(last_.surface_squares_m2 / result.surface_matches);
   return result;
 }
 
@@ -180,7 +188,7 @@ Alignment Refinement::summarise(const Pose& T) const {
 
 std::optional<PointResidual> point_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
                                             const PointConstraint& point, const Pose& T_camera_reference) {
-  const Eigen::Vector3d p = T_camera_reference * point.p_reference;
+  const Eigen::Vector3d p = T_camera_reference.linear() * point.p_reference + T_camera_reference.translation();
   if (p.z() < noise.min_depth_m) return std::nullopt;
   const double u_by_x = camera.fx / p.z();
   const double v_by_y = camera.fy / p.z();
@@ -198,11 +206,14 @@ std::optional<PointResidual> point_residual(const NoiseConfig& noise, const geom
 std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
                                                 const geometry::DepthImage& depth, const SurfaceSample& sample,
                                                 const Pose& T_camera_reference) {
-  const Eigen::Vector3d p_sample = T_camera_reference * sample.point;
+  const Eigen::Vector3d p_sample = T_camera_reference.linear() * sample.point + T_camera_reference.translation();
   if (p_sample.z() < noise.min_depth_m) return std::nullopt;
-  const int u = static_cast<int>(std::floor(camera.fx * p_sample.x() / p_sample.z() + camera.cx + 0.5));
-  const int v = static_cast<int>(std::floor(camera.fy * p_sample.y() / p_sample.z() + camera.cy + 0.5));
-  if (u < 0 || v < 0 || u >= depth.width || v >= depth.height) return std::nullopt;
+  const double per_z = 1.0 / p_sample.z();
+  const double column = camera.fx * p_sample.x() * per_z + camera.cx + 0.5;
+  const double row = camera.fy * p_sample.y() * per_z + camera.cy + 0.5;
+  if (!(column >= 0.0 && row >= 0.0 && column < depth.width && row < depth.height)) return std::nullopt;
+  const int u = static_cast<int>(column);  // rounded: half a pixel was added
+  const int v = static_cast<int>(row);
   const double depth_m = depth(u, v);
   if (!is_depth(noise, depth_m)) return std::nullopt;
   const Eigen::Vector3d p = camera.unproject(u, v, depth_m);
@@ -217,13 +228,12 @@ std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const 
 }
 
 Alignment refine_pose(const SlamConfig& config, const AlignmentProblem& problem, const Pose& T_reference_camera) {
-  Refinement refinement(config, problem);
-  Pose T = T_reference_camera;
-  for (const double share : kGateShare) {
-    T = refinement.optimise(T, share * config.surface.max_distance_m);
-    refinement.classify(T);
+  Refinement refinement(config, problem, T_reference_camera);
+  for (const Round& round : kRounds) {
+    refinement.optimise(round);
+    refinement.classify();
   }
-  return refinement.summarise(T);
+  return refinement.summarise();
 }
 
 }  // namespace lapis::slam

@@ -108,6 +108,7 @@ class RgbdSlam::Implementation {
   std::size_t keyframe_count() const { return map_.keyframes().size(); }
   std::size_t landmark_count() const { return map_.landmark_count(); }
   const Map& map() const { return map_; }
+  std::size_t slip_count() const { return slips_; }
   TrackingResult without_vision(time::Time stamp, const std::string& reason, const Frame* frame = nullptr) const {
     TrackingResult result;
     result.state = map_.empty() ? TrackingState::kInitializing : TrackingState::kLost;
@@ -230,7 +231,7 @@ class RgbdSlam::Implementation {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
       graph_.add_link(
           {outcome->reference, id, outcome->alignment.T_reference_camera, outcome->alignment.surface_information});
-      if (previous >= saved_keyframes_) add_wheel_edge(previous, id);
+      if (previous >= saved_keyframes_) add_wheel_edge(previous, id, *outcome);
     }
     add_landmarks(id);
     graph_.follow(map_, adjust_local_map(config_, graph_.links(), map_));
@@ -261,10 +262,18 @@ class RgbdSlam::Implementation {
     optimize();
   }
 
-  void add_wheel_edge(KeyframeId from, KeyframeId to) {
+  // Wheels that slipped are left out: vision is sure of its pose, and theirs is another one.
+  void add_wheel_edge(KeyframeId from, KeyframeId to, const TrackOutcome& outcome) {
     const auto motion = motion_.odometry_between(map_.keyframe(from).stamp, map_.keyframe(to).stamp);
     motion_.forget_before(map_.keyframe(to).stamp);
     if (!motion) return;
+    const Pose T_from_to = map_.keyframe(from).T_map_camera.inverse() * map_.keyframe(to).T_map_camera;
+    const Matrix6d covariance = edge_information(config_.pose_graph, outcome.alignment.information).inverse();
+    const bool vision_is_sure = outcome.alignment.inliers >= config_.tracker.min_matches;
+    if (vision_is_sure && disagreement(*motion, T_from_to, covariance) > config_.odometry.max_disagreement) {
+      ++slips_;
+      return;
+    }
     const Matrix6d information = bounded_information(config_.pose_graph, motion->covariance.inverse());
     graph_.add_edge({from, to, EdgeType::kWheelOdometry, motion->T_from_to, information});
     graph_.add_link({from, to, motion->T_from_to, information});
@@ -322,6 +331,7 @@ class RgbdSlam::Implementation {
   KeyframeId reference_ = 0;
   std::uint64_t frame_count_ = 0;
   int frames_since_keyframe_ = 0;
+  std::size_t slips_ = 0;
   int blind_frames_ = 0;  // in a row, with enough to see
   std::uint64_t version_ = 0;
   std::size_t saved_keyframes_ = 0;  // their stamps are of another time: no odometry leads from them
@@ -350,5 +360,6 @@ std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(
 std::size_t RgbdSlam::keyframe_count() const { return implementation_->keyframe_count(); }
 std::size_t RgbdSlam::landmark_count() const { return implementation_->landmark_count(); }
 const Map& RgbdSlam::map() const { return implementation_->map(); }
+std::size_t RgbdSlam::slip_count() const { return implementation_->slip_count(); }
 
 }  // namespace lapis::slam

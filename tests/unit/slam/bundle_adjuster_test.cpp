@@ -83,6 +83,20 @@ TEST(AdjustBundle, LinksHoldCamerasThatSeeNothing) {
   EXPECT_LT((geometry::se3_log(problem.cameras[1].T_map_camera) - motion).norm(), 1e-4);
 }
 
+TEST(AdjustBundle, AWrongLinkDoesNotPullCamerasThatSeeTheirPlace) {
+  std::mt19937 random(6);
+  const NoiseConfig noise;
+  const BundleProblem truth = make_scene(random, noise);
+  BundleProblem without = truth;
+  ASSERT_TRUE(adjust_bundle({}, noise, without).is_usable);
+  BundleProblem problem = truth;
+  const Pose slipped = geometry::se3_exp((Vector6d() << 0.3, 0.0, 0.0, 0.0, 0.0, 0.0).finished());
+  const Pose T_from_to = truth.cameras[2].T_map_camera.inverse() * truth.cameras[3].T_map_camera;
+  problem.links = {{2, 3, T_from_to * slipped, 1e4 * Matrix6d::Identity()}};  // sure to 1 cm, wrong by 30 cm
+  ASSERT_TRUE(adjust_bundle({}, noise, problem).is_usable);
+  EXPECT_LT(pose_error(truth, problem), pose_error(truth, without) + 0.001);
+}
+
 TEST(AdjustBundle, GivesTheSameBitsTwice) {
   std::mt19937 random(3);
   BundleProblem first = make_scene(random, {});

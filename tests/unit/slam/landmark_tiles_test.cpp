@@ -114,7 +114,7 @@ class EditedMap {
  private:
   void add_keyframe() {
     Keyframe keyframe;
-    keyframe.features.resize(kFeatures);
+    keyframe.features = std::vector<Feature>(kFeatures);
     map.add_keyframe(keyframe);
   }
   void observe(LandmarkId id) { map.add_observation(id, {static_cast<KeyframeId>(pick(kKeyframes)), pick(kFeatures)}); }
@@ -188,7 +188,7 @@ class OneLandmark : public ::testing::Test {
  protected:
   OneLandmark() {
     Keyframe keyframe;
-    keyframe.features.resize(10);
+    keyframe.features = std::vector<Feature>(10);
     for (int i = 0; i < 3; ++i) map.add_keyframe(keyframe);
     id = map.add_landmark({1.0, 1.0, 1.0}, 1.0);
     map.add_observation(id, {1, 0});
@@ -260,7 +260,7 @@ TEST_F(OneLandmark, IsInNoTileWhenDeadOrNowhere) {
 TEST(LandmarkTiles, AFullTileKeepsWhatMostKeyframesSee) {
   Map map;
   Keyframe keyframe;
-  keyframe.features.resize(100);
+  keyframe.features = std::vector<Feature>(100);
   for (int i = 0; i < 10; ++i) map.add_keyframe(keyframe);
   for (int k = 0; k < 100; ++k) {  // landmark k is seen by k / 10 + 1 key-frames
     const LandmarkId id = map.add_landmark({0.5, 0.5, 0.5}, 1.0);

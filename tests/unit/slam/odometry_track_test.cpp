@@ -99,6 +99,16 @@ TEST(OdometryTrack, ForgetsNothingThatIsStillNeeded) {
   EXPECT_FALSE(track.between(at_s(1.9), at_s(4.0)));
 }
 
+TEST(Disagreement, CountsSigmasOfBothMeasurementsTogether) {
+  OdometryMotion motion{somewhere(), Matrix6d::Identity() * 9e-4};
+  const Matrix6d covariance = Matrix6d::Identity() * 16e-4;
+  EXPECT_NEAR(disagreement(motion, somewhere(), covariance), 0.0, 1e-9);
+  for (int i = 0; i < 6; ++i) {
+    const Pose other = somewhere() * geometry::se3_exp(0.2 * Vector6d::Unit(i));
+    EXPECT_NEAR(disagreement(motion, other, covariance), 4.0, 1e-6) << "0.2 of sqrt(0.03^2 + 0.04^2)";
+  }
+}
+
 TEST(DeadReckoning, MovesTheCameraAsTheRobotMoves) {
   const Pose T_base_camera = geometry::se3_exp((Vector6d() << 0.1, 0.0, 1.0, -1.2, 1.2, -1.2).finished());
   MotionModel motion(0.5, {}, T_base_camera);

@@ -1,5 +1,6 @@
 #include "slam/core/rgbd_slam.hpp"
 
+#include <algorithm>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -171,6 +172,31 @@ TEST_F(RgbdSlamOnWheels, KeyframesHaveEdgesOfVisionAndOfWheels) {
     EXPECT_LT(geometry::se3_log(edge.T_from_to.inverse() * between).norm(), 0.01);
   }
   EXPECT_EQ(wheels, graph.nodes.size() - 1);
+}
+
+TEST_F(RgbdSlamOnWheels, WheelsThatSlipAreLeftOut) {
+  constexpr int kFirst = 20, kLast = 24;  // readings in which they spin, 5 cm each
+  for (int i = 0; i <= 60; ++i) {
+    const double spun_m = 0.05 * std::clamp(i - kFirst + 1, 0, kLast - kFirst + 1);
+    const Pose T_odom_base = test::room_path(i) * T_base_camera().inverse();
+    ASSERT_TRUE(slam_.add_odometry(stamp(i), Pose(Eigen::Translation3d(spun_m, 0.0, 0.0)) * T_odom_base));
+  }
+  for (int i = 0; i < 60; ++i) {
+    const TrackingResult result = slam_.process(room_frame(i));
+    ASSERT_EQ(result.state, TrackingState::kTracking) << "frame " << i << ": " << result.reason;
+    EXPECT_LT(distance_m(result, i), 0.02) << "frame " << i;
+  }
+  const PoseGraphSnapshot graph = slam_.pose_graph();
+  std::size_t wheels = 0;
+  for (const PoseGraphEdge& edge : graph.edges) {
+    if (edge.type != EdgeType::kWheelOdometry) continue;
+    ++wheels;
+    const Pose between = graph.nodes[edge.from].T_map_camera.inverse() * graph.nodes[edge.to].T_map_camera;
+    EXPECT_LT(geometry::se3_log(edge.T_from_to.inverse() * between).norm(), 0.03) << edge.from;
+  }
+  EXPECT_GE(slam_.slip_count(), 1U);
+  EXPECT_LE(slam_.slip_count(), 2U) << "they spin within one or two key-frames";
+  EXPECT_EQ(wheels + slam_.slip_count(), graph.nodes.size() - 1);
 }
 
 TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {

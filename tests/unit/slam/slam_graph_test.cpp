@@ -17,7 +17,7 @@ class SlamGraphTest : public ::testing::Test {
   SlamGraphTest() {
     for (std::size_t i = 0; i < steps_.size() + 1; ++i) {
       Keyframe keyframe;
-      keyframe.features.resize(1);
+      keyframe.features = std::vector<Feature>(1);
       keyframe.T_map_camera =
           i == 0 ? random_pose(1.0) : Pose(map_.keyframe(parent_[i - 1]).T_map_camera * steps_[i - 1]);
       const KeyframeId id = map_.add_keyframe(keyframe);

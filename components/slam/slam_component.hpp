@@ -5,9 +5,9 @@
 
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
-#include "common/runtime/stamped_input.hpp"
 #include "slam/conversions.hpp"
 #include "slam/core/rgbd_slam.hpp"
+#include "slam/frame_input.hpp"
 #include "slam/slam_config.hpp"
 
 namespace lapis::slam {
@@ -23,13 +23,11 @@ class SlamComponent {
   void finish();
 
  private:
-  using Image = sensor_msgs::msg::Image;
-  using Info = sensor_msgs::msg::CameraInfo;
-
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
-  bool prepare(const Image& color);
-  void track(const Image& color, const Image& depth, const Info& info, time::Time stamp);
+  bool prepare(const JoinedFrame& first);
+  void track(const JoinedFrame& joined);
+  void add_mount(const tf2_msgs::msg::TFMessage& message);
   void add_odometry(const nav_msgs::msg::Odometry& message);
   void drop(time::Time stamp, const std::string& reason);
   void end_map();
@@ -50,9 +48,7 @@ class SlamComponent {
   dds::Publisher<lapis_msgs::msg::PoseGraph>& pose_graph_;
   dds::Publisher<lapis_msgs::msg::SlamStatus>& status_;
 
-  runtime::StampedInput<Image> color_;
-  runtime::StampedInput<Image> depth_;
-  runtime::StampedInput<Info> info_;
+  FrameInput input_;
   messages::StaticTransforms static_transforms_;
 
   std::unique_ptr<RgbdSlam> slam_;  // exists once the camera's mount is known

@@ -7,20 +7,21 @@ namespace lapis::images {
 namespace {
 
 template <class Pixel>
-void remap(geometry::Image<Pixel>& image, int type, const cv::Mat& x, const cv::Mat& y, int interpolation) {
+void remap(geometry::Image<Pixel>& image, int type, const cv::Mat& whole, const cv::Mat& parts, int interpolation) {
   const cv::Mat source(image.height, image.width, type, image.pixels.data());
   geometry::Image<Pixel> result(image.width, image.height);
   cv::Mat target(image.height, image.width, type, result.pixels.data());
-  cv::remap(source, target, x, y, interpolation, cv::BORDER_CONSTANT);
+  cv::remap(source, target, whole, parts, interpolation, cv::BORDER_CONSTANT);
   image = std::move(result);
 }
 
 }  // namespace
 
-// Where each pixel of the rectified image lies in the recorded one: whole pixels, and 1/32 of them.
+// Where each pixel of the rectified image lies in the recorded one.
 struct Rectifier::Maps {
-  cv::Mat whole;
-  cv::Mat parts;
+  cv::Mat whole;    // rounded down
+  cv::Mat parts;    // what `whole` leaves, in 1/32
+  cv::Mat nearest;  // rounded
 };
 
 Rectifier::Rectifier(const geometry::LensCamera& camera) {
@@ -33,6 +34,8 @@ Rectifier::Rectifier(const geometry::LensCamera& camera) {
                               CV_32FC1, x, y);
   Maps maps;  // converted afterwards, because this way what lies far outside does not wrap around
   cv::convertMaps(x, y, maps.whole, maps.parts, CV_16SC2);
+  cv::Mat none;
+  cv::convertMaps(x, y, maps.nearest, none, CV_16SC2, true);
   maps_ = std::make_unique<const Maps>(std::move(maps));
 }
 
@@ -47,11 +50,11 @@ void Rectifier::rectify(geometry::GrayImage& image) const {
 }
 
 void Rectifier::rectify(geometry::DepthImage& image) const {
-  if (maps_ != nullptr) remap(image, CV_32FC1, maps_->whole, maps_->parts, cv::INTER_NEAREST);
+  if (maps_ != nullptr) remap(image, CV_32FC1, maps_->nearest, cv::Mat(), cv::INTER_NEAREST);
 }
 
 void Rectifier::rectify(geometry::Image<std::uint16_t>& image) const {
-  if (maps_ != nullptr) remap(image, CV_16UC1, maps_->whole, maps_->parts, cv::INTER_NEAREST);
+  if (maps_ != nullptr) remap(image, CV_16UC1, maps_->nearest, cv::Mat(), cv::INTER_NEAREST);
 }
 
 }  // namespace lapis::images

@@ -8,11 +8,11 @@ namespace {
 
 constexpr std::size_t kWaitingMessages = 8;
 constexpr std::size_t kPeriods = 9;  // their lower quartile is the camera's, also where images are missing
-constexpr time::Duration kLargestTolerance{100'000'000};  // half of the period at 5 Hz
+constexpr time::Duration kLargestTolerance{120'000'000};  // at 5 Hz
 
-/// Half of a period, rounded up, so that one of two neighbours is always near enough.
+/// Half of a period, and a tenth for its jitter. As each depth image is used once, a neighbour's is not taken instead.
 time::Duration tolerance_of(time::Duration period) {
-  return std::min(time::Duration{(period.nanoseconds + 1) / 2}, kLargestTolerance);
+  return std::min(time::Duration{period.nanoseconds / 10 * 6}, kLargestTolerance);
 }
 
 }  // namespace

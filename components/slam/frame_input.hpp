@@ -13,7 +13,7 @@ namespace lapis::slam {
 
 struct FrameInputConfig {
   std::string color = "raw";            ///< raw or compressed
-  double max_stamp_difference_s = 0.0;  ///< 0: half of the time between colour images
+  double max_stamp_difference_s = 0.0;  ///< 0: 0.6 of the time between colour images
 };
 
 /// The messages of one frame; they stay where they are until the input is popped.
@@ -53,7 +53,7 @@ class FrameInput {
   std::optional<time::Duration> known_tolerance() const;
 
   runtime::Status& status_;
-  time::Duration fixed_tolerance_;      // zero: half of the camera's period
+  time::Duration fixed_tolerance_;      // zero: from the camera's period
   time::Duration tolerance_;            // of the oldest frame
   std::deque<time::Duration> periods_;  // between the newest colour images that were popped
   std::optional<time::Time> popped_;

@@ -132,7 +132,7 @@ void describe(Field& field, SlamComponentConfig& c) {
   field("odometry", c.method.odometry);
   field(
       "max_stamp_difference_s", c.input.max_stamp_difference_s, config::in_range(0.0, 0.5),
-      "between colour, depth and camera info of one frame; 0: half of the time between colour images, at most 0.1 [s]");
+      "between colour, depth and camera info of one frame; 0: 0.6 of the time between colour images, at most 0.12 [s]");
   field("graph_period_s", c.graph_period_s, config::in_range(0.0, 60.0),
         "least time between publications of the pose graph, by the frames' stamps [s]");
   field("publish_odom_frame", c.publish_odom_frame, config::one_of({"auto", "always", "never"}),

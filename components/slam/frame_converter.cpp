@@ -55,7 +55,7 @@ messages::Converted<RgbdFrame> FrameConverter::convert(const ColorMessage& color
   return RgbdFrame{stamp, camera->pinhole, std::move(*gray), std::move(*metres)};
 }
 
-/// Made once per calibration: the tables of a rectifier cost more than several frames.
+/// Made once per calibration: its tables cost more than the frame.
 const images::Rectifier& FrameConverter::rectifier(const geometry::LensCamera& camera) {
   if (rectifier_ == nullptr || camera != camera_) {
     rectifier_ = std::make_unique<const images::Rectifier>(camera);

@@ -231,6 +231,37 @@ TEST_F(SlamFaults, ThirtyPercentOfTheMessagesLost) {
   expect_poses_in_order();
 }
 
+// Nobody knows that nothing comes any more: images wait, but not for ever.
+TEST_F(SlamFaults, TopicThatFallsSilentIsNamedAndNotWaitedForForEver) {
+  int index = kFirstFrames;
+  for (const bool is_depth : {true, false}) {
+    const std::size_t before = frames.size();
+    constexpr int kSilent = 20;
+    constexpr int kWaiting = 7;
+    for (int i = 0; i < kSilent; ++i, ++index) {
+      CameraFrame sent = feed.frame(index);
+      if (is_depth) {
+        sent.depth.reset();
+      } else {
+        sent.info.reset();
+      }
+      feed.send(sent);
+      if (i < kWaiting) continue;
+      ASSERT_TRUE(wait_for_answer(CameraFeed::stamp(index - kWaiting))) << i << slam.log();
+    }
+    ASSERT_TRUE(track(index)) << slam.log();
+    EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
+    expect_pose(CameraFeed::stamp(index), slow_motion(0), slow_motion(index));
+    ++index;
+    ASSERT_EQ(frames.size(), before + kSilent + 1);
+    for (int i = 0; i < kSilent; ++i) {
+      const auto& answer = frames[before + static_cast<std::size_t>(i)];
+      EXPECT_EQ(answer.state(), kLost);
+      EXPECT_EQ(answer.reason(), is_depth ? "no depth image for a colour image" : "no camera info for a colour image");
+    }
+  }
+}
+
 // Messages arrive up to half a second late, each on its own, some of them twice.
 TEST_F(SlamFaults, HalfASecondOfJitterAndDuplicates) {
   constexpr int kFrames = 40;

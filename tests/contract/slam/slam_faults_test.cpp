@@ -2,10 +2,12 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <cstring>
 #include <functional>
+#include <iterator>
 #include <limits>
 #include <map>
 #include <random>
@@ -377,7 +379,7 @@ TEST_F(SlamFaults, FastSpinNeverGivesAWrongPose) {
 
 // The process itself -------------------------------------------------------------------------------------------------
 
-TEST(SlamKilled, StartedAgainItBeginsANewSessionWithTheNextFrame) {
+TEST(SlamKilled, StartedAgainItBeginsANewSession) {
   TopicProbe probe;
   CameraFeed feed(probe);
   const auto& frames = probe.collect(topics::kTrackedFrame);
@@ -385,26 +387,27 @@ TEST(SlamKilled, StartedAgainItBeginsANewSessionWithTheNextFrame) {
   std::int64_t session = -1;
   for (int life = 0; life < 3; ++life) {
     SCOPED_TRACE(life);
+    const std::int64_t first_stamp = CameraFeed::stamp(index).nanoseconds;
     ChildProcess slam(kSlam);
     ASSERT_TRUE(wait_until_ready(slam)) << slam.log();
-    const std::size_t before = frames.size();
+    std::vector<lapis_msgs::msg::TrackedFrame> answers;  // what the life before has said may still come
+    const auto has_answered = [&] {
+      answers.clear();
+      std::copy_if(frames.begin(), frames.end(), std::back_inserter(answers),
+                   [&](const auto& frame) { return frame.session() > session; });
+      return answers.size() >= 3;
+    };
     // Repeated with new stamps: the first ones may be sent before the match.
-    ASSERT_TRUE(probe.wait_until(
-        [&] {
-          feed.send(feed.frame(index++));
-          probe.wait_until([&] { return frames.size() > before; }, Seconds(0.05));
-          return frames.size() >= before + 3;
-        },
-        Seconds(5)))
-        << slam.log();
-    for (std::size_t i = before; i < frames.size(); ++i) {
-      EXPECT_GT(frames[i].session(), session);
-      EXPECT_EQ(frames[i].session(), frames[before].session());
+    ASSERT_TRUE(probe.wait_until([&] {
+      feed.send(feed.frame(index++));
+      return probe.wait_until(has_answered, Seconds(0.05));
+    })) << slam.log();
+    for (const auto& answer : answers) {
+      EXPECT_EQ(answer.state(), kTracking) << answer.reason();
+      EXPECT_EQ(answer.session(), answers.front().session());
     }
-    EXPECT_EQ(frames[before].state(), kTracking) << frames[before].reason();
-    EXPECT_TRUE(frames[before].is_keyframe());
-    EXPECT_EQ(frames[before].session(), stamp_of(frames[before]).nanoseconds);
-    session = frames.back().session();
+    EXPECT_GE(answers.front().session(), first_stamp) << "named by its own first frame";
+    session = answers.front().session();
     EXPECT_EQ(slam.stop(SIGKILL), -SIGKILL);
   }
 }

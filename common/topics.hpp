@@ -41,7 +41,10 @@ inline constexpr Topic<lapis_msgs::msg::Ack> kAck{"/sim/ack",
 
 // Sensors.
 inline constexpr Topic<sensor_msgs::msg::Image> kColor{"/camera/color/image_raw", dds::kSensor, "camera", "15 or 30 Hz",
-                                                       "rgb8, bgr8 or mono8"};
+                                                       "rgb8, bgr8, rgba8, bgra8 or mono8"};
+inline constexpr Topic<sensor_msgs::msg::CompressedImage> kCompressedColor{
+    "/camera/color/image_raw/compressed", dds::kSensor, "camera", "camera rate",
+    "JPEG or PNG; read instead of image_raw with slam.input.color: compressed"};
 inline constexpr Topic<sensor_msgs::msg::Image> kDepth{"/camera/depth/image_raw", dds::kSensor, "camera", "camera rate",
                                                        "16UC1 in mm or 32FC1 in m, registered to colour; 0 = none"};
 inline constexpr Topic<sensor_msgs::msg::CameraInfo> kColorInfo{"/camera/color/camera_info", dds::kSensor, "camera",
@@ -154,6 +157,7 @@ void for_each(Visitor&& visit) {
   visit(kTick);
   visit(kAck);
   visit(kColor);
+  visit(kCompressedColor);
   visit(kDepth);
   visit(kColorInfo);
   visit(kDepthInfo);

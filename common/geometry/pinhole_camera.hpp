@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 namespace lapis::geometry {
 
@@ -32,5 +33,17 @@ struct PinholeCamera {
 
 /// True when size and focal lengths are positive and finite.
 bool is_valid(const PinholeCamera& camera);
+
+/// A pinhole camera behind a lens that bends rays radially and tangentially (Brown, "Decentering distortion of lenses",
+/// 1966).
+struct LensCamera {
+  PinholeCamera pinhole;
+  /// None, or k1 k2 p1 p2, followed by k3 or by k3 k4 k5 k6: ROS's plumb_bob and rational_polynomial, which are
+  /// OpenCV's.
+  std::vector<double> distortion;
+
+  bool is_distorted() const;
+  bool operator==(const LensCamera&) const = default;
+};
 
 }  // namespace lapis::geometry

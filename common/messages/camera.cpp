@@ -1,6 +1,7 @@
 #include "common/messages/camera.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -22,6 +23,12 @@ std::string layout_problem(const Image& image, std::size_t bytes_per_pixel) {
   }
   if (image.is_bigendian() != 0 && bytes_per_pixel > 1) return "image is big-endian";
   return "";
+}
+
+/// The beginning of a text from outside: reasons are keys of counters.
+std::string shown(const std::string& text) {
+  constexpr std::size_t kLongest = 32;
+  return text.substr(0, kLongest);
 }
 
 template <class Pixel>
@@ -48,47 +55,70 @@ std::uint8_t luminance(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
   return static_cast<std::uint8_t>((19595u * r + 38470u * g + 7471u * b + 32768u) >> 16);
 }
 
+template <std::size_t kBytesPerPixel, class Convert>
+Converted<geometry::GrayImage> gray(const Image& image, Convert convert) {
+  const auto problem = layout_problem(image, kBytesPerPixel);
+  if (!problem.empty()) return Converted<geometry::GrayImage>::refused("colour " + problem);
+  return map_pixels<std::uint8_t>(image, kBytesPerPixel, convert);
+}
+
 }  // namespace
+
+Converted<geometry::LensCamera> lens_camera(const sensor_msgs::msg::CameraInfo& message) {
+  using Result = Converted<geometry::LensCamera>;
+  geometry::LensCamera camera;
+  auto& pinhole = camera.pinhole;
+  if (message.width() > kLargestSide || message.height() > kLargestSide)
+    return Result::refused("camera info too large");
+  pinhole.width = static_cast<int>(message.width());
+  pinhole.height = static_cast<int>(message.height());
+  pinhole.fx = message.k()[0];
+  pinhole.fy = message.k()[4];
+  pinhole.cx = message.k()[2];
+  pinhole.cy = message.k()[5];
+  if (!is_valid(pinhole)) return Result::refused("camera info has no valid size and focal length");
+  camera.distortion = message.d();
+  const std::string& model = message.distortion_model();
+  const bool is_known = model == "plumb_bob" || model == "rational_polynomial";
+  if (!is_known && !(model.empty() && !camera.is_distorted())) {
+    return Result::refused("distortion model '" + shown(model) + "' is not plumb_bob or rational_polynomial");
+  }
+  constexpr std::array<std::size_t, 4> kLengths{0, 4, 5, 8};
+  if (std::find(kLengths.begin(), kLengths.end(), camera.distortion.size()) == kLengths.end()) {
+    return Result::refused("distortion of model '" + model + "' has not 4, 5 or 8 numbers");
+  }
+  if (!std::all_of(camera.distortion.begin(), camera.distortion.end(), [](double d) { return std::isfinite(d); })) {
+    return Result::refused("distortion has numbers that are not finite");
+  }
+  return camera;
+}
 
 Converted<geometry::PinholeCamera> from_message(const sensor_msgs::msg::CameraInfo& message) {
   using Result = Converted<geometry::PinholeCamera>;
-  geometry::PinholeCamera camera;
-  if (message.width() > kLargestSide || message.height() > kLargestSide)
-    return Result::refused("camera info too large");
-  camera.width = static_cast<int>(message.width());
-  camera.height = static_cast<int>(message.height());
-  camera.fx = message.k()[0];
-  camera.fy = message.k()[4];
-  camera.cx = message.k()[2];
-  camera.cy = message.k()[5];
-  if (!is_valid(camera)) return Result::refused("camera info has no valid size and focal length");
-  const auto& d = message.d();
-  if (std::any_of(d.begin(), d.end(), [](double v) { return v != 0.0; })) {
-    return Result::refused("camera info has distortion; rectify the images first");
-  }
-  return camera;
+  const auto camera = lens_camera(message);
+  if (!camera) return Result::refused(camera.reason);
+  if (camera->is_distorted()) return Result::refused("camera info has distortion; rectify the images first");
+  return camera->pinhole;
 }
 
 Converted<geometry::GrayImage> to_gray(const Image& message) {
   using Result = Converted<geometry::GrayImage>;
   const std::string& encoding = message.encoding();
-  const bool is_rgb = encoding == "rgb8";
-  if (!is_rgb && encoding != "bgr8" && encoding != "mono8") {
-    return Result::refused("colour encoding '" + encoding + "' is not rgb8, bgr8 or mono8");
-  }
-  const std::size_t bytes = encoding == "mono8" ? 1 : 3;
-  if (const auto problem = layout_problem(message, bytes); !problem.empty())
-    return Result::refused("colour " + problem);
-  if (bytes == 1) return map_pixels<std::uint8_t>(message, 1, [](const std::uint8_t* p) { return *p; });
-  if (is_rgb) return map_pixels<std::uint8_t>(message, 3, [](const auto* p) { return luminance(p[0], p[1], p[2]); });
-  return map_pixels<std::uint8_t>(message, 3, [](const auto* p) { return luminance(p[2], p[1], p[0]); });
+  if (encoding == "mono8") return gray<1>(message, [](const std::uint8_t* p) { return *p; });
+  const auto of_rgb = [](const std::uint8_t* p) { return luminance(p[0], p[1], p[2]); };
+  const auto of_bgr = [](const std::uint8_t* p) { return luminance(p[2], p[1], p[0]); };
+  if (encoding == "rgb8") return gray<3>(message, of_rgb);
+  if (encoding == "bgr8") return gray<3>(message, of_bgr);
+  if (encoding == "rgba8") return gray<4>(message, of_rgb);
+  if (encoding == "bgra8") return gray<4>(message, of_bgr);
+  return Result::refused("colour encoding '" + shown(encoding) + "' is not rgb8, bgr8, rgba8, bgra8 or mono8");
 }
 
 Converted<geometry::DepthImage> to_depth(const Image& message) {
   using Result = Converted<geometry::DepthImage>;
   const std::string& encoding = message.encoding();
   if (encoding != "16UC1" && encoding != "mono16" && encoding != "32FC1") {
-    return Result::refused("depth encoding '" + encoding + "' is not 16UC1 or 32FC1");
+    return Result::refused("depth encoding '" + shown(encoding) + "' is not 16UC1 or 32FC1");
   }
   const std::size_t bytes = encoding == "32FC1" ? 4 : 2;
   if (const auto problem = layout_problem(message, bytes); !problem.empty()) return Result::refused("depth " + problem);
@@ -109,7 +139,7 @@ Converted<geometry::LabelImage> to_labels(const Image& message) {
   const std::string& encoding = message.encoding();
   const bool is_wide = encoding == "mono16" || encoding == "16UC1";
   if (!is_wide && encoding != "mono8" && encoding != "8UC1") {
-    return Result::refused("label encoding '" + encoding + "' is not mono8 or mono16");
+    return Result::refused("label encoding '" + shown(encoding) + "' is not mono8 or mono16");
   }
   const std::size_t bytes = is_wide ? 2 : 1;
   if (const auto problem = layout_problem(message, bytes); !problem.empty()) return Result::refused("label " + problem);

@@ -7,10 +7,13 @@
 
 namespace lapis::messages {
 
-/// Pinhole model of a camera info without distortion; refuses a distorted one and one without focal length.
+/// Camera of a camera info with the distortion model plumb_bob or rational_polynomial, or none; refuses other models,
+/// whose numbers mean something else, and a camera without focal length.
+Converted<geometry::LensCamera> lens_camera(const sensor_msgs::msg::CameraInfo& message);
+/// The same for those who need images without distortion; refuses a distorted camera.
 Converted<geometry::PinholeCamera> from_message(const sensor_msgs::msg::CameraInfo& message);
 
-/// Luminance of an rgb8, bgr8 or mono8 image (ITU-R BT.601 weights).
+/// Luminance of an rgb8, bgr8, rgba8, bgra8 or mono8 image (ITU-R BT.601 weights).
 Converted<geometry::GrayImage> to_gray(const sensor_msgs::msg::Image& message);
 /// Metres of a 16UC1 (millimetres; 0 and 65535 = none) or 32FC1 (metres) image; NaN, infinite and negative become 0.
 Converted<geometry::DepthImage> to_depth(const sensor_msgs::msg::Image& message);

@@ -61,12 +61,16 @@ std::array<double, 36> to_row_major(const geometry::Matrix6d& covariance) {
   return out;
 }
 
-void StaticTransforms::add(const tf2_msgs::msg::TFMessage& message) {
+std::string StaticTransforms::add(const tf2_msgs::msg::TFMessage& message) {
+  std::string problem;
   for (const auto& transform : message.transforms()) {
     if (const auto T = from_message(transform.transform())) {
       links_[transform.child_frame_id()] = {transform.header().frame_id(), *T};
+    } else {
+      problem = T.reason;
     }
   }
+  return problem;
 }
 
 std::optional<geometry::Pose> StaticTransforms::find(const std::string& parent, const std::string& child) const {

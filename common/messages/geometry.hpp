@@ -25,7 +25,8 @@ std::array<double, 36> to_row_major(const geometry::Matrix6d& covariance);
 /// Static transforms by child frame, as /tf_static has announced them so far (several writers add up).
 class StaticTransforms {
  public:
-  void add(const tf2_msgs::msg::TFMessage& message);
+  /// Takes those that are transforms; returns why the others were refused, or an empty text.
+  std::string add(const tf2_msgs::msg::TFMessage& message);
   /// T_parent_child along the chain of announced transforms; nothing until it is complete.
   std::optional<geometry::Pose> find(const std::string& parent, const std::string& child) const;
 

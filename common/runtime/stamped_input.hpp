@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -15,10 +16,12 @@ namespace lapis::runtime {
 template <class Message>
 class StampedInput {
  public:
-  /// `name`: the stream's name in counters. `capacity`: messages that may wait; the oldest is dropped beyond.
-  StampedInput(Context& context, const dds::Topic<Message>& topic, std::string name, std::size_t capacity)
+  /// `name`: the stream's name in counters. `capacity`: messages that may wait; the oldest is dropped beyond. What the
+  /// topic carries is a Message, or becomes one.
+  template <class Sample>
+  StampedInput(Context& context, const dds::Topic<Sample>& topic, std::string name, std::size_t capacity)
       : context_(context), name_(std::move(name)), buffer_(capacity),
-        source_(context.subscribe(topic, [this](Message& message) { store(message); })) {}
+        source_(context.subscribe(topic, [this](Sample& sample) { store(sample); })) {}
   StampedInput(const StampedInput&) = delete;
   StampedInput& operator=(const StampedInput&) = delete;
 
@@ -34,37 +37,44 @@ class StampedInput {
   bool is_full() const { return buffer_.is_full(); }
   bool empty() const { return buffer_.empty(); }
   /// Oldest message and its stamp; the input must not be empty.
+  const std::pair<time::Time, Message>& front() const { return buffer_.front(); }
   std::pair<time::Time, Message>& front() { return buffer_.front(); }
   /// As StampBuffer::match.
   time::Match match(time::Time stamp, time::Duration tolerance, bool is_complete, Message*& found) {
     return buffer_.match(stamp, tolerance, is_complete, found);
   }
-  void drop_until(time::Time stamp) { buffer_.drop_until(stamp); }
+  /// As StampBuffer::second, drop_until and expect_restart.
+  std::optional<time::Time> second() const { return buffer_.second(); }
+  std::size_t drop_until(time::Time stamp) { return buffer_.drop_until(stamp); }
+  void expect_restart(time::Time stamp) { buffer_.expect_restart(stamp); }
 
  private:
-  void store(Message& message) {
+  template <class Sample>
+  void store(Sample& sample) {
     using time::Push;
-    const time::Time stamp = messages::from_message(message.header().stamp());
+    const time::Time stamp = messages::from_message(sample.header().stamp());
     if (on_arrival_) on_arrival_(stamp);
-    switch (buffer_.push(stamp, std::move(message))) {
+    const std::size_t waiting = buffer_.size();
+    switch (buffer_.push(stamp, Message(std::move(sample)))) {
       case Push::kStored: return;
       case Push::kDuplicate: return count(" dropped: stamp was there before");
       case Push::kLate: return count(" dropped: older than what was processed");
       case Push::kOverflow: return count(" dropped: its partners did not come");
       case Push::kRestarted:
         count(": stamps went back, the source began anew");
+        if (waiting > 0) count(" dropped: waited when its source began anew", waiting);
         if (on_restart_) on_restart_();
         return;
     }
   }
-  void count(const char* what) { context_.status().count(name_ + what); }
+  void count(const char* what, std::uint64_t number = 1) { context_.status().count(name_ + what, number); }
 
   Context& context_;
   std::string name_;
   time::StampBuffer<Message> buffer_;
   std::function<void(time::Time)> on_arrival_;
   std::function<void()> on_restart_;
-  dds::Subscription<Message>& source_;  // last: its handler uses the rest
+  dds::Source& source_;  // last: its handler uses the rest
 };
 
 }  // namespace lapis::runtime

@@ -36,9 +36,10 @@ class StampBuffer {
 
   Push push(Time stamp, Message message) {
     Push result = Push::kStored;
-    if (newest_ && *newest_ - stamp > kRestartGap) {
+    if (is_before_restart(stamp)) {
       entries_.clear();
       taken_.reset();
+      is_restart_expected_ = false;
       result = Push::kRestarted;
     }
     if (taken_ && stamp <= *taken_) return stamp == *taken_ ? Push::kDuplicate : Push::kLate;
@@ -55,14 +56,28 @@ class StampBuffer {
   }
 
   bool empty() const { return entries_.empty(); }
+  std::size_t size() const { return entries_.size(); }
   bool is_full() const { return entries_.size() >= capacity_; }
   /// Oldest message; the buffer must not be empty.
+  const std::pair<Time, Message>& front() const { return entries_.front(); }
   std::pair<Time, Message>& front() { return entries_.front(); }
-  /// Forgets everything up to and including `stamp`.
-  void drop_until(Time stamp) {
-    while (!entries_.empty() && entries_.front().first <= stamp) entries_.pop_front();
-    taken_ = std::max(taken_.value_or(stamp), stamp);
+  /// Stamp of the second oldest message.
+  std::optional<Time> second() const {
+    return entries_.size() < 2 ? std::nullopt : std::optional<Time>(entries_[1].first);
   }
+  /// Forgets everything up to and including `stamp`; returns the number of messages.
+  std::size_t drop_until(Time stamp) {
+    const std::size_t before = entries_.size();
+    while (!entries_.empty() && entries_.front().first <= stamp) entries_.pop_front();
+    // A stream that began anew alone has not reached `stamp`: what follows there is not late.
+    const Time reached = std::min(stamp, newest_.value_or(stamp));
+    taken_ = std::max(taken_.value_or(reached), reached);
+    return before - entries_.size();
+  }
+
+  /// A stream that comes from the same source began anew at `stamp`. If this one has not done so yet, match() waits
+  /// for it: that there are later messages, of before, does not mean that no better one comes.
+  void expect_restart(Time stamp) { is_restart_expected_ = !newest_ || is_before_restart(stamp); }
 
   /// Looks for the message nearest to `stamp` within `tolerance`; `is_complete` says that nothing more will come.
   Match match(Time stamp, Duration tolerance, bool is_complete, Message*& found) {
@@ -76,16 +91,21 @@ class StampBuffer {
       }
     }
     const bool is_exact = best && best->nanoseconds == 0;
-    const bool is_settled = is_exact || is_complete || (newest_ && *newest_ >= stamp);
+    const bool is_awaited = is_restart_expected_ && is_before_restart(stamp);
+    const bool is_settled = is_exact || is_complete || (newest_ && *newest_ >= stamp && !is_awaited);
     if (!is_settled) return Match::kWait;
     return found != nullptr ? Match::kFound : Match::kMissing;
   }
 
  private:
+  /// True when the stream is so far ahead of `stamp` that its source must have begun anew since.
+  bool is_before_restart(Time stamp) const { return newest_ && *newest_ - stamp > kRestartGap; }
+
   std::size_t capacity_;
   std::deque<std::pair<Time, Message>> entries_;
   std::optional<Time> newest_;
   std::optional<Time> taken_;
+  bool is_restart_expected_ = false;
 };
 
 }  // namespace lapis::time

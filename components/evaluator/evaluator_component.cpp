@@ -235,8 +235,9 @@ std::optional<geometry::Pose> EvaluatorComponent::true_camera_pose(const Odometr
 void EvaluatorComponent::add_to_references(const geometry::Pose& T_world_camera, const Image& depth,
                                            const Image* labels, const Info& info) {
   const auto camera = messages::from_message(info);
+  if (!camera) return context_.status().count("frames not in the reference: " + camera.reason);
   const auto metres = messages::to_depth(depth);
-  if (!camera || !metres) return context_.status().count("frames not in the reference: depth or camera info unusable");
+  if (!metres) return context_.status().count("frames not in the reference: " + metres.reason);
   geometry::LabelImage ids;
   if (labels != nullptr) {
     if (auto converted = messages::to_labels(*labels)) ids = std::move(*converted);

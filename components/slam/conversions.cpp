@@ -1,13 +1,10 @@
 #include "slam/conversions.hpp"
 
-#include "common/messages/camera.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/time.hpp"
 
 namespace lapis::slam {
 namespace {
-
-std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
 geometry_msgs::msg::TransformStamped stamped_transform(const std_msgs::msg::Header& h, const std::string& child,
                                                        const geometry::Pose& T) {
@@ -19,26 +16,6 @@ geometry_msgs::msg::TransformStamped stamped_transform(const std_msgs::msg::Head
 }
 
 }  // namespace
-
-messages::Converted<RgbdFrame> to_core(const sensor_msgs::msg::Image& color, const sensor_msgs::msg::Image& depth,
-                                       const sensor_msgs::msg::CameraInfo& info, time::Time stamp) {
-  using Result = messages::Converted<RgbdFrame>;
-  const auto camera = messages::from_message(info);
-  if (!camera) return Result::refused(camera.reason);
-  auto gray = messages::to_gray(color);
-  if (!gray) return Result::refused(gray.reason);
-  auto metres = messages::to_depth(depth);
-  if (!metres) return Result::refused(metres.reason);
-  if (gray->width != camera->width || gray->height != camera->height) {
-    return Result::refused("colour image is " + size_text(gray->width, gray->height) + ", camera info says " +
-                           size_text(camera->width, camera->height));
-  }
-  if (metres->width != camera->width || metres->height != camera->height) {
-    return Result::refused("depth image is " + size_text(metres->width, metres->height) + ", camera info says " +
-                           size_text(camera->width, camera->height));
-  }
-  return RgbdFrame{stamp, *camera, std::move(*gray), std::move(*metres)};
-}
 
 lapis_msgs::msg::TrackedFrame to_tracked_frame(const TrackingResult& result, const FrameContext& context,
                                                const FrameIds& ids) {

@@ -3,10 +3,8 @@
 #include <string>
 
 #include "common/geometry/se3.hpp"
-#include "common/messages/converted.hpp"
 #include "idl/lapis_msgs.hpp"
 #include "idl/nav_msgs.hpp"
-#include "idl/sensor_msgs.hpp"
 #include "idl/tf2_msgs.hpp"
 #include "slam/core/rgbd_slam.hpp"
 
@@ -26,10 +24,6 @@ struct FrameContext {
   std::int64_t session = 0;
   geometry::Pose T_base_camera = geometry::Pose::Identity();
 };
-
-/// Colour, depth and camera info of one instant; refused with a reason when they do not fit each other.
-messages::Converted<RgbdFrame> to_core(const sensor_msgs::msg::Image& color, const sensor_msgs::msg::Image& depth,
-                                       const sensor_msgs::msg::CameraInfo& info, time::Time stamp);
 
 lapis_msgs::msg::TrackedFrame to_tracked_frame(const TrackingResult& result, const FrameContext& context,
                                                const FrameIds& ids);

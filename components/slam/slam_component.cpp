@@ -12,7 +12,6 @@
 namespace lapis::slam {
 namespace {
 
-constexpr std::size_t kWaitingMessages = 8;
 constexpr std::size_t kEarlyReadings = 1000;
 constexpr double kFarewell_s = 1.0;
 constexpr const char* kGraphFile = "pose_graph.g2o";
@@ -27,14 +26,12 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
       odometry_(context.advertise(topics::kSlamOdometry)), tracked_frame_(context.advertise(topics::kTrackedFrame)),
       transforms_(context.advertise(topics::kTransforms)), path_(context.advertise(topics::kKeyframePath)),
       pose_graph_(context.advertise(topics::kPoseGraph)), status_(context.advertise(topics::kSlamStatus)),
-      landmarks_(context, config.landmark_period_s), color_(context, topics::kColor, "colour", kWaitingMessages),
-      depth_(context, topics::kDepth, "depth", kWaitingMessages),
-      info_(context, topics::kColorInfo, "camera info", kWaitingMessages) {
+      landmarks_(context, config.landmark_period_s), input_(config.input, context) {
   cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "slam.output_dir");
   if (!config_.resume_from.empty()) load_map();
-  color_.on_restart([this] { end_map(); });
-  context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
+  input_.on_restart([this] { end_map(); });
+  context.subscribe(topics::kStaticTransforms, [this](const auto& m) { add_mount(m); });
   context.subscribe(topics::kWheelOdometry, [this](const auto& m) { add_odometry(m); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
@@ -63,39 +60,27 @@ void SlamComponent::work(const runtime::Cycle& cycle) {
   autosave();
 }
 
-/// Joins and processes the oldest colour image; false when its partners may still come.
+/// Processes the oldest frame; false when what it needs may still come.
 bool SlamComponent::next_frame(const runtime::Cycle& cycle) {
-  using time::Match;
-  if (color_.empty()) return false;
-  const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
-  auto& [stamp, color] = color_.front();
-  const time::Time now = stamp;
-  Image* depth = nullptr;
-  Info* info = nullptr;
-  const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
-  const auto info_match = info_.match(now, tolerance, cycle.inputs_complete, info);
-  if (depth_match == Match::kWait || info_match == Match::kWait) return false;
-  if (depth == nullptr) {
-    drop(now, "no depth image for a colour image");
-  } else if (info == nullptr) {
-    drop(now, "no camera info for a colour image");
-  } else if (prepare(color)) {
-    track(color, *depth, *info, now);
+  const auto frame = input_.oldest(cycle);
+  if (!frame) return false;
+  if (!frame->problem.empty()) {
+    drop(frame->stamp, frame->problem);
+  } else if (prepare(*frame)) {
+    track(*frame);
   } else if (!cycle.inputs_complete) {
     return false;  // the mount may still come
   } else {
-    drop(now, "the camera's mount is not known");
+    drop(frame->stamp, "the camera's mount is not known");
   }
-  color_.drop_until(now);
-  depth_.drop_until(now - tolerance);
-  info_.drop_until(now - tolerance);
+  input_.pop(*frame);
   return true;
 }
 
 /// Makes sure that the camera's mount is known.
-bool SlamComponent::prepare(const Image& color) {
+bool SlamComponent::prepare(const JoinedFrame& first) {
   if (slam_ != nullptr) return true;
-  frame_.optical_frame = color.header().frame_id();
+  frame_.optical_frame = first.optical_frame;
   const auto T_base_camera = static_transforms_.find(ids_.base, frame_.optical_frame);
   if (!T_base_camera) {
     const std::string problem = "no transform from " + ids_.base + " to " + frame_.optical_frame + " on /tf_static";
@@ -104,7 +89,7 @@ bool SlamComponent::prepare(const Image& color) {
     return false;
   }
   frame_.T_base_camera = *T_base_camera;
-  session_ = std::max(messages::from_message(color.header().stamp()).nanoseconds, session_ + 1);
+  session_ = std::max(first.stamp.nanoseconds, session_ + 1);
   frame_.session = session_;
   if (!config_.output_dir.empty()) set_old_files_aside();
   slam_ = begin_map();
@@ -135,9 +120,9 @@ std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
   return slam;
 }
 
-void SlamComponent::track(const Image& color, const Image& depth, const Info& info, time::Time stamp) {
-  const auto frame = to_core(color, depth, info, stamp);
-  if (!frame) return drop(stamp, frame.reason);
+void SlamComponent::track(const JoinedFrame& joined) {
+  const auto frame = input_.convert(joined);
+  if (!frame) return drop(joined.stamp, frame.reason);
   if (saved_camera_ && !is_same_camera(*saved_camera_, frame->camera)) {
     throw runtime::BadSetup("slam.resume_from: " + config_.resume_from + ": was made with another camera, of " +
                             std::to_string(saved_camera_->width) + " x " + std::to_string(saved_camera_->height) +
@@ -145,10 +130,17 @@ void SlamComponent::track(const Image& color, const Image& depth, const Info& in
   }
   saved_camera_.reset();
   ++frames_total_;
-  frame_.stamp = stamp;
+  frame_.stamp = joined.stamp;
   const TrackingResult result = slam_->process(*frame);
   if (result.state == TrackingState::kTracking) ++frames_tracked_;
   publish(result);
+}
+
+void SlamComponent::add_mount(const tf2_msgs::msg::TFMessage& message) {
+  const std::string problem = static_transforms_.add(message);
+  if (problem.empty()) return;
+  context_.status().count("static transforms dropped: " + problem);
+  if (context_.rate_limit().pass("static transforms")) spdlog::warn("static transform dropped: {}", problem);
 }
 
 void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {

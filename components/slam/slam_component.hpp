@@ -7,10 +7,10 @@
 
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
-#include "common/runtime/stamped_input.hpp"
 #include "slam/conversions.hpp"
 #include "slam/core/rgbd_slam.hpp"
 #include "slam/core/slam_file.hpp"
+#include "slam/frame_input.hpp"
 #include "slam/landmark_publisher.hpp"
 #include "slam/map_saver.hpp"
 #include "slam/slam_config.hpp"
@@ -28,16 +28,14 @@ class SlamComponent {
   void finish();
 
  private:
-  using Image = sensor_msgs::msg::Image;
-  using Info = sensor_msgs::msg::CameraInfo;
-
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
   void load_map();
-  bool prepare(const Image& color);
+  bool prepare(const JoinedFrame& first);
   void set_old_files_aside();
   std::unique_ptr<RgbdSlam> begin_map();
-  void track(const Image& color, const Image& depth, const Info& info, time::Time stamp);
+  void track(const JoinedFrame& joined);
+  void add_mount(const tf2_msgs::msg::TFMessage& message);
   void add_odometry(const nav_msgs::msg::Odometry& message);
   bool use_odometry(time::Time stamp, const geometry::Pose& T_odom_base);
   void drop(time::Time stamp, const std::string& reason);
@@ -65,9 +63,7 @@ class SlamComponent {
   dds::Publisher<lapis_msgs::msg::SlamStatus>& status_;
   LandmarkPublisher landmarks_;
 
-  runtime::StampedInput<Image> color_;
-  runtime::StampedInput<Image> depth_;
-  runtime::StampedInput<Info> info_;
+  FrameInput input_;
   messages::StaticTransforms static_transforms_;
 
   std::optional<SlamFile> resumed_;                      // until the first map begins with it

@@ -4,13 +4,14 @@
 
 #include "common/config/schema.hpp"
 #include "slam/core/config.hpp"
+#include "slam/frame_input.hpp"
 
 namespace lapis::slam {
 
 /// What the process adds to the method's configuration.
 struct SlamComponentConfig {
   SlamConfig method;
-  double max_stamp_difference_s = 0.016;
+  FrameInputConfig input;
   double graph_period_s = 0.5;
   double landmark_period_s = 2.0;
   std::string publish_odom_frame = "auto";
@@ -148,7 +149,14 @@ void describe(Field& field, OdometryConfig& c) {
 }
 
 template <class Field>
+void describe(Field& field, FrameInputConfig& c) {
+  field("color", c.color, config::one_of({"raw", "compressed"}),
+        "colour from /camera/color/image_raw or from /camera/color/image_raw/compressed");
+}
+
+template <class Field>
 void describe(Field& field, SlamComponentConfig& c) {
+  field("input", c.input);
   field("features", c.method.features);
   field("noise", c.method.noise);
   field("matcher", c.method.matcher);
@@ -160,8 +168,9 @@ void describe(Field& field, SlamComponentConfig& c) {
   field("loop", c.method.loop);
   field("relocalization", c.method.relocalization);
   field("odometry", c.method.odometry);
-  field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
-        "between colour, depth and camera info of one frame [s]");
+  field(
+      "max_stamp_difference_s", c.input.max_stamp_difference_s, config::in_range(0.0, 0.5),
+      "between colour, depth and camera info of one frame; 0: 0.6 of the time between colour images, at most 0.12 [s]");
   field("graph_period_s", c.graph_period_s, config::in_range(0.0, 60.0),
         "least time between publications of the pose graph, by the frames' stamps [s]");
   field("landmark_period_s", c.landmark_period_s, config::in_range(0, 60),

@@ -4,18 +4,17 @@
 
 namespace lapis::test {
 
-CameraFeed::CameraFeed(TopicProbe& probe, const std::string& frame_prefix)
-    : prefix_(frame_prefix), color_(probe.advertise(topics::kColor)), depth_(probe.advertise(topics::kDepth)),
-      labels_(probe.advertise(topics::kLabels)), color_info_(probe.advertise(topics::kColorInfo)),
-      depth_info_(probe.advertise(topics::kDepthInfo)) {
+CameraFeed::CameraFeed(TopicProbe& probe, const std::string& frame_prefix, const SyntheticCamera& camera)
+    : camera_(camera), prefix_(frame_prefix), color_(probe.advertise(topics::kColor)),
+      depth_(probe.advertise(topics::kDepth)), labels_(probe.advertise(topics::kLabels)),
+      color_info_(probe.advertise(topics::kColorInfo)), depth_info_(probe.advertise(topics::kDepthInfo)) {
   probe.advertise(topics::kStaticTransforms).publish(camera_mount(frame_prefix));
   probe.advertise(topics::kLabelInfo).publish(camera_.label_info());
 }
 
-CameraFrame CameraFeed::frame(int index) const {
-  const auto pose = slow_motion(index);
-  CameraFrame frame{camera_.color(stamp(index), pose), camera_.depth(stamp(index), pose),
-                    camera_.labels(stamp(index), pose), camera_.info(stamp(index))};
+CameraFrame CameraFeed::frame(time::Time stamp, const geometry::Pose& T_box_camera) const {
+  CameraFrame frame{camera_.color(stamp, T_box_camera), camera_.depth(stamp, T_box_camera),
+                    camera_.labels(stamp, T_box_camera), camera_.info(stamp)};
   const std::string id = prefix_ + SyntheticCamera::kOpticalFrame;
   for (auto* image : {&frame.color, &frame.depth, &frame.labels}) (*image)->header().frame_id(id);
   frame.info->header().frame_id(id);

@@ -23,10 +23,13 @@ class CameraFeed {
  public:
   static constexpr std::int64_t kPeriod_ns = 33'333'333;
 
-  explicit CameraFeed(TopicProbe& probe, const std::string& frame_prefix = "");
+  explicit CameraFeed(TopicProbe& probe, const std::string& frame_prefix = "",
+                      const SyntheticCamera& camera = SyntheticCamera());
 
   /// Frame `index` of the slow motion, with stamp index * period + offset.
-  CameraFrame frame(int index) const;
+  CameraFrame frame(int index) const { return frame(stamp(index), slow_motion(index)); }
+  /// What the camera sees from somewhere else, or at another time.
+  CameraFrame frame(time::Time stamp, const geometry::Pose& T_box_camera) const;
   void send(const CameraFrame& frame);
   /// True when somebody reads what slam, or the mapper, needs.
   bool is_matched_by_slam() const { return color_.matched() > 0 && depth_.matched() > 0 && color_info_.matched() > 0; }

@@ -1,5 +1,6 @@
 #include "tests/support/synthetic_camera.hpp"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <cstring>
 #include <limits>
@@ -22,8 +23,8 @@ struct Hit {
 };
 
 // From inside a box a ray leaves through the nearest of the three walls that it faces.
-Hit cast(const geometry::PinholeCamera& camera, const geometry::Pose& T_box_camera, int u, int v) {
-  const Eigen::Vector3d direction = T_box_camera.linear() * camera.unproject(u, v, 1.0);
+Hit cast(const Eigen::Vector3d& ray, const geometry::Pose& T_box_camera) {
+  const Eigen::Vector3d direction = T_box_camera.linear() * ray;
   const Eigen::Vector3d origin = T_box_camera.translation();
   Hit hit;
   hit.depth_m = std::numeric_limits<double>::infinity();
@@ -63,45 +64,78 @@ Image blank(const geometry::PinholeCamera& camera, time::Time stamp, const char*
   return image;
 }
 
+// Where the lens (Brown, 1966: k1 k2 p1 p2 k3) puts what a pinhole would see at (x, y), both at z = 1.
+Eigen::Vector2d bend(const std::vector<double>& d, const Eigen::Vector2d& p) {
+  const double r2 = p.squaredNorm();
+  const double radial = 1.0 + r2 * (d[0] + r2 * (d[1] + r2 * d[4]));
+  return radial * p + Eigen::Vector2d(2.0 * d[2] * p.x() * p.y() + d[3] * (r2 + 2.0 * p.x() * p.x()),
+                                      d[2] * (r2 + 2.0 * p.y() * p.y()) + 2.0 * d[3] * p.x() * p.y());
+}
+
+// The inverse of bend() by Newton's method with a numeric Jacobian.
+Eigen::Vector2d straighten(const std::vector<double>& d, const Eigen::Vector2d& bent) {
+  constexpr double kStep = 1e-6;
+  Eigen::Vector2d p = bent;
+  for (int i = 0; i < 20; ++i) {
+    Eigen::Matrix2d J;
+    J.col(0) = (bend(d, p + Eigen::Vector2d(kStep, 0.0)) - bend(d, p)) / kStep;
+    J.col(1) = (bend(d, p + Eigen::Vector2d(0.0, kStep)) - bend(d, p)) / kStep;
+    p -= J.inverse() * (bend(d, p) - bent);
+  }
+  return p;
+}
+
+std::vector<Eigen::Vector3d> rays_of(const geometry::PinholeCamera& camera, const std::vector<double>& distortion) {
+  std::vector<Eigen::Vector3d> rays;
+  for (int v = 0; v < camera.height; ++v) {
+    for (int u = 0; u < camera.width; ++u) {
+      const Eigen::Vector3d ray = camera.unproject(u, v, 1.0);
+      rays.push_back(distortion.empty() ? ray : straighten(distortion, ray.head<2>()).homogeneous().eval());
+    }
+  }
+  return rays;
+}
+
 /// Writes `pixel(hit)`, a value of the size of a pixel, everywhere.
 template <class Pixel>
-Image render(const geometry::PinholeCamera& camera, time::Time stamp, const char* encoding,
-             const geometry::Pose& T_box_camera, Pixel pixel) {
+Image render(const geometry::PinholeCamera& camera, const std::vector<Eigen::Vector3d>& rays, time::Time stamp,
+             const char* encoding, const geometry::Pose& T_box_camera, Pixel pixel) {
   using Value = decltype(pixel(Hit{}));
   Image image = blank(camera, stamp, encoding, sizeof(Value));
   std::uint8_t* target = image.data().data();
-  for (int v = 0; v < camera.height; ++v) {
-    for (int u = 0; u < camera.width; ++u, target += sizeof(Value)) {
-      const Value value = pixel(cast(camera, T_box_camera, u, v));
-      std::memcpy(target, &value, sizeof value);
-    }
+  for (const Eigen::Vector3d& ray : rays) {
+    const Value value = pixel(cast(ray, T_box_camera));
+    std::memcpy(target, &value, sizeof value);
+    target += sizeof value;
   }
   return image;
 }
 
 }  // namespace
 
-SyntheticCamera::SyntheticCamera(int width, int height)
-    : camera_{width, height, 0.9 * width, 0.9 * width, 0.5 * (width - 1), 0.5 * (height - 1)} {}
+SyntheticCamera::SyntheticCamera(int width, int height, const std::vector<double>& distortion)
+    : camera_{width, height, 0.9 * width, 0.9 * width, 0.5 * (width - 1), 0.5 * (height - 1)}, distortion_(distortion),
+      rays_(rays_of(camera_, distortion)) {}
 
 Image SyntheticCamera::color(time::Time stamp, const geometry::Pose& T_box_camera) const {
-  return render(camera_, stamp, "rgb8", T_box_camera, [](const Hit& hit) {
+  return render(camera_, rays_, stamp, "rgb8", T_box_camera, [](const Hit& hit) {
     const std::uint8_t grey = texture(hit);
     return std::array<std::uint8_t, 3>{grey, grey, static_cast<std::uint8_t>(grey / 2 + 20 * hit.wall)};
   });
 }
 
 Image SyntheticCamera::depth(time::Time stamp, const geometry::Pose& T_box_camera) const {
-  return render(camera_, stamp, "16UC1", T_box_camera,
+  return render(camera_, rays_, stamp, "16UC1", T_box_camera,
                 [](const Hit& hit) { return static_cast<std::uint16_t>(std::lround(1000.0 * hit.depth_m)); });
 }
 
 Image SyntheticCamera::depth_metres(time::Time stamp, const geometry::Pose& T_box_camera) const {
-  return render(camera_, stamp, "32FC1", T_box_camera, [](const Hit& hit) { return static_cast<float>(hit.depth_m); });
+  return render(camera_, rays_, stamp, "32FC1", T_box_camera,
+                [](const Hit& hit) { return static_cast<float>(hit.depth_m); });
 }
 
 Image SyntheticCamera::labels(time::Time stamp, const geometry::Pose& T_box_camera) const {
-  return render(camera_, stamp, "mono8", T_box_camera,
+  return render(camera_, rays_, stamp, "mono8", T_box_camera,
                 [](const Hit& hit) { return static_cast<std::uint8_t>(hit.wall + 1); });
 }
 
@@ -112,7 +146,7 @@ sensor_msgs::msg::CameraInfo SyntheticCamera::info(time::Time stamp) const {
   message.width(static_cast<std::uint32_t>(camera_.width));
   message.height(static_cast<std::uint32_t>(camera_.height));
   message.distortion_model("plumb_bob");
-  message.d({0.0, 0.0, 0.0, 0.0, 0.0});
+  message.d(distortion_.empty() ? std::vector<double>(5, 0.0) : distortion_);
   message.k({camera_.fx, 0.0, camera_.cx, 0.0, camera_.fy, camera_.cy, 0.0, 0.0, 1.0});
   message.r({1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
   message.p({camera_.fx, 0.0, camera_.cx, 0.0, 0.0, camera_.fy, camera_.cy, 0.0, 0.0, 0.0, 1.0, 0.0});
@@ -148,10 +182,9 @@ tf2_msgs::msg::TFMessage camera_mount(const std::string& prefix) {
   return message;
 }
 
-geometry::Pose slow_motion(int frame) {
-  const double s = frame;
-  return geometry::make_pose(Eigen::Vector3d(0.005 * s, 0.05 * std::sin(0.1 * s), 0.01 * s),
-                             Eigen::Quaterniond(Eigen::AngleAxisd(0.004 * s, Eigen::Vector3d::UnitY())));
+geometry::Pose slow_motion(double frame) {
+  return geometry::make_pose(Eigen::Vector3d(0.005 * frame, 0.05 * std::sin(0.1 * frame), 0.01 * frame),
+                             Eigen::Quaterniond(Eigen::AngleAxisd(0.004 * frame, Eigen::Vector3d::UnitY())));
 }
 
 }  // namespace lapis::test

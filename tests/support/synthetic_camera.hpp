@@ -1,5 +1,7 @@
 #pragma once
 
+#include <vector>
+
 #include "common/geometry/pinhole_camera.hpp"
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
@@ -11,13 +13,14 @@ namespace lapis::test {
 
 /// An RGB-D camera inside a box of 4 x 3 x 6 m whose walls carry a random texture: exact depth, exact labels, enough
 /// corners for slam. The optical frame looks along z of the box at the start. Every call with the same arguments gives
-/// the same bytes.
+/// the same bytes. With a lens the images, and the camera info, are distorted.
 class SyntheticCamera {
  public:
   static constexpr const char* kOpticalFrame = "camera_color_optical_frame";
   static constexpr int kClasses = 6;  ///< one per wall, ids 1 to 6
 
-  explicit SyntheticCamera(int width = 320, int height = 240);
+  /// `distortion`: k1 k2 p1 p2 k3 of plumb_bob, or none.
+  explicit SyntheticCamera(int width = 320, int height = 240, const std::vector<double>& distortion = {});
 
   const geometry::PinholeCamera& camera() const { return camera_; }
   sensor_msgs::msg::Image color(time::Time stamp, const geometry::Pose& T_box_camera) const;         ///< rgb8
@@ -29,6 +32,8 @@ class SyntheticCamera {
 
  private:
   geometry::PinholeCamera camera_;
+  std::vector<double> distortion_;
+  std::vector<Eigen::Vector3d> rays_;  // of the pixels, row by row; z = 1
 };
 
 /// base_link -> camera_color_optical_frame, 0.3 m above the base, with `prefix` ("robot1/") before the frame ids.
@@ -37,6 +42,6 @@ tf2_msgs::msg::TFMessage camera_mount(const std::string& prefix = "");
 geometry::Pose T_base_camera();
 
 /// A slow motion: 1 cm forward and some sideways and yaw per frame.
-geometry::Pose slow_motion(int frame);
+geometry::Pose slow_motion(double frame);
 
 }  // namespace lapis::test

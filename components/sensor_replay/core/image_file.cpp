@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "common/files/atomic_file.hpp"
+#include "common/images/encoded_image.hpp"
 
 namespace lapis::sensor_replay {
 namespace {
@@ -17,23 +18,11 @@ constexpr int kMaxDepthValue = 65535;  // also "none" in some recordings
 
 using Decoded = std::variant<cv::Mat, ImageFault>;
 
-// libjpeg fills the rest of a truncated file with grey and calls it a success: a whole file has an end-of-image marker
-// near its end (some cameras append a few bytes).
-bool is_truncated_jpeg(const std::vector<std::uint8_t>& bytes) {
-  if (bytes.size() < 4 || bytes[0] != 0xFF || bytes[1] != 0xD8) return false;
-  constexpr std::size_t kMaxTail = 64;
-  const std::size_t stop = bytes.size() > kMaxTail ? bytes.size() - kMaxTail : 2;
-  for (std::size_t i = bytes.size() - 1; i > stop; --i) {
-    if (bytes[i - 1] == 0xFF && bytes[i] == 0xD9) return false;
-  }
-  return true;
-}
-
 Decoded decode(const std::filesystem::path& file) {
   std::string reason;
   const auto bytes = files::read_file(file.string(), reason);
   if (!bytes) return ImageFault::kMissing;
-  if (bytes->empty() || is_truncated_jpeg(*bytes)) return ImageFault::kUndecodable;
+  if (bytes->empty() || images::is_truncated_jpeg(*bytes)) return ImageFault::kUndecodable;
   try {
     cv::Mat image = cv::imdecode(*bytes, cv::IMREAD_UNCHANGED);
     if (image.empty()) return ImageFault::kUndecodable;

@@ -47,7 +47,7 @@ TumDataset::TumDataset(const TumDatasetConfig& config, const CameraReader& read_
   if (!fs::is_directory(config.folder)) fail(config.folder, "no such folder (expected a TUM RGB-D data set)");
   read_frames();
   camera_ = read_camera(config.folder / "camera.yaml");
-  rectifier_.emplace(camera_);
+  rectifier_.emplace(geometry::LensCamera{camera_.camera, {camera_.distortion.begin(), camera_.distortion.end()}});
   const fs::path truth = config.folder / "groundtruth.txt";
   if (fs::exists(truth)) trajectory_ = trajectory::read_trajectory(truth);
   has_labels_ = fs::is_directory(config.folder / "label");

@@ -9,12 +9,12 @@
 
 #include "common/geometry/image.hpp"
 #include "common/geometry/se3.hpp"
+#include "common/images/rectifier.hpp"
 #include "common/time/time.hpp"
 #include "common/trajectory/trajectory.hpp"
 #include "sensor_replay/core/camera_file.hpp"
 #include "sensor_replay/core/class_list.hpp"
 #include "sensor_replay/core/image_file.hpp"
-#include "sensor_replay/core/rectifier.hpp"
 #include "sensor_replay/core/tum_lists.hpp"
 
 namespace lapis::sensor_replay {
@@ -108,7 +108,7 @@ class TumDataset {
 
   TumDatasetConfig config_;
   CameraFile camera_;
-  std::optional<Rectifier> rectifier_;  // exists after construction
+  std::optional<images::Rectifier> rectifier_;  // exists after construction
   std::vector<ListedFrame> frames_;
   trajectory::Trajectory trajectory_;
   std::vector<ClassName> class_list_;

@@ -61,7 +61,7 @@ class GrowingMap {
     const auto index = static_cast<double>(map.keyframes().size());
     keyframe.stamp = time::Time::from_seconds(index * kFramesPerKeyframe / kFramesPerSecond);
     keyframe.T_map_camera.translation() = position(index);
-    keyframe.features.resize(kFeatures);
+    keyframe.features = std::vector<Feature>(kFeatures);
     const KeyframeId id = map.add_keyframe(std::move(keyframe));
     int feature = 0;
     for (KeyframeId before = id < 4 ? 0 : id - 4; before < id; ++before) {

@@ -3,67 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <cstring>
 #include <limits>
 
-#include "common/messages/geometry.hpp"
-#include "common/messages/time.hpp"
-#include "tests/support/camera_feed.hpp"
-#include "tests/support/child_process.hpp"
+#include "tests/contract/slam/slam_contract.hpp"
 
 namespace lapis::test {
 namespace {
 
-using lapis_msgs::msg::TrackedFrame;
 using nav_msgs::msg::Odometry;
 using ::testing::HasSubstr;
-
-constexpr const char* kSlam = "lapis_slam";
-constexpr auto kTracking = lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
-constexpr auto kDeadReckoning = lapis_msgs::msg::TrackedFrame_Constants::STATE_DEAD_RECKONING;
-constexpr auto kLost = lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST;
-
-bool is_finite(const Odometry& message) {
-  const auto& covariance = message.pose().covariance();
-  const auto& twist = message.twist().twist();
-  return messages::from_message(message.pose().pose()).value.has_value() &&
-         std::all_of(covariance.begin(), covariance.end(), [](double v) { return std::isfinite(v); }) &&
-         std::isfinite(twist.linear().x()) && std::isfinite(twist.linear().y()) && std::isfinite(twist.linear().z()) &&
-         std::isfinite(twist.angular().x()) && std::isfinite(twist.angular().y()) && std::isfinite(twist.angular().z());
-}
-
-/// slam, a camera and somebody who listens.
-class SlamContract : public ::testing::Test {
- protected:
-  explicit SlamContract(const std::vector<std::string>& arguments = {}) : slam(kSlam, arguments) {}
-
-  void SetUp() override {
-    ASSERT_TRUE(wait_until_ready(slam)) << slam.log();
-    ASSERT_TRUE(probe.wait_until([&] { return feed.is_matched_by_slam(); })) << slam.log();
-    ASSERT_TRUE(probe.wait_until_known_by("slam")) << slam.log();
-  }
-  /// Sends a frame and waits for its answer on /slam/frame.
-  bool track(int index) { return answers(feed.frame(index), index); }
-  bool answers(const CameraFrame& frame, int index) {
-    feed.send(frame);
-    return probe.wait_until([&] {
-      return !frames.empty() && messages::from_message(frames.back().header().stamp()) == CameraFeed::stamp(index);
-    });
-  }
-  /// Waits until the sum of the diagnostics counters that contain `text` is at least `number`.
-  bool wait_for_count(const std::string& text, double number) {
-    return probe.wait_until([&] { return sum_of(newest_values(diagnostics, "slam"), text) >= number; }, Seconds(5));
-  }
-
-  TopicProbe probe;
-  CameraFeed feed{probe};
-  const std::vector<TrackedFrame>& frames = probe.collect(topics::kTrackedFrame);
-  const std::vector<Odometry>& odometry = probe.collect(topics::kSlamOdometry);
-  const std::vector<diagnostic_msgs::msg::DiagnosticArray>& diagnostics = probe.collect(topics::kDiagnostics);
-  ChildProcess slam;
-};
 
 TEST_F(SlamContract, TracksWithCopiedStampsRightFramesAndFiniteNumbers) {
   const auto& transforms = probe.collect(topics::kTransforms);
@@ -131,16 +81,16 @@ TEST_F(SlamContract, GarbageIsCountedAndTrackingGoesOn) {
   EXPECT_TRUE(spoil([](auto& f) { f.depth->data().resize(f.depth->data().size() / 2); }));
   EXPECT_TRUE(spoil([](auto& f) { f.info->width(64); }));
   EXPECT_TRUE(spoil([](auto& f) { f.info->k({}); }));
-  EXPECT_TRUE(spoil([](auto& f) { f.info->d({0.1, 0.0, 0.0, 0.0, 0.0}); }));
+  EXPECT_TRUE(spoil([](auto& f) { f.info->distortion_model("equidistant"); }));
   ASSERT_EQ(frames.size(), static_cast<std::size_t>(index)) << "bad frames are answered, too";
   for (std::size_t i = 0; i < frames.size(); ++i) {
     const bool is_spoilt = i >= 3 && i % 2 == 1;
     EXPECT_EQ(frames[i].state(), is_spoilt ? kLost : kTracking) << i << " " << frames[i].reason();
     EXPECT_NE(frames[i].reason().empty(), is_spoilt) << i;
   }
-  for (const char* reason :
-       {"colour encoding", "colour image has not step x height bytes", "larger than 16384", "depth encoding",
-        "depth image has not step x height bytes", "camera info says 64x240", "no valid size", "distortion"}) {
+  for (const char* reason : {"colour encoding", "colour image has not step x height bytes", "larger than 16384",
+                             "depth encoding", "depth image has not step x height bytes", "camera info says 64x240",
+                             "no valid size", "/camera/color/camera_info: distortion model 'equidistant'"}) {
     EXPECT_TRUE(wait_for_count(reason, 1)) << reason << slam.log();
   }
   EXPECT_GE(sum_of(newest_values(diagnostics, "slam"), "frames dropped"), 8);

@@ -63,6 +63,17 @@ TEST(SemanticMapperConversions, SizesThatDisagreeAreRefused) {
   EXPECT_FALSE(to_core(depth_image(8, 6, 1000), &labels, camera_info(8, 6), {}));
 }
 
+// Live depth and labels are not rectified: a map of distorted images would be wrong.
+TEST(SemanticMapperConversions, DistortedCamerasAreRefusedWithTheReason) {
+  auto info = camera_info(8, 6);
+  info.distortion_model("plumb_bob");
+  info.d({0.1, 0.0, 0.0, 0.0, 0.0});
+  EXPECT_EQ(to_core(depth_image(8, 6, 1000), nullptr, info, {}).reason,
+            "camera info has distortion; rectify the images first");
+  info.distortion_model("equidistant");
+  EXPECT_THAT(to_core(depth_image(8, 6, 1000), nullptr, info, {}).reason, HasSubstr("distortion model 'equidistant'"));
+}
+
 TEST(SemanticMapperConversions, AnchorKeepsIdsAndStamp) {
   const auto anchored = to_core(tracked_frame(), compact_frame());
   ASSERT_TRUE(anchored);

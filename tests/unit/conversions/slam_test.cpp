@@ -1,6 +1,5 @@
 #include "slam/conversions.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <random>
@@ -10,8 +9,6 @@
 
 namespace lapis::slam {
 namespace {
-
-using ::testing::HasSubstr;
 
 const FrameIds kIds{"map", "odom", "base_link"};
 
@@ -41,41 +38,6 @@ TrackingResult tracking_result(std::mt19937& engine) {
   const geometry::Matrix6d A = geometry::Matrix6d::Random();
   result.map_covariance = 1e-4 * (A * A.transpose() + geometry::Matrix6d::Identity());
   return result;
-}
-
-sensor_msgs::msg::Image image(std::uint32_t width, std::uint32_t height, const std::string& encoding,
-                              std::uint32_t bytes_per_pixel) {
-  sensor_msgs::msg::Image message;
-  message.width(width);
-  message.height(height);
-  message.encoding(encoding);
-  message.step(width * bytes_per_pixel);
-  message.data().resize(static_cast<std::size_t>(message.step()) * height);
-  return message;
-}
-
-sensor_msgs::msg::CameraInfo camera_info(std::uint32_t width, std::uint32_t height) {
-  sensor_msgs::msg::CameraInfo info;
-  info.width(width);
-  info.height(height);
-  info.k({100.0, 0.0, 31.5, 0.0, 100.0, 23.5, 0.0, 0.0, 1.0});
-  return info;
-}
-
-TEST(SlamConversions, FrameKeepsStampCameraAndSizes) {
-  const auto frame = to_core(image(64, 48, "rgb8", 3), image(64, 48, "16UC1", 2), camera_info(64, 48), time::Time{5});
-  ASSERT_TRUE(frame);
-  EXPECT_EQ(frame->stamp, time::Time{5});
-  EXPECT_EQ(frame->camera.width, 64);
-  EXPECT_EQ(frame->gray.height, 48);
-  EXPECT_EQ(frame->depth.width, 64);
-}
-
-TEST(SlamConversions, DisagreeingSizesAreRefusedWithBoth) {
-  const auto color = to_core(image(64, 48, "rgb8", 3), image(64, 48, "16UC1", 2), camera_info(32, 24), {});
-  EXPECT_THAT(color.reason, ::testing::AllOf(HasSubstr("64x48"), HasSubstr("32x24")));
-  const auto depth = to_core(image(64, 48, "rgb8", 3), image(32, 24, "16UC1", 2), camera_info(64, 48), {});
-  EXPECT_THAT(depth.reason, HasSubstr("depth image is 32x24"));
 }
 
 TEST(SlamConversions, TrackedFrameCarriesBothPoses) {

@@ -27,11 +27,12 @@ void expect_all_sound(const dds::Topic<Message>&... topic) {
 
 TEST(TopicTable, RowsAreSound) {
   using namespace topics;  // NOLINT(google-build-using-namespace): the table's rows
-  expect_all_sound(kClock, kTick, kAck, kColor, kDepth, kColorInfo, kDepthInfo, kLabels, kLabelConfidence, kLabelInfo,
-                   kWheelOdometry, kImu, kGroundTruth, kCollision, kTransforms, kStaticTransforms, kSlamOdometry,
-                   kTrackedFrame, kKeyframePath, kPoseGraph, kLandmarks, kLandmarkState, kSlamStatus, kVoxelTiles,
-                   kMapState, kObstacles, kOctomap, kMapPoints, kOccupancyGrid, kPlannerPath, kCandidates,
-                   kPlannerMarkers, kPlannerStatus, kCommand, kLocalPath, kControllerStatus, kDiagnostics);
+  expect_all_sound(kClock, kTick, kAck, kColor, kCompressedColor, kDepth, kColorInfo, kDepthInfo, kLabels,
+                   kLabelConfidence, kLabelInfo, kWheelOdometry, kImu, kGroundTruth, kCollision, kTransforms,
+                   kStaticTransforms, kSlamOdometry, kTrackedFrame, kKeyframePath, kPoseGraph, kLandmarks,
+                   kLandmarkState, kSlamStatus, kVoxelTiles, kMapState, kObstacles, kOctomap, kMapPoints,
+                   kOccupancyGrid, kPlannerPath, kCandidates, kPlannerMarkers, kPlannerStatus, kCommand, kLocalPath,
+                   kControllerStatus, kDiagnostics);
 }
 
 TEST(TopicTable, LockStepTopicsRepairLossQuickly) {

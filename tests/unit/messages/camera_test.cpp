@@ -46,10 +46,42 @@ TEST(CameraInfo, GivesThePinholeModel) {
 
 TEST(CameraInfo, ZeroDistortionIsNone) {
   auto info = camera_info();
+  info.distortion_model("plumb_bob");
   info.d({0.0, 0.0, 0.0, 0.0, 0.0});
   EXPECT_TRUE(from_message(info));
   info.d({0.0, 0.1, 0.0, 0.0, 0.0});
   EXPECT_THAT(from_message(info).reason, HasSubstr("distortion"));
+}
+
+TEST(CameraInfo, KeepsTheDistortionOfKnownModels) {
+  auto info = camera_info();
+  EXPECT_FALSE(lens_camera(info)->is_distorted());
+  info.distortion_model("plumb_bob");
+  info.d({0.1, -0.2, 0.001, -0.002});
+  ASSERT_TRUE(lens_camera(info));
+  EXPECT_EQ(lens_camera(info)->distortion, info.d());
+  EXPECT_EQ(lens_camera(info)->pinhole, (geometry::PinholeCamera{640, 360, 500.0, 501.0, 319.5, 179.5}));
+  info.distortion_model("rational_polynomial");
+  info.d({0.5, -2.4, 0.001, -0.002, 1.4, 0.4, -2.2, 1.3});
+  ASSERT_TRUE(lens_camera(info));
+  EXPECT_EQ(lens_camera(info)->distortion, info.d());
+}
+
+TEST(CameraInfo, RefusesDistortionThatItCannotRead) {
+  auto info = camera_info();
+  info.d({0.1, 0.0, 0.0, 0.0});
+  EXPECT_THAT(lens_camera(info).reason, HasSubstr("distortion model ''"));
+  info.distortion_model("equidistant");  // zeros do not make a pinhole of a fisheye
+  info.d({0.0, 0.0, 0.0, 0.0});
+  EXPECT_THAT(lens_camera(info).reason, HasSubstr("distortion model 'equidistant'"));
+  EXPECT_FALSE(from_message(info));
+  info.distortion_model(std::string(10'000, 'x'));
+  EXPECT_LT(lens_camera(info).reason.size(), 200U);
+  info.distortion_model("plumb_bob");
+  info.d({0.1, 0.0, 0.0});
+  EXPECT_THAT(lens_camera(info).reason, HasSubstr("4, 5 or 8 numbers"));
+  info.d({0.1, 0.0, 0.0, std::numeric_limits<double>::quiet_NaN()});
+  EXPECT_THAT(lens_camera(info).reason, HasSubstr("not finite"));
 }
 
 TEST(CameraInfo, RefusesWhatIsNoCamera) {
@@ -77,6 +109,16 @@ TEST(Gray, LuminanceFollowsBt601) {
   std::vector<std::uint8_t> swapped = pixels;
   for (std::size_t i = 0; i < 6; ++i) std::swap(swapped[3 * i], swapped[3 * i + 2]);
   EXPECT_EQ(to_gray(image("bgr8", 6, 1, swapped, 3))->pixels, rgb->pixels);
+  std::vector<std::uint8_t> opaque;
+  std::vector<std::uint8_t> swapped_opaque;
+  for (std::size_t i = 0; i < pixels.size(); ++i) {
+    opaque.push_back(pixels[i]);
+    swapped_opaque.push_back(swapped[i]);
+    if (i % 3 == 2) opaque.push_back(77);
+    if (i % 3 == 2) swapped_opaque.push_back(77);
+  }
+  EXPECT_EQ(to_gray(image("rgba8", 6, 1, opaque, 4))->pixels, rgb->pixels);
+  EXPECT_EQ(to_gray(image("bgra8", 6, 1, swapped_opaque, 4))->pixels, rgb->pixels);
   EXPECT_EQ(to_gray(image<std::uint8_t>("mono8", 3, 1, {0, 7, 255}))->pixels, (std::vector<std::uint8_t>{0, 7, 255}));
 }
 
@@ -134,7 +176,7 @@ TEST(BadImage, WrongEncodingIsNamed) {
 
 // All three conversions share the layout check; each kind of wrong layout is tried on each of them.
 void expect_refused(const Image& message, const std::string& reason) {
-  for (const char* encoding : {"rgb8", "mono8", "bgr8"}) {
+  for (const char* encoding : {"rgb8", "mono8", "bgr8", "rgba8", "bgra8"}) {
     Image color = message;
     color.encoding(encoding);
     EXPECT_THAT(to_gray(color).reason, HasSubstr(reason)) << encoding;

@@ -121,8 +121,9 @@ TEST(StaticTransforms, TransformThatIsNoRotationIsNotTaken) {
   StaticTransforms transforms;
   auto bad = link("base_link", "camera", Pose::Identity());
   bad.transform().rotation().w(0.0);
-  transforms.add(announce({bad}));
+  EXPECT_NE(transforms.add(announce({bad})), "");
   EXPECT_FALSE(transforms.find("base_link", "camera"));
+  EXPECT_EQ(transforms.add(announce({link("base_link", "camera", Pose::Identity())})), "");
 }
 
 }  // namespace

@@ -103,11 +103,56 @@ TEST(StampBuffer, MatchWaitsWhileABetterOneMayCome) {
   EXPECT_EQ(*found, "33");
 }
 
+TEST(StampBuffer, StreamThatHasNotBegunAnewYetIsWaitedFor) {
+  Buffer buffer;
+  for (const auto stamp : {5000, 5033}) push(buffer, stamp);
+  std::string* found = nullptr;
+  buffer.expect_restart(at_ms(100));
+  EXPECT_EQ(buffer.match(at_ms(100), kTolerance, false, found), Match::kWait);
+  push(buffer, 5066);  // still of before
+  EXPECT_EQ(buffer.match(at_ms(100), kTolerance, false, found), Match::kWait);
+  EXPECT_EQ(push(buffer, 100), Push::kRestarted);
+  EXPECT_EQ(buffer.match(at_ms(100), kTolerance, false, found), Match::kFound);
+  EXPECT_EQ(buffer.match(at_ms(66), kTolerance, false, found), Match::kMissing);
+}
+
+TEST(StampBuffer, StreamThatGoesOnIsNotExpectedToBeginAnew) {
+  Buffer buffer;
+  for (const auto stamp : {0, 33, 66}) push(buffer, stamp);
+  std::string* found = nullptr;
+  buffer.expect_restart(at_ms(50));
+  EXPECT_EQ(buffer.match(at_ms(50), kTolerance, false, found), Match::kMissing);
+  push(buffer, 5000);
+  EXPECT_EQ(buffer.match(at_ms(50), kTolerance, false, found), Match::kMissing);
+  buffer.expect_restart(at_ms(50));  // does not come, but the other stream catches up
+  EXPECT_EQ(buffer.match(at_ms(50), kTolerance, true, found), Match::kMissing);
+  EXPECT_EQ(buffer.match(at_ms(4500), kTolerance, false, found), Match::kMissing);
+}
+
+TEST(StampBuffer, StreamThatBeganAnewAloneIsNotHeldBack) {
+  Buffer buffer;
+  push(buffer, 5000);
+  EXPECT_EQ(push(buffer, 100), Push::kRestarted);
+  buffer.drop_until(at_ms(5033));  // the other stream is where it was
+  EXPECT_EQ(push(buffer, 133), Push::kStored);
+  EXPECT_EQ(drain(buffer), (std::vector<std::string>{"133"}));
+}
+
+TEST(StampBuffer, TellsHowManyItForgot) {
+  Buffer buffer;
+  EXPECT_EQ(buffer.second(), std::nullopt);
+  for (const auto stamp : {0, 33, 66}) push(buffer, stamp);
+  EXPECT_EQ(buffer.second(), at_ms(33));
+  EXPECT_EQ(buffer.drop_until(at_ms(50)), 2U);
+  EXPECT_EQ(buffer.drop_until(at_ms(50)), 0U);
+  EXPECT_EQ(buffer.size(), 1U);
+}
+
 // Colour and depth streams, each in its own order, interleaved at random. Joined pairs must not depend on it.
 class Join {
  public:
   void color(std::int64_t ms) {
-    push(color_, ms);
+    if (push(color_, ms) == Push::kRestarted) depth_.expect_restart(color_.front().first);
     advance(false);
   }
   void depth(std::int64_t ms) {
@@ -127,6 +172,7 @@ class Join {
       const auto match = depth_.match(stamp, kTolerance, is_complete, found);
       if (match == Match::kWait) return;
       pairs_.push_back(message + (match == Match::kFound ? "+" + *found : "+none"));
+      depth_.drop_until(stamp - kTolerance);
       color_.drop_until(stamp);
     }
   }
@@ -164,6 +210,22 @@ TEST(StampBuffer, JoiningDoesNotDependOnArrivalBetweenStreams) {
     const auto expected = join(color, depth, random);
     ASSERT_EQ(expected.size(), color.size());
     for (int order = 0; order < 20; ++order) ASSERT_EQ(join(color, depth, random), expected);
+  }
+}
+
+// Frames of before may be lost when the depth images that they wait for are gone; none of after is.
+TEST(StampBuffer, RestartOfBothStreamsCostsNoFrameThatFollowsWhateverArrivesFirst) {
+  std::vector<std::int64_t> stamps;
+  for (const std::int64_t first : {5000, 0}) {
+    for (std::int64_t t = 0; t < 10; ++t) stamps.push_back(first + 33 * t);
+  }
+  const std::vector<std::string> expected = {"0+0",     "33+33",   "66+66",   "99+99",   "132+132",
+                                             "165+165", "198+198", "231+231", "264+264", "297+297"};
+  std::mt19937 random(7);
+  for (int order = 0; order < 1000; ++order) {
+    const auto pairs = join(stamps, stamps, random);
+    ASSERT_GE(pairs.size(), expected.size()) << order;
+    ASSERT_EQ(std::vector<std::string>(pairs.end() - 10, pairs.end()), expected) << order;
   }
 }
 

@@ -2,10 +2,10 @@
 
 #include <memory>
 
-#include "sensor_replay/core/camera_file.hpp"
-#include "sensor_replay/core/image_file.hpp"
+#include "common/geometry/image.hpp"
+#include "common/geometry/pinhole_camera.hpp"
 
-namespace lapis::sensor_replay {
+namespace lapis::images {
 
 /// Takes the lens distortion out of a camera's images: what comes out fits the same focal lengths and principal point
 /// without distortion. Colour is interpolated; depth and labels are those of the nearest pixel, because a mean of two
@@ -13,14 +13,16 @@ namespace lapis::sensor_replay {
 /// All functions may be called from several threads.
 class Rectifier {
  public:
-  explicit Rectifier(const CameraFile& file);
+  explicit Rectifier(const geometry::LensCamera& camera);
   ~Rectifier();
   Rectifier(const Rectifier&) = delete;
   Rectifier& operator=(const Rectifier&) = delete;
 
   /// The image must have the camera's size. Without distortion it stays as it is.
   void rectify(geometry::ColorImage& image) const;
-  /// Depth or labels.
+  void rectify(geometry::GrayImage& image) const;
+  void rectify(geometry::DepthImage& image) const;
+  /// Depth in millimetres, or labels.
   void rectify(geometry::Image<std::uint16_t>& image) const;
 
  private:
@@ -28,4 +30,4 @@ class Rectifier {
   std::unique_ptr<const Maps> maps_;  // null: nothing to do
 };
 
-}  // namespace lapis::sensor_replay
+}  // namespace lapis::images

@@ -1,0 +1,86 @@
+#include "common/images/encoded_image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+namespace lapis::images {
+namespace {
+
+using Bytes = std::span<const std::uint8_t>;
+
+constexpr std::array<std::uint8_t, 2> kJpegStart{0xFF, 0xD8};
+constexpr std::array<std::uint8_t, 16> kPngStart{0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n',
+                                                 0,    0,   0,   13,  'I',  'H',  'D',  'R'};
+constexpr std::uint32_t kLargestSide = 65535;
+
+template <std::size_t kSize>
+bool begins_with(Bytes bytes, const std::array<std::uint8_t, kSize>& start) {
+  return bytes.size() >= kSize && std::equal(start.begin(), start.end(), bytes.begin());
+}
+
+/// Number of `count` bytes, the highest first; they must be there.
+std::uint32_t big_endian(Bytes bytes, std::size_t at, std::size_t count) {
+  std::uint32_t value = 0;
+  for (const std::uint8_t byte : bytes.subspan(at, count)) value = value << 8 | byte;
+  return value;
+}
+
+std::optional<ImageSize> checked_size(std::uint32_t width, std::uint32_t height) {
+  if (width == 0 || height == 0 || width > kLargestSide || height > kLargestSide) return std::nullopt;
+  return ImageSize{static_cast<int>(width), static_cast<int>(height)};
+}
+
+// Start of frame: any of 0xC0 to 0xCF but the tables of Huffman codes, JPEG extensions and arithmetic conditioning.
+bool is_frame_header(std::uint8_t marker) {
+  return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
+}
+
+std::optional<ImageSize> jpeg_size(Bytes bytes) {
+  constexpr std::size_t kToEndOfSize = 9;  // marker, length, bits, height, width
+  std::size_t at = kJpegStart.size();
+  while (at + kToEndOfSize <= bytes.size() && bytes[at] == 0xFF) {
+    const std::uint8_t marker = bytes[at + 1];
+    if (is_frame_header(marker)) return checked_size(big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2));
+    at += marker == 0xFF ? 1 : 2 + big_endian(bytes, at + 2, 2);  // 0xFF: filling
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+std::optional<ImageSize> encoded_size(Bytes bytes) {
+  if (begins_with(bytes, kJpegStart)) return jpeg_size(bytes);
+  if (!begins_with(bytes, kPngStart) || bytes.size() < kPngStart.size() + 8) return std::nullopt;
+  return checked_size(big_endian(bytes, kPngStart.size(), 4), big_endian(bytes, kPngStart.size() + 4, 4));
+}
+
+bool is_truncated_jpeg(Bytes bytes) {
+  if (bytes.size() < 4 || !begins_with(bytes, kJpegStart)) return false;
+  constexpr std::size_t kMaxTail = 64;  // some cameras append a few bytes
+  const std::size_t stop = bytes.size() > kMaxTail ? bytes.size() - kMaxTail : 2;
+  for (std::size_t i = bytes.size() - 1; i > stop; --i) {
+    if (bytes[i - 1] == 0xFF && bytes[i] == 0xD9) return false;
+  }
+  return true;
+}
+
+std::optional<geometry::GrayImage> decode_gray(Bytes bytes) {
+  if (!encoded_size(bytes) || is_truncated_jpeg(bytes) || bytes.size() > std::numeric_limits<int>::max())
+    return std::nullopt;
+  try {
+    // The decoder takes a matrix that it does not write to.
+    const cv::Mat coded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
+    const cv::Mat image = cv::imdecode(coded, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+    if (image.empty() || !image.isContinuous()) return std::nullopt;
+    geometry::GrayImage gray(image.cols, image.rows);
+    std::copy_n(image.ptr<std::uint8_t>(), gray.pixels.size(), gray.pixels.begin());
+    return gray;
+  } catch (const cv::Exception&) {
+    return std::nullopt;
+  }
+}
+
+}  // namespace lapis::images

@@ -1,0 +1,60 @@
+#include "common/images/rectifier.hpp"
+
+#include <opencv2/calib3d.hpp>
+#include <opencv2/imgproc.hpp>
+
+namespace lapis::images {
+namespace {
+
+template <class Pixel>
+void remap(geometry::Image<Pixel>& image, int type, const cv::Mat& whole, const cv::Mat& parts, int interpolation) {
+  const cv::Mat source(image.height, image.width, type, image.pixels.data());
+  geometry::Image<Pixel> result(image.width, image.height);
+  cv::Mat target(image.height, image.width, type, result.pixels.data());
+  cv::remap(source, target, whole, parts, interpolation, cv::BORDER_CONSTANT);
+  image = std::move(result);
+}
+
+}  // namespace
+
+// Where each pixel of the rectified image lies in the recorded one.
+struct Rectifier::Maps {
+  cv::Mat whole;    // rounded down
+  cv::Mat parts;    // what `whole` leaves, in 1/32
+  cv::Mat nearest;  // rounded
+};
+
+Rectifier::Rectifier(const geometry::LensCamera& camera) {
+  if (!camera.is_distorted()) return;
+  const auto& c = camera.pinhole;
+  const cv::Matx33d intrinsics(c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0);
+  cv::Mat x;
+  cv::Mat y;
+  cv::initUndistortRectifyMap(intrinsics, camera.distortion, cv::noArray(), intrinsics, cv::Size(c.width, c.height),
+                              CV_32FC1, x, y);
+  Maps maps;  // converted afterwards, because this way what lies far outside does not wrap around
+  cv::convertMaps(x, y, maps.whole, maps.parts, CV_16SC2);
+  cv::Mat none;
+  cv::convertMaps(x, y, maps.nearest, none, CV_16SC2, true);
+  maps_ = std::make_unique<const Maps>(std::move(maps));
+}
+
+Rectifier::~Rectifier() = default;
+
+void Rectifier::rectify(geometry::ColorImage& image) const {
+  if (maps_ != nullptr) remap(image, CV_8UC3, maps_->whole, maps_->parts, cv::INTER_LINEAR);
+}
+
+void Rectifier::rectify(geometry::GrayImage& image) const {
+  if (maps_ != nullptr) remap(image, CV_8UC1, maps_->whole, maps_->parts, cv::INTER_LINEAR);
+}
+
+void Rectifier::rectify(geometry::DepthImage& image) const {
+  if (maps_ != nullptr) remap(image, CV_32FC1, maps_->nearest, cv::Mat(), cv::INTER_NEAREST);
+}
+
+void Rectifier::rectify(geometry::Image<std::uint16_t>& image) const {
+  if (maps_ != nullptr) remap(image, CV_16UC1, maps_->nearest, cv::Mat(), cv::INTER_NEAREST);
+}
+
+}  // namespace lapis::images

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <memory>
+#include <variant>
+
+#include "common/geometry/pinhole_camera.hpp"
+#include "common/images/rectifier.hpp"
+#include "common/messages/converted.hpp"
+#include "idl/sensor_msgs.hpp"
+#include "slam/core/frame.hpp"
+
+namespace lapis::slam {
+
+/// A colour image as it comes: raw or compressed.
+using ColorMessage = std::variant<sensor_msgs::msg::Image, sensor_msgs::msg::CompressedImage>;
+
+/// Makes frames of messages: colour becomes grey values, depth metres, and the distortion of the lens is taken out of
+/// both.
+class FrameConverter {
+ public:
+  /// Colour, depth registered to it and camera info of one instant; refused with a reason when they make no sense or do
+  /// not fit each other. The calibration may change from frame to frame; each frame has the camera of its own.
+  messages::Converted<RgbdFrame> convert(const ColorMessage& color, const sensor_msgs::msg::Image& depth,
+                                         const sensor_msgs::msg::CameraInfo& info, time::Time stamp);
+
+ private:
+  const images::Rectifier& rectifier(const geometry::LensCamera& camera);
+
+  geometry::LensCamera camera_;  // of the rectifier
+  std::unique_ptr<const images::Rectifier> rectifier_;
+};
+
+}  // namespace lapis::slam

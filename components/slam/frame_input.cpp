@@ -1,0 +1,92 @@
+#include "slam/frame_input.hpp"
+
+#include <algorithm>
+#include <vector>
+
+namespace lapis::slam {
+namespace {
+
+constexpr std::size_t kWaitingMessages = 8;
+constexpr std::size_t kPeriods = 9;  // their lower quartile is the camera's, also where images are missing
+constexpr time::Duration kLargestTolerance{120'000'000};  // at 5 Hz
+
+/// Half of a period, and a tenth for its jitter. As each depth image is used once, a neighbour's is not taken instead.
+time::Duration tolerance_of(time::Duration period) {
+  return std::min(time::Duration{period.nanoseconds / 10 * 6}, kLargestTolerance);
+}
+
+}  // namespace
+
+FrameInput::FrameInput(const FrameInputConfig& config, runtime::Context& context)
+    : status_(context.status()), fixed_tolerance_(time::Duration::from_seconds(config.max_stamp_difference_s)),
+      color_(config.color == "compressed" ? Color(context, topics::kCompressedColor, "colour", kWaitingMessages)
+                                          : Color(context, topics::kColor, "colour", kWaitingMessages)),
+      depth_(context, topics::kDepth, "depth", kWaitingMessages),
+      info_(context, topics::kColorInfo, "camera info", kWaitingMessages) {
+  color_.on_restart([this] { begin_anew(); });
+}
+
+void FrameInput::begin_anew() {
+  const time::Time first = color_.front().first;
+  depth_.expect_restart(first);
+  info_.expect_restart(first);
+  periods_.clear();
+  popped_.reset();
+  if (on_restart_) on_restart_();
+}
+
+std::optional<JoinedFrame> FrameInput::oldest(const runtime::Cycle& cycle) {
+  using time::Match;
+  if (color_.empty()) return std::nullopt;
+  const auto& [stamp, color] = color_.front();
+  const bool is_last_chance = cycle.inputs_complete || color_.is_full();
+  const auto known = known_tolerance();
+  tolerance_ = known.value_or(is_last_chance ? kLargestTolerance : time::Duration{});
+  Image* depth = nullptr;
+  Info* info = nullptr;
+  const auto depth_match = depth_.match(stamp, tolerance_, is_last_chance, depth);
+  const auto info_match = info_.match(stamp, tolerance_, is_last_chance, info);
+  if (depth_match == Match::kWait || info_match == Match::kWait) return std::nullopt;
+  const bool is_whole = depth != nullptr && info != nullptr;
+  if (!is_whole && !known && !is_last_chance) return std::nullopt;  // the next colour image tells what is near
+  const auto frame_id = [](const auto& message) { return message.header().frame_id(); };
+  JoinedFrame frame{stamp, std::visit(frame_id, color), &color, depth, info, ""};
+  if (depth == nullptr) {
+    frame.problem = "no depth image for a colour image";
+  } else if (info == nullptr) {
+    frame.problem = "no camera info for a colour image";
+  }
+  return frame;
+}
+
+messages::Converted<RgbdFrame> FrameInput::convert(const JoinedFrame& frame) {
+  return converter_.convert(*frame.color, *frame.depth, *frame.info, frame.stamp);
+}
+
+void FrameInput::pop(const JoinedFrame& frame) {
+  if (popped_) periods_.push_back(frame.stamp - *popped_);
+  if (periods_.size() > kPeriods) periods_.pop_front();
+  popped_ = frame.stamp;
+  const time::Time too_old = frame.stamp - tolerance_;
+  const bool has_depth = frame.depth != nullptr;
+  const time::Time depth_end = has_depth ? messages::from_message(frame.depth->header().stamp()) : too_old;
+  const std::size_t unused = depth_.drop_until(depth_end) - (has_depth ? 1 : 0);
+  if (unused > 0) status_.count("depth dropped: no colour image near it", unused);
+  info_.drop_until(too_old);
+  color_.drop_until(frame.stamp);
+}
+
+/// How far apart the stamps of a frame may be; nothing while there is one colour image only.
+std::optional<time::Duration> FrameInput::known_tolerance() const {
+  if (fixed_tolerance_.nanoseconds > 0) return fixed_tolerance_;
+  if (!periods_.empty()) {
+    std::vector<time::Duration> sorted(periods_.begin(), periods_.end());
+    std::sort(sorted.begin(), sorted.end());
+    return tolerance_of(sorted[(sorted.size() - 1) / 4]);
+  }
+  const auto second = color_.second();
+  if (!second) return std::nullopt;
+  return tolerance_of(*second - color_.front().first);
+}
+
+}  // namespace lapis::slam

@@ -1,0 +1,210 @@
+// lapis_slam alone, fed with the kinds of cameras that there are.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <opencv2/core.hpp>
+#include <opencv2/imgcodecs.hpp>
+
+#include "tests/contract/slam/slam_contract.hpp"
+
+namespace lapis::test {
+namespace {
+
+constexpr std::int64_t kStart_ns = 1'000'000'000;
+
+/// slam and a camera of any rate, whose depth may have stamps of its own.
+class SlamInputs : public SlamContract {
+ protected:
+  using SlamContract::SlamContract;
+
+  struct Rate {
+    double hz;
+    double depth_offset;  // of the depth images' stamps, in periods
+  };
+  static time::Time stamp(double hz, double index) {
+    return {kStart_ns + static_cast<std::int64_t>(std::llround(index / hz * 1e9))};
+  }
+  /// Frame `index` of the slow motion; depth shows what there was to see at its own time.
+  CameraFrame frame(const Rate& rate, int index) const {
+    CameraFrame result = feed.frame(stamp(rate.hz, index), slow_motion(index));
+    const double depth_index = index + rate.depth_offset;
+    result.depth = feed.camera().depth(stamp(rate.hz, depth_index), slow_motion(depth_index));
+    return result;
+  }
+  /// Sends frames and, when a further one has come, expects that each is tracked and where the camera is.
+  void expect_all_tracked(const Rate& rate, int count) {
+    for (int i = 0; i <= count; ++i) {
+      feed.send(frame(rate, i));
+      if (i > 0) {
+        ASSERT_TRUE(wait_for_at_least(static_cast<std::size_t>(i))) << i << slam.log();
+      }
+    }
+    ASSERT_GE(frames.size(), static_cast<std::size_t>(count));
+    for (int i = 0; i < count; ++i) {
+      const auto& answer = frames[static_cast<std::size_t>(i)];
+      EXPECT_EQ(stamp_of(answer), stamp(rate.hz, i));
+      EXPECT_EQ(answer.state(), kTracking) << i << " " << answer.reason();
+      expect_pose(stamp(rate.hz, i), slow_motion(0), slow_motion(i));
+    }
+    EXPECT_EQ(count_of("dropped"), 0.0) << slam.log();
+  }
+  bool wait_for_at_least(std::size_t number) {
+    return probe.wait_until([&] { return frames.size() >= number; });
+  }
+};
+
+TEST_F(SlamInputs, FiveHertzWithDepthHalfAPeriodLater) { expect_all_tracked({5.0, 0.5}, 10); }
+TEST_F(SlamInputs, SixtyHertzWithDepthHalfAPeriodLater) { expect_all_tracked({60.0, 0.5}, 20); }
+TEST_F(SlamInputs, FifteenHertzWithDepthNearlyHalfAPeriodBefore) { expect_all_tracked({15.0, -0.45}, 10); }
+
+TEST_F(SlamInputs, Mono8AndDepthInMetres) {
+  for (int i = 0; i < 8; ++i) {
+    CameraFrame sent = feed.frame(i);
+    sensor_msgs::msg::Image mono = *sent.color;
+    mono.encoding("mono8");
+    mono.step(mono.width());
+    mono.data().resize(mono.step() * mono.height());
+    for (std::size_t p = 0; p < mono.data().size(); ++p) mono.data()[p] = sent.color->data()[3 * p];
+    sent.color = mono;
+    sent.depth = feed.camera().depth_metres(CameraFeed::stamp(i), slow_motion(i));
+    ASSERT_TRUE(answers(sent, i)) << slam.log();
+    EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
+    expect_pose(CameraFeed::stamp(i), slow_motion(0), slow_motion(i));
+  }
+}
+
+TEST_F(SlamInputs, BgraIsTheSameAsRgb) {
+  for (int i = 0; i < 4; ++i) {
+    CameraFrame sent = feed.frame(i);
+    sensor_msgs::msg::Image bgra = *sent.color;
+    bgra.encoding("bgra8");
+    bgra.step(4 * bgra.width());
+    bgra.data().assign(static_cast<std::size_t>(bgra.step()) * bgra.height(), 255);
+    for (std::size_t p = 0; p < bgra.data().size() / 4; ++p) {
+      for (std::size_t c = 0; c < 3; ++c) bgra.data()[4 * p + c] = sent.color->data()[3 * p + 2 - c];
+    }
+    sent.color = bgra;
+    ASSERT_TRUE(answers(sent, i)) << slam.log();
+    EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
+    expect_pose(CameraFeed::stamp(i), slow_motion(0), slow_motion(i));
+  }
+}
+
+TEST_F(SlamInputs, EveryThirdDepthImageMissingCostsThoseFramesOnly) {
+  constexpr int kFrames = 15;
+  constexpr int kMissing = 5;
+  for (int i = 0; i < kFrames; ++i) {
+    CameraFrame sent = feed.frame(i);
+    if (i % 3 == 2) sent.depth.reset();
+    feed.send(sent);
+    if (i % 3 != 2) {
+      ASSERT_TRUE(wait_for_answer(CameraFeed::stamp(i))) << i << slam.log();
+    }
+  }
+  ASSERT_TRUE(track(kFrames));  // after it nothing can come for the last one
+  ASSERT_EQ(frames.size(), static_cast<std::size_t>(kFrames + 1));
+  for (int i = 0; i < kFrames; ++i) {
+    const auto& answer = frames[static_cast<std::size_t>(i)];
+    EXPECT_EQ(stamp_of(answer), CameraFeed::stamp(i));
+    EXPECT_EQ(answer.state(), i % 3 == 2 ? kLost : kTracking) << i << " " << answer.reason();
+    if (i % 3 == 2) {
+      EXPECT_EQ(answer.reason(), "no depth image for a colour image");
+    } else {
+      expect_pose(CameraFeed::stamp(i), slow_motion(0), slow_motion(i));
+    }
+  }
+  EXPECT_TRUE(wait_for_count("frames dropped: no depth image", kMissing));
+  EXPECT_EQ(count_of("frames dropped"), kMissing);
+}
+
+TEST_F(SlamInputs, DepthWithoutColorIsCounted) {
+  for (int i = 0; i < 9; ++i) {
+    CameraFrame sent = feed.frame(i);
+    if (i % 3 == 1) sent.color.reset();
+    feed.send(sent);
+    if (i % 3 != 1) {
+      ASSERT_TRUE(wait_for_answer(CameraFeed::stamp(i))) << i << slam.log();
+    }
+  }
+  EXPECT_EQ(frames.size(), 6U);
+  EXPECT_TRUE(wait_for_count("depth dropped: no colour image near it", 3)) << slam.log();
+  EXPECT_EQ(count_of("dropped"), 3.0);
+}
+
+/// With slam.input.color: compressed.
+class SlamCompressedInput : public SlamInputs {
+ protected:
+  SlamCompressedInput() : SlamInputs({"--set", "slam.input.color=compressed"}) {}
+
+  bool is_matched() const override { return color_.matched() > 0; }
+  void send(int index, const std::string& extension, const std::function<void(std::vector<std::uint8_t>&)>& change) {
+    CameraFrame sent = feed.frame(index);
+    cv::Mat pixels(static_cast<int>(sent.color->height()), static_cast<int>(sent.color->width()), CV_8UC3,
+                   sent.color->data().data());
+    sensor_msgs::msg::CompressedImage message;
+    message.header(sent.color->header());
+    message.format("rgb8; " + extension.substr(1) + " compressed bgr8");
+    cv::imencode(extension, pixels, message.data());
+    change(message.data());
+    color_.publish(message);
+    sent.color.reset();
+    feed.send(sent);
+  }
+
+ private:
+  dds::Publisher<sensor_msgs::msg::CompressedImage>& color_ = probe.advertise(topics::kCompressedColor);
+};
+
+TEST_F(SlamCompressedInput, JpegAndPngAreTrackedAndDamagedOnesAreNot) {
+  const auto as_it_is = [](auto& /*bytes*/) {};
+  const auto halve = [](auto& bytes) { bytes.resize(bytes.size() / 2); };
+  const auto spoil = [](auto& bytes) { bytes.assign(500, 7); };
+  for (int i = 0; i < 12; ++i) {
+    const bool is_bad = i == 6 || i == 8;
+    const std::string extension = i % 4 < 2 ? ".jpg" : ".png";
+    if (i == 6) {
+      send(i, ".jpg", halve);
+    } else if (i == 8) {
+      send(i, extension, spoil);
+    } else {
+      send(i, extension, as_it_is);
+    }
+    ASSERT_TRUE(wait_for_answer(CameraFeed::stamp(i))) << i << slam.log();
+    EXPECT_EQ(frames.back().state(), is_bad ? kLost : kTracking) << i << " " << frames.back().reason();
+    if (!is_bad) expect_pose(CameraFeed::stamp(i), slow_motion(0), slow_motion(i));
+  }
+  EXPECT_TRUE(wait_for_count("compressed colour image is damaged", 1));
+  EXPECT_TRUE(wait_for_count("neither JPEG nor PNG", 1));
+}
+
+/// With the lens of a wide camera: the corners lie 24 pixels off.
+class SlamDistortedInput : public SlamInputs {
+ protected:
+  SlamDistortedInput() : SlamInputs({}, SyntheticCamera(320, 240, {-0.28, 0.07, 0.0008, -0.0006, 0.0})) {}
+};
+
+TEST_F(SlamDistortedInput, TrajectoryIsTheTrueOne) {
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(track(i)) << slam.log();
+    EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
+    expect_pose(CameraFeed::stamp(i), slow_motion(0), slow_motion(i));
+  }
+}
+
+TEST_F(SlamInputs, CalibrationMayChange) {
+  const SyntheticCamera large(400, 300);
+  const SyntheticCamera wide(320, 240, {-0.28, 0.07, 0.0008, -0.0006, 0.0});
+  for (int i = 0; i < 15; ++i) {
+    const SyntheticCamera& camera = i < 5 ? feed.camera() : (i < 10 ? large : wide);
+    const time::Time at = CameraFeed::stamp(i);
+    const CameraFrame sent{camera.color(at, slow_motion(i)), camera.depth(at, slow_motion(i)), {}, camera.info(at)};
+    ASSERT_TRUE(answers(sent, i)) << slam.log();
+    EXPECT_EQ(frames.back().state(), kTracking) << i << " " << frames.back().reason();
+    EXPECT_EQ(frames.back().session(), frames.front().session());
+    expect_pose(at, slow_motion(0), slow_motion(i));
+  }
+}
+
+}  // namespace
+}  // namespace lapis::test

@@ -1,7 +1,7 @@
 #include "slam/core/pose_graph_optimizer.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <iterator>
 #include <numeric>
 
 #include "slam/core/graduated_weights.hpp"
@@ -14,7 +14,9 @@ using geometry::Matrix6d;
 
 constexpr double kFirstDamping = 1e-6, kMostDamping = 1e12, kDampingFactor = 10.0;
 // A round of graduated non-convexity only has to follow its weights.
-constexpr int kRoundIterations = 3;
+constexpr int kRoundIterations = 2;
+// Loop closures with more chi2 than this many times the median of those that do not fit wait for the others' verdict.
+constexpr double kSticksOut = 4.0;
 
 /// Levenberg and Marquardt's method; steps are undamped as long as they succeed.
 template <class Space>
@@ -54,7 +56,11 @@ class Minimizer {
     return false;
   }
 
-  const PoseGraphProblem<Space>& problem() const { return problem_; }
+  std::vector<double> edge_chi2() const { return problem_.edge_chi2(poses_); }
+  double chi2(const std::vector<double>& weights) const { return problem_.chi2(poses_, weights); }
+  double contradiction(std::size_t edge, const std::vector<double>& weights) const {
+    return problem_.contradiction(edge, poses_, weights);
+  }
   const typename PoseGraphProblem<Space>::Poses& poses() const { return poses_; }
   int iterations() const { return iterations_; }
 
@@ -66,22 +72,89 @@ class Minimizer {
   int iterations_ = 0;
 };
 
+/// Decides which loop closures count. Those that stick out wait: with all wrong ones in it from the beginning, a large
+/// graph would have dense equations. Each that does not contradict the result of the others then has its turn.
+template <class Space>
+class RobustMinimizer {
+ public:
+  RobustMinimizer(const OptimizerOptions& options, const PoseGraphSnapshot& graph, Minimizer<Space>& minimizer)
+      : options_(options), minimizer_(minimizer), gate_(chi2_gate(Space::kDof)), weights_(graph.edges.size(), 1.0) {
+    for (std::size_t i = 0; i < graph.edges.size(); ++i) {
+      if (graph.edges[i].type == EdgeType::kLoopClosure) waiting_.push_back(i);
+    }
+  }
+
+  bool minimize() {
+    for (const std::size_t i : waiting_) weights_[i] = 0.0;
+    std::vector<std::size_t> active = take_moderate();
+    bool has_converged = false;
+    do {
+      has_converged = graduate(active);
+      std::erase_if(active, [&](std::size_t i) { return weights_[i] == 0.0; });
+    } while (join_consistent(active));
+    return has_converged;
+  }
+  const std::vector<double>& weights() const { return weights_; }
+
+ private:
+  std::vector<std::size_t> take_moderate() {
+    const std::vector<double> chi2 = minimizer_.edge_chi2();
+    std::vector<double> misfits;
+    for (const std::size_t i : waiting_) {
+      if (chi2[i] > gate_) misfits.push_back(chi2[i]);
+    }
+    const auto middle = misfits.begin() + std::ssize(misfits) / 2;
+    std::nth_element(misfits.begin(), middle, misfits.end());
+    const double limit = misfits.empty() ? gate_ : kSticksOut * *middle;
+    std::vector<std::size_t> result;
+    std::copy_if(waiting_.begin(), waiting_.end(), std::back_inserter(result),
+                 [&](std::size_t i) { return chi2[i] <= limit; });
+    return result;
+  }
+
+  bool graduate(const std::vector<std::size_t>& active) {
+    for (const std::size_t i : active) weights_[i] = 1.0;
+    GraduatedWeights graduated(active, gate_);
+    bool has_converged = minimizer_.minimize(weights_, options_.max_iterations);
+    while (graduated.update(minimizer_.edge_chi2(), weights_)) {
+      has_converged = minimizer_.minimize(weights_, graduated.is_final() ? options_.max_iterations : kRoundIterations);
+    }
+    return has_converged;
+  }
+
+  // Loop closures without weight join once. True when there were any.
+  bool join_consistent(std::vector<std::size_t>& active) {
+    const std::size_t before = active.size();
+    std::erase_if(waiting_, [&](std::size_t i) {
+      if (weights_[i] > 0.0 || minimizer_.contradiction(i, weights_) > gate_) return false;
+      active.push_back(i);
+      return true;
+    });
+    return active.size() > before;
+  }
+
+  const OptimizerOptions& options_;
+  Minimizer<Space>& minimizer_;
+  double gate_;
+  std::vector<double> weights_;       // of every edge
+  std::vector<std::size_t> waiting_;  // loop closures that may still join
+};
+
 template <class Space>
 OptimizerReport optimize(const OptimizerOptions& options, PoseGraphSnapshot& graph) {
   const PoseGraphTopology topology = pose_graph_topology(graph);
   Minimizer<Space> minimizer(options, topology, graph);
   OptimizerReport report;
   report.weights.assign(graph.edges.size(), 1.0);
-  report.initial_chi2 = minimizer.problem().chi2(minimizer.poses(), report.weights);
-  report.has_converged = minimizer.minimize(report.weights, options.max_iterations);
+  report.initial_chi2 = minimizer.chi2(report.weights);
   if (options.is_robust) {
-    GraduatedWeights graduated(graph.edges, Space::kDof);
-    while (graduated.update(minimizer.problem().edge_chi2(minimizer.poses()), report.weights)) {
-      const int limit = graduated.is_final() ? options.max_iterations : kRoundIterations;
-      report.has_converged = minimizer.minimize(report.weights, limit);
-    }
+    RobustMinimizer<Space> robust(options, graph, minimizer);
+    report.has_converged = robust.minimize();
+    report.weights = robust.weights();
+  } else {
+    report.has_converged = minimizer.minimize(report.weights, options.max_iterations);
   }
-  report.final_chi2 = minimizer.problem().chi2(minimizer.poses(), report.weights);
+  report.final_chi2 = minimizer.chi2(report.weights);
   report.iterations = minimizer.iterations();
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
     if (topology.free[i] >= 0) graph.nodes[i].T_map_camera = Space::to_pose(minimizer.poses()[i]);
@@ -110,32 +183,31 @@ std::vector<std::optional<Matrix6d>> node_covariances(const PoseGraphSnapshot& g
                                                       const std::vector<std::uint64_t>& ids,
                                                       const std::vector<double>& weights) {
   std::vector<std::optional<Matrix6d>> result(ids.size());
-  if (graph.nodes.empty()) return result;
   const NodePlaces places(graph);
   const PoseGraphTopology topology = pose_graph_topology(graph);
-  PoseGraphProblem<SpatialPoses> problem(topology, graph);
-  problem.linearize(problem.poses_of(graph), weights.empty() ? std::vector(graph.edges.size(), 1.0) : weights);
-  if (!problem.equations().factorize(0.0)) return result;
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(6 * std::ssize(topology.order), 6 * std::ssize(ids));
+  std::vector<std::size_t> wanted, nodes;  // in ids; in the graph
+  std::vector<int> free_nodes;
   for (std::size_t i = 0; i < ids.size(); ++i) {
     const auto place = places.find(ids[i]);
-    if (!place || topology.free[*place] < 0) continue;
-    right.block<6, 6>(6 * topology.free[*place], 6 * static_cast<Eigen::Index>(i)).setIdentity();
-  }
-  const Eigen::MatrixXd solution = problem.equations().solve(right);
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const auto place = places.find(ids[i]);
-    if (!place || topology.component[*place] != 0) continue;
-    if (topology.free[*place] < 0) {
+    if (!place || topology.part[*place] != 0) continue;
+    if (*place == 0) {
       result[i] = Matrix6d::Zero();
       continue;
     }
-    // From the axes of the map to those of the node.
-    Matrix6d R = Matrix6d::Zero();
-    R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = graph.nodes[*place].T_map_camera.linear();
-    const Matrix6d in_map = solution.block<6, 6>(6 * topology.free[*place], 6 * static_cast<Eigen::Index>(i));
+    wanted.push_back(i);
+    nodes.push_back(*place);
+    free_nodes.push_back(topology.free[*place]);
+  }
+  if (wanted.empty()) return result;
+  PoseGraphProblem<SpatialPoses> problem(topology, graph);
+  problem.linearize(problem.poses_of(graph), weights.empty() ? std::vector(graph.edges.size(), 1.0) : weights);
+  const auto columns = problem.inverse_columns(free_nodes);
+  for (std::size_t k = 0; columns && k < wanted.size(); ++k) {
+    const Matrix6d in_map = columns->block<6, 6>(6 * free_nodes[k], 6 * static_cast<int>(k));
+    Matrix6d R = Matrix6d::Zero();  // from the axes of the node to those of the map
+    R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = graph.nodes[nodes[k]].T_map_camera.linear();
     const Matrix6d in_node = R.transpose() * in_map * R;
-    result[i] = 0.5 * (in_node + in_node.transpose());
+    result[wanted[k]] = 0.5 * (in_node + in_node.transpose());
   }
   return result;
 }

@@ -51,7 +51,6 @@ struct BlockCholesky::Cholmod {
     common.print = 0;
     common.nmethods = 1;
     common.method[0].ordering = CHOLMOD_NATURAL;
-    common.supernodal = CHOLMOD_SIMPLICIAL;
     common.final_ll = 1;  // LL': finds a matrix that is not positive definite
     common.quick_return_if_not_posdef = 1;
   }

@@ -1,6 +1,7 @@
 #include "slam/core/pose_graph_optimizer.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <iterator>
 #include <numeric>
 
@@ -12,7 +13,9 @@ namespace {
 
 using geometry::Matrix6d;
 
-constexpr double kFirstDamping = 1e-6, kMostDamping = 1e12, kDampingFactor = 10.0;
+constexpr double kLeastDamping = 1e-7, kFirstDamping = 1e-5, kLittleDamping = 3e-6, kMostDamping = 1e12;
+// Least squares whose only purpose is to see what does not fit.
+constexpr int kLookIterations = 10;
 // A round of graduated non-convexity only has to follow its weights.
 constexpr int kRoundIterations = 2;
 // Loop closures with more chi2 than this many times the median of those that do not fit wait for the others' verdict.
@@ -35,23 +38,19 @@ class Minimizer {
       is_linearized = true;
       ++iterations_;
       const auto step = problem_.step(damping_);
-      if (step) {
-        auto candidate = problem_.moved(poses_, *step);
-        const double candidate_chi2 = problem_.chi2(candidate, weights);
-        const bool is_last = problem_.predicted_decrease(*step) <= enough && damping_ <= kFirstDamping;
-        if (candidate_chi2 < chi2) {
-          const double decrease = chi2 - candidate_chi2;
-          poses_.swap(candidate);
-          chi2 = candidate_chi2;
-          is_linearized = false;
-          damping_ = damping_ > kFirstDamping ? damping_ / kDampingFactor : 0.0;
-          if (is_last || (decrease <= enough && damping_ == 0.0)) return true;
-          continue;
-        }
-        if (is_last) return true;
+      const double promised = step ? problem_.predicted_decrease(*step) : 0.0;
+      auto candidate = step ? problem_.moved(poses_, *step) : poses_;
+      const double decrease = step ? chi2 - problem_.chi2(candidate, weights) : 0.0;
+      const bool is_last = step && damping_ < kLittleDamping && promised <= enough;
+      if (decrease > 0.0) {
+        poses_.swap(candidate);
+        chi2 -= decrease;
+        is_linearized = false;
+        relax_damping(decrease / promised);
+      } else {
+        raise_damping();
       }
-      damping_ = std::max(damping_ * kDampingFactor, kFirstDamping);
-      if (damping_ > kMostDamping) return true;
+      if (is_last || damping_ > kMostDamping) return true;
     }
     return false;
   }
@@ -65,10 +64,21 @@ class Minimizer {
   int iterations() const { return iterations_; }
 
  private:
+  // Nielsen (IMM-REP-1999-05): the damping follows how much of its promise a step keeps.
+  void relax_damping(double kept) {
+    damping_ *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * kept - 1.0, 3));
+    if (damping_ < kLeastDamping) damping_ = 0.0;
+    raise_ = 2.0;
+  }
+  void raise_damping() {
+    damping_ = std::max(damping_ * raise_, kFirstDamping);
+    raise_ *= 2.0;
+  }
+
   const OptimizerOptions& options_;
   PoseGraphProblem<Space> problem_;
   typename PoseGraphProblem<Space>::Poses poses_;
-  double damping_ = 0.0;
+  double damping_ = 0.0, raise_ = 2.0;
   int iterations_ = 0;
 };
 
@@ -115,11 +125,11 @@ class RobustMinimizer {
   bool graduate(const std::vector<std::size_t>& active) {
     for (const std::size_t i : active) weights_[i] = 1.0;
     GraduatedWeights graduated(active, gate_);
-    bool has_converged = minimizer_.minimize(weights_, options_.max_iterations);
+    bool has_converged = minimizer_.minimize(weights_, kLookIterations);
     while (graduated.update(minimizer_.edge_chi2(), weights_)) {
       has_converged = minimizer_.minimize(weights_, graduated.is_final() ? options_.max_iterations : kRoundIterations);
     }
-    return has_converged;
+    return has_converged || minimizer_.minimize(weights_, options_.max_iterations);
   }
 
   // Loop closures without weight join once. True when there were any.

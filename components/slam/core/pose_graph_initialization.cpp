@@ -124,11 +124,7 @@ void mark_loop_closures(PoseGraphSnapshot& graph) {
 
 void initialize_by_spanning_tree(PoseGraphSnapshot& graph) {
   const PoseGraphTopology topology = pose_graph_topology(graph);
-  std::vector<std::vector<std::size_t>> edges_of(graph.nodes.size());
-  for (std::size_t i = 0; i < topology.edges.size(); ++i) {
-    edges_of[topology.edges[i].from].push_back(i);
-    edges_of[topology.edges[i].to].push_back(i);
-  }
+  const std::vector<std::vector<std::size_t>> edges_of = edges_by_node(topology);
   std::vector<bool> is_reached(graph.nodes.size(), false);
   std::deque<std::size_t> nodes, loops;  // nodes whose edges come next; loop closures from nodes that were reached
   const auto reach = [&](std::size_t node, const Pose& T_map_node) {

@@ -32,6 +32,8 @@ class Minimizer {
   bool minimize(const std::vector<double>& weights, int max_iterations) {
     double chi2 = problem_.chi2(poses_, weights);
     bool is_linearized = false;
+    if (damping_ > kMostDamping) damping_ = 0.0;
+    raise_ = 2.0;
     for (int i = 0; i < max_iterations; ++i) {
       const double enough = options_.relative_decrease * chi2;
       if (!is_linearized) problem_.linearize(poses_, weights);
@@ -42,7 +44,7 @@ class Minimizer {
       auto candidate = step ? problem_.moved(poses_, *step) : poses_;
       const double decrease = step ? chi2 - problem_.chi2(candidate, weights) : 0.0;
       const bool is_last = step && damping_ < kLittleDamping && promised <= enough;
-      if (decrease > 0.0) {
+      if (decrease > 0.0 && std::isfinite(decrease)) {
         poses_.swap(candidate);
         chi2 -= decrease;
         is_linearized = false;
@@ -107,6 +109,7 @@ class RobustMinimizer {
   const std::vector<double>& weights() const { return weights_; }
 
  private:
+  // Those that fit or do not stick out.
   std::vector<std::size_t> take_moderate() {
     const std::vector<double> chi2 = minimizer_.edge_chi2();
     std::vector<double> misfits;
@@ -122,6 +125,7 @@ class RobustMinimizer {
     return result;
   }
 
+  // Optimises with these loop closures, all of them at first.
   bool graduate(const std::vector<std::size_t>& active) {
     for (const std::size_t i : active) weights_[i] = 1.0;
     GraduatedWeights graduated(active, gate_);
@@ -172,6 +176,14 @@ OptimizerReport optimize(const OptimizerOptions& options, PoseGraphSnapshot& gra
   return report;
 }
 
+// The same covariance, from the axes of the map to those of the pose.
+Matrix6d in_axes_of(const geometry::Pose& T, const Matrix6d& covariance) {
+  Matrix6d R = Matrix6d::Zero();
+  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = T.linear();
+  const Matrix6d result = R.transpose() * covariance * R;
+  return 0.5 * (result + result.transpose());
+}
+
 }  // namespace
 
 OptimizerReport optimize_pose_graph(const OptimizerOptions& options, PoseGraphSnapshot& graph) {
@@ -192,9 +204,16 @@ double pose_graph_chi2(const PoseGraphSnapshot& graph) {
 std::vector<std::optional<Matrix6d>> node_covariances(const PoseGraphSnapshot& graph,
                                                       const std::vector<std::uint64_t>& ids,
                                                       const std::vector<double>& weights) {
+  PoseGraphSnapshot weighted = graph;
+  if (!weights.empty()) {
+    std::size_t i = 0;
+    for (PoseGraphEdge& edge : weighted.edges) edge.information *= weights[i++];
+    i = 0;
+    std::erase_if(weighted.edges, [&](const PoseGraphEdge&) { return !(weights[i++] > 0.0); });
+  }
+  const NodePlaces places(weighted);
+  const PoseGraphTopology topology = pose_graph_topology(weighted);
   std::vector<std::optional<Matrix6d>> result(ids.size());
-  const NodePlaces places(graph);
-  const PoseGraphTopology topology = pose_graph_topology(graph);
   std::vector<std::size_t> wanted, nodes;  // in ids; in the graph
   std::vector<int> free_nodes;
   for (std::size_t i = 0; i < ids.size(); ++i) {
@@ -209,15 +228,12 @@ std::vector<std::optional<Matrix6d>> node_covariances(const PoseGraphSnapshot& g
     free_nodes.push_back(topology.free[*place]);
   }
   if (wanted.empty()) return result;
-  PoseGraphProblem<SpatialPoses> problem(topology, graph);
-  problem.linearize(problem.poses_of(graph), weights.empty() ? std::vector(graph.edges.size(), 1.0) : weights);
+  PoseGraphProblem<SpatialPoses> problem(topology, weighted);
+  problem.linearize(problem.poses_of(weighted), std::vector(weighted.edges.size(), 1.0));
   const auto columns = problem.inverse_columns(free_nodes);
   for (std::size_t k = 0; columns && k < wanted.size(); ++k) {
     const Matrix6d in_map = columns->block<6, 6>(6 * free_nodes[k], 6 * static_cast<int>(k));
-    Matrix6d R = Matrix6d::Zero();  // from the axes of the node to those of the map
-    R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = graph.nodes[nodes[k]].T_map_camera.linear();
-    const Matrix6d in_node = R.transpose() * in_map * R;
-    result[wanted[k]] = 0.5 * (in_node + in_node.transpose());
+    result[wanted[k]] = in_axes_of(weighted.nodes[nodes[k]].T_map_camera, in_map);
   }
   return result;
 }

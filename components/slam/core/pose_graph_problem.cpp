@@ -20,13 +20,11 @@ Matrix inverse(const Matrix& symmetric) {
 
 template <class Space>
 PoseGraphProblem<Space>::PoseGraphProblem(const PoseGraphTopology& topology, const PoseGraphSnapshot& graph)
-    : topology_(topology), edges_of_(graph.nodes.size()) {
+    : topology_(topology), edges_of_(edges_by_node(topology)) {
   edges_.reserve(graph.edges.size());
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const PoseGraphEdge& edge = graph.edges[i];
     edges_.push_back({topology.edges[i], Space::from_pose(edge.T_from_to), Space::information(edge.information)});
-    edges_of_[topology.edges[i].from].push_back(i);
-    edges_of_[topology.edges[i].to].push_back(i);
   }
 }
 
@@ -59,19 +57,24 @@ double PoseGraphProblem<Space>::chi2(const Poses& poses, const std::vector<doubl
 
 template <class Space>
 void PoseGraphProblem<Space>::linearize(const Poses& poses, const std::vector<double>& weights) {
-  bool is_missing = equations_ == nullptr;
-  std::size_t idle = 0, count = 0;
-  for (std::size_t i = 0; i < edges_.size() && equations_ != nullptr; ++i) {
-    is_missing = is_missing || (weights[i] > 0.0 && !is_in_pattern_[i]);
-    count += is_in_pattern_[i] ? 1 : 0;
-    idle += is_in_pattern_[i] && !(weights[i] > 0.0) ? 1 : 0;
-  }
-  if (is_missing || static_cast<double>(idle) > kMostIdle * static_cast<double>(count)) analyze(weights);
+  if (!fits_pattern(weights)) analyze(weights);
   equations_->set_zero();
   gradient_.setZero(Space::kDof * topology_.free_count);
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     if (weights[i] > 0.0) add(i, weights[i], poses);
   }
+}
+
+template <class Space>
+bool PoseGraphProblem<Space>::fits_pattern(const std::vector<double>& weights) const {
+  if (equations_ == nullptr) return false;
+  std::size_t idle = 0, count = 0;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    if (weights[i] > 0.0 && !is_in_pattern_[i]) return false;
+    count += is_in_pattern_[i] ? 1 : 0;
+    idle += is_in_pattern_[i] && !(weights[i] > 0.0) ? 1 : 0;
+  }
+  return static_cast<double>(idle) <= kMostIdle * static_cast<double>(count);
 }
 
 template <class Space>

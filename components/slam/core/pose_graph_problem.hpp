@@ -47,6 +47,7 @@ class PoseGraphProblem {
     Pose measured;
     typename Space::Matrix information;
   };
+  bool fits_pattern(const std::vector<double>& weights) const;
   void analyze(const std::vector<double>& weights);
   void add(std::size_t edge, double weight, const Poses& poses);
   std::vector<std::size_t> path(std::size_t from, std::size_t to, const std::vector<double>& weights) const;

@@ -57,6 +57,15 @@ PoseGraphTopology pose_graph_topology(const PoseGraphSnapshot& graph) {
   return result;
 }
 
+std::vector<std::vector<std::size_t>> edges_by_node(const PoseGraphTopology& topology) {
+  std::vector<std::vector<std::size_t>> result(topology.free.size());
+  for (std::size_t i = 0; i < topology.edges.size(); ++i) {
+    result[topology.edges[i].from].push_back(i);
+    result[topology.edges[i].to].push_back(i);
+  }
+  return result;
+}
+
 FreePairs free_pairs(const PoseGraphTopology& topology, const std::vector<double>& weights) {
   FreePairs result;
   for (std::size_t i = 0; i < topology.edges.size(); ++i) {

@@ -26,6 +26,9 @@ struct PoseGraphTopology {
 /// nodes have one id.
 PoseGraphTopology pose_graph_topology(const PoseGraphSnapshot& graph);
 
+/// Places of the edges at each node, in the order of the edges.
+std::vector<std::vector<std::size_t>> edges_by_node(const PoseGraphTopology& topology);
+
 /// Off-diagonal blocks of the equations of a graph's free nodes.
 struct FreePairs {
   std::vector<BlockPair> pairs;

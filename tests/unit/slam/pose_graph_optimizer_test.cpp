@@ -247,6 +247,7 @@ TEST(PoseGraphOptimizer, CovarianceNeedsWeightedEdges) {
   EXPECT_TRUE(node_covariance(graph, 13)->isApprox(of_one_edge, 1e-9));
   EXPECT_TRUE(node_covariance(graph, 13, {0.5, 1.0, 1.0})->isApprox(2.0 * of_one_edge, 1e-9));
   EXPECT_FALSE(node_covariance(graph, 33, {1.0, 0.0, 1.0}));
+  EXPECT_TRUE(node_covariance(graph, 13, {1.0, 0.0, 1.0})->isApprox(of_one_edge, 1e-9));
 }
 
 TEST(PoseGraphOptimizer, EveryPartKeepsItsFirstNode) {

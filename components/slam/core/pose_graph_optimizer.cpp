@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <numeric>
 
 #include "slam/core/graduated_weights.hpp"
 #include "slam/core/pose_graph_problem.hpp"
@@ -26,7 +25,7 @@ template <class Space>
 class Minimizer {
  public:
   Minimizer(const OptimizerOptions& options, const PoseGraphTopology& topology, const PoseGraphSnapshot& graph)
-      : options_(options), problem_(topology, graph), poses_(problem_.poses_of(graph)) {}
+      : options_(options), problem_(topology, graph), poses_(PoseGraphProblem<Space>::poses_of(graph)) {}
 
   /// Returns true when a step promised or brought too little to go on.
   bool minimize(const std::vector<double>& weights, int max_iterations) {
@@ -176,6 +175,13 @@ OptimizerReport optimize(const OptimizerOptions& options, PoseGraphSnapshot& gra
   return report;
 }
 
+template <class Space>
+double total_chi2(const PoseGraphSnapshot& graph) {
+  const PoseGraphTopology topology = pose_graph_topology(graph);
+  const PoseGraphProblem<Space> problem(topology, graph);
+  return problem.chi2(PoseGraphProblem<Space>::poses_of(graph), std::vector(graph.edges.size(), 1.0));
+}
+
 // The same covariance, from the axes of the map to those of the pose.
 Matrix6d in_axes_of(const geometry::Pose& T, const Matrix6d& covariance) {
   Matrix6d R = Matrix6d::Zero();
@@ -191,14 +197,7 @@ OptimizerReport optimize_pose_graph(const OptimizerOptions& options, PoseGraphSn
 }
 
 double pose_graph_chi2(const PoseGraphSnapshot& graph) {
-  const PoseGraphTopology topology = pose_graph_topology(graph);
-  const auto sum = [](const std::vector<double>& parts) { return std::accumulate(parts.begin(), parts.end(), 0.0); };
-  if (graph.is_planar) {
-    const PoseGraphProblem<PlanarPoses> problem(topology, graph);
-    return sum(problem.edge_chi2(problem.poses_of(graph)));
-  }
-  const PoseGraphProblem<SpatialPoses> problem(topology, graph);
-  return sum(problem.edge_chi2(problem.poses_of(graph)));
+  return graph.is_planar ? total_chi2<PlanarPoses>(graph) : total_chi2<SpatialPoses>(graph);
 }
 
 std::vector<std::optional<Matrix6d>> node_covariances(const PoseGraphSnapshot& graph,
@@ -206,10 +205,12 @@ std::vector<std::optional<Matrix6d>> node_covariances(const PoseGraphSnapshot& g
                                                       const std::vector<double>& weights) {
   PoseGraphSnapshot weighted = graph;
   if (!weights.empty()) {
-    std::size_t i = 0;
-    for (PoseGraphEdge& edge : weighted.edges) edge.information *= weights[i++];
-    i = 0;
-    std::erase_if(weighted.edges, [&](const PoseGraphEdge&) { return !(weights[i++] > 0.0); });
+    weighted.edges.clear();
+    for (std::size_t i = 0; i < weights.size(); ++i) {
+      if (!(weights[i] > 0.0)) continue;
+      weighted.edges.push_back(graph.edges[i]);
+      weighted.edges.back().information *= weights[i];
+    }
   }
   const NodePlaces places(weighted);
   const PoseGraphTopology topology = pose_graph_topology(weighted);
@@ -229,7 +230,7 @@ std::vector<std::optional<Matrix6d>> node_covariances(const PoseGraphSnapshot& g
   }
   if (wanted.empty()) return result;
   PoseGraphProblem<SpatialPoses> problem(topology, weighted);
-  problem.linearize(problem.poses_of(weighted), std::vector(weighted.edges.size(), 1.0));
+  problem.linearize(PoseGraphProblem<SpatialPoses>::poses_of(weighted), std::vector(weighted.edges.size(), 1.0));
   const auto columns = problem.inverse_columns(free_nodes);
   for (std::size_t k = 0; columns && k < wanted.size(); ++k) {
     const Matrix6d in_map = columns->block<6, 6>(6 * free_nodes[k], 6 * static_cast<int>(k));

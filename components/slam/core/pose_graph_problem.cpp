@@ -87,16 +87,16 @@ void PoseGraphProblem<Space>::analyze(const std::vector<double>& weights) {
 }
 
 template <class Space>
-void PoseGraphProblem<Space>::add(std::size_t index, double weight, const Poses& poses) {
-  const Edge& edge = edges_[index];
+void PoseGraphProblem<Space>::add(std::size_t edge, double weight, const Poses& poses) {
+  const auto& [ends, measured, information] = edges_[edge];
   using Matrix = typename Space::Matrix;
-  const Pose &from = poses[edge.ends.from], &to = poses[edge.ends.to];
+  const Pose &from = poses[ends.from], &to = poses[ends.to];
   Matrix J;
-  const typename Space::Vector e = Space::residual(from, to, edge.measured, J);
-  const Matrix JtW = weight * (J.transpose() * edge.information);
+  const typename Space::Vector e = Space::residual(from, to, measured, J);
+  const Matrix JtW = weight * (J.transpose() * information);
   const Matrix H = JtW * J;
   const typename Space::Vector g = JtW * e;
-  const int a = topology_.free[edge.ends.from], b = topology_.free[edge.ends.to];
+  const int a = topology_.free[ends.from], b = topology_.free[ends.to];
   if (b >= 0) {
     equations_->add_diagonal(b, H);
     gradient_.template segment<Space::kDof>(b * Space::kDof) += g;
@@ -106,7 +106,7 @@ void PoseGraphProblem<Space>::add(std::size_t index, double weight, const Poses&
   const Matrix MtH = M.transpose() * H;
   equations_->add_diagonal(a, Matrix(MtH * M));
   gradient_.template segment<Space::kDof>(a * Space::kDof) -= M.transpose() * g;
-  if (b >= 0) equations_->add_pair(static_cast<std::size_t>(pattern_.of_edge[index]), Matrix(-MtH));
+  if (b >= 0) equations_->add_pair(static_cast<std::size_t>(pattern_.of_edge[edge]), Matrix(-MtH));
 }
 
 template <class Space>
@@ -165,11 +165,11 @@ std::vector<std::size_t> PoseGraphProblem<Space>::path(std::size_t from, std::si
 }
 
 template <class Space>
-double PoseGraphProblem<Space>::contradiction(std::size_t index, const Poses& poses,
+double PoseGraphProblem<Space>::contradiction(std::size_t edge, const Poses& poses,
                                               const std::vector<double>& weights) const {
   using Matrix = typename Space::Matrix;
-  const Edge& edge = edges_[index];
-  const std::vector<std::size_t> edges = path(edge.ends.from, edge.ends.to, weights);
+  const auto& [ends, measured, information] = edges_[edge];
+  const std::vector<std::size_t> edges = path(ends.from, ends.to, weights);
   if (edges.empty()) return 0.0;
   Matrix J;
   // Where the errors of the path move the edge's end, in the axes of the map.
@@ -177,11 +177,11 @@ double PoseGraphProblem<Space>::contradiction(std::size_t index, const Poses& po
   for (const std::size_t i : edges) {
     const Pose& end = poses[edges_[i].ends.to];
     Space::residual(poses[edges_[i].ends.from], end, edges_[i].measured, J);
-    const Matrix L = Space::lever(end, poses[edge.ends.to]);
+    const Matrix L = Space::lever(end, poses[ends.to]);
     covariance += L * inverse(Matrix(J.transpose() * edges_[i].information * J)) * L.transpose();
   }
-  const typename Space::Vector e = Space::residual(poses[edge.ends.from], poses[edge.ends.to], edge.measured, J);
-  const Matrix of_residual = inverse(edge.information) + J * covariance * J.transpose();
+  const typename Space::Vector e = Space::residual(poses[ends.from], poses[ends.to], measured, J);
+  const Matrix of_residual = inverse(information) + J * covariance * J.transpose();
   return e.dot(of_residual.llt().solve(e));
 }
 

@@ -94,6 +94,20 @@ void add_texts(Inputs& inputs) {
                      R"("labels":[{"id":9,"name":"wall"},{"id":4,"name":"table"}],"up":"y"})")};
 }
 
+void add_poses(Seeds& seeds) {
+  seeds["pose_graph"] = {
+      to_bytes("VERTEX_SE3:QUAT 0 0 0 0 0 0 0 1\nVERTEX_SE3:QUAT 1 1 0 0 0 0 0.6 0.8\nFIX 0\n"
+               "EDGE_SE3:QUAT 0 1 1.1 0 0 0 0 0 1 9 0 0 0 0 0 9 0 0 0 0 9 0 0 0 4 0 0 4 0 4\n"
+               "EDGE_SE3:QUAT 1 7 0 1 0 0.1 0 0 1 9 0 0 0 0 0 9 0 0 0 0 9 0 0 0 4 0 0 4 0 4\n"
+               "EDGE_SE3:QUAT 7 0 2 0 0 0 0.7 0 0.7 9 1 0 0 0 0 9 0 0 0 0 9 0 0 0 4 0 0 4 0 4\n"),
+      to_bytes(
+          "# plane\nVERTEX_SE2 0 0 0 0\nEDGE_SE2 0 1 1 0 1.5 4 0 0 4 0 9\nEDGE_SE2 1 2 1 0 1.5 4 0 0 4 0 9\n"
+          "EDGE_SE2 2 3 1 0 1.6 4 0 0 4 0 9\nEDGE_SE2 3 0 1.4 0 -4.7 4 0 1 4 0 9\nEDGE_SE2 0 3 -9 2 1 4 0 1 4 0 9\n"),
+      to_bytes("VERTEX2 0 0 0 0\nEDGE2 0 5 1 2 0.5 1 0 1 1 0 0\nEQUIV 0 5\n"),
+      to_bytes("VERTEX3 1 0 0 0 0 0 0\nEDGE3 1 2 1 0 0 0.1 0.2 3 9 0 0 0 0 0 9 0 0 0 0 9 0 0 0 4 0 0 4 0 4\n")};
+  seeds["trajectory"] = {to_bytes("# t x y z q\n0.5 1 2 3 0 0 0 1\n1305031102.175304 1.5,2e-3,-3 0 0 0.6 0.8\n")};
+}
+
 void add_scene_files(Inputs& inputs) {
   const std::string rooms =
       "rooms:\n  - {id: a, rect: [0, 0, 2, 1.5], wall: {texture: brick, color: [200, 90, 9]}}\n"
@@ -123,6 +137,7 @@ Seeds seeds() {
   add_scene_files(seeds["scene"]);
   for (const unsigned keyframes : {1U, 3U})
     seeds["slam"].push_back(slam::encode_slam_file(slam::test::sample_file(keyframes, keyframes)));
+  add_poses(seeds);
   return seeds;
 }
 

@@ -91,8 +91,7 @@ BlockCholesky::BlockCholesky(int block_size, const std::vector<int>& order, cons
   for (std::size_t i = 0; i < order.size(); ++i) position_[static_cast<std::size_t>(order[i])] = static_cast<int>(i);
   const std::vector<BlockPair> sorted = sorted_places(pairs, &position_);
   lay_out(sorted);
-  for (std::size_t i = 0; i < position_.size(); ++i)
-    diagonals_.push_back(slot_of(sorted, {position_[i], position_[i]}));
+  for (const int position : position_) diagonals_.push_back(slot_of(sorted, {position, position}));
   for (const auto& [row, column] : pairs) {
     pairs_.push_back(
         slot_of(sorted, {position_[static_cast<std::size_t>(row)], position_[static_cast<std::size_t>(column)]}));
@@ -127,8 +126,9 @@ BlockCholesky::Slot BlockCholesky::slot_of(const std::vector<BlockPair>& sorted,
   const int column = std::max(place.first, place.second), row = std::min(place.first, place.second);
   const auto first = std::lower_bound(sorted.begin(), sorted.end(), BlockPair{column, 0});
   const auto found = std::lower_bound(first, sorted.end(), BlockPair{column, row});
-  const std::ptrdiff_t begin = column_begin_[static_cast<std::size_t>(column * block_size_)];
-  const std::ptrdiff_t end = column_begin_[static_cast<std::size_t>(column * block_size_ + 1)];
+  const auto first_column = static_cast<std::size_t>(column) * static_cast<std::size_t>(block_size_);
+  const std::ptrdiff_t begin = column_begin_[first_column];
+  const std::ptrdiff_t end = column_begin_[first_column + 1];
   return {begin + (found - first) * block_size_, end - begin - 1, place.first > place.second};
 }
 

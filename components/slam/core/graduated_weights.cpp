@@ -6,24 +6,17 @@
 namespace lapis::slam {
 namespace {
 
-// 99 % quantiles of chi2 with 6 and 3 degrees of freedom.
-constexpr double kGateSpatial = 16.812, kGatePlanar = 11.345;
 constexpr double kGrowth = 1.4;
 // From here on truncation is as good as sharp.
 constexpr double kLastMu = 1e3;
 
 }  // namespace
 
-GraduatedWeights::GraduatedWeights(const std::vector<PoseGraphEdge>& edges, int degrees_of_freedom)
-    : gate_(degrees_of_freedom == 3 ? kGatePlanar : kGateSpatial) {
-  for (std::size_t i = 0; i < edges.size(); ++i) {
-    if (edges[i].type == EdgeType::kLoopClosure) loops_.push_back(i);
-  }
-}
+double chi2_gate(int degrees_of_freedom) { return degrees_of_freedom == 3 ? 11.345 : 16.812; }
 
-bool GraduatedWeights::update(const std::vector<double>& edge_chi2, std::vector<double>& weights) {
+bool GraduatedWeights::update(const std::vector<double>& chi2, std::vector<double>& weights) {
   double worst = 0.0;
-  for (const std::size_t i : loops_) worst = std::max(worst, edge_chi2[i]);
+  for (const std::size_t i : edges_) worst = std::max(worst, chi2[i]);
   if (mu_ == 0.0) {
     if (worst <= gate_) return false;
     mu_ = gate_ / (2.0 * worst - gate_);
@@ -32,8 +25,8 @@ bool GraduatedWeights::update(const std::vector<double>& edge_chi2, std::vector<
     mu_ *= kGrowth;
   }
   is_final_ = true;
-  for (const std::size_t i : loops_) {
-    weights[i] = weight(edge_chi2[i]);
+  for (const std::size_t i : edges_) {
+    weights[i] = weight(chi2[i]);
     is_final_ = is_final_ && (weights[i] == 0.0 || weights[i] == 1.0);
   }
   return true;

@@ -1,29 +1,31 @@
 #pragma once
 
 #include <cstddef>
+#include <utility>
 #include <vector>
-
-#include "slam/core/pose_graph.hpp"
 
 namespace lapis::slam {
 
-/// Weights of loop closures for truncated least squares by graduated non-convexity (Yang, Antonante, Tzoumas and
-/// Carlone, RA-L 2020): first all count, then the cost bends towards a constant beyond the 99 % quantile of chi2.
+/// chi2 that 99 % of right measurements stay below; of 6 (in space) or 3 (in the plane) degrees of freedom.
+double chi2_gate(int degrees_of_freedom);
+
+/// Weights of edges for truncated least squares by graduated non-convexity (Yang, Antonante, Tzoumas and Carlone,
+/// RA-L 2020): first all count, then the cost bends towards a constant beyond the gate.
 class GraduatedWeights {
  public:
-  /// `degrees_of_freedom`: 6 in space, 3 in the plane.
-  GraduatedWeights(const std::vector<PoseGraphEdge>& edges, int degrees_of_freedom);
+  /// `edges`: those that may be wrong.
+  GraduatedWeights(std::vector<std::size_t> edges, double gate) : edges_(std::move(edges)), gate_(gate) {}
 
-  /// Next weights from the chi2 of each edge after optimisation with the last ones. False when these were the last:
-  /// all loop closures fit, or each is in or out and was so before.
-  bool update(const std::vector<double>& edge_chi2, std::vector<double>& weights);
+  /// Next weights from the chi2 of every edge after optimisation with the last ones, all 1 before the first call. False
+  /// when the last ones are final: all fit, or each is in or out.
+  bool update(const std::vector<double>& chi2, std::vector<double>& weights);
   /// True when every weight is 0 or 1.
   bool is_final() const { return is_final_; }
 
  private:
   double weight(double chi2) const;
 
-  std::vector<std::size_t> loops_;
+  std::vector<std::size_t> edges_;
   double gate_;
   double mu_ = 0.0;  // 0: not begun; small: nearly quadratic; large: truncated
   bool is_final_ = false;

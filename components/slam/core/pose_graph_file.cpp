@@ -12,6 +12,9 @@
 #include <utility>
 #include <vector>
 
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
 namespace lapis::slam {
 namespace {
 
@@ -20,7 +23,7 @@ using geometry::Pose;
 
 constexpr std::size_t kInformationNumbers = 21;
 constexpr double kMaxCoordinate = 1e9, kMaxInformation = 1e18;
-// Rounding of decimals may make an eigenvalue of zero this negative, as a share of the trace.
+// Rounding of decimals may make an eigenvalue of zero this negative, as a share of the trace; it becomes zero again.
 constexpr double kRounding = 1e-6;
 
 // Forms of a vertex: g2o's and TORO's, in the plane and in space.
@@ -139,11 +142,12 @@ class LineReader {
         for (int j = i; j < 6; ++j) set(i, j, next() / (form == Form::kSpatial ? file_scale(i) * file_scale(j) : 1.0));
       }
     }
-    const Matrix6d raised = result + kRounding * result.trace() * Matrix6d::Identity();
-    if (result != Matrix6d::Zero() && raised.llt().info() != Eigen::Success) {
+    if (result.llt().info() == Eigen::Success) return result;
+    const Eigen::SelfAdjointEigenSolver<Matrix6d> parts(result);
+    if (parts.eigenvalues().minCoeff() < -kRounding * result.trace()) {
       throw PoseGraphFileError{"information is not positive semi-definite"};
     }
-    return result;
+    return parts.eigenvectors() * parts.eigenvalues().cwiseMax(0.0).asDiagonal() * parts.eigenvectors().transpose();
   }
 
  private:

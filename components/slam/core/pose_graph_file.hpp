@@ -15,7 +15,7 @@ struct PoseGraphFileError {
 };
 
 /// Most vertices and most edges of a file, and characters of a line; what is larger is refused.
-inline constexpr std::size_t kMaxGraphFileElements = 5'000'000;
+inline constexpr std::size_t kMaxGraphFileElements = 1'000'000;
 inline constexpr std::size_t kMaxGraphFileLine = 16'384;
 
 /// Writes g2o text: VERTEX_SE3:QUAT and EDGE_SE3:QUAT with the upper triangle of the information, row by row; of a

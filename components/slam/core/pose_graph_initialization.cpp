@@ -1,5 +1,6 @@
 #include "slam/core/pose_graph_initialization.hpp"
 
+#include <deque>
 #include <set>
 
 #include <Eigen/SVD>
@@ -11,6 +12,12 @@ namespace lapis::slam {
 namespace {
 
 using geometry::Pose;
+
+// What the two linear systems share.
+struct Pattern {
+  FreePairs free;
+  std::vector<int> order;
+};
 
 constexpr double kSlightDamping = 1e-12;  // for edges without information
 
@@ -31,10 +38,10 @@ Eigen::Matrix<double, kDim, kDim> nearest_rotation(const Eigen::Matrix<double, k
 // Rotation of `to` = rotation of `from` * that of the edge, for every edge, where the rotations are any matrices: their
 // rows are independent, so that a row of all nodes is one column of the linear system.
 template <int kDim>
-void relax_rotations(const PoseGraphTopology& topology, PoseGraphSnapshot& graph) {
+void relax_rotations(const PoseGraphTopology& topology, const Pattern& pattern, PoseGraphSnapshot& graph) {
   using Matrix = Eigen::Matrix<double, kDim, kDim>;
-  BlockCholesky equations(kDim, topology.order, topology.pairs);
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(kDim * std::ssize(topology.order), kDim);
+  BlockCholesky equations(kDim, pattern.order, pattern.free.pairs);
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(kDim * topology.free_count, kDim);
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const PoseGraphTopology::Edge& ends = topology.edges[i];
     const double weight = graph.edges[i].information.template bottomRightCorner<3, 3>().trace();
@@ -46,7 +53,7 @@ void relax_rotations(const PoseGraphTopology& topology, PoseGraphSnapshot& graph
     if (a >= 0) equations.add_diagonal(a, Matrix(weight * Matrix::Identity()));
     if (b >= 0) equations.add_diagonal(b, Matrix(weight * Matrix::Identity()));
     if (a >= 0 && b >= 0) {
-      equations.add_pair(static_cast<std::size_t>(ends.pair), Matrix(-weight * R));
+      equations.add_pair(static_cast<std::size_t>(pattern.free.of_edge[i]), Matrix(-weight * R));
     } else if (a >= 0) {
       right.middleRows<kDim>(kDim * a) += weight * R * rotation(ends.to).transpose();
     } else if (b >= 0) {
@@ -64,10 +71,10 @@ void relax_rotations(const PoseGraphTopology& topology, PoseGraphSnapshot& graph
   }
 }
 
-void relax_translations(const PoseGraphTopology& topology, PoseGraphSnapshot& graph) {
+void relax_translations(const PoseGraphTopology& topology, const Pattern& pattern, PoseGraphSnapshot& graph) {
   using Scalar = Eigen::Matrix<double, 1, 1>;
-  BlockCholesky equations(1, topology.order, topology.pairs);
-  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(std::ssize(topology.order), 3);
+  BlockCholesky equations(1, pattern.order, pattern.free.pairs);
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(topology.free_count, 3);
   for (std::size_t i = 0; i < graph.edges.size(); ++i) {
     const PoseGraphTopology::Edge& ends = topology.edges[i];
     const PoseGraphEdge& edge = graph.edges[i];
@@ -85,7 +92,7 @@ void relax_translations(const PoseGraphTopology& topology, PoseGraphSnapshot& gr
       right.row(b) += weight * way;
       if (a < 0) right.row(b) += weight * from.translation().transpose();
     }
-    if (a >= 0 && b >= 0) equations.add_pair(static_cast<std::size_t>(ends.pair), Scalar(-weight));
+    if (a >= 0 && b >= 0) equations.add_pair(static_cast<std::size_t>(pattern.free.of_edge[i]), Scalar(-weight));
   }
   if (!equations.factorize(kSlightDamping)) return;
   const Eigen::MatrixXd positions = equations.solve(right);
@@ -117,31 +124,36 @@ void mark_loop_closures(PoseGraphSnapshot& graph) {
 
 void initialize_by_spanning_tree(PoseGraphSnapshot& graph) {
   const PoseGraphTopology topology = pose_graph_topology(graph);
-  std::vector<std::vector<std::size_t>> edges_of(graph.nodes.size());
-  for (std::size_t i = 0; i < topology.edges.size(); ++i) {
-    edges_of[topology.edges[i].from].push_back(i);
-    edges_of[topology.edges[i].to].push_back(i);
-  }
-  std::vector<std::size_t> reached;
+  const std::vector<std::vector<std::size_t>> edges_of = edges_by_node(topology);
   std::vector<bool> is_reached(graph.nodes.size(), false);
+  std::deque<std::size_t> nodes, loops;  // nodes whose edges come next; loop closures from nodes that were reached
   const auto reach = [&](std::size_t node, const Pose& T_map_node) {
-    if (is_reached[node]) return;
     is_reached[node] = true;
     graph.nodes[node].T_map_camera = T_map_node;
-    reached.push_back(node);
+    nodes.push_back(node);
+  };
+  const auto follow = [&](std::size_t i) {
+    const auto [from, to] = topology.edges[i];
+    const Pose& T_from_to = graph.edges[i].T_from_to;
+    if (!is_reached[to]) reach(to, graph.nodes[from].T_map_camera * T_from_to);
+    if (!is_reached[from]) reach(from, graph.nodes[to].T_map_camera * T_from_to.inverse());
   };
   for (std::size_t node = 0; node < graph.nodes.size(); ++node) {
     if (topology.free[node] < 0) reach(node, graph.nodes[node].T_map_camera);
   }
-  for (std::size_t next = 0; next < reached.size(); ++next) {
-    const Pose T_map_node = graph.nodes[reached[next]].T_map_camera;
-    for (const std::size_t i : edges_of[reached[next]]) {
-      const Pose& T_from_to = graph.edges[i].T_from_to;
-      const PoseGraphTopology::Edge& ends = topology.edges[i];
-      if (ends.from == reached[next]) {
-        reach(ends.to, T_map_node * T_from_to);
+  while (!nodes.empty() || !loops.empty()) {
+    if (nodes.empty()) {
+      follow(loops.front());
+      loops.pop_front();
+      continue;
+    }
+    const std::size_t node = nodes.front();
+    nodes.pop_front();
+    for (const std::size_t i : edges_of[node]) {
+      if (graph.edges[i].type == EdgeType::kLoopClosure) {
+        loops.push_back(i);
       } else {
-        reach(ends.from, T_map_node * T_from_to.inverse());
+        follow(i);
       }
     }
   }
@@ -149,12 +161,14 @@ void initialize_by_spanning_tree(PoseGraphSnapshot& graph) {
 
 void initialize_by_chordal_relaxation(PoseGraphSnapshot& graph) {
   const PoseGraphTopology topology = pose_graph_topology(graph);
+  Pattern pattern{free_pairs(topology, std::vector(graph.edges.size(), 1.0)), {}};
+  pattern.order = elimination_order(topology.free_count, pattern.free.pairs);
   if (graph.is_planar) {
-    relax_rotations<2>(topology, graph);
+    relax_rotations<2>(topology, pattern, graph);
   } else {
-    relax_rotations<3>(topology, graph);
+    relax_rotations<3>(topology, pattern, graph);
   }
-  relax_translations(topology, graph);
+  relax_translations(topology, pattern, graph);
 }
 
 void initialize_poses(PoseGraphSnapshot& graph) {

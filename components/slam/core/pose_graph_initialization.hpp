@@ -10,7 +10,8 @@ std::size_t add_missing_nodes(PoseGraphSnapshot& graph);
 /// Edges between ids that do not follow one another become loop closures: files do not tell edge types apart.
 void mark_loop_closures(PoseGraphSnapshot& graph);
 
-/// Poses by chaining edges from the first node of each connected part, over as few edges as possible (breadth-first).
+/// Poses by chaining edges from the first node of each connected part, over as few as possible (breadth-first); over
+/// loop closures only where no other edge leads on. A start for robust optimisation.
 void initialize_by_spanning_tree(PoseGraphSnapshot& graph);
 
 /// Poses by chordal relaxation: rotations from linear least squares over matrices, each then replaced by the nearest

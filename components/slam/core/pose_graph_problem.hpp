@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -25,15 +26,20 @@ class PoseGraphProblem {
   std::vector<double> edge_chi2(const Poses& poses) const;
   double chi2(const Poses& poses, const std::vector<double>& weights) const;
 
-  /// Sets up the normal equations at these poses.
+  /// Sets up the normal equations at these poses. Their pattern is analysed again where edges come in, or many fall
+  /// out.
   void linearize(const Poses& poses, const std::vector<double>& weights);
   /// Gauss-Newton's step with damping; nothing where the equations cannot be solved.
   std::optional<Eigen::VectorXd> step(double damping);
   Poses moved(const Poses& poses, const Eigen::VectorXd& step) const;
-  /// By how much the linear model's chi2 falls with a step [1].
-  double predicted_decrease(const Eigen::VectorXd& step) const;
+  /// By how much chi2 falls with the undamped step if it were quadratic.
+  double predicted_decrease(const Eigen::VectorXd& step) const { return -gradient_.dot(step); }
+  /// Inverse of the linearised equations' matrix, columns of these free nodes only; nothing where it has none.
+  std::optional<Eigen::MatrixXd> inverse_columns(const std::vector<int>& free_nodes);
 
-  BlockCholesky& equations() { return equations_; }
+  /// chi2 of an edge that has no part in the poses, if they are as uncertain as the shortest path of edges with weight
+  /// between its ends: a bound from below, as other paths only help. 0 without a path.
+  double contradiction(std::size_t edge, const Poses& poses, const std::vector<double>& weights) const;
 
  private:
   struct Edge {
@@ -41,11 +47,17 @@ class PoseGraphProblem {
     Pose measured;
     typename Space::Matrix information;
   };
-  void add(const Edge& edge, double weight, const Poses& poses);
+  bool fits_pattern(const std::vector<double>& weights) const;
+  void analyze(const std::vector<double>& weights);
+  void add(std::size_t edge, double weight, const Poses& poses);
+  std::vector<std::size_t> path(std::size_t from, std::size_t to, const std::vector<double>& weights) const;
 
   const PoseGraphTopology& topology_;
   std::vector<Edge> edges_;
-  BlockCholesky equations_;
+  std::vector<std::vector<std::size_t>> edges_of_;  // by node
+  FreePairs pattern_;
+  std::vector<bool> is_in_pattern_;  // by edge
+  std::unique_ptr<BlockCholesky> equations_;
   Eigen::VectorXd gradient_;  // half of the derivative of chi2 by the free poses
 };
 

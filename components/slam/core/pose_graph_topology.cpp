@@ -38,8 +38,8 @@ std::optional<std::size_t> NodePlaces::find(std::uint64_t id) const {
 PoseGraphTopology pose_graph_topology(const PoseGraphSnapshot& graph) {
   PoseGraphTopology result;
   const NodePlaces places(graph);
-  result.component.resize(graph.nodes.size());
-  std::iota(result.component.begin(), result.component.end(), 0);
+  result.part.resize(graph.nodes.size());
+  std::iota(result.part.begin(), result.part.end(), 0);
   for (const PoseGraphEdge& edge : graph.edges) {
     const auto from = places.find(edge.from), to = places.find(edge.to);
     if (!from || !to || from == to) {
@@ -47,21 +47,33 @@ PoseGraphTopology pose_graph_topology(const PoseGraphSnapshot& graph) {
                                   (from && to ? " is a loop on one node" : ": the graph has no such node"));
     }
     result.edges.push_back({*from, *to});
-    const auto a = root_of(result.component, *from), b = root_of(result.component, *to);
-    result.component[std::max(a, b)] = std::min(a, b);
+    const auto a = root_of(result.part, *from), b = root_of(result.part, *to);
+    result.part[std::max(a, b)] = std::min(a, b);
   }
-  int count = 0;
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
-    result.component[i] = root_of(result.component, i);
-    result.free.push_back(result.component[i] == i ? -1 : count++);
+    result.part[i] = root_of(result.part, i);
+    result.free.push_back(result.part[i] == i ? -1 : result.free_count++);
   }
-  for (PoseGraphTopology::Edge& edge : result.edges) {
-    const int a = result.free[edge.from], b = result.free[edge.to];
-    if (a < 0 || b < 0) continue;
-    edge.pair = static_cast<int>(result.pairs.size());
-    result.pairs.emplace_back(a, b);
+  return result;
+}
+
+std::vector<std::vector<std::size_t>> edges_by_node(const PoseGraphTopology& topology) {
+  std::vector<std::vector<std::size_t>> result(topology.free.size());
+  for (std::size_t i = 0; i < topology.edges.size(); ++i) {
+    result[topology.edges[i].from].push_back(i);
+    result[topology.edges[i].to].push_back(i);
   }
-  result.order = elimination_order(count, result.pairs);
+  return result;
+}
+
+FreePairs free_pairs(const PoseGraphTopology& topology, const std::vector<double>& weights) {
+  FreePairs result;
+  for (std::size_t i = 0; i < topology.edges.size(); ++i) {
+    const int a = topology.free[topology.edges[i].from], b = topology.free[topology.edges[i].to];
+    const bool is_pair = weights[i] > 0.0 && a >= 0 && b >= 0;
+    result.of_edge.push_back(is_pair ? static_cast<int>(result.pairs.size()) : -1);
+    if (is_pair) result.pairs.emplace_back(a, b);
+  }
   return result;
 }
 

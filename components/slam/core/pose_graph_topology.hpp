@@ -11,22 +11,30 @@
 namespace lapis::slam {
 
 /// Which nodes a pose graph's edges join, by place in `nodes`, and which nodes are free: all but the first node of each
-/// connected component.
+/// connected part.
 struct PoseGraphTopology {
   struct Edge {
     std::size_t from = 0, to = 0;
-    int pair = -1;  ///< in `pairs`; -1 where an end is fixed
   };
   std::vector<Edge> edges;
-  std::vector<int> free;               ///< place among the free nodes, by node; -1: fixed
-  std::vector<std::size_t> component;  ///< place of the fixed node of a node's component, by node
-  std::vector<BlockPair> pairs;        ///< of free nodes
-  std::vector<int> order;              ///< of their elimination
+  std::vector<std::size_t> part;  ///< place of the first node of a node's part, by node
+  std::vector<int> free;          ///< place among the free nodes, by node; -1: fixed
+  int free_count = 0;
 };
 
 /// Throws std::invalid_argument where an edge names a node that the graph lacks, or the same node twice, and where two
 /// nodes have one id.
 PoseGraphTopology pose_graph_topology(const PoseGraphSnapshot& graph);
+
+/// Places of the edges at each node, in the order of the edges.
+std::vector<std::vector<std::size_t>> edges_by_node(const PoseGraphTopology& topology);
+
+/// Off-diagonal blocks of the equations of a graph's free nodes.
+struct FreePairs {
+  std::vector<BlockPair> pairs;
+  std::vector<int> of_edge;  ///< place in `pairs`, by edge; -1 without weight or where an end is fixed
+};
+FreePairs free_pairs(const PoseGraphTopology& topology, const std::vector<double>& weights);
 
 /// Place of a node in `nodes`; nothing when the graph lacks it.
 class NodePlaces {

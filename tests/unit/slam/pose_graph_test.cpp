@@ -122,6 +122,42 @@ TEST(PoseGraphFile, NamesTheLineOfAnError) {
   EXPECT_EQ(fault("VERTEX_SE2 0 0 0 0\nFIX 0\n# only what we do not read\n"), "");
 }
 
+TEST(PoseGraphFile, ReadsBackAPlanarGraph) {
+  const std::string text = "VERTEX_SE2 0 0 0 0\nVERTEX_SE2 1 1.5 -2 0.5\nEDGE_SE2 0 1 1 -2 0.25 9 1 2 8 3 7\n";
+  const auto result = parsed(text);
+  ASSERT_TRUE(std::holds_alternative<PoseGraphSnapshot>(result));
+  const auto& graph = std::get<PoseGraphSnapshot>(result);
+  EXPECT_TRUE(graph.is_planar);
+  EXPECT_EQ(graph.edges[0].information(0, 5), 2.0);
+  EXPECT_EQ(graph.edges[0].information(1, 1), 8.0);
+  EXPECT_EQ(written(graph), text);
+}
+
+// TORO: order of the planar information xx xy yy tt xt yt; roll, pitch, yaw in space, whose error is the angle itself.
+TEST(PoseGraphFile, ReadsToroText) {
+  const auto in_plane = parsed("VERTEX2 0 0 0 0\nEDGE2 0 1 1 2 0.5 9 1 8 7 2 3\nEQUIV 0 1\n");
+  ASSERT_TRUE(std::holds_alternative<PoseGraphSnapshot>(in_plane));
+  EXPECT_EQ(written({0, {}, std::get<PoseGraphSnapshot>(in_plane).edges, true}), "EDGE_SE2 0 1 1 2 0.5 9 1 2 8 3 7\n");
+  const auto in_space = parsed("EDGE3 0 1 1 2 3 0.1 0.2 0.3 9 0 0 0 0 0 9 0 0 0 0 9 0 0 0 4 0 0 5 0 6\n");
+  ASSERT_TRUE(std::holds_alternative<PoseGraphSnapshot>(in_space));
+  const PoseGraphEdge& edge = std::get<PoseGraphSnapshot>(in_space).edges[0];
+  const Eigen::Vector3d angles = edge.T_from_to.linear().eulerAngles(2, 1, 0);
+  EXPECT_TRUE(angles.isApprox(Eigen::Vector3d(0.3, 0.2, 0.1), 1e-9));
+  EXPECT_EQ(edge.information(5, 5), 6.0);
+}
+
+TEST(PoseGraphFile, RefusesWhatNoMapHolds) {
+  const std::string edge = "EDGE_SE2 0 1 1 2 0.5 ";
+  EXPECT_EQ(fault(edge + "1 2 0 1 0 1\n"), "line 1: information is not positive semi-definite");
+  EXPECT_EQ(fault(edge + "1 0 0 0 0 1\n"), "");
+  EXPECT_EQ(fault(edge + "1e19 0 0 1 0 1\n"), "line 1: '1e19' is too large");
+  EXPECT_EQ(fault("VERTEX_SE2 0 1e10 0 0\n"), "line 1: '1e10' is too large");
+  EXPECT_EQ(fault("EDGE_SE2 4 4 1 2 0.5 1 0 0 1 0 1\n"), "line 1: edge from vertex 4 to itself");
+  EXPECT_EQ(fault("VERTEX_SE2 0 0 0 0\nVERTEX_SE3:QUAT 1 0 0 0 0 0 0 1\n"),
+            "line 2: poses in the plane and in space are mixed");
+  EXPECT_EQ(fault("\n" + std::string(kMaxGraphFileLine + 1, ' ')), "line 2: the line is too long");
+}
+
 TEST(PoseGraphFile, SurvivesTruncationAndFlippedBits) {
   const std::string text = written(random_graph(6, 4));
   for (std::size_t length = 0; length < text.size(); length += 7) parsed(text.substr(0, length));

@@ -52,7 +52,7 @@ void optimise(const Arguments& arguments, std::ostream& out) {
   mark_loop_closures(graph);
   if (has_poses) out << "chi2 of file  " << std::setprecision(10) << pose_graph_chi2(graph) << '\n';
   const double begin = cpu_seconds();
-  arguments.is_robust ? initialize_by_spanning_tree(graph) : initialize_poses(graph);
+  arguments.is_robust ? initialize_poses_robustly(graph) : initialize_poses(graph);
   const OptimizerReport report = optimize_pose_graph({kMaxIterations, 1e-6, arguments.is_robust}, graph);
   const double seconds = cpu_seconds() - begin;
   if (!arguments.out.empty()) {

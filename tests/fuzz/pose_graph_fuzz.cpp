@@ -30,7 +30,7 @@ void require_valid(const PoseGraphSnapshot& graph) {
 void optimize(PoseGraphSnapshot graph, bool is_robust) {
   add_missing_nodes(graph);
   mark_loop_closures(graph);
-  is_robust ? initialize_by_spanning_tree(graph) : initialize_poses(graph);
+  is_robust ? initialize_poses_robustly(graph) : initialize_poses(graph);
   require_valid(graph);
   const OptimizerReport report = optimize_pose_graph({5, 1e-6, is_robust}, graph);
   require(std::isfinite(report.initial_chi2) && std::isfinite(report.final_chi2));

@@ -5,6 +5,7 @@
 
 #include <Eigen/SVD>
 
+#include "slam/core/graduated_weights.hpp"
 #include "slam/core/pose_graph_optimizer.hpp"
 #include "slam/core/pose_graph_topology.hpp"
 
@@ -175,6 +176,14 @@ void initialize_poses(PoseGraphSnapshot& graph) {
   PoseGraphSnapshot relaxed = graph;
   initialize_by_chordal_relaxation(relaxed);
   if (pose_graph_chi2(relaxed) < pose_graph_chi2(graph)) graph.nodes.swap(relaxed.nodes);
+}
+
+void initialize_poses_robustly(PoseGraphSnapshot& graph) {
+  PoseGraphSnapshot relaxed = graph;
+  initialize_by_chordal_relaxation(relaxed);
+  initialize_by_spanning_tree(graph);
+  const double gate = chi2_gate(graph.is_planar ? 3 : 6);
+  if (pose_graph_chi2(relaxed, gate) < pose_graph_chi2(graph, gate)) graph.nodes.swap(relaxed.nodes);
 }
 
 }  // namespace lapis::slam

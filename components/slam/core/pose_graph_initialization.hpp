@@ -11,7 +11,7 @@ std::size_t add_missing_nodes(PoseGraphSnapshot& graph);
 void mark_loop_closures(PoseGraphSnapshot& graph);
 
 /// Poses by chaining edges from the first node of each connected part, over as few as possible (breadth-first); over
-/// loop closures only where no other edge leads on. A start for robust optimisation.
+/// loop closures only where no other edge leads on.
 void initialize_by_spanning_tree(PoseGraphSnapshot& graph);
 
 /// Poses by chordal relaxation: rotations from linear least squares over matrices, each then replaced by the nearest
@@ -21,5 +21,9 @@ void initialize_by_chordal_relaxation(PoseGraphSnapshot& graph);
 
 /// Poses by chordal relaxation, unless those that are there have less chi2.
 void initialize_poses(PoseGraphSnapshot& graph);
+
+/// A start for robust optimisation: along the spanning tree, or by chordal relaxation where its chi2 is less when no
+/// edge counts for more than the gate of robust optimisation.
+void initialize_poses_robustly(PoseGraphSnapshot& graph);
 
 }  // namespace lapis::slam

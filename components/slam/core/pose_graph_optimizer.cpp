@@ -176,10 +176,12 @@ OptimizerReport optimize(const OptimizerOptions& options, PoseGraphSnapshot& gra
 }
 
 template <class Space>
-double total_chi2(const PoseGraphSnapshot& graph) {
+double total_chi2(const PoseGraphSnapshot& graph, double most) {
   const PoseGraphTopology topology = pose_graph_topology(graph);
   const PoseGraphProblem<Space> problem(topology, graph);
-  return problem.chi2(PoseGraphProblem<Space>::poses_of(graph), std::vector(graph.edges.size(), 1.0));
+  double sum = 0.0;
+  for (const double chi2 : problem.edge_chi2(PoseGraphProblem<Space>::poses_of(graph))) sum += std::min(chi2, most);
+  return sum;
 }
 
 // The same covariance, from the axes of the map to those of the pose.
@@ -196,8 +198,8 @@ OptimizerReport optimize_pose_graph(const OptimizerOptions& options, PoseGraphSn
   return graph.is_planar ? optimize<PlanarPoses>(options, graph) : optimize<SpatialPoses>(options, graph);
 }
 
-double pose_graph_chi2(const PoseGraphSnapshot& graph) {
-  return graph.is_planar ? total_chi2<PlanarPoses>(graph) : total_chi2<SpatialPoses>(graph);
+double pose_graph_chi2(const PoseGraphSnapshot& graph, double most) {
+  return graph.is_planar ? total_chi2<PlanarPoses>(graph, most) : total_chi2<SpatialPoses>(graph, most);
 }
 
 std::vector<std::optional<Matrix6d>> node_covariances(const PoseGraphSnapshot& graph,

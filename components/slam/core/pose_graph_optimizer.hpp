@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -33,8 +34,8 @@ struct OptimizerReport {
 /// Throws std::invalid_argument where an edge names a node that the graph lacks or the same node twice.
 OptimizerReport optimize_pose_graph(const OptimizerOptions& options, PoseGraphSnapshot& graph);
 
-/// Sum of e' Omega e over all edges, as above.
-double pose_graph_chi2(const PoseGraphSnapshot& graph);
+/// Sum of e' Omega e over all edges, as above, where none counts for more than `most`.
+double pose_graph_chi2(const PoseGraphSnapshot& graph, double most = std::numeric_limits<double>::infinity());
 
 /// Covariance of poses relative to the graph's first node, in the tangent of a right perturbation (translation,
 /// rotation) [m^2, rad^2], from the graph's information at its poses and the edges' weights (none: all 1). One

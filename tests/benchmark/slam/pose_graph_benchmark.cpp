@@ -153,7 +153,7 @@ void spoil(const Options& options) {
       const std::size_t first_wrong = spoilt.edges.size();
       test::add_wrong_loops(spoilt, share, static_cast<unsigned>(seed));
       const double begin = cpu_ms();
-      initialize_by_spanning_tree(spoilt);
+      initialize_poses_robustly(spoilt);
       const OptimizerReport report = optimize_pose_graph({100, 1e-6, true}, spoilt);
       const double ms = cpu_ms() - begin;
       int kept = 0, lost = 0;

@@ -11,6 +11,17 @@ namespace {
 using geometry::Pose;
 
 constexpr int kFrames = 50;  // of the run that is saved
+const int kConfirmations = SlamConfig{}.relocalization.confirmations;
+
+// The first frames in a saved map only say where the camera could be.
+void expect_placed(const TrackingResult& result, int frame) {
+  if (frame < kConfirmations) {
+    EXPECT_EQ(result.state, TrackingState::kLost) << frame;
+    EXPECT_EQ(result.reason, "looking for a place in the saved map: a recognised place awaits confirmation");
+  } else {
+    EXPECT_EQ(result.state, TrackingState::kTracking) << frame << ": " << result.reason;
+  }
+}
 
 time::Time stamp(int index) { return time::Time::from_seconds(1.0 + index / 30.0); }
 
@@ -61,7 +72,8 @@ TEST(Resume, IsLostUntilItFindsItsPlaceAndThenGoesOn) {
 
   for (int i = kFrames; i < kFrames + 30; ++i) {
     const TrackingResult result = slam.process(room_frame(i));
-    ASSERT_EQ(result.state, TrackingState::kTracking) << i << ": " << result.reason;
+    expect_placed(result, i - kFrames);
+    if (!has_pose(result)) continue;
     EXPECT_LT(distance_m(result, i), 0.02) << i;
     EXPECT_TRUE(!result.is_keyframe || result.keyframe_id >= saved.keyframes.size()) << "an id is used again";
   }
@@ -79,7 +91,8 @@ TEST(Resume, StampsFromBeforeTheSavedOnesAreNoProblem) {
     RgbdFrame frame = room_frame(kFrames + i);
     frame.stamp = stamp(i);
     const TrackingResult result = slam.process(frame);
-    ASSERT_EQ(result.state, TrackingState::kTracking) << i << ": " << result.reason;
+    expect_placed(result, i);
+    if (!has_pose(result)) continue;
     EXPECT_LT(distance_m(result, kFrames + i), 0.02) << i;
   }
 }
@@ -90,8 +103,8 @@ TEST(Resume, NoOdometryLeadsFromASavedKeyframe) {
   const SlamState saved = saved_state();
   RgbdSlam slam({}, Pose::Identity(), saved);
   const auto is_wheels = [](const PoseGraphEdge& edge) { return edge.type == EdgeType::kWheelOdometry; };
-  for (int i = kFrames - 40; i < kFrames + 30; ++i) {
-    slam.add_odometry(stamp(i), Pose(Eigen::Translation3d(0.01 * i, 0.0, 0.0)));
+  for (int i = kFrames - 40; i < kFrames + 100; ++i) {
+    slam.add_odometry(stamp(i), test::room_path(i));
     if (i >= kFrames) slam.process(room_frame(i));
   }
   const auto edges = slam.pose_graph().edges;

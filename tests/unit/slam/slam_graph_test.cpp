@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/core/pose_graph_optimizer.hpp"
+
 namespace lapis::slam {
 namespace {
 
@@ -71,6 +73,15 @@ TEST_F(SlamGraphTest, ChainCovarianceIsThatOfDisturbedChains) {
   EXPECT_TRUE(closed.isApprox(closed.transpose()));
   EXPECT_TRUE(graph_.chain_covariance(map_, 2, 2).isZero());
   EXPECT_TRUE(graph_.chain_covariance(map_, 2, 3).isApprox(covariance_));
+}
+
+// Without loops the covariance that grows along the chain is that of the whole graph.
+TEST_F(SlamGraphTest, CovariancesAreThoseOfTheGraph) {
+  const auto all = node_covariances(graph_.snapshot(map_, 0), {0, 1, 2, 3, 4});
+  for (KeyframeId id = 0; id < all.size(); ++id) {
+    ASSERT_TRUE(all[id].has_value());
+    EXPECT_LT((*all[id] - graph_.covariance(id)).norm(), 1e-6 * covariance_.norm()) << id;
+  }
 }
 
 TEST_F(SlamGraphTest, YoungerKeyframesAndLandmarksFollowACorrection) {

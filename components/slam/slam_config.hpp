@@ -129,6 +129,8 @@ void describe(Field& field, RelocalizationConfig& c) {
   field("near_m", c.near_m, config::in_range(0.01, 5), "distance of poses that are the same [m]");
   field("near_rad", c.near_rad, config::in_range(0.01, 3), "angle of poses that are the same [rad]");
   field("speed_m_s", c.speed_m_s, config::in_range(0, 10), "between such frames, when no wheels tell [m/s]");
+  field("patience_s", c.patience_s, config::in_range(0, 10),
+        "without a pose, after which one that can be reached from the last is still believed at once [s]");
   field("memory_s", c.memory_s, config::in_range(0.01, 10), "longest time between such frames [s]");
 }
 

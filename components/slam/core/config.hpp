@@ -91,12 +91,13 @@ struct LoopConfig {
 
 /// When a pose that was found by recognising a place is believed.
 struct RelocalizationConfig {
-  int min_inliers = 25;    ///< of the alignment with the recognised key-frame [10, 1000]
-  int confirmations = 2;   ///< frames that have to find the same again, unless motion leads there [0, 100]
-  double near_m = 0.25;    ///< what "the same" is, and where motion leads [0.01, 5]
-  double near_rad = 0.2;   ///< the same [0.01, 3]
-  double speed_m_s = 1.0;  ///< between frames, when no wheels tell [0, 10]
-  double memory_s = 0.5;   ///< longest time between frames that confirm each other [0.01, 10]
+  int min_inliers = 25;     ///< of the alignment with the recognised key-frame [10, 1000]
+  int confirmations = 2;    ///< frames that have to find the same again, unless motion leads there [0, 100]
+  double near_m = 0.25;     ///< what "the same" is, and where motion leads [0.01, 5]
+  double near_rad = 0.2;    ///< the same [0.01, 3]
+  double speed_m_s = 1.0;   ///< between frames, when no wheels tell [0, 10]
+  double patience_s = 2.0;  ///< without a pose, after which one within reach of the last is still believed [0, 10]
+  double memory_s = 0.5;    ///< longest time between frames that confirm each other [0.01, 10]
 };
 
 /// Wheel odometry. Standard deviations of a random walk are those after the first metre or radian: they grow with its

@@ -16,6 +16,12 @@ void MotionModel::update(const Map& map, time::Time stamp, const RelativeCamera&
   last_ = next;
 }
 
+std::optional<std::pair<time::Time, Pose>> MotionModel::last_pose(const Map& map) const {
+  if (!last_) return std::nullopt;
+  const auto& [reference, T_reference_camera, covariance] = last_->camera;
+  return std::pair(last_->stamp, Pose(map.keyframe(reference).T_map_camera * T_reference_camera));
+}
+
 std::optional<MotionModel::Expected> MotionModel::expect(const Map& map, time::Time stamp) const {
   if (const auto reckoned = dead_reckon(stamp)) {
     return Expected{map.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
@@ -28,6 +29,8 @@ class MotionModel {
   bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base) { return odometry_.add(stamp, T_odom_base); }
   /// The pose of a frame was found.
   void update(const Map& map, time::Time stamp, const RelativeCamera& camera);
+  /// T_map_camera that was found last, and when; none before the first update.
+  std::optional<std::pair<time::Time, geometry::Pose>> last_pose(const Map& map) const;
   /// Where motion leads, and how surely: by odometry as dead_reckon says; by constant velocity with a standard
   /// deviation of as much as the camera has moved since. None as in predict.
   struct Expected {

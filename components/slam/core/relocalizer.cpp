@@ -21,29 +21,38 @@ TrackOutcome Relocalizer::search(const Map& map, const LoopDetector& places, con
 
 bool Relocalizer::believes(const Map& map, const MotionModel& motion, time::Time stamp, const TrackOutcome& outcome) {
   const Pose T_map_camera = map.keyframe(outcome.reference).T_map_camera * outcome.alignment.T_reference_camera;
-  if (const auto expected = motion.expect(map, stamp)) {
-    const double reach = 1.0 + 3.0 * std::sqrt(expected->covariance.topLeftCorner<3, 3>().trace()) / config_.near_m;
-    if (is_near(expected->T_map_camera, T_map_camera, reach)) {
-      hypothesis_.reset();
-      return true;
-    }
-  }
-  int confirmed = 0;
-  if (hypothesis_) {
-    const auto moved = motion.odometry_between(hypothesis_->stamp, stamp);
-    const Pose T_expected = moved ? Pose(hypothesis_->T_map_camera * moved->T_from_to) : hypothesis_->T_map_camera;
-    const double elapsed_s = (stamp - hypothesis_->stamp).seconds();
-    const double reach = 1.0 + (moved ? 0.0 : elapsed_s * config_.speed_m_s / config_.near_m);
-    if (elapsed_s <= config_.memory_s && is_near(T_expected, T_map_camera, reach))
-      confirmed = hypothesis_->confirmed + 1;
-  }
-  if (confirmed >= config_.confirmations) {
+  if (motion_leads_to(map, motion, stamp, T_map_camera)) {
     hypothesis_.reset();
     return true;
   }
+  const int confirmed = hypothesis_ && confirms(motion, stamp, T_map_camera) ? hypothesis_->confirmed + 1 : 0;
   hypothesis_ = Hypothesis{stamp, T_map_camera, confirmed};
-  return false;
+  if (confirmed < config_.confirmations) return false;
+  hypothesis_.reset();
+  return true;
 }
+
+bool Relocalizer::motion_leads_to(const Map& map, const MotionModel& motion, time::Time stamp,
+                                  const Pose& T_map_camera) const {
+  if (const auto expected = motion.expect(map, stamp)) {
+    const double sigma_m = std::sqrt(expected->covariance.topLeftCorner<3, 3>().trace());
+    return is_near(expected->T_map_camera, T_map_camera, 1.0 + 3.0 * sigma_m / config_.near_m);
+  }
+  const auto last = motion.last_pose(map);
+  if (!last) return false;
+  const double elapsed_s = (stamp - last->first).seconds();
+  return elapsed_s >= 0.0 && elapsed_s <= config_.patience_s && is_near(last->second, T_map_camera, reach(elapsed_s));
+}
+
+bool Relocalizer::confirms(const MotionModel& motion, time::Time stamp, const Pose& T_map_camera) const {
+  const double elapsed_s = (stamp - hypothesis_->stamp).seconds();
+  if (elapsed_s < 0.0 || elapsed_s > config_.memory_s) return false;
+  const auto moved = motion.odometry_between(hypothesis_->stamp, stamp);
+  if (moved) return is_near(hypothesis_->T_map_camera * moved->T_from_to, T_map_camera, 1.0);
+  return is_near(hypothesis_->T_map_camera, T_map_camera, reach(elapsed_s));
+}
+
+double Relocalizer::reach(double elapsed_s) const { return 1.0 + elapsed_s * config_.speed_m_s / config_.near_m; }
 
 bool Relocalizer::is_near(const Pose& T_expected, const Pose& T_found, double reach) const {
   const Pose difference = T_expected.inverse() * T_found;

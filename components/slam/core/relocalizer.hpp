@@ -21,6 +21,11 @@ class Relocalizer {
   bool believes(const Map& map, const MotionModel& motion, time::Time stamp, const TrackOutcome& outcome);
 
  private:
+  bool motion_leads_to(const Map& map, const MotionModel& motion, time::Time stamp,
+                       const geometry::Pose& T_map_camera) const;
+  bool confirms(const MotionModel& motion, time::Time stamp, const geometry::Pose& T_map_camera) const;
+  /// How many times RelocalizationConfig::near_m and near_rad a camera can get away in a time.
+  double reach(double elapsed_s) const;
   bool is_near(const geometry::Pose& T_expected, const geometry::Pose& T_found, double reach) const;
 
   struct Hypothesis {

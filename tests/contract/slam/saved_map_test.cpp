@@ -41,6 +41,13 @@ class Slam {
     });
   }
   bool is_tracked(int index) { return answers(feed_.frame(index), index) && frames.back().state() == kTracking; }
+  /// Two frames say where the camera could be in the saved map, the third confirms it.
+  bool finds_its_place(int from) {
+    for (int i = from; i < from + 2; ++i) {
+      if (is_tracked(i) || frames.back().reason().find("awaits confirmation") == std::string::npos) return false;
+    }
+    return is_tracked(from + 2);
+  }
   bool are_tracked(int from, int to) {
     for (int i = from; i < to; ++i) {
       if (!is_tracked(i)) return false;
@@ -130,9 +137,10 @@ TEST_F(SavedMap, IsGoneOnWithInANewSessionOfTheSameFrame) {
     EXPECT_EQ(saved.nodes()[i].pose(), graph_.nodes()[i].pose());
   }
 
-  ASSERT_TRUE(run.are_tracked(kFrames + 1, kFrames + 15)) << run.frames.back().reason() << run.log();
+  ASSERT_TRUE(run.finds_its_place(kFrames + 1)) << run.frames.back().reason() << run.log();
+  ASSERT_TRUE(run.are_tracked(kFrames + 4, kFrames + 15)) << run.frames.back().reason() << run.log();
   EXPECT_GE(run.frames.back().keyframe_id(), saved.nodes().size());
-  ASSERT_TRUE(run.wait_until([&] { return run.odometry.size() == 14; })) << run.log();
+  ASSERT_TRUE(run.wait_until([&] { return run.odometry.size() == 12; })) << run.log();
   const auto T_camera = slow_motion(kFrames - 1).inverse() * slow_motion(kFrames + 14);
   const auto T_expected = T_base_camera() * T_camera * T_base_camera().inverse();
   const auto T_base = last_pose_.inverse() * *messages::from_message(run.odometry.back().pose().pose());
@@ -165,7 +173,7 @@ TEST_F(SavedMap, OfAKilledProcessIsTheOneThatItSavedByItself) {
   }
   Slam run(folder_.path(), {resume()});
   ASSERT_TRUE(run.is_ready()) << run.log();
-  ASSERT_TRUE(run.are_tracked(index, index + 3)) << run.frames.back().reason() << run.log();
+  ASSERT_TRUE(run.finds_its_place(index)) << run.frames.back().reason() << run.log();
 }
 
 TEST_F(SavedMap, ThatCannotBeWrittenIsCountedAndTrackingGoesOn) {

@@ -184,8 +184,12 @@ TEST_F(SlamFaults, ClockThatJumpsAheadGoesOnInTheSameSession) {
     const time::Time stamp{CameraFeed::stamp(i).nanoseconds + 3'600'000'000'000};
     feed.send(feed.frame(stamp, slow_motion(i)));
     ASSERT_TRUE(wait_for_answer(stamp)) << i << slam.log();
-    EXPECT_EQ(frames.back().state(), kTracking) << i << " " << frames.back().reason();
     EXPECT_EQ(frames.back().session(), session);
+    if (i < kFirstFrames + 2) {  // after an hour the place has to be found anew, and confirmed
+      EXPECT_EQ(frames.back().reason(), "a recognised place awaits confirmation");
+      continue;
+    }
+    EXPECT_EQ(frames.back().state(), kTracking) << i << " " << frames.back().reason();
     expect_pose(stamp, slow_motion(0), slow_motion(i));
   }
   expect_poses_in_order();

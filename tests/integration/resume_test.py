@@ -17,7 +17,7 @@ class ResumeTest(chain.ChainTest):
                            "--set", f"slam.resume_from={first / 'slam.lapis'}")
         metrics = chain.metrics_of(second)
         self.assertEqual(metrics["exit_reason"], "completed")
-        self.assertEqual(metrics["frames_tracked"], metrics["frames_total"])
+        self.assertEqual(metrics["frames_tracked"], metrics["frames_total"] - 2, "two frames confirm the place")
         self.assertGreater(len((second / "slam.lapis").read_bytes()), len(saved))
         keyframes = (second / "keyframes.txt").read_text().splitlines()
         stamps = [line.split()[0] for line in poses if not line.startswith("#")]

@@ -4,6 +4,7 @@
 #include <opencv2/core.hpp>
 
 #include "slam/core/bundle_adjuster.hpp"
+#include "slam/core/place_index.hpp"
 #include "slam/core/rgbd_slam.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
@@ -58,8 +59,31 @@ void local_bundle(benchmark::State& state) {
   }
 }
 
+// `state.range(0)` key-frames that are views of 50 places, a tenth of each descriptor's bits changed.
+void place_query(benchmark::State& state) {
+  constexpr int kPlaces = 50;
+  std::mt19937_64 random(1);
+  const FeatureExtractor extractor{FeatureConfig{}};
+  std::vector<std::vector<Feature>> places;
+  for (int i = 0; i < kPlaces; ++i) places.push_back(extractor.extract(frame(8 * i).gray));
+  const auto seen_again = [&](std::vector<Feature> features) {
+    for (Feature& feature : features) {
+      feature.depth_m = 1.0;
+      for (int k = 0; k < 26; ++k) feature.descriptor[random() % 4] ^= std::uint64_t{1} << (random() % 64);
+    }
+    return features;
+  };
+  PlaceIndex index;
+  for (KeyframeId id = 0; id < static_cast<KeyframeId>(state.range(0)); ++id) {
+    index.add(id, seen_again(places[id % kPlaces]));
+  }
+  const auto query = seen_again(places[7]);
+  for (auto _ : state) benchmark::DoNotOptimize(index.query(query, index.size(), 3));
+}
+
 BENCHMARK(extract_features)->Name("extract_features/640x360")->Unit(benchmark::kMillisecond);
 BENCHMARK(track_frame)->Name("track_60_frames/640x360")->Unit(benchmark::kMillisecond);
+BENCHMARK(place_query)->Name("place_query")->Arg(1000)->Arg(5000)->Unit(benchmark::kMillisecond);
 BENCHMARK(local_bundle)->Name("local_bundle")->Args({6, 300})->Args({10, 1000})->Unit(benchmark::kMillisecond);
 
 }  // namespace

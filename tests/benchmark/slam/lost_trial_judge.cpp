@@ -11,19 +11,15 @@ namespace {
 using geometry::Pose;
 using Steps = std::vector<TrialStep>;
 
-struct Difference {
-  double m = 0.0, rad = 0.0;
-};
-
 bool is_tracked(const TrialStep& step) { return step.state == TrackingState::kTracking; }
 
-Difference difference(const Pose& a, const Pose& b) {
+PoseError difference(const Pose& a, const Pose& b) {
   const Pose d = a.inverse() * b;
   return {d.translation().norm(), geometry::rotation_angle(d.linear())};
 }
 
 // How far `measured` (a member of TrialStep) is wrong about the motion between two steps.
-Difference motion_error(const TrialStep& a, const TrialStep& b, Pose TrialStep::*measured) {
+PoseError motion_error(const TrialStep& a, const TrialStep& b, Pose TrialStep::*measured) {
   return difference((a.*measured).inverse() * (b.*measured), a.truth.inverse() * b.truth);
 }
 
@@ -37,14 +33,15 @@ std::optional<std::size_t> find(const Steps& steps, std::size_t begin, Predicate
 
 // Longest time that wrong poses were told as tracked.
 double longest_wrong_s(const Steps& steps, const TrialLimits& limits, bool with_wheels) {
-  const auto origin = find(steps, 0, is_tracked);
-  double longest_s = 0.0;
+  const std::size_t origin = *find(steps, 0, is_tracked);
+  double longest_s = 0.0, way_m = 0.0;
   std::optional<double> since_s;
-  for (std::size_t i = *origin; i < steps.size(); ++i) {
-    const double allowed_m =
-        limits.false_m + (with_wheels ? motion_error(steps[*origin], steps[i], &TrialStep::wheels).m : 0.0);
+  for (std::size_t i = origin + 1; i < steps.size(); ++i) {
+    way_m += difference(steps[i - 1].truth, steps[i].truth).m;
+    const double allowed_m = limits.wrong_m + limits.drift * way_m +
+                             (with_wheels ? motion_error(steps[origin], steps[i], &TrialStep::wheels).m : 0.0);
     const bool is_wrong =
-        is_tracked(steps[i]) && motion_error(steps[*origin], steps[i], &TrialStep::estimate).m > allowed_m;
+        is_tracked(steps[i]) && motion_error(steps[origin], steps[i], &TrialStep::estimate).m > allowed_m;
     if (!is_wrong) since_s.reset();
     if (is_wrong && !since_s) since_s = steps[i].t_s;
     if (since_s) longest_s = std::max(longest_s, steps[i].t_s - *since_s);
@@ -53,18 +50,18 @@ double longest_wrong_s(const Steps& steps, const TrialLimits& limits, bool with_
 }
 
 void judge_jumps(const Steps& steps, const TrialLimits& limits, bool with_wheels, TrialVerdict& verdict) {
-  const auto origin = find(steps, 0, is_tracked);
-  const TrialStep* told = &steps[*origin];
+  const std::size_t origin = *find(steps, 0, is_tracked);
+  const TrialStep* told = &steps[origin];
   const TrialStep* tracked = told;
-  for (std::size_t i = *origin + 1; i < steps.size(); ++i) {
+  for (std::size_t i = origin + 1; i < steps.size(); ++i) {
     const TrialStep& step = steps[i];
     if (!step.has_pose) continue;
-    const Difference jump = motion_error(*told, step, &TrialStep::estimate);
-    const Difference before = motion_error(steps[*origin], *told, &TrialStep::estimate);
-    const Difference after = motion_error(steps[*origin], step, &TrialStep::estimate);
-    const Difference wheels = with_wheels ? motion_error(*tracked, step, &TrialStep::wheels) : Difference{};
-    verdict.jump_m = std::max(verdict.jump_m, jump.m);
-    verdict.jump_rad = std::max(verdict.jump_rad, jump.rad);
+    const PoseError jump = motion_error(*told, step, &TrialStep::estimate);
+    const PoseError before = motion_error(steps[origin], *told, &TrialStep::estimate);
+    const PoseError after = motion_error(steps[origin], step, &TrialStep::estimate);
+    const PoseError wheels = with_wheels ? motion_error(*tracked, step, &TrialStep::wheels) : PoseError{};
+    verdict.jump.m = std::max(verdict.jump.m, jump.m);
+    verdict.jump.rad = std::max(verdict.jump.rad, jump.rad);
     verdict.jumps_away = verdict.jumps_away || after.m - before.m > limits.jump_m + wheels.m ||
                          after.rad - before.rad > limits.jump_rad + wheels.rad;
     told = &step;
@@ -81,38 +78,39 @@ bool touches_map(const Steps& steps) {
   return false;
 }
 
-// A view comes back when the cover is gone, or when the camera is truly where a key-frame was made before it was lost.
-std::optional<std::size_t> find_return(const Steps& steps, std::size_t lost, bool is_covered) {
+// A view is back from the first frame of the first `lasting_s` throughout which there is enough to see; when the camera
+// was not covered, of a place where a key-frame was made before it was lost.
+std::optional<std::size_t> find_return(const Steps& steps, std::size_t lost, bool is_covered, double lasting_s) {
   constexpr double kNear_m = 0.4, kNear_rad = 0.35;
   const auto shows_old_place = [&](const TrialStep& step) {
     return std::any_of(steps.begin(), steps.begin() + static_cast<std::ptrdiff_t>(lost), [&](const TrialStep& old) {
-      const Difference d = difference(old.truth, step.truth);
+      const PoseError d = difference(old.truth, step.truth);
       return old.is_keyframe && d.m < kNear_m && d.rad < kNear_rad;
     });
   };
-  std::size_t begin = lost;
-  if (is_covered) begin = *find(steps, lost, [](const TrialStep& s) { return !s.is_covered; });
-  return find(steps, begin, [&](const TrialStep& s) { return s.is_usable && (is_covered || shows_old_place(s)); });
+  std::optional<std::size_t> first;
+  for (std::size_t i = lost; i < steps.size(); ++i) {
+    const bool is_seen = steps[i].is_usable && (is_covered || shows_old_place(steps[i]));
+    if (!is_seen) first.reset();
+    if (is_seen && !first) first = i;
+    if (first && steps[i].t_s - steps[*first].t_s >= lasting_s) return first;
+  }
+  return std::nullopt;
 }
 
-// From the last tracked frame to the first one after the view's return.
-void judge_return(const Steps& steps, std::size_t lost, bool is_covered, TrialVerdict& verdict) {
-  const auto last = lost - 1;
-  const auto returned = find_return(steps, lost, is_covered);
-  auto tracked = find(steps, lost, [&](const TrialStep& s) { return is_tracked(s) && !s.is_covered; });
-  if (!returned && !tracked) {
-    verdict.is_void = true;
-    return;
-  }
+// From the last tracked frame to the first one afterwards.
+void judge_return(const Steps& steps, std::size_t lost, const TrialLimits& limits, bool is_covered,
+                  TrialVerdict& verdict) {
+  const TrialStep& origin = steps[*find(steps, 0, is_tracked)];
+  const auto returned = find_return(steps, lost, is_covered, limits.returned_s);
+  const auto tracked = find(steps, lost, [](const TrialStep& s) { return is_tracked(s) && !s.is_covered; });
+  verdict.is_void = !returned && !tracked;
   verdict.returned_s = std::numeric_limits<double>::infinity();
   if (!tracked) return;
   verdict.returned_s = returned ? std::max(0.0, steps[*tracked].t_s - steps[*returned].t_s) : 0.0;
-  const Difference error = motion_error(steps[last], steps[*tracked], &TrialStep::estimate);
-  const Difference wheels = motion_error(steps[last], steps[*tracked], &TrialStep::wheels);
-  verdict.error_m = error.m;
-  verdict.error_rad = error.rad;
-  verdict.wheels_m = wheels.m;
-  verdict.wheels_rad = wheels.rad;
+  verdict.before = motion_error(origin, steps[lost - 1], &TrialStep::estimate);
+  verdict.returned = motion_error(origin, steps[*tracked], &TrialStep::estimate);
+  verdict.wheels = motion_error(steps[lost - 1], steps[*tracked], &TrialStep::wheels);
 }
 
 std::string failure_of(const TrialVerdict& v, const TrialLimits& limits, bool with_wheels) {
@@ -124,8 +122,9 @@ std::string failure_of(const TrialVerdict& v, const TrialLimits& limits, bool wi
   add(v.jumps_away, "jump");
   add(v.touches_map, "map touched");
   add(v.returned_s > limits.returned_s, "returned late");
-  add(v.error_m > limits.jump_m + (with_wheels ? v.wheels_m : 0.0) ||
-          v.error_rad > limits.jump_rad + (with_wheels ? v.wheels_rad : 0.0),
+  const PoseError wheels = with_wheels ? v.wheels : PoseError{};
+  add(v.returned.m > v.before.m + limits.jump_m + wheels.m ||
+          v.returned.rad > v.before.rad + limits.jump_rad + wheels.rad,
       "error on return");
   return failure;
 }
@@ -147,10 +146,10 @@ TrialVerdict judge(const Steps& steps, const TrialLimits& limits, bool is_covere
     verdict.declared_s = lost ? steps[*lost].t_s - steps[covered].t_s : std::numeric_limits<double>::infinity();
   }
   verdict.was_lost = lost.has_value();
-  if (lost) judge_return(steps, *lost, is_covered, verdict);
+  if (lost) judge_return(steps, *lost, limits, is_covered, verdict);
   judge_jumps(steps, limits, with_wheels, verdict);
   verdict.touches_map = touches_map(steps);
-  verdict.end_m = motion_error(steps[*begin], steps.back(), &TrialStep::estimate).m;
+  verdict.end = motion_error(steps[*begin], steps.back(), &TrialStep::estimate);
   verdict.failure = failure_of(verdict, limits, with_wheels);
   return verdict;
 }

@@ -52,19 +52,22 @@ void print_frames(const std::vector<TrialStep>& steps) {
 }
 
 void print_header() {
-  std::printf("%-9s %5s %-8s %9s | %7s %7s | %4s | %9s | %7s %7s %7s %7s | %6s | %s\n", "kind", "trial", "lost",
-              "declared", "jump cm", "deg", "map", "returned", "err cm", "wheels", "err deg", "wheels", "end cm", "");
+  std::printf("%-9s %5s %4s %9s | %14s | %4s | %9s | %14s %14s %14s %14s | %s\n", "kind", "trial", "lost", "declared",
+              "jump", "map", "returned", "before", "returned", "wheels", "end", "");
+}
+
+std::string text_of(const PoseError& error) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%5.1f cm %4.1f dg", 100.0 * error.m, error.rad * 180.0 / M_PI);
+  return text;
 }
 
 void print_row(const std::string& kind, int trial, const TrialVerdict& v) {
-  constexpr double kDeg = 180.0 / M_PI;
-  std::printf("%-9s %5d %-8s %7.2f s | %7.1f %7.2f | %4s | %7.2f s | %7.1f %7.1f %7.2f %7.2f | %6.1f | %s\n",
-              kind.c_str(), trial, v.was_lost ? "yes" : "no", v.declared_s, 100.0 * v.jump_m, kDeg * v.jump_rad,
-              v.touches_map ? "yes" : "no", v.returned_s, 100.0 * v.error_m, 100.0 * v.wheels_m, kDeg * v.error_rad,
-              kDeg * v.wheels_rad, 100.0 * v.end_m,
-              v.is_void           ? "void"
-              : v.failure.empty() ? "pass"
-                                  : ("FAIL: " + v.failure).c_str());
+  const std::string verdict = v.is_void ? "void" : v.failure.empty() ? "pass" : "FAIL: " + v.failure;
+  std::printf("%-9s %5d %4s %7.2f s | %s | %4s | %7.2f s | %s %s %s %s | %s\n", kind.c_str(), trial,
+              v.was_lost ? "yes" : "no", v.declared_s, text_of(v.jump).c_str(), v.touches_map ? "yes" : "no",
+              v.returned_s, text_of(v.before).c_str(), text_of(v.returned).c_str(), text_of(v.wheels).c_str(),
+              text_of(v.end).c_str(), verdict.c_str());
   std::fflush(stdout);
 }
 

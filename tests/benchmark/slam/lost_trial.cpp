@@ -199,6 +199,8 @@ std::vector<TrialStep> drive_trial(const simulator::World& world, const simulato
     step.graph_version = slam.graph_version();
     step.keyframes = slam.keyframe_count();
     step.landmarks = slam.landmark_count();
+    step.matches = result.matches;
+    step.inliers = result.inliers;
     step.reason = result.reason;
     steps.push_back(std::move(step));
   }

@@ -36,6 +36,7 @@ struct TrialStep {
   std::uint64_t graph_version = 0;
   std::size_t keyframes = 0;
   std::size_t landmarks = 0;
+  std::uint32_t matches = 0, inliers = 0;
   std::string reason;
 };
 

@@ -53,9 +53,7 @@ void drive(const SimulatorConfig& config, const std::function<void(const TourFra
   while (!is_over) {
     const simulator::SensorFrame sensed = simulation.next(command);
     if (!T_map_world) T_map_world = sensed.T_world_base.inverse();
-    take({{sensed.stamp, pinhole_camera(config.robot.camera), to_gray(sensed.images.color),
-           to_metres(sensed.images.depth_mm)},
-          sensed.wheels,
+    take({to_frame(sensed.stamp, pinhole_camera(config.robot.camera), sensed.images), sensed.wheels,
           *T_map_world * sensed.T_world_base * T_base_camera});
     command = tour->command(sensed.robot);
     if (const auto problem = tour->stalled(); !problem.empty()) throw std::runtime_error(problem);
@@ -103,6 +101,10 @@ std::filesystem::path recording_of(const SimulatorConfig& config, const std::fil
 }
 
 }  // namespace
+
+RgbdFrame to_frame(time::Time stamp, const geometry::PinholeCamera& camera, const simulator::CameraImages& images) {
+  return {stamp, camera, to_gray(images.color), to_metres(images.depth_mm)};
+}
 
 void play_tour(const SimulatorConfig& config, const std::filesystem::path& folder,
                const std::function<void(const TourFrame&)>& take) {

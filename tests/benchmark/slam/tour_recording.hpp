@@ -19,6 +19,9 @@ struct TourFrame {
   geometry::Pose T_map_camera;                 ///< true; the map's origin is where base_link began
 };
 
+/// Colour and depth as slam gets them.
+RgbdFrame to_frame(time::Time stamp, const geometry::PinholeCamera& camera, const simulator::CameraImages& images);
+
 /// Plays the tour of a simulated scene. With `folder`, the frames of a tour are kept there, 0.7 MB each, and read from
 /// there the next time.
 /// @throws std::runtime_error with one line that says what is wrong

@@ -1,0 +1,210 @@
+#include "tests/benchmark/slam/lost_trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <utility>
+
+#include "simulator/core/robot/starts.hpp"
+#include "simulator/core/robot/tour_follower.hpp"
+#include "tests/benchmark/slam/tour_recording.hpp"
+
+namespace lapis::slam::benchmark {
+namespace {
+
+using geometry::Pose;
+using simulator::DriveCommand;
+using simulator::RobotState;
+using simulator::StartPose;
+
+// Numbers that a seed draws.
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : generator_(seed) {}
+  double between(double low, double high) {
+    return low + (high - low) * static_cast<double>(generator_() >> 11U) * 0x1p-53;
+  }
+  double sign() { return between(-1.0, 1.0) < 0.0 ? -1.0 : 1.0; }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+StartPose draw_place(const simulator::World& world, double radius_m, Dice& dice) {
+  constexpr double kRoom_m = 0.3;  // the robot drives a little while it turns
+  const auto cells = simulator::open_cells(world.nav_map(), radius_m + kRoom_m);
+  if (cells.empty()) throw std::runtime_error("scene " + world.scene().name + " has no room to turn in");
+  const auto index = static_cast<std::size_t>(dice.between(0.0, static_cast<double>(cells.size())));
+  return {world.nav_map().grid().center(cells[index]), dice.between(-std::numbers::pi, std::numbers::pi)};
+}
+
+Pose planar(const Eigen::Vector2d& position, double yaw_rad, double z_m) {
+  return geometry::make_pose({position.x(), position.y(), z_m},
+                             Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
+}
+
+// As simulator::Simulation, but only frames that are looked at are rendered.
+class Rig {
+ public:
+  Rig(const simulator::World& world, const simulator::SimulationConfig& config, const StartPose& start)
+      : world_(world), config_(config), robot_(world.nav_map(), config.robot, at_rest(start)),
+        sensors_(config.sensors, config.camera, world.scene().labels, config.seed) {}
+
+  const RobotState& robot() const { return robot_.state(); }
+  Pose T_world_camera() const {
+    const Pose T_world_base = planar(robot().position, robot().yaw_rad, world_.scene().floor_z_m);
+    return T_world_base * T_base_camera(config_.mount);
+  }
+
+  // Drives to the next frame's stamp; what the wheels said on the way.
+  std::vector<simulator::WheelSample> advance(const DriveCommand& command) {
+    constexpr std::int64_t kWheelPeriod_ns = 20'000'000;
+    const time::Time stamp{std::llround(static_cast<double>(++tick_) * 1e9 / config_.camera_rate_hz)};
+    const double yaw_before_rad = robot().yaw_rad;
+    if (!robot_.command(command)) throw std::runtime_error("a command is not finite");
+    std::vector<simulator::WheelSample> wheels;
+    while (robot().stamp < stamp) {
+      const time::Time due{(robot().stamp.nanoseconds / kWheelPeriod_ns + 1) * kWheelPeriod_ns};
+      sensors_.feel(robot_.advance(std::min(stamp, due)));
+      if (robot().stamp == due) wheels.push_back(sensors_.read_wheels(due, {kWheelPeriod_ns}));
+    }
+    turned_rad_ = std::remainder(robot().yaw_rad - yaw_before_rad, 2.0 * std::numbers::pi);
+    return wheels;
+  }
+
+  RgbdFrame see() const {
+    const simulator::View view{tick_, T_world_camera(), turned_rad_};
+    const auto ideal = world_.renderer().render(config_.camera, view.T_world_camera);
+    return to_frame(robot().stamp, config_.camera, sensors_.see(ideal, view));
+  }
+
+  RgbdFrame see_cover(bool with_depth) const {
+    constexpr double kGrey = 90.0, kSigma = 2.5;  // of 255; sensor noise
+    constexpr float kDistance_m = 0.3F;
+    const int width = config_.camera.width, height = config_.camera.height;
+    RgbdFrame frame{robot().stamp, config_.camera, geometry::GrayImage(width, height),
+                    geometry::DepthImage(width, height, with_depth ? kDistance_m : 0.0F)};
+    if (!with_depth) return frame;
+    std::mt19937_64 generator(config_.seed * 100'000 + tick_);
+    std::normal_distribution<double> noise(kGrey, kSigma);
+    for (auto& pixel : frame.gray.pixels) pixel = static_cast<std::uint8_t>(std::lround(noise(generator)));
+    return frame;
+  }
+
+ private:
+  static RobotState at_rest(const StartPose& start) {
+    RobotState state;
+    state.position = start.position;
+    state.yaw_rad = start.yaw_rad;
+    return state;
+  }
+
+  const simulator::World& world_;
+  simulator::SimulationConfig config_;
+  simulator::Robot robot_;
+  simulator::Sensors sensors_;
+  std::uint64_t tick_ = 0;
+  double turned_rad_ = 0.0;  // since the frame before
+};
+
+std::function<bool(const RobotState&)> over_after(double end_s) {
+  return [end_s](const RobotState& robot) { return robot.stamp.seconds() >= end_s; };
+}
+
+}  // namespace
+
+TrialPlan covered_plan(const simulator::World& world, double radius_m, std::uint64_t seed, bool turns_back) {
+  constexpr double kCovered_s = 5.0, kAfter_s = 2.5;
+  Dice dice(seed);
+  TrialPlan plan;
+  plan.start = draw_place(world, radius_m, dice);
+  const DriveCommand drive{dice.between(-0.12, 0.12), dice.sign() * dice.between(0.3, 0.7)};
+  plan.cover_from_s = dice.between(3.0, 4.0);
+  plan.cover_to_s = plan.cover_from_s + kCovered_s;
+  plan.with_flat_cover = dice.sign() > 0.0;
+  const double back_from_s = turns_back ? plan.cover_from_s + 0.5 * kCovered_s : plan.cover_to_s + 2.0 * kAfter_s;
+  plan.command = [drive, back_from_s](const RobotState& robot) {
+    const double sign = robot.stamp.seconds() < back_from_s ? 1.0 : -1.0;
+    return DriveCommand{sign * drive.speed_m_s, sign * drive.turn_rate_rad_s};
+  };
+  plan.is_over = over_after(plan.cover_to_s + kAfter_s);
+  return plan;
+}
+
+TrialPlan spin_plan(const simulator::World& world, double radius_m, std::uint64_t seed) {
+  constexpr double kSlow_s = 3.0, kAfter_s = 3.0, kBrake_s = 1.0;
+  Dice dice(seed);
+  TrialPlan plan;
+  plan.start = draw_place(world, radius_m, dice);
+  const double sign = dice.sign(), slow = sign * dice.between(0.3, 0.6), fast = sign * dice.between(3.0, 6.0);
+  const double braked_s = kSlow_s + 2.0 * std::numbers::pi / std::abs(fast);
+  plan.command = [=](const RobotState& robot) {
+    const double t_s = robot.stamp.seconds();
+    if (t_s < kSlow_s) return DriveCommand{0.0, slow};
+    if (t_s < braked_s) return DriveCommand{0.0, fast};
+    return DriveCommand{0.0, t_s < braked_s + kBrake_s ? 0.0 : -slow};
+  };
+  plan.is_over = over_after(braked_s + kBrake_s + kAfter_s);
+  return plan;
+}
+
+TrialPlan corridor_plan(const simulator::World& world, const simulator::TourConfig& tour, std::uint64_t seed) {
+  constexpr double kMiddle_m = 0.8;  // y of door and corridor
+  Dice dice(seed);
+  TrialPlan plan;
+  plan.start = {{dice.between(-1.5, -0.9), kMiddle_m}, std::numbers::pi * dice.sign() + dice.between(-0.3, 0.3)};
+  const Eigen::Vector2d deep(dice.between(2.5, 6.0), kMiddle_m + dice.between(-0.3, 0.3));
+  const Eigen::Vector2d end(-1.5, kMiddle_m);
+  const auto follower = std::make_shared<simulator::TourFollower>(
+      world.nav_map(), simulator::plan_tour(world.nav_map(), plan.start.position, {deep, end}, tour), tour);
+  plan.command = [follower](const RobotState& robot) { return follower->command(robot); };
+  plan.is_over = [follower](const RobotState& robot) {
+    if (const auto problem = follower->stalled(); !problem.empty()) throw std::runtime_error(problem);
+    return follower->is_finished() || robot.stamp.seconds() > 120.0;
+  };
+  return plan;
+}
+
+std::vector<TrialStep> drive_trial(const simulator::World& world, const simulator::SimulationConfig& simulation,
+                                   const SlamConfig& config, const TrialPlan& plan, bool with_wheels) {
+  const Pose T_base_camera = geometry::T_base_camera(simulation.mount);
+  const FeatureExtractor extractor(config.features);
+  RgbdSlam slam(config, T_base_camera, T_base_camera);
+  Rig rig(world, simulation, plan.start);
+  std::vector<TrialStep> steps;
+  Pose T_odom_base = Pose::Identity();
+  while (!plan.is_over(rig.robot())) {
+    for (const auto& wheel : rig.advance(plan.command(rig.robot()))) {
+      T_odom_base = planar(wheel.position, wheel.yaw_rad, 0.0);
+      if (with_wheels) slam.add_odometry(wheel.stamp, T_odom_base);
+    }
+    TrialStep step;
+    step.t_s = rig.robot().stamp.seconds();
+    step.is_covered = step.t_s >= plan.cover_from_s && step.t_s < plan.cover_to_s;
+    const RgbdFrame frame = step.is_covered ? rig.see_cover(plan.with_flat_cover) : rig.see();
+    const TrackingResult result = slam.process(frame);
+    if (!step.is_covered) {
+      const int usable = make_frame(frame, extractor, config.noise).features_with_depth;
+      step.is_usable = usable >= config.tracker.min_matches;
+    }
+    step.state = result.state;
+    step.has_pose = has_pose(result);
+    step.is_keyframe = result.is_keyframe;
+    step.estimate = result.T_map_keyframe * result.T_keyframe_camera;
+    step.truth = rig.T_world_camera();
+    step.wheels = T_odom_base * T_base_camera;
+    step.graph_version = slam.graph_version();
+    step.keyframes = slam.keyframe_count();
+    step.landmarks = slam.landmark_count();
+    step.matches = result.matches;
+    step.inliers = result.inliers;
+    step.reason = result.reason;
+    steps.push_back(std::move(step));
+  }
+  return steps;
+}
+
+}  // namespace lapis::slam::benchmark

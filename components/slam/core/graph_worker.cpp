@@ -7,6 +7,10 @@
 namespace lapis::slam {
 namespace {
 
+// How many of the newest key-frames get their covariance anew. A frame's reference is among them, unless a place seen
+// long ago was recognised; the covariance from before, without the newest loops, is then still an upper bound.
+constexpr std::size_t kNewest = 100;
+
 // Optimal poses of the graph, how well they are known, and which edges are outliers.
 GraphCorrection optimize(PoseGraphSnapshot graph) {
   GraphCorrection correction;
@@ -14,12 +18,13 @@ GraphCorrection optimize(PoseGraphSnapshot graph) {
   OptimizerOptions options;
   options.is_robust = true;
   correction.weights = optimize_pose_graph(options, graph).weights;
-  std::vector<std::uint64_t> ids;
-  for (const PoseGraphNode& node : graph.nodes) {
-    correction.T_map_camera.push_back(node.T_map_camera);
-    ids.push_back(node.id);
+  std::vector<std::uint64_t> newest;
+  for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
+    correction.T_map_camera.push_back(graph.nodes[i].T_map_camera);
+    if (i + kNewest >= graph.nodes.size()) newest.push_back(graph.nodes[i].id);
   }
-  correction.covariances = node_covariances(graph, ids, correction.weights);
+  correction.covariances = node_covariances(graph, newest, correction.weights);
+  correction.covariances.insert(correction.covariances.begin(), graph.nodes.size() - newest.size(), std::nullopt);
   return correction;
 }
 

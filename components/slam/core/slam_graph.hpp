@@ -13,10 +13,11 @@ namespace lapis::slam {
 
 /// What an optimisation of the pose graph made of it.
 struct GraphCorrection {
-  std::vector<geometry::Pose> T_map_camera;                    ///< of each key-frame that the optimisation knew
-  std::vector<geometry::Pose> T_map_before;                    ///< the same, when it began
-  std::vector<std::optional<geometry::Matrix6d>> covariances;  ///< the same, relative to the first key-frame
-  std::vector<double> weights;                                 ///< of each edge that it knew, 0 = an outlier
+  std::vector<geometry::Pose> T_map_camera;  ///< of each key-frame that the optimisation knew
+  std::vector<geometry::Pose> T_map_before;  ///< the same, when it began
+  std::vector<std::optional<geometry::Matrix6d>>
+      covariances;              ///< the same, relative to the first key-frame; none: as it was
+  std::vector<double> weights;  ///< of each edge that it knew, 0 = an outlier
 };
 
 /// Edges between the key-frames of a map, and what follows from them: how well each pose is known. Every key-frame but

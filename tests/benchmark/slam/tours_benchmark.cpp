@@ -18,6 +18,7 @@
 #include "slam/core/rgbd_slam.hpp"
 #include "slam/slam_config.hpp"
 #include "tests/benchmark/slam/tour_recording.hpp"
+#include "tests/benchmark/slam/wrong_loop_trials.hpp"
 
 namespace lapis::slam::benchmark {
 namespace {
@@ -29,6 +30,7 @@ struct Options {
   std::string folder;
   bool no_wheels = false;
   bool with_loops = false;
+  int wrong_loop_seeds = 0;
 };
 
 // Points that a key-frame sees, for what it shares with others.
@@ -250,6 +252,14 @@ void print_row(const std::string& scene, int seed, const Run& run) {
   std::fflush(stdout);
 }
 
+void spoil(const Run& run, int seeds) {
+  std::vector<Eigen::Vector3d> truth;
+  for (const auto& node : run.graph.nodes) {
+    truth.emplace_back(run.truth.at(node.stamp.nanoseconds).translation());
+  }
+  print_wrong_loop_trials(run.graph, truth, seeds);
+}
+
 int run(const Options& options) {
   bool are_complete = true;
   print_header();
@@ -270,6 +280,7 @@ int run(const Options& options) {
         const Run tour = play(simulated, slam.method, options.folder, !options.no_wheels);
         print_row(scene, seed, tour);
         if (options.with_loops) print_loops(tour);
+        if (options.wrong_loop_seeds > 0) spoil(tour, options.wrong_loop_seeds);
       } catch (const std::exception& error) {
         std::printf("%-15s %4d failed: %s\n", scene.c_str(), seed, error.what());
         are_complete = false;
@@ -300,6 +311,9 @@ int main(int argc, char** argv) {
       "the configuration, not the simulator: empty the folder when that changes");
   app.add_flag("--no-wheels", options.no_wheels, "slam gets no wheel odometry");
   app.add_flag("--loops", options.with_loops, "also a row for each loop");
+  app.add_option("--wrong-loops", options.wrong_loop_seeds,
+                 "also rows for 10, 20 and 30 % wrong loops in the final graph, so many seeds each")
+      ->check(CLI::Range(1, 1000));
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
   try {

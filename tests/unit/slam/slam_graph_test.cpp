@@ -1,9 +1,12 @@
 #include "slam/core/slam_graph.hpp"
 
+#include <algorithm>
+#include <numbers>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "slam/core/graph_worker.hpp"
 #include "slam/core/pose_graph_optimizer.hpp"
 
 namespace lapis::slam {
@@ -126,6 +129,81 @@ TEST_F(SlamGraphTest, VisualEdgesFollowWhatBundleAdjustmentMoved) {
   const Pose moved = map_.keyframe(2).T_map_camera.inverse() * map_.keyframe(3).T_map_camera;
   EXPECT_TRUE(edges[2].T_from_to.isApprox(moved, 1e-12));
   EXPECT_TRUE(edges[1].T_from_to.isApprox(steps_[1], 1e-12));
+}
+
+// A camera that goes round twice, recognises places of the first lap, and takes one for another.
+class WrongLoopTest : public ::testing::Test {
+ protected:
+  static constexpr KeyframeId kLap = 40;
+  static constexpr double kSigma_m = 0.005, kSigma_rad = 0.002;
+
+  WrongLoopTest() {
+    information_.diagonal() << Eigen::Vector3d::Constant(1.0 / (kSigma_m * kSigma_m)),
+        Eigen::Vector3d::Constant(1.0 / (kSigma_rad * kSigma_rad));
+    for (KeyframeId id = 0; id < 2 * kLap; ++id) {
+      Keyframe keyframe;
+      const Pose step = id > 0 ? measure(id - 1, id) : Pose::Identity();
+      keyframe.T_map_camera = id > 0 ? Pose(map_.keyframe(id - 1).T_map_camera * step) : truth(0);
+      map_.add_keyframe(keyframe);
+      if (id == 0) graph_.add_root();
+      if (id > 0) graph_.add_keyframe({id - 1, id, EdgeType::kOdometry, step, information_});
+    }
+    for (KeyframeId id = kLap + 5; id < 2 * kLap; id += 5) add_loop(id - kLap, id, measure(id - kLap, id));
+  }
+
+  static Pose truth(KeyframeId id) {
+    const double angle = 2.0 * std::numbers::pi * static_cast<double>(id) / kLap;
+    Pose T = Pose::Identity();
+    T.rotate(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()));
+    T.translation() = 3.0 * T.linear().col(2);
+    return T;
+  }
+  Pose measure(KeyframeId from, KeyframeId to) {
+    Vector6d xi;
+    for (int i = 0; i < 6; ++i) xi[i] = (i < 3 ? kSigma_m : kSigma_rad) * normal_(engine_);
+    return truth(from).inverse() * truth(to) * geometry::se3_exp(xi);
+  }
+  void add_loop(KeyframeId from, KeyframeId to, const Pose& T_from_to) {
+    graph_.add_edge({from, to, EdgeType::kLoopClosure, T_from_to, information_});
+  }
+  static double worst_error_m(const PoseGraphSnapshot& graph) {
+    double worst = 0.0;
+    for (const PoseGraphNode& node : graph.nodes) {
+      worst = std::max(worst, (node.T_map_camera.translation() - truth(node.id).translation()).norm());
+    }
+    return worst;
+  }
+
+  std::mt19937 engine_{5};
+  std::normal_distribution<double> normal_{0.0, 1.0};
+  Matrix6d information_ = Matrix6d::Zero();
+  Map map_;
+  SlamGraph graph_;
+};
+
+TEST_F(WrongLoopTest, DoesNotSurviveTheCorrection) {
+  PoseGraphSnapshot clean = graph_.snapshot(map_, 0);
+  optimize_pose_graph({}, clean);
+  const std::size_t true_loops = graph_.count(EdgeType::kLoopClosure);
+  const KeyframeId from = 10, to = kLap + 25;
+  add_loop(from, to, measure(from, kLap + from));
+  PoseGraphSnapshot trusting = graph_.snapshot(map_, 0);
+  optimize_pose_graph({}, trusting);
+  EXPECT_GT(worst_error_m(trusting), 0.5) << "it would do harm";
+
+  GraphWorker worker;
+  worker.start(graph_.snapshot(map_, 0), 3);
+  EXPECT_FALSE(worker.take(2).has_value());
+  const auto correction = worker.take(3);
+  ASSERT_TRUE(correction.has_value());
+  graph_.apply(*correction, map_);
+  const PoseGraphSnapshot corrected = graph_.snapshot(map_, 1);
+  EXPECT_EQ(graph_.count(EdgeType::kLoopClosure), true_loops);
+  for (const PoseGraphEdge& edge : corrected.edges) EXPECT_FALSE(edge.from == from && edge.to == to);
+  for (std::size_t i = 0; i < clean.nodes.size(); ++i) {
+    EXPECT_TRUE(corrected.nodes[i].T_map_camera.isApprox(clean.nodes[i].T_map_camera, 1e-4)) << i;
+  }
+  EXPECT_LT(worst_error_m(corrected), 0.1);
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 #include "slam/core/rgbd_slam.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -165,14 +166,29 @@ class RgbdSlam::Implementation {
     TrackingResult result;
     result.state = TrackingState::kTracking;
     result.graph_version = version_;
-    set_pose({outcome.reference, outcome.alignment.T_reference_camera,
-              edge_information(config_.pose_graph, outcome.alignment.information).inverse()},
-             result);
+    const RelativeCamera seen{outcome.reference, outcome.alignment.T_reference_camera,
+                              edge_information(config_.pose_graph, outcome.alignment.information).inverse()};
+    set_pose(fuse(seen, motion_.dead_reckon(frame.input->stamp)), result);
     result.features = static_cast<std::uint32_t>(frame.features.size());
     result.matches = static_cast<std::uint32_t>(outcome.matches);
     result.inliers = static_cast<std::uint32_t>(outcome.alignment.inliers);
     result.rms_px = outcome.alignment.rms_px;
     return result;
+  }
+
+  // Vision and wheels together, each as sure as it is: a bare wall says nothing of the way along it. Wheels that slip
+  // lose their weight (Huber).
+  RelativeCamera fuse(const RelativeCamera& seen, const std::optional<RelativeCamera>& reckoned) const {
+    constexpr double kMostSigmas = 3.0;
+    if (!reckoned) return seen;
+    const Pose T_map_reckoned = map_.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera;
+    const Pose T_map_seen = map_.keyframe(seen.reference).T_map_camera * seen.T_reference_camera;
+    const geometry::Vector6d difference = geometry::se3_log(T_map_seen.inverse() * T_map_reckoned);
+    const Matrix6d sum = seen.covariance + reckoned->covariance;
+    const double sigmas = std::sqrt(difference.dot(sum.inverse() * difference));
+    const Matrix6d wheels = std::min(1.0, kMostSigmas / sigmas) * reckoned->covariance.inverse();
+    const Matrix6d together = (seen.covariance.inverse() + wheels).inverse();
+    return {seen.reference, seen.T_reference_camera * geometry::se3_exp(together * wheels * difference), together};
   }
 
   TrackingResult start_map(const Frame& frame) {
@@ -225,8 +241,12 @@ class RgbdSlam::Implementation {
     const KeyframeId previous = map_.keyframes().back().id;
     const KeyframeId id = add_keyframe(frame, result.T_map_keyframe * result.T_keyframe_camera);
     const EdgeType type = outcome != nullptr ? EdgeType::kOdometry : EdgeType::kWheelOdometry;
-    const Matrix6d information = bounded_information(config_.pose_graph, result.covariance.inverse());
-    graph_.add_keyframe({result.keyframe_id, id, type, result.T_keyframe_camera, information});
+    const Pose T_parent_keyframe =
+        outcome != nullptr ? outcome->alignment.T_reference_camera : result.T_keyframe_camera;
+    const Matrix6d information = outcome != nullptr
+                                     ? edge_information(config_.pose_graph, outcome->alignment.information)
+                                     : bounded_information(config_.pose_graph, result.covariance.inverse());
+    graph_.add_keyframe({result.keyframe_id, id, type, T_parent_keyframe, information});
     if (outcome != nullptr) {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
       graph_.add_link(

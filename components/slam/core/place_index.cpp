@@ -45,7 +45,7 @@ void PlaceIndex::add(KeyframeId id, std::span<const Feature> features) {
 std::vector<PlaceIndex::Candidate> PlaceIndex::query(std::span<const Feature> features, KeyframeId before,
                                                      std::size_t most) const {
   std::vector<double> scores(norms_.size(), 0.0);
-  const double keyframes = static_cast<double>(norms_.size());
+  const auto keyframes = static_cast<double>(norms_.size());
   const auto common = std::max(kCommonWord, static_cast<std::size_t>(kCommonShare * keyframes));
   for (const Feature& feature : features) {
     for (std::size_t table = 0; table < kTables; ++table) {

@@ -50,6 +50,6 @@ TrialPlan corridor_plan(const simulator::World& world, const simulator::TourConf
 
 /// Drives the plan. Frames that are covered are not rendered.
 std::vector<TrialStep> drive_trial(const simulator::World& world, const simulator::SimulationConfig& simulation,
-                                   const SlamConfig& slam, const TrialPlan& plan, bool with_wheels);
+                                   const SlamConfig& config, const TrialPlan& plan, bool with_wheels);
 
 }  // namespace lapis::slam::benchmark

@@ -91,7 +91,7 @@ TEST_F(LightCache, WhatChangesLightHasAFileOfItsOwn) {
   light_of(scene, folder_);
   EXPECT_EQ(files().size(), 3U);
   scene.mesh.materials[0].color = {1, 2, 3};
-  scene.tour.push_back({1, 1});
+  scene.tour.emplace_back(1, 1);
   light_of(scene, folder_);
   EXPECT_EQ(files().size(), 3U) << "light does not depend on colours or ways";
 }

@@ -9,10 +9,9 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utility.hpp>
 
-#include "common/config/yaml.hpp"
 #include "simulator/set_up.hpp"
-#include "slam/slam_config.hpp"
 #include "tests/benchmark/slam/lost_trial_judge.hpp"
+#include "tests/benchmark/slam/tour_recording.hpp"
 
 namespace lapis::slam::benchmark {
 namespace {
@@ -71,19 +70,8 @@ void print_row(const std::string& kind, int trial, const TrialVerdict& v) {
   std::fflush(stdout);
 }
 
-struct Setting {
-  simulator::SimulatorConfig simulated;
-  SlamComponentConfig slam;
-};
-
-Setting setting_of(const std::string& kind, const std::vector<std::string>& overrides) {
-  Setting setting;
-  config::Schema schema;
-  schema("simulator", setting.simulated);
-  schema("robot", setting.simulated.robot);
-  schema("slam", setting.slam);
-  for (const std::string& assignment : overrides) config::apply_override(schema, assignment);
-  config::check(schema);
+TourConfig setting_of(const std::string& kind, const std::vector<std::string>& overrides) {
+  TourConfig setting = tour_config(overrides);
   setting.simulated.scene = kind == "corridor" ? "blank_corridor" : "apartment";
   if (kind == "spin") setting.simulated.robot.max_turn_rate_rad_s = 6.0;
   return setting;
@@ -115,7 +103,7 @@ class Course {
 
   std::string kind_;
   const Options& options_;
-  Setting setting_;
+  TourConfig setting_;
   simulator::World world_;
 };
 

@@ -9,6 +9,7 @@
 #include <functional>
 #include <iostream>
 #include <random>
+#include <stdexcept>
 
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
@@ -107,7 +108,9 @@ Arrival arrival(const Method& method, const PoseGraphSnapshot& graph, double opt
 }
 
 void compare(const Options& options) {
-  std::ifstream stream(options.folder / "reference.json");
+  const auto reference = options.folder / "reference.json";
+  std::ifstream stream(reference);
+  if (!stream) throw std::runtime_error(reference.string() + ": cannot be read; the folder has to be data/posegraph");
   std::printf("%-24s %3s %6s %6s %12s %12s %10s %5s %9s %9s %5s %9s %6s\n", "file", "dim", "nodes", "edges", "chi2",
               "reference", "above", "steps", "ours ms", "whole ms", "steps", "Ceres ms", "ratio");
   for (const auto& entry : nlohmann::json::parse(stream)) {

@@ -106,6 +106,18 @@ RgbdFrame to_frame(time::Time stamp, const geometry::PinholeCamera& camera, cons
   return {stamp, camera, to_gray(images.color), to_metres(images.depth_mm)};
 }
 
+TourConfig tour_config(const std::vector<std::string>& assignments) {
+  TourConfig tour;
+  config::Schema schema;
+  schema("simulator", tour.simulated);
+  schema("robot", tour.simulated.robot);
+  schema("slam", tour.slam);
+  tour.simulated.tour = "bundled";
+  for (const std::string& assignment : assignments) config::apply_override(schema, assignment);
+  config::check(schema);
+  return tour;
+}
+
 void play_tour(const SimulatorConfig& config, const std::filesystem::path& folder,
                const std::function<void(const TourFrame&)>& take) {
   if (folder.empty()) return drive(config, take);

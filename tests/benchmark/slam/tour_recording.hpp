@@ -3,12 +3,14 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "common/geometry/se3.hpp"
 #include "simulator/core/sensors.hpp"
 #include "simulator/simulator_config.hpp"
 #include "slam/core/frame.hpp"
+#include "slam/slam_config.hpp"
 
 namespace lapis::slam::benchmark {
 
@@ -21,6 +23,16 @@ struct TourFrame {
 
 /// Colour and depth as slam gets them.
 RgbdFrame to_frame(time::Time stamp, const geometry::PinholeCamera& camera, const simulator::CameraImages& images);
+
+/// A simulator with the bundled tour, and slam.
+struct TourConfig {
+  simulator::SimulatorConfig simulated;
+  SlamComponentConfig slam;
+};
+
+/// The default configuration with assignments of the command line: slam.KEY=VALUE, simulator.KEY=VALUE,
+/// robot.KEY=VALUE. Throws std::runtime_error with one line that says what is wrong.
+TourConfig tour_config(const std::vector<std::string>& assignments);
 
 /// Plays the tour of a simulated scene. With `folder`, the frames of a tour are kept there, 0.7 MB each, and read from
 /// there the next time.

@@ -12,11 +12,9 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utility.hpp>
 
-#include "common/config/yaml.hpp"
 #include "evaluator/core/ate.hpp"
 #include "simulator/set_up.hpp"
 #include "slam/core/rgbd_slam.hpp"
-#include "slam/slam_config.hpp"
 #include "tests/benchmark/slam/tour_recording.hpp"
 #include "tests/benchmark/slam/wrong_loop_trials.hpp"
 
@@ -265,15 +263,7 @@ int run(const Options& options) {
   print_header();
   for (const std::string& scene : options.scenes) {
     for (const int seed : options.seeds) {
-      simulator::SimulatorConfig simulated;
-      SlamComponentConfig slam;
-      config::Schema schema;
-      schema("simulator", simulated);
-      schema("robot", simulated.robot);
-      schema("slam", slam);
-      simulated.tour = "bundled";
-      for (const std::string& assignment : options.overrides) config::apply_override(schema, assignment);
-      config::check(schema);
+      auto [simulated, slam] = tour_config(options.overrides);
       simulated.scene = scene;
       simulated.seed = seed;
       try {

@@ -13,11 +13,9 @@
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utility.hpp>
 
-#include "common/config/yaml.hpp"
 #include "evaluator/core/statistics.hpp"
 #include "simulator/set_up.hpp"
 #include "slam/core/rgbd_slam.hpp"
-#include "slam/slam_config.hpp"
 #include "tests/benchmark/slam/plain_chain.hpp"
 #include "tests/benchmark/slam/tour_recording.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
@@ -143,15 +141,7 @@ void print(const std::string& frames, const Times& times) {
 }
 
 void run(const Options& options) {
-  simulator::SimulatorConfig simulated;
-  SlamComponentConfig slam;
-  config::Schema schema;
-  schema("simulator", simulated);
-  schema("robot", simulated.robot);
-  schema("slam", slam);
-  simulated.tour = "bundled";
-  for (const std::string& assignment : options.overrides) config::apply_override(schema, assignment);
-  config::check(schema);
+  auto [simulated, slam] = tour_config(options.overrides);
   if (!options.scene.empty()) {
     simulated.scene = options.scene;
     simulated.seed = options.seed;

@@ -63,6 +63,8 @@ void describe(Field& field, TrackerConfig& c) {
   field("min_matches", c.min_matches, config::in_range(6, 500),
         "projection matches below which the next way of matching is tried");
   field("min_inliers", c.min_inliers, config::in_range(6, 200), "fewer after the refinement is lost");
+  field("min_inlier_share", c.min_inlier_share, config::in_range(0.0, 1.0),
+        "of the matches; with fewer the view repeats itself or is noise");
   field("local_keyframes", c.local_keyframes, config::in_range(1, 50), "key-frames whose landmarks form the local map");
   field("recovery_keyframes", c.recovery_keyframes, config::in_range(1, 50),
         "newest key-frames tried by brute force when all else fails");
@@ -109,7 +111,6 @@ void describe(Field& field, LoopConfig& c) {
   field("near_m", c.near_m, config::in_range(0, 10), "a key-frame this near in the map is tried too [m]");
   field("near_rad", c.near_rad, config::in_range(0, 3.2), "the same for the direction of view [rad]");
   field("min_inliers", c.min_inliers, config::in_range(10, 1000), "of the alignment with the older key-frame");
-  field("min_inlier_share", c.min_inlier_share, config::in_range(0, 1), "of its matches");
   field("max_sigma_m", c.max_sigma_m, config::in_range(1e-3, 1),
         "an alignment less sure in any direction makes no loop [m]");
   field("max_sigma_rad", c.max_sigma_rad, config::in_range(1e-3, 1), "the same for the rotation [rad]");
@@ -124,6 +125,10 @@ void describe(Field& field, LoopConfig& c) {
 template <class Field>
 void describe(Field& field, RelocalizationConfig& c) {
   field("min_inliers", c.min_inliers, config::in_range(10, 1000), "of the alignment with a recognised key-frame");
+  field("min_inlier_share", c.min_inlier_share, config::in_range(0.0, 1.0),
+        "of its matches, where motion does not lead");
+  field("max_sigma_m", c.max_sigma_m, config::in_range(1e-3, 1.0),
+        "a pose that is less sure of any direction is not believed where motion does not lead [m]");
   field("confirmations", c.confirmations, config::in_range(0, 100),
         "frames that have to find the same pose again, unless motion leads there");
   field("near_m", c.near_m, config::in_range(0.01, 5), "distance of poses that are the same [m]");

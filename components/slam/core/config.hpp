@@ -37,15 +37,16 @@ struct SurfaceConfig {
 };
 
 struct TrackerConfig {
-  int min_matches = 30;           ///< projection matches below which the next way of matching is tried [6, 500]
-  int min_inliers = 15;           ///< fewer after the refinement is lost [6, 200]
-  int local_keyframes = 5;        ///< key-frames whose landmarks form the local map [1, 50]
-  int recovery_keyframes = 5;     ///< newest key-frames tried by brute force when all else fails [1, 50]
-  int ransac_iterations = 200;    ///< PnP [10, 10000]
-  double ransac_error_px = 4.0;   ///< PnP inlier threshold [0.5, 20]
-  int refine_iterations = 4;      ///< Levenberg-Marquardt steps per round [1, 50]
-  int max_blind_frames = 8;       ///< in a row with enough features, before the map goes on by odometry [1, 1000]
-  double max_prediction_s = 0.5;  ///< longest gap that the motion model bridges [0.01, 5]
+  int min_matches = 30;            ///< projection matches below which the next way of matching is tried [6, 500]
+  int min_inliers = 15;            ///< fewer after the refinement is lost [6, 200]
+  double min_inlier_share = 0.45;  ///< of the matches; with fewer the view repeats itself, or is noise [0, 1]
+  int local_keyframes = 5;         ///< key-frames whose landmarks form the local map [1, 50]
+  int recovery_keyframes = 5;      ///< newest key-frames tried by brute force when all else fails [1, 50]
+  int ransac_iterations = 200;     ///< PnP [10, 10000]
+  double ransac_error_px = 4.0;    ///< PnP inlier threshold [0.5, 20]
+  int refine_iterations = 4;       ///< Levenberg-Marquardt steps per round [1, 50]
+  int max_blind_frames = 8;        ///< in a row with enough features, before the map goes on by odometry [1, 1000]
+  double max_prediction_s = 0.5;   ///< longest gap that the motion model bridges [0.01, 5]
 };
 
 /// A frame becomes a key-frame when any of the reasons holds and the last one is far enough back.
@@ -79,7 +80,6 @@ struct LoopConfig {
   double near_m = 1.5;                 ///< a key-frame this near in the map is tried too [0, 10]
   double near_rad = 0.7;               ///< the same, at the same place [0, 3.2]
   int min_inliers = 30;                ///< of the alignment [10, 1000]
-  double min_inlier_share = 0.4;       ///< of the matches [0, 1]
   double max_sigma_m = 0.06;           ///< an alignment that is less sure of any direction is refused [1e-3, 1]
   double max_sigma_rad = 0.03;         ///< the same [1e-3, 1]
   int confirm_within = 3;              ///< key-frames, in which a second one has to say the same [1, 100]
@@ -91,11 +91,13 @@ struct LoopConfig {
 
 /// When a pose that was found by recognising a place is believed.
 struct RelocalizationConfig {
-  int min_inliers = 25;     ///< of the alignment with the recognised key-frame [10, 1000]
-  int confirmations = 2;    ///< frames that have to find the same again, unless motion leads there [0, 100]
-  double near_m = 0.25;     ///< what "the same" is, and where motion leads [0.01, 5]
-  double near_rad = 0.2;    ///< the same [0.01, 3]
-  double speed_m_s = 1.0;   ///< between frames, when no wheels tell [0, 10]
+  int min_inliers = 25;           ///< of the alignment with the recognised key-frame [10, 1000]
+  double min_inlier_share = 0.6;  ///< of its matches, where motion does not lead [0, 1]
+  double max_sigma_m = 0.06;      ///< a pose that is less sure of any direction is not believed there [1e-3, 1]
+  int confirmations = 2;          ///< frames that have to find the same again, unless motion leads there [0, 100]
+  double near_m = 0.25;           ///< what "the same" is, and where motion leads [0.01, 5]
+  double near_rad = 0.2;          ///< the same [0.01, 3]
+  double speed_m_s = 1.0;         ///< between frames, when no wheels tell [0, 10]
   double patience_s = 2.0;  ///< without a pose, after which one within reach of the last is still believed [0, 10]
   double memory_s = 0.5;    ///< longest time between frames that confirm each other [0.01, 10]
 };

@@ -4,8 +4,6 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
 namespace lapis::slam {
 namespace {
 
@@ -18,12 +16,6 @@ constexpr double kLoopShare = 0.5;
 // Squared Mahalanobis distance of a loop from what the chain of edges says: 99.9 % of six degrees of freedom, for
 // errors three times as large as the chain believes.
 constexpr double kChainGate = 9.0 * 22.46;
-
-// Largest standard deviation along any direction of a block of the covariance.
-double largest_sigma(const Matrix6d& covariance, int first) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance.block<3, 3>(first, first));
-  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
-}
 
 double way_m(const Map& map, KeyframeId from, KeyframeId to) {
   double way = 0.0;
@@ -98,7 +90,6 @@ std::optional<PoseGraphEdge> LoopDetector::verify(const Map& map, const SlamGrap
   for (const Candidate& candidate : candidates(map, frame, id)) {
     const TrackOutcome outcome = tracker.recognize(map, frame, candidate.keyframe, candidate.T_map_camera);
     if (!outcome.is_tracked || outcome.alignment.inliers < config_.loop.min_inliers) continue;
-    if (outcome.alignment.inliers < config_.loop.min_inlier_share * outcome.matches) continue;
     PoseGraphEdge edge{candidate.keyframe, id, EdgeType::kLoopClosure, outcome.alignment.T_reference_camera,
                        edge_information(config_.pose_graph, kLoopShare * outcome.alignment.information)};
     const Matrix6d covariance = edge.information.inverse();

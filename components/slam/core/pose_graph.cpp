@@ -1,5 +1,8 @@
 #include "slam/core/pose_graph.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include <Eigen/Eigenvalues>
 
 namespace lapis::slam {
@@ -15,6 +18,11 @@ geometry::Matrix6d bounded_information(const PoseGraphConfig& config, const geom
       solver.eigenvalues().cwiseMax(config.min_information).cwiseMin(config.max_information);
   const geometry::Matrix6d bounded = solver.eigenvectors() * values.asDiagonal() * solver.eigenvectors().transpose();
   return 0.5 * (bounded + bounded.transpose());
+}
+
+double largest_sigma(const geometry::Matrix6d& covariance, int first) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(covariance.block<3, 3>(first, first));
+  return std::sqrt(std::max(0.0, solver.eigenvalues().maxCoeff()));
 }
 
 }  // namespace lapis::slam

@@ -40,4 +40,7 @@ geometry::Matrix6d edge_information(const PoseGraphConfig& config, const geometr
 /// The same matrix with its eigenvalues within the configured bounds, so that no edge is blind or too sure.
 geometry::Matrix6d bounded_information(const PoseGraphConfig& config, const geometry::Matrix6d& information);
 
+/// Largest standard deviation along any direction of the position (`first` = 0) [m] or the rotation (3) [rad].
+double largest_sigma(const geometry::Matrix6d& covariance, int first);
+
 }  // namespace lapis::slam

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <utility>
 
+#include "slam/core/pose_graph.hpp"
+
 namespace lapis::slam {
 
 using geometry::Pose;
@@ -21,27 +23,37 @@ TrackOutcome Relocalizer::search(const Map& map, const LoopDetector& places, con
 
 bool Relocalizer::believes(const Map& map, const MotionModel& motion, time::Time stamp, const TrackOutcome& outcome) {
   const Pose T_map_camera = map.keyframe(outcome.reference).T_map_camera * outcome.alignment.T_reference_camera;
-  if (motion_leads_to(map, motion, stamp, T_map_camera)) {
-    hypothesis_.reset();
-    return true;
+  bool is_believed = motion_leads_to(map, motion, stamp, T_map_camera);
+  if (!is_believed) {
+    if (!is_distinct(outcome)) return false;
+    const int confirmed = hypothesis_ && confirms(motion, stamp, T_map_camera) ? hypothesis_->confirmed + 1 : 0;
+    hypothesis_ = Hypothesis{stamp, T_map_camera, confirmed};
+    is_believed = confirmed >= config_.confirmations || is_within_reach(map, motion, stamp, T_map_camera);
   }
-  const int confirmed = hypothesis_ && confirms(motion, stamp, T_map_camera) ? hypothesis_->confirmed + 1 : 0;
-  hypothesis_ = Hypothesis{stamp, T_map_camera, confirmed};
-  if (confirmed < config_.confirmations) return false;
-  hypothesis_.reset();
-  return true;
+  if (is_believed) hypothesis_.reset();
+  return is_believed;
 }
 
 bool Relocalizer::motion_leads_to(const Map& map, const MotionModel& motion, time::Time stamp,
                                   const Pose& T_map_camera) const {
-  if (const auto expected = motion.expect(map, stamp)) {
-    const double sigma_m = std::sqrt(expected->covariance.topLeftCorner<3, 3>().trace());
-    return is_near(expected->T_map_camera, T_map_camera, 1.0 + 3.0 * sigma_m / config_.near_m);
-  }
+  const auto expected = motion.expect(map, stamp);
+  if (!expected) return false;
+  const double sigma_m = std::sqrt(expected->covariance.topLeftCorner<3, 3>().trace());
+  return is_near(expected->T_map_camera, T_map_camera, 1.0 + 3.0 * sigma_m / config_.near_m);
+}
+
+bool Relocalizer::is_within_reach(const Map& map, const MotionModel& motion, time::Time stamp,
+                                  const Pose& T_map_camera) const {
   const auto last = motion.last_pose(map);
-  if (!last) return false;
+  if (!last || motion.expect(map, stamp)) return false;
   const double elapsed_s = (stamp - last->first).seconds();
   return elapsed_s >= 0.0 && elapsed_s <= config_.patience_s && is_near(last->second, T_map_camera, reach(elapsed_s));
+}
+
+bool Relocalizer::is_distinct(const TrackOutcome& outcome) const {
+  const geometry::Matrix6d information = edge_information(graph_, outcome.alignment.information);
+  return outcome.alignment.inliers >= config_.min_inlier_share * outcome.matches &&
+         largest_sigma(information.inverse(), 0) <= config_.max_sigma_m;
 }
 
 bool Relocalizer::confirms(const MotionModel& motion, time::Time stamp, const Pose& T_map_camera) const {

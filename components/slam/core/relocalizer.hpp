@@ -9,10 +9,10 @@
 namespace lapis::slam {
 
 /// Decides whether a pose may be believed. One near where motion leads is; any other, found by recognising a place, has
-/// to be found again by the frames that follow.
+/// to be distinct, and within reach or found again by the frames that follow.
 class Relocalizer {
  public:
-  explicit Relocalizer(const RelocalizationConfig& config) : config_(config) {}
+  explicit Relocalizer(const SlamConfig& config) : config_(config.relocalization), graph_(config.pose_graph) {}
 
   /// Looks for the frame in the whole map; the best of the key-frames that resemble it.
   TrackOutcome search(const Map& map, const LoopDetector& places, const Tracker& tracker, const Frame& frame) const;
@@ -23,6 +23,12 @@ class Relocalizer {
  private:
   bool motion_leads_to(const Map& map, const MotionModel& motion, time::Time stamp,
                        const geometry::Pose& T_map_camera) const;
+  /// Whether the camera can be there, not long after it was seen last, when nothing tells how it moved.
+  bool is_within_reach(const Map& map, const MotionModel& motion, time::Time stamp,
+                       const geometry::Pose& T_map_camera) const;
+  /// Whether most of what the frame has in common with the place agrees, and tells the pose well: parts that repeat
+  /// themselves, such as the floor of a corridor, do neither.
+  bool is_distinct(const TrackOutcome& outcome) const;
   bool confirms(const MotionModel& motion, time::Time stamp, const geometry::Pose& T_map_camera) const;
   /// How many times RelocalizationConfig::near_m and near_rad a camera can get away in a time.
   double reach(double elapsed_s) const;
@@ -34,6 +40,7 @@ class Relocalizer {
     int confirmed = 0;
   };
   RelocalizationConfig config_;
+  PoseGraphConfig graph_;
   std::optional<Hypothesis> hypothesis_;
 };
 

@@ -119,10 +119,15 @@ TrackOutcome Tracker::align(const Map& map, const Frame& frame, const LocalMap& 
   for (std::size_t i = 0; i < matches.size(); ++i) {
     if (outcome.alignment.is_inlier[i]) outcome.inliers.push_back(matches[i]);
   }
-  outcome.is_tracked = outcome.alignment.inliers >= config_.tracker.min_inliers &&
-                       geometry::is_valid(outcome.alignment.T_reference_camera);
-  outcome.reason =
-      outcome.is_tracked ? "" : shortage(outcome.alignment.inliers, config_.tracker.min_inliers, "inliers");
+  if (outcome.alignment.inliers < config_.tracker.min_inliers) {
+    outcome.reason = shortage(outcome.alignment.inliers, config_.tracker.min_inliers, "inliers");
+  } else if (outcome.alignment.inliers < config_.tracker.min_inlier_share * outcome.matches) {
+    outcome.reason = "only " + std::to_string(outcome.alignment.inliers) + " of " + std::to_string(outcome.matches) +
+                     " matches agree";
+  } else {
+    outcome.is_tracked = geometry::is_valid(outcome.alignment.T_reference_camera);
+    outcome.reason = outcome.is_tracked ? "" : "the pose is not finite";
+  }
   return outcome;
 }
 

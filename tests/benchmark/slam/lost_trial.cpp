@@ -10,6 +10,7 @@
 
 #include "simulator/core/robot/starts.hpp"
 #include "simulator/core/robot/tour_follower.hpp"
+#include "slam/core/pose_graph.hpp"
 #include "tests/benchmark/slam/tour_recording.hpp"
 
 namespace lapis::slam::benchmark {
@@ -201,6 +202,7 @@ std::vector<TrialStep> drive_trial(const simulator::World& world, const simulato
     step.landmarks = slam.landmark_count();
     step.matches = result.matches;
     step.inliers = result.inliers;
+    step.sigma_m = largest_sigma(result.covariance, 0);
     step.reason = result.reason;
     steps.push_back(std::move(step));
   }

@@ -37,6 +37,7 @@ struct TrialStep {
   std::size_t keyframes = 0;
   std::size_t landmarks = 0;
   std::uint32_t matches = 0, inliers = 0;
+  double sigma_m = 0.0;  ///< of the position relative to its key-frame, along the direction that is least known
   std::string reason;
 };
 

@@ -42,11 +42,12 @@ void print_frames(const std::vector<TrialStep>& steps) {
   for (const TrialStep& step : steps) {
     const geometry::Pose T_start = steps.front().truth.inverse() * step.truth;
     const geometry::Pose error = T_start.inverse() * (steps.front().estimate.inverse() * step.estimate);
-    std::printf("  %6.2f s %s%s %-14s %s error %6.1f cm %5.1f deg; %zu key-frames, version %zu, %u of %u %s\n",
-                step.t_s, step.is_covered ? "covered " : "", step.is_usable ? "usable" : "", name_of(step.state),
-                step.is_keyframe ? "KF" : "  ", step.has_pose ? 100.0 * error.translation().norm() : NAN,
-                step.has_pose ? geometry::rotation_angle(error.linear()) * 180.0 / M_PI : NAN, step.keyframes,
-                static_cast<std::size_t>(step.graph_version), step.inliers, step.matches, step.reason.c_str());
+    std::printf(
+        "  %6.2f s %s%s %-14s %s error %6.1f cm %5.1f deg sigma %5.1f cm; %zu key-frames, version %zu, %u of %u %s\n",
+        step.t_s, step.is_covered ? "covered " : "", step.is_usable ? "usable" : "", name_of(step.state),
+        step.is_keyframe ? "KF" : "  ", step.has_pose ? 100.0 * error.translation().norm() : NAN,
+        step.has_pose ? geometry::rotation_angle(error.linear()) * 180.0 / M_PI : NAN, 100.0 * step.sigma_m,
+        step.keyframes, static_cast<std::size_t>(step.graph_version), step.inliers, step.matches, step.reason.c_str());
   }
 }
 

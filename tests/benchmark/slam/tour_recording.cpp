@@ -62,10 +62,10 @@ void drive(const SimulatorConfig& config, const std::function<void(const TourFra
 }
 
 void write(std::ostream& out, const TourFrame& tour_frame) {
-  const auto& [frame, wheels, T_map_camera] = tour_frame;
+  const auto& [frame, wheels, T_start_camera] = tour_frame;
   const std::uint64_t count = wheels.size();
   write(out, &frame.stamp, 1);
-  write(out, T_map_camera.matrix().data(), 16);
+  write(out, T_start_camera.matrix().data(), 16);
   write(out, &count, 1);
   write(out, wheels.data(), wheels.size());
   write(out, frame.gray.pixels.data(), frame.gray.pixels.size());
@@ -75,10 +75,10 @@ void write(std::ostream& out, const TourFrame& tour_frame) {
 }
 
 bool read(std::istream& in, TourFrame& tour_frame) {
-  auto& [frame, wheels, T_map_camera] = tour_frame;
+  auto& [frame, wheels, T_start_camera] = tour_frame;
   std::uint64_t count = 0;
   if (!read(in, &frame.stamp, 1)) return false;
-  read(in, T_map_camera.matrix().data(), 16);
+  read(in, T_start_camera.matrix().data(), 16);
   read(in, &count, 1);
   wheels.resize(count);
   read(in, wheels.data(), wheels.size());

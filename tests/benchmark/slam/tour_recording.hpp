@@ -18,7 +18,7 @@ namespace lapis::slam::benchmark {
 struct TourFrame {
   RgbdFrame frame;
   std::vector<simulator::WheelSample> wheels;  ///< since the frame before
-  geometry::Pose T_map_camera;                 ///< true; the map's origin is where base_link began
+  geometry::Pose T_start_camera;               ///< true; from where base_link began
 };
 
 /// Colour and depth as slam gets them.

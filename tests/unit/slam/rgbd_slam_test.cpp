@@ -23,6 +23,21 @@ RgbdFrame black_frame(int index) {
   return {stamp(index), test::small_camera(), geometry::GrayImage(320, 240), geometry::DepthImage(320, 240, 2.0F)};
 }
 
+// Bands of the image moved apart: two thirds of it contradict the rest.
+RgbdFrame torn_frame(int index) {
+  constexpr int kBand_px = 40, kShift_px = 6;
+  const RgbdFrame whole = room_frame(index);
+  RgbdFrame torn = whole;
+  for (int y = 0; y < torn.gray.height; ++y) {
+    for (int x = 0; x < torn.gray.width; ++x) {
+      const int from = std::clamp(x + (x / kBand_px % 3 - 1) * kShift_px, 0, torn.gray.width - 1);
+      torn.gray(x, y) = whole.gray(from, y);
+      torn.depth(x, y) = whole.depth(from, y);
+    }
+  }
+  return torn;
+}
+
 Pose T_map_camera(const TrackingResult& result) { return result.T_map_keyframe * result.T_keyframe_camera; }
 
 double distance_m(const TrackingResult& result, int index) {
@@ -40,6 +55,15 @@ TEST(RgbdSlam, FollowsACameraThroughARoom) {
     EXPECT_EQ(result.is_keyframe, result.T_keyframe_camera.isApprox(Pose::Identity(), 0.0));
   }
   EXPECT_GT(slam.landmark_count(), 200U);
+}
+
+TEST(RgbdSlam, AFrameWhoseMatchesContradictEachOtherIsLost) {
+  RgbdSlam slam({}, test::room_path(0));
+  for (int i = 0; i < 10; ++i) ASSERT_EQ(slam.process(room_frame(i)).state, TrackingState::kTracking);
+  const TrackingResult result = slam.process(torn_frame(10));
+  EXPECT_EQ(result.state, TrackingState::kLost);
+  EXPECT_NE(result.reason.find("matches agree"), std::string::npos) << result.reason;
+  EXPECT_EQ(slam.process(room_frame(11)).state, TrackingState::kTracking);
 }
 
 TEST(RgbdSlam, GraphHasAnEdgeBetweenConsecutiveKeyframes) {

@@ -1,0 +1,68 @@
+#include "slam/core/relocalizer.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lapis::slam {
+namespace {
+
+using geometry::Pose;
+
+// A map of one key-frame at the origin, and a camera that stood there at time 0.
+class RelocalizerTest : public ::testing::Test {
+ protected:
+  RelocalizerTest() {
+    map_.add_keyframe({});
+    motion_.update(map_, stamp(0.0), {0, Pose::Identity(), geometry::Matrix6d::Zero()});
+  }
+
+  static time::Time stamp(double seconds) { return time::Time::from_seconds(100.0 + seconds); }
+
+  // Found at x, with so many of a hundred matches and so sure of x.
+  static TrackOutcome found(double x_m, int inliers = 90, double sigma_m = 0.01) {
+    TrackOutcome outcome;
+    outcome.is_tracked = true;
+    outcome.matches = 100;
+    outcome.alignment.inliers = inliers;
+    outcome.alignment.T_reference_camera.translation().x() = x_m;
+    outcome.alignment.information = geometry::Matrix6d::Identity() * 1e6;
+    outcome.alignment.information(0, 0) = 1.0 / (sigma_m * sigma_m) / SlamConfig{}.pose_graph.information_share;
+    return outcome;
+  }
+  bool believes(double seconds, const TrackOutcome& outcome) {
+    return relocalizer_.believes(map_, motion_, stamp(seconds), outcome);
+  }
+
+  SlamConfig config_;
+  Map map_;
+  MotionModel motion_{config_.tracker.max_prediction_s, config_.odometry, Pose::Identity()};
+  Relocalizer relocalizer_{config_};
+};
+
+TEST_F(RelocalizerTest, WhereMotionLeadsAFewInliersAreEnough) {
+  EXPECT_TRUE(believes(0.1, found(0.2, 46)));
+  EXPECT_FALSE(believes(0.1, found(3.0, 46)));
+}
+
+TEST_F(RelocalizerTest, SoonAfterwardsADistinctPlaceWithinReachIsBelievedAtOnce) {
+  EXPECT_TRUE(believes(1.5, found(1.5)));
+  EXPECT_FALSE(believes(1.5, found(1.5, 50))) << "half of its matches disagree";
+  EXPECT_FALSE(believes(1.5, found(1.5, 90, 0.1))) << "uncertain by 10 cm";
+}
+
+TEST_F(RelocalizerTest, ElsewhereADistinctPlaceHasToBeFoundAgain) {
+  for (int i = 0; i < config_.relocalization.confirmations; ++i) EXPECT_FALSE(believes(5.0 + 0.1 * i, found(4.0)));
+  EXPECT_TRUE(believes(5.0 + 0.1 * config_.relocalization.confirmations, found(4.0)));
+}
+
+TEST_F(RelocalizerTest, APlaceThatIsNotDistinctIsNeverBelieved) {
+  for (int i = 0; i < 20; ++i) EXPECT_FALSE(believes(5.0 + 0.1 * i, found(4.0, 55)));
+}
+
+TEST_F(RelocalizerTest, WheelsThatLeadElsewhereMakeAPlaceAwaitConfirmation) {
+  for (int i = 0; i <= 20; ++i) ASSERT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose::Identity()));
+  EXPECT_FALSE(believes(1.5, found(1.5)));
+  EXPECT_TRUE(believes(1.6, found(0.1, 46)));
+}
+
+}  // namespace
+}  // namespace lapis::slam

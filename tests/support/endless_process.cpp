@@ -1,5 +1,6 @@
 #include "tests/support/endless_process.hpp"
 
+#include <sys/prctl.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -13,6 +14,7 @@ EndlessProcess::EndlessProcess(const std::function<bool()>& work) {
   if (::pipe(begun) != 0) std::abort();
   pid_ = ::fork();
   if (pid_ == 0) {
+    ::prctl(PR_SET_PDEATHSIG, SIGKILL);
     const char word = '!';
     if (::write(begun[1], &word, 1) != 1) ::_exit(1);
     while (work()) {
@@ -25,10 +27,12 @@ EndlessProcess::EndlessProcess(const std::function<bool()>& work) {
   ::close(begun[1]);
 }
 
-bool EndlessProcess::kill() const {
+bool EndlessProcess::kill() {
+  if (pid_ < 0) return false;
   int status = 0;
   ::kill(pid_, SIGKILL);
   ::waitpid(pid_, &status, 0);
+  pid_ = -1;
   return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
 }
 

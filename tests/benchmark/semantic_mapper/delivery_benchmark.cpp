@@ -191,7 +191,7 @@ class MapPublisher {
 
 constexpr double kLargeMapResolution_m = 0.05;
 
-/// Space of 4 m in height whose voxels were all seen, half of them as a surface: some 2.3 kB a block.
+/// Space of 4 m in height whose voxels were all seen, half of them as a surface: some 1.5 kB a block.
 mapping::VoxelMap large_map(std::size_t blocks) {
   std::mt19937 random(1);
   std::vector<mapping::VoxelBlock> patterns(64);
@@ -309,9 +309,9 @@ int benchmark(int argc, char** argv) {
   CLI::App app("How the map reaches other processes: latency, late joiners, size of the changes",
                "lapis_semantic_mapper_delivery_benchmark");
   int frames = 300, per_room = 60;
-  std::size_t blocks = 50000;
+  std::size_t blocks = 65000;
   app.add_option("--frames", frames, "of which the latency is measured")->check(CLI::Range(2, 100000));
-  app.add_option("--blocks", blocks, "of the large map; 50,000 are 100 MB")->check(CLI::Range(1, 1000000));
+  app.add_option("--blocks", blocks, "of the large map; 65,000 are 100 MB")->check(CLI::Range(1, 1000000));
   app.add_option("--per-room", per_room, "frames in each of the flat's six rooms")->check(CLI::Range(10, 1000));
   CLI11_PARSE(app, argc, argv);
   spdlog::set_level(spdlog::level::warn);

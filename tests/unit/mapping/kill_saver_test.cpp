@@ -40,7 +40,7 @@ TEST(KillSaver, TheMapIsAlwaysWhole) {
   std::uniform_real_distribution<double> instant(0.0, 4.0);  // in times of one save
   int kills = 0, in_the_middle = 0;
   for (; kills < 10 || (in_the_middle == 0 && kills < 110); ++kills) {
-    const lapis::test::EndlessProcess saver([&] { return !save_map(path, late) && !save_map(path, early); });
+    lapis::test::EndlessProcess saver([&] { return !save_map(path, late) && !save_map(path, early); });
     std::this_thread::sleep_for(instant(random) * one_save);
     ASSERT_TRUE(saver.kill());
     in_the_middle += std::filesystem::exists(path + ".part") ? 1 : 0;

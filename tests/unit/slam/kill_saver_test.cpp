@@ -56,7 +56,7 @@ TEST(KillSaver, TheFileIsAlwaysWholeAndCanBeGoneOnWith) {
   std::uniform_real_distribution<double> instant(0.0, 6.0);  // in times of one save
   int i = 0, in_the_middle = 0, with_late = 0;
   for (; i < kills || (in_the_middle == 0 && i < kills + 100); ++i) {
-    const lapis::test::EndlessProcess saver(
+    lapis::test::EndlessProcess saver(
         [&] { return !write_slam_file(path, run.late) && !write_slam_file(path, run.early); });
     std::this_thread::sleep_for(instant(random) * one_save);
     ASSERT_TRUE(saver.kill());

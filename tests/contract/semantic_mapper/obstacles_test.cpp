@@ -21,7 +21,7 @@ int value_at(const OccupancyGrid& grid, const Eigen::Vector3d& p_map) {
   const auto row = static_cast<int>(std::floor((p_map.y() - origin.y()) / grid.info().resolution()));
   const auto width = static_cast<int>(grid.info().width()), height = static_cast<int>(grid.info().height());
   if (column < 0 || row < 0 || column >= width || row >= height) return kUnknown;
-  return grid.data()[static_cast<std::size_t>(row * width + column)];
+  return grid.data()[static_cast<std::size_t>(row) * grid.info().width() + static_cast<std::size_t>(column)];
 }
 
 class Obstacles : public MapperContract {

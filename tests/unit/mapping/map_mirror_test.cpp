@@ -150,10 +150,10 @@ TEST(MapMirror, WhatIsServedIsAlwaysAVersionAsAWholeAlsoAcrossARestartWithGaps) 
     for (Publisher* publisher : {&before, &after}) {
       for (int i = 0; i < 5; ++i) {
         for (const auto& tile : publisher->publish(test::random_votes(random)))
-          samples.push_back([tile, epoch = publisher->epoch()](MapMirror& mirror) {
+          samples.emplace_back([tile, epoch = publisher->epoch()](MapMirror& mirror) {
             mirror.apply_tile(epoch, tile.index, tile.version, tile.bytes);
           });
-        samples.push_back([state = publisher->state()](MapMirror& mirror) { mirror.apply_state(state); });
+        samples.emplace_back([state = publisher->state()](MapMirror& mirror) { mirror.apply_state(state); });
         published.insert({{publisher->epoch(), publisher->state().version}, publisher->map()});
       }
     }

@@ -61,15 +61,15 @@ TEST(MapMerge, QuarterTurnsAndWholeVoxelsAreExact) {
                                 turned({1, 0, 0}, 270, {0.1, 0.2, 0.3}), turned({1, 1, 1}, 120, {-100.1, 3.0, 1.0})};
   for (const Pose& T : poses) {
     ASSERT_TRUE(is_on_grid(T, 0.1));
-    MapFile sum = file_of(mapping::VoxelMap(0.1));
-    merge_into(sum, other, T);
-    EXPECT_FALSE(sum.map == other.map);
+    MapFile there = file_of(mapping::VoxelMap(0.1));
+    merge_into(there, other, T);
+    EXPECT_FALSE(there.map == other.map);
     other.map.for_each_observed([&](const VoxelIndex& v, const mapping::VoxelCounts& counts) {
-      ASSERT_EQ(sum.map.read(sum.map.index_of(T * other.map.center_of(v))), counts);
+      ASSERT_EQ(there.map.read(there.map.index_of(T * other.map.center_of(v))), counts);
     });
-    MapFile back = file_of(mapping::VoxelMap(0.1));
-    merge_into(back, sum, T.inverse());
-    EXPECT_EQ(back.map, other.map);
+    MapFile returned = file_of(mapping::VoxelMap(0.1));
+    merge_into(returned, there, T.inverse());
+    EXPECT_EQ(returned.map, other.map);
   }
 }
 

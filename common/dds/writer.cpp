@@ -18,7 +18,13 @@ Writer::Writer(Participant& participant, const std::string& dds_name, const std:
   participant.add_writer(gid_);
 }
 
-Writer::~Writer() { participant_.publisher().delete_datawriter(writer_); }
+Writer::~Writer() {
+  // An empty history first: 2.9 frees the samples one by one while a periodic heartbeat may still walk through them,
+  // and then never comes back from the holes it finds.
+  std::size_t removed = 0;
+  writer_->clear_history(&removed);
+  participant_.publisher().delete_datawriter(writer_);
+}
 
 bool Writer::write(const void* sample, compat::rtps::WriteParams& params) {
   if (!compat::ok(compat::write(*writer_, sample, params))) {

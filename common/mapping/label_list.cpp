@@ -34,6 +34,20 @@ LabelList LabelList::from_names(const std::vector<std::pair<std::uint16_t, std::
   return LabelList(std::move(labels));
 }
 
+LabelList LabelList::united(const LabelList& a, const LabelList& b) {
+  std::vector<Label> labels = a.labels_;
+  for (const Label& label : b.labels_) {
+    const Label* same_id = a.find(label.id);
+    if (same_id == nullptr) {
+      labels.push_back(label);
+    } else if (same_id->name != label.name) {
+      throw std::runtime_error("class " + std::to_string(label.id) + " is '" + same_id->name +
+                               "' in one label list and '" + label.name + "' in the other");
+    }
+  }
+  return LabelList(std::move(labels));
+}
+
 const Label* LabelList::find(std::uint16_t id) const {
   const auto it = std::lower_bound(labels_.begin(), labels_.end(), id,
                                    [](const Label& label, std::uint16_t wanted) { return label.id < wanted; });

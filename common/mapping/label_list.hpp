@@ -33,6 +33,9 @@ class LabelList {
   /// Names with default colours.
   static LabelList from_names(const std::vector<std::pair<std::uint16_t, std::string>>& names);
 
+  /// The classes of both. Throws std::runtime_error when an id has two names.
+  static LabelList united(const LabelList& a, const LabelList& b);
+
   const std::vector<Label>& labels() const { return labels_; }  ///< sorted by id
   std::size_t size() const { return labels_.size(); }
   /// Largest id; 0 for an empty list.

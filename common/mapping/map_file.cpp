@@ -17,6 +17,12 @@ constexpr std::string_view kMagic = "LAPISMAP";
 constexpr std::uint32_t kFormatVersion = 1;
 constexpr int kCompressionLevel = 3;
 constexpr std::size_t kMaxContentBytes = std::size_t{8} << 30;
+constexpr std::int32_t kMaxBlockIndex = 1 << 26;  // voxel indices, also turned ones, stay inside 32 bits
+
+bool is_in_range(const BlockIndex& index) {
+  const auto fits = [](std::int32_t i) { return i >= -kMaxBlockIndex && i < kMaxBlockIndex; };
+  return fits(index.x) && fits(index.y) && fits(index.z);
+}
 
 void write_sensor_model(const SensorModel& model, files::ByteWriter& out) {
   for (const double value : {model.hit_gain, model.pass_gain, model.label_accuracy, model.prior_occupied,
@@ -99,7 +105,7 @@ void read_blocks(files::ByteReader& in, VoxelMap& map) {
     index.y = in.i32();
     index.z = in.i32();
     VoxelBlock block = read_block(in);
-    if (block.is_empty() || (previous && !(*previous < index))) in.fail();
+    if (block.is_empty() || !is_in_range(index) || (previous && !(*previous < index))) in.fail();
     if (in.is_good()) map.set_block(index, std::move(block));
     previous = index;
   }

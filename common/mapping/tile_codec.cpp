@@ -16,7 +16,9 @@ constexpr std::size_t kMaxBodyBytes = std::size_t{64} << 20;
 constexpr int kCompressionLevel = 1;
 
 void read_blocks(files::ByteReader& in, const TileIndex& index, DecodedTile& tile) {
-  for (const BlockIndex& block_index : blocks_of(index, tile.blocks_per_edge)) {
+  const std::vector<BlockIndex> indices = blocks_of(index, tile.blocks_per_edge);
+  tile.blocks.reserve(indices.size());
+  for (const BlockIndex& block_index : indices) {
     VoxelBlock block = read_block(in);
     if (!in.is_good()) return;
     if (!block.is_empty()) tile.blocks.emplace_back(block_index, std::move(block));

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "common/mapping/map_file.hpp"
+#include "common/report/report.hpp"
 #include "evaluator/core/coverage.hpp"
 #include "evaluator/core/iou.hpp"
 #include "evaluator/core/map_input.hpp"
 #include "evaluator/core/map_metrics.hpp"
-#include "evaluator/report.hpp"
 
 namespace lapis::evaluator {
 namespace {
@@ -76,7 +76,7 @@ void run_map(const MapOptions& options, std::ostream& out) {
                                  {"recall", value_or_null(overlap.recall)},
                                  {"f1", value_or_null(overlap.f1)}});
   }
-  print_report(out, result, options.as_json);
+  report::print(out, result, options.as_json);
 }
 
 void run_iou(const MapOptions& options, std::ostream& out) {
@@ -103,7 +103,7 @@ void run_iou(const MapOptions& options, std::ostream& out) {
                                  {"common_voxels", c.common_voxels},
                                  {"top8", c.is_top}});
   }
-  print_report(out, result, options.as_json);
+  report::print(out, result, options.as_json);
 }
 
 void run_coverage(const MapOptions& options, std::ostream& out) {
@@ -118,7 +118,7 @@ void run_coverage(const MapOptions& options, std::ostream& out) {
       {"free_volume_m3", figures.free_volume_m3},
       {"occupied_volume_m3", figures.occupied_volume_m3},
       {"explored_share", value_or_null(figures.explored_share)}};
-  print_report(out, result, options.as_json);
+  report::print(out, result, options.as_json);
 }
 
 std::shared_ptr<MapOptions> add_options(CLI::App& tool, bool needs_reference) {

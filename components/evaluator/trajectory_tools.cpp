@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <string>
 
+#include "common/report/report.hpp"
 #include "evaluator/core/ate.hpp"
 #include "evaluator/core/rpe.hpp"
-#include "evaluator/report.hpp"
 
 namespace lapis::evaluator {
 namespace {
@@ -119,7 +119,7 @@ void run_ate(const AteOptions& options, std::ostream& out) {
   result["T_reference_estimate"] = to_json(error.T_reference_estimate);
   result["position_m"] = to_json(error.position_m);
   result["heading_rad"] = to_json(error.heading_rad);
-  print_report(out, result, options.as_json);
+  report::print(out, result, options.as_json);
 }
 
 void run_rpe(const RpeOptions& options, std::ostream& out) {
@@ -140,7 +140,7 @@ void run_rpe(const RpeOptions& options, std::ostream& out) {
   result["intervals"] = error->intervals.size();
   result["translation_m"] = to_json(error->translation_m);
   result["rotation_deg"] = to_json(error->rotation_rad, kDegreesPerRadian);
-  print_report(out, result, options.as_json);
+  report::print(out, result, options.as_json);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "idl/sensor_msgs.hpp"
 #include "idl/vision_msgs.hpp"
 #include "semantic_mapper/core/export.hpp"
+#include "semantic_mapper/core/occupancy_grid.hpp"
 #include "semantic_mapper/core/semantic_mapper.hpp"
 
 namespace lapis::semantic_mapper {

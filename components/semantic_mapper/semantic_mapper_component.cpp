@@ -1,5 +1,6 @@
 #include "semantic_mapper/semantic_mapper_component.hpp"
 
+#include <cstdlib>
 #include <filesystem>
 
 #include "common/files/atomic_file.hpp"
@@ -20,23 +21,48 @@ double seconds_since(const std::optional<time::Time>& then, time::Time now) {
   return then ? (now - *then).seconds() : std::numeric_limits<double>::infinity();
 }
 
+/// A number among the notes of a map file; 0 when it is not there.
+std::uint64_t note(const mapping::MapFile& file, const char* key) {
+  const auto found = file.provenance.find(key);
+  return found == file.provenance.end() ? 0 : std::strtoull(found->second.c_str(), nullptr, 10);
+}
+
 }  // namespace
 
 SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), tiles_(context.advertise(topics::kVoxelTiles)),
-      map_state_(context.advertise(topics::kMapState)), octomap_(context.advertise(topics::kOctomap)),
-      points_(context.advertise(topics::kMapPoints)), grid_(context.advertise(topics::kOccupancyGrid)),
+      map_state_(context.advertise(topics::kMapState)), obstacles_(context.advertise(topics::kObstacles)),
+      octomap_(context.advertise(topics::kOctomap)), points_(context.advertise(topics::kMapPoints)),
+      grid_(context.advertise(topics::kOccupancyGrid)),
       tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       info_(context, topics::kColorInfo, "camera info", kWaitingFrames) {
   config_.map.integration.max_range_m = config_.robot.sensing_range_m;
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "semantic_mapper.output_dir");
+  if (!config_.resume_from.empty()) load_map();
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
   tracked_.on_restart([this] { end_map(); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+}
+
+/// Reads the map to go on with; throws with file and remedy.
+void SemanticMapperComponent::load_map() {
+  std::string error;
+  resumed_ = mapping::load_map(config_.resume_from, error);
+  if (!resumed_) throw std::runtime_error("semantic_mapper.resume_from: " + error);
+  const double resolution_m = resumed_->map.resolution_m();
+  if (resolution_m != config_.map.resolution_m) {
+    throw std::runtime_error("semantic_mapper.resume_from: " + config_.resume_from +
+                             ": semantic_mapper.resolution_m was " + std::to_string(resolution_m) +
+                             " when it was made: set it so again");
+  }
+  resumed_labels_ = label_list_ = resumed_->labels;
+  config_.frame.max_label = label_list_.largest_accepted_id();
+  resumed_frames_ = note(*resumed_, "frames");
+  spdlog::info("{}: {} frames, {} blocks", config_.resume_from, resumed_frames_, resumed_->map.block_count());
 }
 
 void SemanticMapperComponent::set_labels(const vision_msgs::msg::LabelInfo& message) {
@@ -46,7 +72,12 @@ void SemanticMapperComponent::set_labels(const vision_msgs::msg::LabelInfo& mess
     spdlog::warn("label list refused: {}", labels.reason);
     return;
   }
-  label_list_ = std::move(*labels);
+  try {
+    label_list_ = mapping::LabelList::united(*labels, resumed_labels_);
+  } catch (const std::runtime_error& error) {  // one id must mean one class in all counts
+    throw runtime::BadSetup("semantic_mapper.resume_from: " + config_.resume_from + " and " + topics::kLabelInfo.name +
+                            ": " + error.what());
+  }
   config_.frame.max_label = label_list_.largest_accepted_id();
 }
 
@@ -116,6 +147,7 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
     case IntegrationStatus::kMapIsFull: return drop("map is full");
   }
   stamp_ = stamp;
+  obstacle_layer_->add(stamp, report.votes);
   ++frames_integrated_;
   context_.status().value("frames", frames_integrated_);
   context_.status().value("stored_frames_mb", std::to_string(mapper_->frame_bytes() >> 20));
@@ -135,16 +167,36 @@ void SemanticMapperComponent::end_map() {
     if (const auto problem = save()) spdlog::error("map not saved: {}; mapping goes on", *problem);
   }
   mapper_.reset();
+  resumed_labels_ = {};
+  resumed_frames_ = 0;
+}
+
+/// The first map of the process goes on with the saved one, if there is one.
+std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t session) {
+  if (!resumed_) return std::make_unique<SemanticMapper>(config_.map);
+  if (session < static_cast<std::int64_t>(note(*resumed_, "session"))) {
+    throw runtime::BadSetup("semantic_mapper.resume_from: " + config_.resume_from +
+                            " belongs to a later session of slam; give slam.resume_from the slam.lapis of that run");
+  }
+  return std::make_unique<SemanticMapper>(config_.map, std::move(resumed_->map));
+}
+
+/// Files of the map before stay under another name; but for those of the map that is gone on with: the new ones hold
+/// all of it.
+void SemanticMapperComponent::set_old_files_aside() const {
+  const std::filesystem::path folder(config_.output_dir);
+  std::error_code error;
+  if (resumed_ && std::filesystem::equivalent(folder / kMapFile, config_.resume_from, error)) return;
+  for (const char* name : {kMapFile, kOctreeFile, kPointsFile}) {
+    if (const auto problem = files::set_aside(folder / name)) spdlog::error(*problem);
+  }
 }
 
 void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time stamp) {
   end_map();
-  if (!config_.output_dir.empty()) {
-    for (const char* name : {kMapFile, kOctreeFile, kPointsFile}) {
-      if (const auto problem = files::set_aside(std::filesystem::path(config_.output_dir) / name))
-        spdlog::error(*problem);
-    }
-  }
+  mapper_ = begin_map(session);
+  if (!config_.output_dir.empty()) set_old_files_aside();
+  resumed_.reset();
   for (const auto& [x, y, z] : published_tiles_) {
     lapis_msgs::msg::VoxelTile tile;
     tile.x(x);
@@ -153,11 +205,13 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
     tiles_.end_key(tile);
   }
   published_tiles_.clear();
-  mapper_ = std::make_unique<SemanticMapper>(config_.map);
+  floor_plan_.emplace(config_.grid);
+  obstacle_layer_.emplace(config_.obstacles, config_.grid, config_.map.resolution_m);
   session_ = session;
   epoch_ = std::max(stamp.nanoseconds, epoch_ + 1);
   tiles_stamp_.reset();
   views_stamp_.reset();
+  obstacles_stamp_.reset();
   saved_stamp_ = stamp;
 }
 
@@ -167,6 +221,7 @@ void SemanticMapperComponent::follow_graph(const Graph& graph) {
 
 void SemanticMapperComponent::publish(bool is_final) {
   if (is_final || seconds_since(tiles_stamp_, stamp_) >= config_.tile_period_s) publish_tiles();
+  if (seconds_since(obstacles_stamp_, stamp_) >= config_.obstacle_period_s) publish_obstacles();
   publish_views(is_final || seconds_since(views_stamp_, stamp_) >= config_.view_period_s);
   if (config_.output_dir.empty() || seconds_since(saved_stamp_, stamp_) < config_.save_period_s) return;
   saved_stamp_ = stamp_;
@@ -176,6 +231,7 @@ void SemanticMapperComponent::publish(bool is_final) {
 void SemanticMapperComponent::publish_tiles() {
   tiles_stamp_ = stamp_;
   if (!mapper_->has_changes()) return;
+  floor_plan_->mark_changed(mapper_->changed_blocks());
   for (const auto& tile : mapper_->take_changed_tiles()) {
     published_tiles_.emplace(tile.index.x, tile.index.y, tile.index.z);
     tiles_.publish(to_message(tile, epoch_));
@@ -203,6 +259,11 @@ void SemanticMapperComponent::publish_tiles() {
   map_state_.publish(message);
 }
 
+void SemanticMapperComponent::publish_obstacles() {
+  obstacles_stamp_ = stamp_;
+  obstacles_.publish(to_message(obstacle_layer_->grid(), header()));
+}
+
 /// True when a view is due and read by anybody, or when a reader has come since the last look.
 bool SemanticMapperComponent::wants_view(const dds::Writer& writer, bool is_due) {
   const bool has_new_reader = std::exchange(seen_matches_[&writer], writer.total_matches()) != writer.total_matches();
@@ -215,13 +276,14 @@ void SemanticMapperComponent::publish_views(bool is_due) {
   const bool wants_points = wants_view(points_, is_due);
   const bool wants_grid = wants_view(grid_, is_due);
   if (!wants_octomap && !wants_points && !wants_grid) return;
+  publish_tiles();  // so that all outputs show one version
   const auto reader = belief_reader();
   const auto& map = mapper_->map();
   if (wants_octomap) {
     octomap_.publish(to_message(encode_octree(map, reader, label_list_), map.resolution_m(), header()));
   }
   if (wants_points) points_.publish(to_message(occupied_points(map, reader, label_list_), header()));
-  if (wants_grid) grid_.publish(to_message(project_to_grid(map, reader, config_.grid), header()));
+  if (wants_grid) grid_.publish(to_message(floor_plan_->project(map, reader), header()));
 }
 
 std_srvs::srv::Trigger_Response SemanticMapperComponent::save_on_request() {
@@ -255,7 +317,7 @@ std::optional<std::string> SemanticMapperComponent::write_files() {
   const mapping::MapFile file{mapper_->map(),
                               reader.model(),
                               label_list_,
-                              {{"frames", std::to_string(mapper_->frames().size())},
+                              {{"frames", std::to_string(resumed_frames_ + mapper_->frames().size())},
                                {"graph_version", std::to_string(mapper_->graph_version())},
                                {"session", std::to_string(session_)}}};
   if (auto problem = mapping::save_map((folder / kMapFile).string(), file)) return problem;

@@ -5,9 +5,12 @@
 #include <set>
 #include <string>
 
+#include "common/mapping/map_file.hpp"
 #include "common/runtime/context.hpp"
 #include "common/runtime/stamped_input.hpp"
 #include "semantic_mapper/conversions.hpp"
+#include "semantic_mapper/core/floor_plan.hpp"
+#include "semantic_mapper/core/obstacle_layer.hpp"
 #include "semantic_mapper/semantic_mapper_config.hpp"
 
 namespace lapis::semantic_mapper {
@@ -28,6 +31,7 @@ class SemanticMapperComponent {
   using Tracked = lapis_msgs::msg::TrackedFrame;
   using Graph = lapis_msgs::msg::PoseGraph;
 
+  void load_map();
   void set_labels(const vision_msgs::msg::LabelInfo& message);
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
@@ -36,8 +40,11 @@ class SemanticMapperComponent {
   void drop(const std::string& reason);
   void start_new_map(std::int64_t session, time::Time stamp);
   void end_map();
+  std::unique_ptr<SemanticMapper> begin_map(std::int64_t session);
+  void set_old_files_aside() const;
   void publish(bool is_final);
   void publish_tiles();
+  void publish_obstacles();
   void publish_views(bool is_due);
   bool wants_view(const dds::Writer& writer, bool is_due);
   std_srvs::srv::Trigger_Response save_on_request();
@@ -51,6 +58,7 @@ class SemanticMapperComponent {
   runtime::Context& context_;
   dds::Publisher<lapis_msgs::msg::VoxelTile>& tiles_;
   dds::Publisher<lapis_msgs::msg::MapState>& map_state_;
+  dds::Publisher<nav_msgs::msg::OccupancyGrid>& obstacles_;
   dds::Publisher<octomap_msgs::msg::Octomap>& octomap_;
   dds::Publisher<sensor_msgs::msg::PointCloud2>& points_;
   dds::Publisher<nav_msgs::msg::OccupancyGrid>& grid_;
@@ -62,12 +70,19 @@ class SemanticMapperComponent {
   std::optional<Graph> graph_;  // newest, not yet followed
   mapping::LabelList label_list_;
 
+  std::optional<mapping::MapFile> resumed_;  // until the first map begins with it
+  mapping::LabelList resumed_labels_;
+  std::uint64_t resumed_frames_ = 0;
+
   std::unique_ptr<SemanticMapper> mapper_;  // exists once slam tracks
+  std::optional<FloorPlan> floor_plan_;     // of mapper_
+  std::optional<ObstacleLayer> obstacle_layer_;
   std::int64_t session_ = 0;
   std::int64_t epoch_ = 0;
   time::Time stamp_;                       // of the newest integrated frame
   std::optional<time::Time> tiles_stamp_;  // published last
   std::optional<time::Time> views_stamp_;
+  std::optional<time::Time> obstacles_stamp_;
   std::optional<time::Time> saved_stamp_;
   std::set<std::tuple<int, int, int>> published_tiles_;  // of this epoch
   std::map<const dds::Writer*, std::uint64_t> seen_matches_;

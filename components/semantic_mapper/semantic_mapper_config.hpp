@@ -4,7 +4,8 @@
 
 #include "common/mapping/describe.hpp"
 #include "common/robot/robot_description.hpp"
-#include "semantic_mapper/core/export.hpp"
+#include "semantic_mapper/core/obstacle_layer.hpp"
+#include "semantic_mapper/core/occupancy_grid.hpp"
 #include "semantic_mapper/core/semantic_mapper.hpp"
 
 namespace lapis::semantic_mapper {
@@ -15,11 +16,14 @@ struct SemanticMapperComponentConfig {
   mapping::CompactFrameConfig frame;
   mapping::SensorModel sensor_model;
   GridConfig grid;
+  ObstacleConfig obstacles;
   double max_stamp_difference_s = 0.016;
   double frame_interval_s = 0.0;
   double tile_period_s = 0.5;
   double view_period_s = 1.0;
+  double obstacle_period_s = 0.5;
   int re_anchored_frames_per_cycle = 20;
+  std::string resume_from;
   std::string output_dir;
   double save_period_s = 30.0;
   robot::RobotDescription robot;
@@ -34,6 +38,13 @@ void describe(Field& field, GridConfig& c) {
 }
 
 template <class Field>
+void describe(Field& field, ObstacleConfig& c) {
+  field("window_s", c.window_s, config::in_range(0.1, 600.0), "what was seen longer ago is forgotten [s]");
+  field("passes_to_clear", c.passes_to_clear, config::in_range(1, 100),
+        "frames that must look through an obstacle before it is gone");
+}
+
+template <class Field>
 void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("resolution_m", c.map.resolution_m, config::in_range(0.02, 0.5), "edge of a voxel [m]");
   field("tile_edge_m", c.map.tile_edge_m, config::in_range(0.1, 6.4), "least edge of a tile [m]");
@@ -41,6 +52,7 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("frame", c.frame);
   field("sensor_model", c.sensor_model);
   field("grid", c.grid);
+  field("obstacles", c.obstacles);
   field("re_anchor", c.map.re_anchor, config::anything(),
         "frames follow the pose graph; false: the paper's frozen map");
   field("re_anchor_threshold_voxels", c.map.re_anchor_threshold_voxels, config::in_range(0.0, 10.0),
@@ -54,6 +66,10 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("tile_period_s", c.tile_period_s, config::in_range(0.0, 60.0), "least time between published versions [s]");
   field("view_period_s", c.view_period_s, config::in_range(0.0, 60.0),
         "least time between octomap, points and occupancy grid, which are made only for readers [s]");
+  field("obstacle_period_s", c.obstacle_period_s, config::in_range(0.0, 60.0),
+        "least time between obstacle grids, by the frames' stamps [s]");
+  field("resume_from", c.resume_from, config::anything(),
+        "map.lapis of an earlier run to go on with, beside slam.resume_from; empty: none");
   field("output_dir", c.output_dir, config::anything(), "folder for map.lapis, map.ot and map.ply; empty: none");
   field("save_period_s", c.save_period_s, config::in_range(1.0, 86400.0),
         "time between saves, by the frames' stamps [s]");

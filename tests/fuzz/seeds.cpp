@@ -3,7 +3,11 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/mapping/map_file.hpp"
+#include "common/mapping/zstd_codec.hpp"
 #include "fuzz_files.hpp"
+#include "semantic_mapper/core/export.hpp"
+#include "unit/mapping/random_votes.hpp"
 #include "unit/simulator/loaders/sample_scenes.hpp"
 #include "unit/slam/sample_state.hpp"
 
@@ -124,6 +128,16 @@ void add_scene_files(Inputs& inputs) {
                        "wall_thickness: 0.2\nname: x\nlabels: ../labels/mpcat40.yaml\n")};
 }
 
+void add_maps(Seeds& seeds) {
+  constexpr std::size_t kMapHeader = 24, kMaxContent = std::size_t{1} << 24;
+  const mapping::MapFile map{mapping::test::random_map(1), {}, mapping::LabelList::from_names({{1, "wall"}}), {}};
+  const mapping::BeliefReader reader(map.sensor_model);
+  const Bytes file = mapping::encode_map(map);
+  seeds["map"] = {file, mapping::zstd_decompress(std::span(file).subspan(kMapHeader), kMaxContent).value()};
+  seeds["octree"] = {semantic_mapper::encode_octree(map.map, reader, map.labels).file,
+                     semantic_mapper::encode_binary_octree(map.map, reader)};
+}
+
 }  // namespace
 
 Seeds seeds() {
@@ -138,6 +152,7 @@ Seeds seeds() {
   for (const unsigned keyframes : {1U, 3U})
     seeds["slam"].push_back(slam::encode_slam_file(slam::test::sample_file(keyframes, keyframes)));
   add_poses(seeds);
+  add_maps(seeds);
   return seeds;
 }
 

@@ -1,7 +1,6 @@
 #include "semantic_mapper/core/export.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <limits>
 #include <sstream>
 #include <string>
@@ -17,6 +16,7 @@ using mapping::VoxelCounts;
 using mapping::VoxelIndex;
 
 constexpr std::int32_t kOctreeCenterKey = 32768;
+constexpr int kOctreeDepth = 16;
 
 bool fits_octree(const VoxelIndex& v) {
   const auto fits = [](std::int32_t i) { return i >= -kOctreeCenterKey && i < kOctreeCenterKey; };
@@ -28,19 +28,51 @@ octomap::OcTreeKey octree_key(const VoxelIndex& v) {
   return {key(v.x), key(v.y), key(v.z)};
 }
 
+/// A leaf of the binary tree. Each three bits of the path, highest first, name the octant of a level.
+struct OctreeVoxel {
+  std::uint64_t path = 0;
+  bool is_occupied = false;
+};
+
+std::uint64_t octree_path(const VoxelIndex& v) {
+  const octomap::OcTreeKey key = octree_key(v);
+  std::uint64_t path = 0;
+  for (int level = 0; level < kOctreeDepth; ++level)
+    for (unsigned axis = 0; axis < 3; ++axis)
+      path |= static_cast<std::uint64_t>(key[axis] >> level & 1) << (3 * level + static_cast<int>(axis));
+  return path;
+}
+
+/// Writes the node that holds these sorted voxels, and all below it: two bits per child (0 unknown, 1 free, 2 occupied,
+/// 3 inner), then the inner children. Returns the number of nodes. (liboctomap's own writer prints to the terminal.)
+std::size_t write_inner_node(std::span<const OctreeVoxel> voxels, int depth, files::ByteWriter& out) {
+  const int shift = 3 * (kOctreeDepth - 1 - depth);
+  const bool has_leaves = depth == kOctreeDepth - 1;
+  unsigned states = 0;
+  for (const OctreeVoxel& voxel : voxels) {
+    const unsigned state = has_leaves ? (voxel.is_occupied ? 2u : 1u) : 3u;
+    states |= state << (2 * (voxel.path >> shift & 7u));
+  }
+  out.u16(static_cast<std::uint16_t>(states));
+  if (has_leaves) return 1 + voxels.size();
+  std::size_t nodes = 1;
+  for (auto begin = voxels.begin(); begin != voxels.end();) {
+    const auto end = std::find_if(begin, voxels.end(),
+                                  [&](const OctreeVoxel& v) { return v.path >> shift != begin->path >> shift; });
+    nodes += write_inner_node({begin, end}, depth + 1, out);
+    begin = end;
+  }
+  return nodes;
+}
+
 std::vector<std::uint8_t> to_bytes(const std::string& text) { return {text.begin(), text.end()}; }
 
-struct ColumnRange {
-  std::int32_t low_x = std::numeric_limits<std::int32_t>::max(), low_y = low_x;
-  std::int32_t high_x = std::numeric_limits<std::int32_t>::min(), high_y = high_x;
-  void include(const VoxelIndex& v) {
-    low_x = std::min(low_x, v.x);
-    low_y = std::min(low_y, v.y);
-    high_x = std::max(high_x, v.x);
-    high_y = std::max(high_y, v.y);
-  }
-  bool is_empty() const { return low_x > high_x; }
-};
+/// OctoMap takes 0 for occupied and we do not, so that a free voxel is always below.
+float octree_log_odds(const mapping::BeliefReader& reader, const VoxelCounts& counts) {
+  constexpr float kLeast = std::numeric_limits<float>::min();
+  const auto log_odds = static_cast<float>(reader.occupancy_log_odds(counts));
+  return reader.is_occupied(counts) ? std::max(log_odds, kLeast) : std::min(log_odds, -kLeast);
+}
 
 }  // namespace
 
@@ -78,7 +110,7 @@ Octree encode_octree(const mapping::VoxelMap& map, const mapping::BeliefReader& 
   octomap::ColorOcTree tree(map.resolution_m());
   map.for_each_observed([&](const VoxelIndex& voxel, const VoxelCounts& counts) {
     if (!fits_octree(voxel)) return;
-    const auto log_odds = static_cast<float>(reader.occupancy_log_odds(counts));
+    const float log_odds = octree_log_odds(reader, counts);
     octomap::ColorOcTreeNode* node = tree.setNodeValue(octree_key(voxel), log_odds, /*lazy_eval=*/true);
     node->setLogOdds(log_odds);  // setNodeValue clamps to OctoMap's own, narrower limits
     if (!reader.is_occupied(counts)) return;
@@ -92,32 +124,20 @@ Octree encode_octree(const mapping::VoxelMap& map, const mapping::BeliefReader& 
   return {to_bytes(file.str()), to_bytes(data.str())};
 }
 
-OccupancyGrid project_to_grid(const mapping::VoxelMap& map, const mapping::BeliefReader& reader,
-                              const GridConfig& config) {
-  const auto is_in_band = [&](const VoxelIndex& voxel) {
-    const double center_m = (voxel.z + 0.5) * map.resolution_m();
-    return center_m >= config.min_height_m && center_m < config.max_height_m;
-  };
-  ColumnRange range;
-  map.for_each_observed([&](const VoxelIndex& voxel, const VoxelCounts&) {
-    if (is_in_band(voxel)) range.include(voxel);
-  });
-  OccupancyGrid grid;
-  grid.resolution_m = map.resolution_m();
-  if (range.is_empty()) return grid;
-  grid.origin_x_m = range.low_x * map.resolution_m();
-  grid.origin_y_m = range.low_y * map.resolution_m();
-  grid.width = range.high_x - range.low_x + 1;
-  grid.height = range.high_y - range.low_y + 1;
-  grid.cells.assign(static_cast<std::size_t>(grid.width) * static_cast<std::size_t>(grid.height), -1);
+std::vector<std::uint8_t> encode_binary_octree(const mapping::VoxelMap& map, const mapping::BeliefReader& reader) {
+  std::vector<OctreeVoxel> voxels;
   map.for_each_observed([&](const VoxelIndex& voxel, const VoxelCounts& counts) {
-    if (!is_in_band(voxel)) return;
-    const auto row = static_cast<std::size_t>(voxel.y - range.low_y);
-    const auto column = static_cast<std::size_t>(voxel.x - range.low_x);
-    std::int8_t& cell = grid.cells[row * static_cast<std::size_t>(grid.width) + column];
-    cell = std::max(cell, static_cast<std::int8_t>(reader.is_occupied(counts) ? 100 : 0));
+    if (fits_octree(voxel)) voxels.push_back({octree_path(voxel), reader.is_occupied(counts)});
   });
-  return grid;
+  std::sort(voxels.begin(), voxels.end(), [](const OctreeVoxel& a, const OctreeVoxel& b) { return a.path < b.path; });
+  files::ByteWriter nodes;
+  const std::size_t count = voxels.empty() ? 0 : write_inner_node(voxels, 0, nodes);
+  std::ostringstream header;
+  header << "# Octomap OcTree binary file\nid OcTree\nsize " << count << "\nres " << map.resolution_m() << "\ndata\n";
+  files::ByteWriter out;
+  out.raw(to_bytes(header.str()));
+  out.raw(nodes.bytes());
+  return out.take();
 }
 
 }  // namespace lapis::semantic_mapper

@@ -39,24 +39,7 @@ struct Octree {
 Octree encode_octree(const mapping::VoxelMap& map, const mapping::BeliefReader& reader,
                      const mapping::LabelList& labels);
 
-struct GridConfig {
-  double min_height_m = 0.2;  ///< voxels whose centre is below say nothing about the floor plan; above the floor
-  double max_height_m = 1.2;  ///< voxels whose centre is at or above say nothing; above the robot's top
-};
-
-/// Floor plan in the map frame. Cell (column, row) covers [origin + column * resolution, + resolution) and so on.
-struct OccupancyGrid {
-  double resolution_m = 0.0;
-  double origin_x_m = 0.0;
-  double origin_y_m = 0.0;
-  int width = 0;                   ///< columns, along x
-  int height = 0;                  ///< rows, along y
-  std::vector<std::int8_t> cells;  ///< row by row: 100 occupied, 0 free, -1 unknown
-};
-
-/// Projects the voxels whose centre lies in [min_height_m, max_height_m): a column with any occupied voxel (P > 0.5) is
-/// 100; otherwise one with any free voxel is 0; otherwise -1. The grid spans the observed voxels of that band.
-OccupancyGrid project_to_grid(const mapping::VoxelMap& map, const mapping::BeliefReader& reader,
-                              const GridConfig& config);
+/// The same leaves as OctoMap's compact binary tree (.bt), which tells occupied from free and nothing else.
+std::vector<std::uint8_t> encode_binary_octree(const mapping::VoxelMap& map, const mapping::BeliefReader& reader);
 
 }  // namespace lapis::semantic_mapper

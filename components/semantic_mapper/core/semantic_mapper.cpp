@@ -30,31 +30,49 @@ const MapperConfig& validated(const MapperConfig& config) {
   return config;
 }
 
+/// Votes of the voxel that has most of one kind.
+std::size_t most_votes(const mapping::VoxelMap& map) {
+  std::uint32_t most = 0;
+  map.for_each_observed([&most](const mapping::VoxelIndex&, const mapping::VoxelCounts& counts) {
+    most = std::max(most, counts.passes);
+    for (const mapping::ClassCount& hit : counts.hits) most = std::max(most, hit.count);
+  });
+  return (most + mapping::kOneVote - 1) / mapping::kOneVote;
+}
+
 }  // namespace
 
 SemanticMapper::SemanticMapper(const MapperConfig& config)
+    : SemanticMapper(config, mapping::VoxelMap(config.resolution_m)) {}
+
+SemanticMapper::SemanticMapper(const MapperConfig& config, mapping::VoxelMap base)
     : config_(validated(config)),
       blocks_per_tile_edge_(mapping::blocks_per_tile_edge(config.resolution_m, config.tile_edge_m)),
-      map_(config.resolution_m) {}
+      map_(std::move(base)), frames_before_(most_votes(map_)) {
+  if (map_.resolution_m() != config.resolution_m)
+    throw std::runtime_error("mapper: the map to go on with has voxels of another size");
+  for (const mapping::BlockIndex& block : map_.sorted_blocks())
+    changed_tiles_.insert(mapping::tile_of(block, blocks_per_tile_edge_));
+}
 
 IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   if (!geometry::is_valid(input.T_map_keyframe) || !geometry::is_valid(input.T_keyframe_camera))
-    return {IntegrationStatus::kInvalidPose};
-  if (!is_near(input.T_map_keyframe) || !is_near(input.T_keyframe_camera)) return {IntegrationStatus::kTooFarAway};
-  if (frames_.size() >= kMaxFrames) return {IntegrationStatus::kMapIsFull};
+    return {IntegrationStatus::kInvalidPose, {}};
+  if (!is_near(input.T_map_keyframe) || !is_near(input.T_keyframe_camera)) return {IntegrationStatus::kTooFarAway, {}};
+  if (frames_before_ + frames_.size() >= kMaxFrames) return {IntegrationStatus::kMapIsFull, {}};
   const bool is_newer = input.graph_version >= graph_version_;
   if (is_newer || !keyframe_poses_.contains(input.keyframe_id)) move_keyframe(input.keyframe_id, input.T_map_keyframe);
 
   StoredFrame stored{input.stamp, input.keyframe_id, input.T_keyframe_camera, Pose::Identity(), std::move(input.frame)};
   stored.T_map_camera = wanted_pose(stored);
-  const mapping::FrameVotes votes =
+  mapping::FrameVotes votes =
       mapping::compute_votes(stored.frame, stored.T_map_camera, config_.integration, config_.resolution_m);
   map_.add(votes);
   mark_changed(votes);
   frame_bytes_ += stored.frame.bytes() + sizeof(StoredFrame) - sizeof(mapping::CompactFrame);
   frames_of_keyframe_[stored.keyframe_id].push_back(frames_.size());
   frames_.push_back(std::move(stored));
-  return {IntegrationStatus::kIntegrated, votes.hit_count(), votes.pass_count()};
+  return {IntegrationStatus::kIntegrated, std::move(votes)};
 }
 
 void SemanticMapper::update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses) {
@@ -130,6 +148,15 @@ std::size_t SemanticMapper::flush() {
 void SemanticMapper::mark_changed(const mapping::FrameVotes& votes) {
   for (const mapping::BlockVotes& block : votes.blocks)
     changed_tiles_.insert(mapping::tile_of(block.block, blocks_per_tile_edge_));
+}
+
+std::vector<mapping::BlockIndex> SemanticMapper::changed_blocks() const {
+  std::vector<mapping::BlockIndex> blocks;
+  for (const mapping::TileIndex& tile : changed_tiles_) {
+    const auto of_tile = mapping::blocks_of(tile, blocks_per_tile_edge_);
+    blocks.insert(blocks.end(), of_tile.begin(), of_tile.end());
+  }
+  return blocks;
 }
 
 std::vector<TileUpdate> SemanticMapper::take_changed_tiles() {

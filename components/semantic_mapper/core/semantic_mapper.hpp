@@ -68,17 +68,20 @@ enum class IntegrationStatus {
 
 struct IntegrationReport {
   IntegrationStatus status = IntegrationStatus::kIntegrated;
-  std::size_t hits = 0;    ///< voxels that got a hit
-  std::size_t passes = 0;  ///< voxels that got a pass
+  mapping::FrameVotes votes;  ///< that are in the map now
 };
 
 /// Semantic map that follows the pose graph. Every integrated frame is kept in compact form with the pose at which it
 /// is in the map; when the graph moves its key-frame, its votes are taken out at the old pose and put back at the new
-/// one. At any instant the map equals, bit for bit, one built from the stored frames at their recorded poses.
+/// one. At any instant the map equals, bit for bit, one built from the stored frames at their recorded poses, plus the
+/// map that it began with.
 class SemanticMapper {
  public:
   /// Throws std::runtime_error naming the value that is out of range.
   explicit SemanticMapper(const MapperConfig& config);
+  /// Goes on with the map of an earlier run: its frames are not known any more, so that its counts stay where they are.
+  /// Throws also when its voxels are not of config.resolution_m.
+  SemanticMapper(const MapperConfig& config, mapping::VoxelMap base);
 
   /// Puts a frame into the map at its key-frame's newest known pose and stores it.
   IntegrationReport integrate(AnchoredFrame input);
@@ -100,6 +103,8 @@ class SemanticMapper {
   std::size_t frame_bytes() const { return frame_bytes_; }
 
   bool has_changes() const { return !changed_tiles_.empty(); }
+  /// Blocks of the tiles that the next take_changed_tiles will look at, in any order.
+  std::vector<mapping::BlockIndex> changed_blocks() const;
   /// Makes a new version of what changed since the last call and returns its tiles in canonical order; without changes
   /// the version stays and nothing is returned.
   std::vector<TileUpdate> take_changed_tiles();
@@ -121,6 +126,7 @@ class SemanticMapper {
   MapperConfig config_;
   int blocks_per_tile_edge_;
   mapping::VoxelMap map_;
+  std::size_t frames_before_ = 0;    ///< at least so many gave the map that it began with its counts
   std::vector<StoredFrame> frames_;  ///< in order of integration
   std::size_t frame_bytes_ = 0;
 

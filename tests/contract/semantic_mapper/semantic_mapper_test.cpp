@@ -9,83 +9,13 @@
 #include <filesystem>
 #include <set>
 
-#include "common/mapping/map_mirror.hpp"
-#include "common/messages/geometry.hpp"
-#include "common/messages/time.hpp"
-#include "tests/support/camera_feed.hpp"
-#include "tests/support/child_process.hpp"
+#include "tests/contract/semantic_mapper/mapper_contract.hpp"
 
 namespace lapis::test {
 namespace {
 
-using lapis_msgs::msg::MapState;
 using lapis_msgs::msg::VoxelTile;
 using ::testing::HasSubstr;
-
-constexpr const char* kMapper = "lapis_semantic_mapper";
-
-/// A client of the map, as a planner would be one.
-class MapClient {
- public:
-  explicit MapClient(TopicProbe& probe) {
-    probe.listen<VoxelTile>(topics::kVoxelTiles, [this](auto& m) {
-      const auto result = mirror.apply_tile(m.epoch(), {m.x(), m.y(), m.z()}, m.version(), m.data());
-      damaged += result == mapping::TileResult::kDamaged ? 1 : 0;
-    });
-    probe.listen<MapState>(topics::kMapState, [this](auto& m) {
-      states.push_back(m);
-      mirror.apply_state({m.epoch(), m.version(), m.tiles(), m.checksum(), m.resolution_m()});
-    });
-  }
-  bool has_map() const { return mirror.is_consistent() && mirror.newest_state()->tiles > 0; }
-
-  mapping::MapMirror mirror;
-  std::vector<MapState> states;
-  int damaged = 0;
-};
-
-class MapperContract : public ::testing::Test {
- protected:
-  explicit MapperContract(std::vector<std::string> arguments = {"--set", "semantic_mapper.tile_period_s=0", "--set",
-                                                                "semantic_mapper.view_period_s=0"})
-      : mapper(kMapper, arguments) {}
-
-  void SetUp() override {
-    ASSERT_TRUE(wait_until_ready(mapper)) << mapper.log();
-    ASSERT_TRUE(probe.wait_until([&] { return feed.is_matched_by_mapper() && slam.matched() > 0; })) << mapper.log();
-  }
-  lapis_msgs::msg::TrackedFrame tracked(int index, std::int64_t session = 1) const {
-    lapis_msgs::msg::TrackedFrame message;
-    message.header().stamp(messages::to_message(CameraFeed::stamp(index)));
-    message.header().frame_id(SyntheticCamera::kOpticalFrame);
-    message.map_frame_id("map");
-    message.session(session);
-    message.state(lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING);
-    message.keyframe_pose(messages::to_message(T_base_camera()));
-    message.pose_in_keyframe(messages::to_message(slow_motion(index)));
-    return message;
-  }
-  /// Sends a frame with its pose and waits until a map that contains it has arrived.
-  bool map_frame(int index, std::int64_t session = 1) {
-    const std::uint64_t before = client.states.empty() ? 0 : client.states.back().frames_integrated();
-    feed.send(feed.frame(index));
-    slam.publish(tracked(index, session));
-    return probe.wait_until([&] {
-      return !client.states.empty() && client.states.back().frames_integrated() > before && client.has_map();
-    });
-  }
-  bool wait_for_count(const std::string& text, double number) {
-    return probe.wait_until([&] { return sum_of(newest_values(diagnostics, "semantic_mapper"), text) >= number; },
-                            Seconds(5));
-  }
-
-  TopicProbe probe;
-  CameraFeed feed{probe};
-  dds::Publisher<lapis_msgs::msg::TrackedFrame>& slam = probe.advertise(topics::kTrackedFrame);
-  MapClient client{probe};
-  const std::vector<diagnostic_msgs::msg::DiagnosticArray>& diagnostics = probe.collect(topics::kDiagnostics);
-  ChildProcess mapper;
-};
 
 TEST_F(MapperContract, TilesAndStateMakeAConsistentMirrorAlsoForALateJoiner) {
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(map_frame(i)) << i << mapper.log();
@@ -250,9 +180,7 @@ std::string fresh_folder(const std::string& name) {
 
 class MapperWithFolder : public MapperContract {
  protected:
-  MapperWithFolder()
-      : MapperContract({"--set", "semantic_mapper.tile_period_s=0", "--set", "semantic_mapper.output_dir=" + folder_}) {
-  }
+  MapperWithFolder() : MapperContract({"semantic_mapper.output_dir=" + folder_}) {}
   static inline const std::string folder_ = fresh_folder("lapis_mapper_contract");
 };
 

@@ -31,6 +31,14 @@ TEST(LabelList, RefusesZeroAndRepeatedIds) {
   EXPECT_THROW(LabelList::from_names({{2, "a"}, {2, "b"}}), std::runtime_error);
 }
 
+TEST(LabelList, UnionHasTheClassesOfBothAndOneNameForEach) {
+  const LabelList a = LabelList::from_names({{1, "wall"}, {4, "door"}}),
+                  b = LabelList::from_names({{4, "door"}, {2, "floor"}});
+  EXPECT_EQ(LabelList::united(a, b), LabelList::from_names({{1, "wall"}, {2, "floor"}, {4, "door"}}));
+  EXPECT_EQ(LabelList::united(a, {}), a);
+  EXPECT_THROW(LabelList::united(a, LabelList::from_names({{1, "floor"}})), std::runtime_error);
+}
+
 TEST(DefaultColor, IsDistinctForUsualLists) {
   std::set<std::tuple<int, int, int>> colors;
   for (std::uint16_t id = 0; id <= 255; ++id) {

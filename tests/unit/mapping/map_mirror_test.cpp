@@ -1,6 +1,8 @@
 #include "common/mapping/map_mirror.hpp"
 
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <random>
 #include <set>
 
@@ -22,7 +24,7 @@ class Publisher {
     std::uint64_t version;
     std::vector<std::uint8_t> bytes;
   };
-  explicit Publisher(std::int64_t epoch) : epoch_(epoch) {}
+  explicit Publisher(std::int64_t epoch, double resolution_m = kResolution_m) : epoch_(epoch), map_(resolution_m) {}
 
   std::vector<Tile> publish(const FrameVotes& votes) {
     map_.add(votes);
@@ -37,7 +39,7 @@ class Publisher {
     return tiles;
   }
   MapState state() const {
-    MapState state{epoch_, version_, static_cast<std::uint32_t>(versions_.size()), 0, kResolution_m};
+    MapState state{epoch_, version_, static_cast<std::uint32_t>(versions_.size()), 0, map_.resolution_m()};
     for (const auto& [index, version] : versions_) state.checksum += tile_hash(index, version);
     return state;
   }
@@ -46,7 +48,7 @@ class Publisher {
 
  private:
   std::int64_t epoch_;
-  VoxelMap map_{kResolution_m};
+  VoxelMap map_;
   std::uint64_t version_ = 0;
   std::map<TileIndex, std::uint64_t> versions_;
 };
@@ -136,6 +138,44 @@ TEST(MapMirror, ARestartedMapperReplacesTheMapAndOldSamplesAreDropped) {
   mirror.apply_state(after.state());
   EXPECT_TRUE(mirror.is_consistent());
   EXPECT_EQ(*mirror.map(), after.map());
+}
+
+// Two mappers one after the other, with voxels of two sizes; samples of both in any order, some twice, some never.
+TEST(MapMirror, WhatIsServedIsAlwaysAVersionAsAWholeAlsoAcrossARestartWithGaps) {
+  for (unsigned seed = 0; seed < 50; ++seed) {
+    std::mt19937 random(seed);
+    std::map<std::pair<std::int64_t, std::uint64_t>, VoxelMap> published;
+    std::vector<std::function<void(MapMirror&)>> samples;
+    Publisher before(10, 0.1), after(11, 0.2);
+    for (Publisher* publisher : {&before, &after}) {
+      for (int i = 0; i < 5; ++i) {
+        for (const auto& tile : publisher->publish(test::random_votes(random)))
+          samples.emplace_back([tile, epoch = publisher->epoch()](MapMirror& mirror) {
+            mirror.apply_tile(epoch, tile.index, tile.version, tile.bytes);
+          });
+        samples.emplace_back([state = publisher->state()](MapMirror& mirror) { mirror.apply_state(state); });
+        published.insert({{publisher->epoch(), publisher->state().version}, publisher->map()});
+      }
+    }
+    // In the end a late reader is told all; before, anything may happen.
+    auto sent = samples;
+    sent.insert(sent.end(), samples.begin(), samples.end());
+    std::erase_if(sent, [&](const auto&) { return random() % 3 == 0; });
+    std::shuffle(sent.begin(), sent.end(), random);
+    sent.insert(sent.end(), samples.begin(), samples.end());
+
+    MapMirror mirror;
+    std::int64_t served_epoch = 0;
+    for (const auto& apply : sent) {
+      apply(mirror);
+      if (mirror.map() == nullptr) continue;
+      ASSERT_EQ(*mirror.map(), published.at({mirror.state()->epoch, mirror.state()->version}));
+      ASSERT_GE(mirror.state()->epoch, served_epoch) << "a mapper that has ended does not come back";
+      served_epoch = mirror.state()->epoch;
+    }
+    EXPECT_TRUE(mirror.is_consistent());
+    EXPECT_EQ(*mirror.map(), after.map());
+  }
 }
 
 TEST(MapMirror, DamagedTilesAreReportedAndChangeNothing) {

@@ -6,6 +6,7 @@
 #include <string>
 
 #include <octomap/ColorOcTree.h>
+#include <octomap/OcTree.h>
 
 #include <gtest/gtest.h>
 
@@ -106,28 +107,51 @@ TEST(Export, PlyHoldsTheOccupiedVoxels) {
   }
 }
 
-TEST(Export, GridColumnIsOccupiedThenFreeThenUnknown) {
+TEST(Export, BinaryOctreeHasTheSameLeavesOccupiedOrFree) {
+  const Fixture f = small_scene();
+  const auto bytes = encode_binary_octree(f.map, f.reader);
+  std::istringstream stream(std::string(bytes.begin(), bytes.end()));
+  octomap::OcTree tree(1.0);
+  ASSERT_TRUE(tree.readBinary(stream));
+  EXPECT_EQ(tree.getNumLeafNodes(), 11u);
+  EXPECT_DOUBLE_EQ(tree.getResolution(), 0.25);
+  f.map.for_each_observed([&](const VoxelIndex& voxel, const mapping::VoxelCounts& counts) {
+    const Eigen::Vector3d p = f.map.center_of(voxel);
+    const octomap::OcTreeNode* node = tree.search(p.x(), p.y(), p.z());
+    ASSERT_NE(node, nullptr);
+    EXPECT_EQ(tree.isNodeOccupied(node), f.reader.is_occupied(counts));
+  });
+}
+
+// OctoMap takes log-odds of 0 for occupied, we take them for free.
+TEST(Export, AVoxelThatIsNeitherNorIsFreeInBothOctrees) {
   Fixture f;
-  f.pass({2, 3, 1}, 3);
-  f.pass({2, 3, 2}, 3);
-  f.hit({2, 3, 3}, 1, 3);  // occupied above free: occupied
-  f.pass({4, 3, 2}, 3);    // free only
-  f.hit({4, 3, 0}, 1, 9);  // floor: below the band
-  f.hit({4, 3, 9}, 1, 9);  // ceiling: above the band
-  f.hit({9, 9, 0}, 1, 9);  // outside the band: does not extend the grid
-  const OccupancyGrid grid = project_to_grid(f.map, f.reader, {0.2, 1.2});
-  EXPECT_EQ(grid.width, 3);
-  EXPECT_EQ(grid.height, 1);
-  EXPECT_DOUBLE_EQ(grid.origin_x_m, 0.5);
-  EXPECT_DOUBLE_EQ(grid.origin_y_m, 0.75);
-  EXPECT_EQ(grid.cells, (std::vector<std::int8_t>{100, -1, 0}));
+  mapping::SensorModel model;
+  model.hit_gain = 0.5;
+  model.pass_gain = 0.25;
+  model.prior_occupied = 0.5;
+  f.reader = mapping::BeliefReader(model);
+  f.hit({1, 2, 3}, 0, 1);
+  f.pass({1, 2, 3}, 2);
+  ASSERT_EQ(f.reader.occupancy_log_odds(f.map.read({1, 2, 3})), 0.0);
+  const auto p = f.map.center_of({1, 2, 3});
+  const auto full = encode_octree(f.map, f.reader, f.labels).file, binary = encode_binary_octree(f.map, f.reader);
+  std::istringstream full_stream(std::string(full.begin(), full.end()));
+  std::istringstream binary_stream(std::string(binary.begin(), binary.end()));
+  const std::unique_ptr<octomap::AbstractOcTree> read(octomap::AbstractOcTree::read(full_stream));
+  const auto* colored = dynamic_cast<octomap::ColorOcTree*>(read.get());
+  ASSERT_NE(colored, nullptr);
+  EXPECT_FALSE(colored->isNodeOccupied(colored->search(p.x(), p.y(), p.z())));
+  octomap::OcTree tree(1.0);
+  ASSERT_TRUE(tree.readBinary(binary_stream));
+  EXPECT_FALSE(tree.isNodeOccupied(tree.search(p.x(), p.y(), p.z())));
 }
 
 TEST(Export, EmptyMapGivesEmptyResults) {
   const Fixture f;
-  EXPECT_TRUE(project_to_grid(f.map, f.reader, {}).cells.empty());
   EXPECT_TRUE(occupied_points(f.map, f.reader, f.labels).empty());
   EXPECT_FALSE(encode_octree(f.map, f.reader, f.labels).file.empty());
+  EXPECT_FALSE(encode_binary_octree(f.map, f.reader).empty());
 }
 
 }  // namespace

@@ -228,6 +228,43 @@ TEST(SemanticMapper, SavedAndLoadedEqualsOriginal) {
   EXPECT_EQ(loaded->map, mapper.map());
 }
 
+// A run that was saved and gone on with: old counts stay, new frames are added, and only these follow the graph.
+TEST(SemanticMapper, GoneOnWithEqualsTheSavedMapPlusTheNewFrames) {
+  const SemanticMapper first = mapper_with_tour();
+  std::string error;
+  const auto saved = mapping::decode_map(mapping::encode_map({first.map(), {}, {}, {}}), error);
+  ASSERT_TRUE(saved) << error;
+  SemanticMapper second(MapperConfig{}, saved->map);
+  EXPECT_EQ(second.map(), first.map());
+  for (const AnchoredFrame& frame : tour().frames) second.integrate(frame);
+  std::mt19937 random(5);
+  second.update_keyframe_poses(2, corrected(random, 0.1));
+  EXPECT_GT(second.flush(), 0u);
+  mapping::VoxelMap sum = saved->map;
+  for (const StoredFrame& frame : second.frames())
+    sum.add(mapping::compute_votes(frame.frame, frame.T_map_camera, {}, sum.resolution_m()));
+  EXPECT_EQ(second.map(), sum);
+}
+
+TEST(SemanticMapper, GoneOnWithTellsTheWholeMap) {
+  const SemanticMapper first = mapper_with_tour();
+  SemanticMapper second(MapperConfig{}, first.map());
+  mapping::MapMirror mirror;
+  for (const TileUpdate& tile : second.take_changed_tiles()) mirror.apply_tile(0, tile.index, tile.version, tile.bytes);
+  mirror.apply_state(second.state());
+  ASSERT_TRUE(mirror.is_consistent());
+  EXPECT_EQ(*mirror.map(), first.map());
+}
+
+TEST(SemanticMapper, AFullMapTakesNoMoreFrames) {
+  mapping::VoxelMap full(0.25);
+  mapping::VoxelBlock block;
+  block.add_pass(0, 0xffffff00u);
+  full.set_block({0, 0, 0}, block);
+  SemanticMapper mapper(MapperConfig{}, full);
+  EXPECT_EQ(mapper.integrate(tour().frames[0]).status, IntegrationStatus::kMapIsFull);
+}
+
 TEST(SemanticMapper, PosesThatAreNotPosesAreRefused) {
   SemanticMapper mapper(MapperConfig{});
   AnchoredFrame frame = tour().frames[0];
@@ -260,6 +297,7 @@ TEST(SemanticMapper, RefusesConfigurationOutOfRange) {
   config = {};
   config.tile_edge_m = 0.0;
   EXPECT_THROW(SemanticMapper{config}, std::runtime_error);
+  EXPECT_THROW(SemanticMapper(MapperConfig{}, mapping::VoxelMap(0.1)), std::runtime_error);
 }
 
 }  // namespace

@@ -1,11 +1,7 @@
 // A process that saves all the time is killed at random instants: slam.lapis is always one of the maps that it saved,
 // and can be gone on with. LAPIS_KILLS says how often, instead of 10 times; more when none of them hit a half-written
 // file.
-#include <sys/wait.h>
-#include <unistd.h>
-
 #include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -17,6 +13,7 @@
 #include "common/files/atomic_file.hpp"
 #include "slam/core/rgbd_slam.hpp"
 #include "slam/core/slam_file.hpp"
+#include "tests/support/endless_process.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
@@ -44,37 +41,6 @@ struct SavedRun {
   SlamFile early, late;
 };
 
-// A process that writes both files in turn until it is killed. It says when it begins.
-class Saver {
- public:
-  Saver(const SavedRun& run, const std::string& path) {
-    int begun[2];
-    if (::pipe(begun) != 0) std::abort();
-    pid_ = ::fork();
-    if (pid_ == 0) {
-      const char word = '!';
-      if (::write(begun[1], &word, 1) != 1) ::_exit(1);
-      while (!write_slam_file(path, run.late) && !write_slam_file(path, run.early)) {
-      }
-      ::_exit(1);
-    }
-    char word = 0;
-    if (pid_ < 0 || ::read(begun[0], &word, 1) != 1) std::abort();
-    ::close(begun[0]);
-    ::close(begun[1]);
-  }
-  // False when it has ended by itself.
-  bool kill() const {
-    int status = 0;
-    ::kill(pid_, SIGKILL);
-    ::waitpid(pid_, &status, 0);
-    return WIFSIGNALED(status) && WTERMSIG(status) == SIGKILL;
-  }
-
- private:
-  pid_t pid_ = -1;
-};
-
 TEST(KillSaver, TheFileIsAlwaysWholeAndCanBeGoneOnWith) {
   const char* const wanted = std::getenv("LAPIS_KILLS");
   const int kills = wanted != nullptr ? std::atoi(wanted) : 10;
@@ -90,7 +56,8 @@ TEST(KillSaver, TheFileIsAlwaysWholeAndCanBeGoneOnWith) {
   std::uniform_real_distribution<double> instant(0.0, 6.0);  // in times of one save
   int i = 0, in_the_middle = 0, with_late = 0;
   for (; i < kills || (in_the_middle == 0 && i < kills + 100); ++i) {
-    const Saver saver(run, path);
+    lapis::test::EndlessProcess saver(
+        [&] { return !write_slam_file(path, run.late) && !write_slam_file(path, run.early); });
     std::this_thread::sleep_for(instant(random) * one_save);
     ASSERT_TRUE(saver.kill());
     in_the_middle += std::filesystem::exists(path + ".part") ? 1 : 0;

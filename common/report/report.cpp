@@ -1,4 +1,4 @@
-#include "evaluator/report.hpp"
+#include "common/report/report.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace lapis::evaluator {
+namespace lapis::report {
 namespace {
 
 using nlohmann::ordered_json;
@@ -59,7 +59,7 @@ void print_table(std::ostream& out, const std::string& name, const ordered_json&
 
 }  // namespace
 
-void print_report(std::ostream& out, const ordered_json& result, bool as_json) {
+void print(std::ostream& out, const ordered_json& result, bool as_json) {
   if (as_json) {
     out << result.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) << '\n';
     return;
@@ -74,4 +74,4 @@ void print_report(std::ostream& out, const ordered_json& result, bool as_json) {
   }
 }
 
-}  // namespace lapis::evaluator
+}  // namespace lapis::report

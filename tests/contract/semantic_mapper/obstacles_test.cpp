@@ -1,0 +1,98 @@
+// The obstacle layer of lapis_semantic_mapper: what stands in the way now, beside a map that takes the world to be
+// static.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/contract/semantic_mapper/mapper_contract.hpp"
+
+namespace lapis::test {
+namespace {
+
+using nav_msgs::msg::OccupancyGrid;
+
+constexpr int kOccupied = 100, kFree = 0, kUnknown = -1;
+constexpr int kFramesIn5s = 150;
+
+int value_at(const OccupancyGrid& grid, const Eigen::Vector3d& p_map) {
+  const auto& origin = grid.info().origin().position();
+  const auto column = static_cast<int>(std::floor((p_map.x() - origin.x()) / grid.info().resolution()));
+  const auto row = static_cast<int>(std::floor((p_map.y() - origin.y()) / grid.info().resolution()));
+  const auto width = static_cast<int>(grid.info().width()), height = static_cast<int>(grid.info().height());
+  if (column < 0 || row < 0 || column >= width || row >= height) return kUnknown;
+  return grid.data()[static_cast<std::size_t>(row) * grid.info().width() + static_cast<std::size_t>(column)];
+}
+
+class Obstacles : public MapperContract {
+ protected:
+  /// Somebody stands in front of the camera: all that is further in the middle of the image is now at 1 m.
+  static CameraFrame blocked(CameraFrame frame) {
+    auto& depth = *frame.depth;
+    for (std::uint32_t row = 0; row < depth.height(); ++row) {
+      for (std::uint32_t column = depth.width() / 3; column < 2 * depth.width() / 3; ++column) {
+        const std::size_t at = row * depth.step() + 2 * column;
+        depth.data()[at] = 1000 & 0xff;
+        depth.data()[at + 1] = 1000 >> 8;
+      }
+    }
+    return frame;
+  }
+  /// Sends frames until the newest grid has that value where the obstacle is; the number of frames, or nothing.
+  std::optional<int> frames_until(int value, bool is_blocked) {
+    for (int sent = 1; sent <= kFramesIn5s; ++sent) {
+      ++index_;
+      const std::uint64_t before = client.states.empty() ? 0 : client.states.back().frames_integrated();
+      const auto stamp = CameraFeed::stamp(index_);
+      const auto frame = feed.frame(stamp, slow_motion(0));  // the camera stands still
+      feed.send(is_blocked ? blocked(frame) : frame);
+      auto pose = tracked(index_);
+      pose.pose_in_keyframe(messages::to_message(slow_motion(0)));
+      slam.publish(pose);
+      if (!probe.wait_until(
+              [&] { return !client.states.empty() && client.states.back().frames_integrated() > before; }))
+        return std::nullopt;
+      const bool has_grid =
+          probe.wait_until([&] { return !grids.empty() && (stamp - stamp_of(grids.back())).seconds() < 0.5; });
+      if (has_grid && value_at(grids.back(), p_obstacle()) == value) return sent;
+    }
+    return std::nullopt;
+  }
+  static Eigen::Vector3d p_obstacle() { return T_base_camera() * Eigen::Vector3d(0.0, -0.1, 1.0); }
+  static time::Time stamp_of(const OccupancyGrid& grid) { return messages::from_message(grid.header().stamp()); }
+
+  const std::vector<OccupancyGrid>& grids = probe.collect(topics::kObstacles);
+  int index_ = 0;
+};
+
+TEST_F(Obstacles, AMovedOneIsFollowedWithinFiveSecondsBothWays) {
+  ASSERT_TRUE(frames_until(kFree, false)) << mapper.log();
+  const auto appeared = frames_until(kOccupied, true);
+  ASSERT_TRUE(appeared) << mapper.log();
+  for (int i = 0; i < kFramesIn5s; ++i) {  // long enough for a static map to believe in it
+    ASSERT_EQ(frames_until(kOccupied, true), 1) << mapper.log();
+  }
+  const auto disappeared = frames_until(kFree, false);
+  ASSERT_TRUE(disappeared) << mapper.log();
+  RecordProperty("frames_to_appear", *appeared);
+  RecordProperty("frames_to_disappear", *disappeared);
+}
+
+TEST_F(Obstacles, GridsComeTwiceASecondOfStampsAndToLateJoiners) {
+  for (int i = 0; i < 46; ++i)
+    ASSERT_TRUE(map_frame(i)) << mapper.log();  // 1.5 s; a period ends with the first frame after it
+  ASSERT_TRUE(probe.wait_until([&] { return grids.size() == 3; })) << grids.size() << mapper.log();
+  for (std::size_t i = 1; i < grids.size(); ++i) {
+    EXPECT_NEAR((stamp_of(grids[i]) - stamp_of(grids[i - 1])).seconds(), 0.5, 0.04);
+  }
+  EXPECT_EQ(grids.back().header().frame_id(), "map");
+  EXPECT_EQ(grids.back().data().size(),
+            static_cast<std::size_t>(grids.back().info().width()) * grids.back().info().height());
+  TopicProbe late("late");
+  const auto& seen = late.collect(topics::kObstacles);
+  ASSERT_TRUE(late.wait_until([&] { return !seen.empty(); })) << mapper.log();
+  EXPECT_EQ(seen.back(), grids.back());
+}
+
+}  // namespace
+}  // namespace lapis::test

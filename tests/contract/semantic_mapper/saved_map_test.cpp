@@ -1,0 +1,133 @@
+// lapis_semantic_mapper goes on with the map of an earlier run.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <csignal>
+#include <filesystem>
+
+#include "common/files/atomic_file.hpp"
+#include "common/mapping/map_file.hpp"
+#include "semantic_mapper/core/map_merge.hpp"
+#include "tests/contract/semantic_mapper/mapper_contract.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace lapis::test {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+class SavedSemanticMap : public ::testing::Test {
+ protected:
+  std::string file() const { return (folder_.path() / "map.lapis").string(); }
+  std::string resume() const { return "semantic_mapper.resume_from=" + file(); }
+  std::string output() const { return "semantic_mapper.output_dir=" + folder_.path().string(); }
+  mapping::MapFile load(const std::string& path) const {
+    std::string error;
+    auto map = mapping::load_map(path, error);
+    EXPECT_TRUE(map) << error;
+    return map.value();
+  }
+  /// A whole run that maps these frames and leaves its map.
+  void save_a_map(const std::vector<std::string>& settings, int from, int to, std::int64_t session) {
+    MapperRun run(settings);
+    ASSERT_TRUE(run.is_ready()) << run.mapper.log();
+    for (int i = from; i < to; ++i) ASSERT_TRUE(run.map_frame(i, session)) << run.mapper.log();
+    mirrored_ = *run.client.mirror.map();
+    ASSERT_EQ(run.mapper.stop(SIGTERM), 0) << run.mapper.log();
+  }
+  std::string refusal(const std::string& path) const {
+    ChildProcess mapper(kMapper, {"--set", "semantic_mapper.resume_from=" + path});
+    EXPECT_EQ(mapper.wait(), 2) << mapper.log();
+    return mapper.log();
+  }
+
+  TemporaryFolder folder_;
+  mapping::VoxelMap mirrored_{0.25};
+};
+
+TEST_F(SavedSemanticMap, IsGoneOnWithAsIfItHadNeverEnded) {
+  ASSERT_NO_FATAL_FAILURE(save_a_map({output()}, 0, 4, 1));
+  const mapping::MapFile base = load(file());
+  EXPECT_EQ(base.map, mirrored_);
+  const TemporaryFolder other;
+  ASSERT_NO_FATAL_FAILURE(save_a_map({"semantic_mapper.output_dir=" + other.path().string()}, 4, 7, 2));
+  mapping::MapFile expected = base;
+  semantic_mapper::merge_into(expected, load((other.path() / "map.lapis").string()), geometry::Pose::Identity());
+
+  ASSERT_NO_FATAL_FAILURE(save_a_map({output(), resume()}, 4, 7, 2));
+  const mapping::MapFile resumed = load(file());
+  EXPECT_EQ(mirrored_, expected.map) << "the whole map is told, and the new frames are added to it";
+  EXPECT_EQ(resumed.map, expected.map);
+  EXPECT_EQ(mapping::LabelList::united(base.labels, resumed.labels), resumed.labels) << "no name is lost";
+  EXPECT_EQ(resumed.provenance.at("frames"), "7");
+  EXPECT_FALSE(fs::exists(folder_.path() / "map.1.lapis")) << "the new file holds all of the old one";
+}
+
+TEST_F(SavedSemanticMap, OfAKilledProcessIsTheOneThatItSavedByItself) {
+  int index = 0;
+  {
+    MapperRun run({output(), "semantic_mapper.save_period_s=1"});
+    ASSERT_TRUE(run.is_ready()) << run.mapper.log();
+    ASSERT_TRUE(run.probe.wait_until([&] { return run.map_frame(index++) && fs::exists(file()); })) << run.mapper.log();
+    run.mapper.signal(SIGKILL);
+    EXPECT_EQ(run.mapper.wait(), -SIGKILL);
+  }
+  const mapping::MapFile base = load(file());
+  ASSERT_NO_FATAL_FAILURE(save_a_map({output(), resume()}, index, index + 1, 1));
+  EXPECT_GE(mirrored_.block_count(), base.map.block_count());
+  EXPECT_EQ(std::stoi(load(file()).provenance.at("frames")), std::stoi(base.provenance.at("frames")) + 1);
+}
+
+TEST_F(SavedSemanticMap, IsSetAsideByANewMap) {
+  ASSERT_NO_FATAL_FAILURE(save_a_map({output()}, 0, 2, 1));
+  std::string error;
+  const auto before = files::read_file(file(), error);
+  ASSERT_NO_FATAL_FAILURE(save_a_map({output()}, 2, 4, 2));
+  EXPECT_EQ(files::read_file((folder_.path() / "map.1.lapis").string(), error), before) << error;
+}
+
+TEST_F(SavedSemanticMap, IsNotMixedWithTheNextMapOfSlam) {
+  ASSERT_NO_FATAL_FAILURE(save_a_map({output()}, 0, 2, 1));
+  mapping::VoxelMap last(0.25);
+  {
+    MapperRun run({resume()});
+    ASSERT_TRUE(run.is_ready()) << run.mapper.log();
+    ASSERT_TRUE(run.map_frame(2, 2)) << run.mapper.log();
+    ASSERT_TRUE(run.map_frame(3, 3)) << run.mapper.log();
+    last = *run.client.mirror.map();
+  }
+  ASSERT_NO_FATAL_FAILURE(save_a_map({}, 3, 4, 1));
+  EXPECT_EQ(last, mirrored_);
+}
+
+TEST_F(SavedSemanticMap, ThatCannotBeGoneOnWithIsRefusedInOneLine) {
+  ASSERT_NO_FATAL_FAILURE(save_a_map({output()}, 0, 2, 7));
+  EXPECT_THAT(refusal("/no/such.lapis"), HasSubstr("semantic_mapper.resume_from: /no/such.lapis: cannot be opened"));
+  ChildProcess coarse(kMapper, {"--set", resume(), "--set", "semantic_mapper.resolution_m=0.5"});
+  EXPECT_EQ(coarse.wait(), 2) << coarse.log();
+  EXPECT_THAT(coarse.log(), HasSubstr(file() + ": semantic_mapper.resolution_m was 0.25"));
+  {
+    MapperRun run({resume()});
+    ASSERT_TRUE(run.is_ready()) << run.mapper.log();
+    run.send(run.feed.frame(2), 2, 6);
+    EXPECT_EQ(run.mapper.wait(), 2) << run.mapper.log();
+    EXPECT_THAT(run.mapper.log(), HasSubstr("belongs to a later session of slam; give slam.resume_from"));
+  }
+  mapping::MapFile other = load(file());
+  other.labels = mapping::LabelList::from_names({{1, "unicorn"}});
+  ASSERT_EQ(mapping::save_map(file(), other), std::nullopt);
+  {
+    MapperRun run({resume()});
+    EXPECT_EQ(run.mapper.wait(), 2) << run.mapper.log();
+    EXPECT_THAT(run.mapper.log(), HasSubstr("/camera/semantic/label_info: class 1 is '"));
+  }
+  std::string error;
+  auto bytes = *files::read_file(file(), error);
+  bytes[bytes.size() / 2] ^= 4U;
+  ASSERT_FALSE(files::replace_file(file(), bytes));
+  EXPECT_THAT(refusal(file()), HasSubstr("semantic_mapper.resume_from: " + file() + ": is damaged"));
+}
+
+}  // namespace
+}  // namespace lapis::test

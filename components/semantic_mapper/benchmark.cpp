@@ -1,7 +1,10 @@
-// Insertion of 640x360 RGB-D frames, 5 m range, into the semantic map and, as the peer in the same run, of the same
-// pixels into OctoMap without classes. A frame of a furnished room, seen from places on a circle.
+// Insertion of 640x360 RGB-D frames with labels, 5 m range, into the semantic map beside insertion of the same points,
+// without classes, into OctoMap: frame by frame in one run. A walk through a flat of six rooms, twice, so that the map
+// first grows and is then revisited. Times are CPU times of the one thread.
 
+#include <algorithm>
 #include <cmath>
+#include <ctime>
 #include <string>
 #include <vector>
 
@@ -10,16 +13,16 @@
 #include <benchmark/benchmark.h>
 
 #include "common/mapping/integration.hpp"
-#include "common/mapping/tile_codec.hpp"
-#include "semantic_mapper/core/export.hpp"
+#include "common/mapping/sensor_model.hpp"
 #include "semantic_mapper/core/semantic_mapper.hpp"
-#include "tests/support/synthetic_room.hpp"
+#include "tests/support/synthetic_flat.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {
 
 const geometry::PinholeCamera kCamera{640, 360, 320, 320, 319.5, 179.5};
-constexpr int kFrames = 24;
+constexpr int kViewsPerRoom = 9;
+constexpr int kLaps = 2;
 
 struct View {
   geometry::Pose T_map_camera;
@@ -28,115 +31,119 @@ struct View {
 
 const std::vector<View>& views() {
   static const std::vector<View> kViews = [] {
-    const auto room = test::furnished_room();
+    const auto flat = test::furnished_flat();
+    std::mt19937 random(1);
     std::vector<View> all;
-    for (int i = 0; i < kFrames; ++i) {
-      const double angle = 2.0 * M_PI * i / kFrames;
-      const auto T = test::look({1.5 * std::cos(angle), 1.2 * std::sin(angle), 1.1}, angle + 2.5, 0.15);
-      all.push_back({T, test::render(room, kCamera, T)});
+    for (const geometry::Pose& T : test::walk_through_flat(kViewsPerRoom)) {
+      all.push_back({T, test::render(flat, kCamera, T)});
+      test::add_noise(all.back().image, random);
     }
     return all;
   }();
   return kViews;
 }
 
-std::vector<mapping::CompactFrame> compact_frames(int stride) {
-  std::vector<mapping::CompactFrame> frames;
+/// CPU time of this thread [s].
+double cpu_s() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+template <class Work>
+double cpu_s_of(Work&& work) {
+  const double begin_s = cpu_s();
+  work();
+  return cpu_s() - begin_s;
+}
+
+double quantile_ms(std::vector<double> seconds, double share) {
+  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(seconds.size() - 1) + 0.5);
+  std::nth_element(seconds.begin(), seconds.begin() + at, seconds.end());
+  return seconds[static_cast<std::size_t>(at)] * 1e3;
+}
+
+mapping::CompactFrame compact_frame(const View& view, int stride) {
   std::string error;
-  for (const View& view : views())
-    frames.push_back(
-        mapping::CompactFrame::make(kCamera, view.image.depth, &view.image.labels, {stride, 40}, error).value());
-  return frames;
+  return mapping::CompactFrame::make(kCamera, view.image.depth, &view.image.labels, {stride, 40}, error).value();
 }
 
-/// From the stored compact frame to the updated map, unpacking included.
-void semantic_insert(benchmark::State& state, double resolution_m, int stride) {
-  const std::vector<mapping::CompactFrame> frames = compact_frames(stride);
-  mapping::VoxelMap map(resolution_m);
-  std::size_t i = 0, hits = 0, passes = 0;
-  for (auto _ : state) {
-    const std::size_t k = i++ % frames.size();
-    const auto votes = mapping::compute_votes(frames[k], views()[k].T_map_camera, {}, resolution_m);
-    map.add(votes);
-    benchmark::DoNotOptimize(map);
-    hits += votes.hit_count();
-    passes += votes.pass_count();
+octomap::Pointcloud point_cloud(const View& view, int stride) {
+  octomap::Pointcloud cloud;
+  for (int row = 0; row < kCamera.height; row += stride)
+    for (int column = 0; column < kCamera.width; column += stride) {
+      const float depth_m = view.image.depth(column, row);
+      if (depth_m <= 0) continue;
+      const Eigen::Vector3f p = (view.T_map_camera * kCamera.unproject(column, row, depth_m)).cast<float>();
+      cloud.push_back(p.x(), p.y(), p.z());
+    }
+  return cloud;
+}
+
+std::size_t occupied_voxels(const mapping::VoxelMap& map) {
+  const mapping::BeliefReader reader{mapping::SensorModel{}};
+  std::size_t count = 0;
+  map.for_each_observed([&](const auto&, const mapping::VoxelCounts& counts) { count += reader.is_occupied(counts); });
+  return count;
+}
+
+std::size_t occupied_voxels(octomap::OcTree& tree) {
+  std::size_t count = 0;
+  for (auto leaf = tree.begin_leafs(); leaf != tree.end_leafs(); ++leaf) {
+    const unsigned levels = tree.getTreeDepth() - leaf.getDepth();
+    if (tree.isNodeOccupied(*leaf)) count += std::size_t{1} << (3 * levels);
   }
-  state.counters["hits"] = static_cast<double>(hits) / static_cast<double>(i);
-  state.counters["passes"] = static_cast<double>(passes) / static_cast<double>(i);
-  state.counters["map_MB"] = static_cast<double>(map.bytes()) * 1e-6;
+  return count;
 }
 
-/// From the images to the stored compact frame.
-void compact_frame(benchmark::State& state, int stride) {
-  std::size_t i = 0, bytes = 0;
-  std::string error;
-  for (auto _ : state) {
-    const View& view = views()[i++ % views().size()];
-    const auto frame = mapping::CompactFrame::make(kCamera, view.image.depth, &view.image.labels, {stride, 40}, error);
-    bytes += frame->bytes();
-  }
-  state.counters["bytes"] = static_cast<double>(bytes) / static_cast<double>(i);
-}
-
-void octomap_insert(benchmark::State& state, double resolution_m) {
-  std::vector<octomap::Pointcloud> clouds(views().size());
-  for (std::size_t k = 0; k < views().size(); ++k)
-    for (int row = 0; row < kCamera.height; ++row)
-      for (int column = 0; column < kCamera.width; ++column) {
-        const float depth_m = views()[k].image.depth(column, row);
-        if (depth_m <= 0) continue;
-        const Eigen::Vector3f p = (views()[k].T_map_camera * kCamera.unproject(column, row, depth_m)).cast<float>();
-        clouds[k].push_back(p.x(), p.y(), p.z());
-      }
-  octomap::OcTree tree(resolution_m);
-  std::size_t i = 0;
-  for (auto _ : state) {
-    const std::size_t k = i++ % clouds.size();
-    const Eigen::Vector3f origin = views()[k].T_map_camera.translation().cast<float>();
-    tree.insertPointCloud(clouds[k], {origin.x(), origin.y(), origin.z()}, 5.0, /*lazy_eval=*/false,
-                          /*discretize=*/true);
-  }
-  state.counters["map_MB"] = static_cast<double>(tree.memoryUsage()) * 1e-6;
-}
-
-/// Every tile of the room's map.
-void encode_tiles(benchmark::State& state, double resolution_m) {
+/// One iteration: one frame into the semantic map, from images to updated map (timed), and into OctoMap from points.
+void insert_beside_octomap(benchmark::State& state, double resolution_m, int stride) {
   MapperConfig config;
   config.resolution_m = resolution_m;
   SemanticMapper mapper(config);
-  std::vector<mapping::CompactFrame> frames = compact_frames(2);
-  for (std::size_t k = 0; k < frames.size(); ++k)
-    mapper.integrate({{}, k, views()[k].T_map_camera, geometry::Pose::Identity(), 1, std::move(frames[k])});
-  mapper.take_changed_tiles();
-  std::size_t bytes = 0, tiles = 0;
+  octomap::OcTree tree(resolution_m);
+  std::vector<double> compact_s, total_s, octomap_s;
+  std::size_t i = 0, votes = 0;
   for (auto _ : state) {
-    const auto all = mapper.all_tiles();
-    bytes = 0;
-    tiles = all.size();
-    for (const TileUpdate& tile : all) bytes += tile.bytes.size();
+    const View& view = views()[i % views().size()];
+    const double begin_s = cpu_s();
+    AnchoredFrame frame{{}, i, view.T_map_camera, geometry::Pose::Identity(), 1, compact_frame(view, stride)};
+    compact_s.push_back(cpu_s() - begin_s);
+    const IntegrationReport report = mapper.integrate(std::move(frame));
+    total_s.push_back(cpu_s() - begin_s);
+    state.SetIterationTime(total_s.back());
+    votes += report.hits + report.passes;
+    const octomap::Pointcloud cloud = point_cloud(view, stride);
+    const Eigen::Vector3f o = view.T_map_camera.translation().cast<float>();
+    octomap_s.push_back(cpu_s_of([&] { tree.insertPointCloud(cloud, {o.x(), o.y(), o.z()}, 5.0, false, true); }));
+    ++i;
   }
-  state.counters["bytes"] = static_cast<double>(bytes);
-  state.counters["tiles"] = static_cast<double>(tiles);
+  const auto per_voxel = [](std::size_t bytes, std::size_t voxels) {
+    return static_cast<double>(bytes) / static_cast<double>(voxels);
+  };
+  state.counters["compact_p50"] = quantile_ms(compact_s, 0.5);
+  state.counters["p50"] = quantile_ms(total_s, 0.5);
+  state.counters["p95"] = quantile_ms(total_s, 0.95);
+  state.counters["octomap_p50"] = quantile_ms(octomap_s, 0.5);
+  state.counters["octomap_p95"] = quantile_ms(octomap_s, 0.95);
+  state.counters["ratio"] = quantile_ms(octomap_s, 0.5) / quantile_ms(total_s, 0.5);
+  state.counters["votes"] = static_cast<double>(votes) / static_cast<double>(i);
+  state.counters["B_per_voxel"] = per_voxel(mapper.map().bytes(), occupied_voxels(mapper.map()));
+  state.counters["octomap_B_per_voxel"] = per_voxel(tree.memoryUsage(), occupied_voxels(tree));
+  state.counters["B_per_frame"] = per_voxel(mapper.frame_bytes(), mapper.frames().size());
 }
 
 void register_all() {
   for (const auto& [name, resolution_m] : {std::pair{"0.25m", 0.25}, {"0.10m", 0.10}, {"0.05m", 0.05}}) {
-    const auto named = [name = std::string(name)](const char* kernel) { return kernel + ("/" + name); };
-    const double r = resolution_m;
-    const auto add = [](const std::string& full_name, auto run) {
-      benchmark::RegisterBenchmark(full_name.c_str(), run)->Unit(benchmark::kMillisecond);
-    };
-    add(named("semantic_insert"), [r](benchmark::State& s) { semantic_insert(s, r, 2); });
-    add(named("semantic_insert_all_pixels"), [r](benchmark::State& s) { semantic_insert(s, r, 1); });
-    add(named("octomap_insert"), [r](benchmark::State& s) { octomap_insert(s, r); });
-    add(named("encode_tiles"), [r](benchmark::State& s) { encode_tiles(s, r); });
+    for (const int stride : {1, 2}) {
+      const std::string full_name = "insert/" + std::string(name) + "/stride" + std::to_string(stride);
+      const auto run = [r = resolution_m, stride](benchmark::State& s) { insert_beside_octomap(s, r, stride); };
+      benchmark::RegisterBenchmark(full_name.c_str(), run)
+          ->Iterations(static_cast<std::int64_t>(kLaps * views().size()))
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond);
+    }
   }
-  for (const int stride : {1, 2})
-    benchmark::RegisterBenchmark(("compact_frame/stride" + std::to_string(stride)).c_str(), [stride](
-                                                                                                benchmark::State& s) {
-      compact_frame(s, stride);
-    })->Unit(benchmark::kMillisecond);
 }
 
 }  // namespace

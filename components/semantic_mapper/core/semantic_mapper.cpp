@@ -45,13 +45,18 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   const bool is_newer = input.graph_version >= graph_version_;
   if (is_newer || !keyframe_poses_.contains(input.keyframe_id)) move_keyframe(input.keyframe_id, input.T_map_keyframe);
 
-  StoredFrame stored{input.stamp, input.keyframe_id, input.T_keyframe_camera, Pose::Identity(), std::move(input.frame)};
+  StoredFrame stored{input.stamp,
+                     input.keyframe_id,
+                     input.T_keyframe_camera,
+                     Pose::Identity(),
+                     input.frame.median_depth_m(),
+                     mapping::PackedFrame(input.frame)};
   stored.T_map_camera = wanted_pose(stored);
   const mapping::FrameVotes votes =
-      mapping::compute_votes(stored.frame, stored.T_map_camera, config_.integration, config_.resolution_m);
+      mapping::compute_votes(input.frame, stored.T_map_camera, config_.integration, config_.resolution_m);
   map_.add(votes);
   mark_changed(votes);
-  frame_bytes_ += stored.frame.bytes() + sizeof(StoredFrame) - sizeof(mapping::CompactFrame);
+  frame_bytes_ += stored.frame.bytes().size() + sizeof(StoredFrame);
   frames_of_keyframe_[stored.keyframe_id].push_back(frames_.size());
   frames_.push_back(std::move(stored));
   return {IntegrationStatus::kIntegrated, votes.hit_count(), votes.pass_count()};
@@ -86,14 +91,15 @@ Pose SemanticMapper::wanted_pose(const StoredFrame& frame) const {
 double SemanticMapper::offset_voxels(const StoredFrame& frame, const Pose& T_map_camera) const {
   // Upper bound of how far any point at the median depth has moved.
   const Pose moved = frame.T_map_camera.inverse() * T_map_camera;
-  const double turn_m = geometry::rotation_angle(moved.linear()) * frame.frame.median_depth_m();
+  const double turn_m = geometry::rotation_angle(moved.linear()) * frame.median_depth_m;
   return (moved.translation().norm() + turn_m) / config_.resolution_m;
 }
 
 void SemanticMapper::move_frame(std::size_t index, const Pose& T_map_camera) {
   StoredFrame& frame = frames_[index];
+  const mapping::CompactFrame samples = frame.frame.unpack();
   const auto votes_at = [&](const Pose& pose) {
-    return mapping::compute_votes(frame.frame, pose, config_.integration, config_.resolution_m);
+    return mapping::compute_votes(samples, pose, config_.integration, config_.resolution_m);
   };
   const mapping::FrameVotes old_votes = votes_at(frame.T_map_camera), new_votes = votes_at(T_map_camera);
   map_.subtract(old_votes);

@@ -12,6 +12,7 @@
 #include "common/mapping/compact_frame.hpp"
 #include "common/mapping/integration.hpp"
 #include "common/mapping/map_mirror.hpp"
+#include "common/mapping/packed_frame.hpp"
 #include "common/mapping/sensor_model.hpp"
 #include "common/mapping/tile_codec.hpp"
 #include "common/mapping/voxel_map.hpp"
@@ -50,7 +51,8 @@ struct StoredFrame {
   std::uint64_t keyframe_id = 0;
   geometry::Pose T_keyframe_camera = geometry::Pose::Identity();
   geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< at which its votes are in the map now
-  mapping::CompactFrame frame;
+  double median_depth_m = 0.0;
+  mapping::PackedFrame frame;
 };
 
 struct TileUpdate {

@@ -61,7 +61,7 @@ const Tour& tour() {
 mapping::VoxelMap built_from_records(const SemanticMapper& mapper) {
   mapping::VoxelMap map(mapper.config().resolution_m);
   for (const StoredFrame& frame : mapper.frames())
-    map.add(mapping::compute_votes(frame.frame, frame.T_map_camera, mapper.config().integration,
+    map.add(mapping::compute_votes(frame.frame.unpack(), frame.T_map_camera, mapper.config().integration,
                                    mapper.config().resolution_m));
   return map;
 }

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,7 @@ struct CompactFrameConfig {
 /// What the mapper keeps of a camera frame, and the only thing it ever integrates. Because the map is moved with the
 /// pose graph by taking frames out and putting them back, what is put in must be exactly what can be put in again;
 /// integrating the raw image once and the compact frame later would leave traces. Depth is kept in millimetres (the
-/// unit of the depth topic), sampled on a regular grid of pixels. PackedFrame stores it.
+/// unit of the depth topic), sampled on a regular grid of pixels. frame_codec.hpp packs it.
 class CompactFrame {
  public:
   /// @param camera intrinsics of the full images
@@ -46,7 +47,8 @@ class CompactFrame {
   double median_depth_m() const;
 
  private:
-  friend class PackedFrame;
+  friend std::vector<std::uint8_t> pack(const CompactFrame& frame);
+  friend std::optional<CompactFrame> unpack_frame(std::span<const std::uint8_t> bytes);
   CompactFrame() = default;
 
   geometry::PinholeCamera camera_;

@@ -52,4 +52,8 @@ struct FrameVotes {
   bool operator==(const FrameVotes&) const = default;
 };
 
+/// Takes out of both what both say, so that they become the difference: taking `a` out of a map and putting `b` in
+/// does the same before and after.
+void drop_common(FrameVotes& a, FrameVotes& b);
+
 }  // namespace lapis::mapping

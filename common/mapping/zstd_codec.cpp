@@ -28,11 +28,17 @@ std::vector<std::uint8_t> zstd_compress(std::span<const std::uint8_t> bytes, int
 }
 
 std::optional<std::vector<std::uint8_t>> zstd_decompress(std::span<const std::uint8_t> bytes, std::size_t max_bytes) {
-  const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
-  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > max_bytes) return std::nullopt;
-  std::vector<std::uint8_t> content(static_cast<std::size_t>(size));
+  const auto size = zstd_content_size(bytes);
+  if (!size || *size > max_bytes) return std::nullopt;
+  std::vector<std::uint8_t> content(*size);
   if (!zstd_decompress_into(bytes, content)) return std::nullopt;
   return content;
+}
+
+std::optional<std::size_t> zstd_content_size(std::span<const std::uint8_t> bytes) {
+  const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN) return std::nullopt;
+  return static_cast<std::size_t>(size);
 }
 
 bool zstd_decompress_into(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> content) {

@@ -1,10 +1,12 @@
-// Insertion of 640x360 RGB-D frames with labels, 5 m range, into the semantic map beside insertion of the same points,
-// without classes, into OctoMap: frame by frame in one run. A walk through a flat of six rooms, twice, so that the map
-// first grows and is then revisited. Times are CPU times of the one thread.
+// Times are CPU times of the one thread.
+// insert: 640x360 RGB-D frames with labels, 5 m range, into the semantic map beside insertion of the same points,
+// without classes, into OctoMap in one run. A walk through a flat of six rooms, twice, so that the map first grows and
+// is then revisited. loop_correction, local_corrections: what it costs that 1,200 frames follow the pose graph.
 
 #include <algorithm>
 #include <cmath>
 #include <ctime>
+#include <numeric>
 #include <string>
 #include <vector>
 
@@ -23,6 +25,7 @@ namespace {
 const geometry::PinholeCamera kCamera{640, 360, 320, 320, 319.5, 179.5};
 constexpr int kViewsPerRoom = 9;
 constexpr int kLaps = 2;
+constexpr std::size_t kWorkPerCycle = 1'000'000;  // the component's default
 
 struct View {
   geometry::Pose T_map_camera;
@@ -143,7 +146,119 @@ void insert_beside_octomap(benchmark::State& state, double resolution_m, int str
   state.counters["B_per_frame"] = ratio(mapper.frame_bytes(), mapper.frames().size());
 }
 
+constexpr int kFramesPerKeyframe = 10;
+
+/// 1,200 frames of the samples that 640x360 pixels have at stride 2.
+const std::vector<View>& long_walk() {
+  static const std::vector<View> kWalk = [] {
+    const auto flat = test::furnished_flat();
+    std::mt19937 random(2);
+    std::vector<View> all;
+    for (const geometry::Pose& T : test::walk_through_flat(200)) {
+      all.push_back({T, test::render(flat, {320, 180, 160, 160, 159.5, 89.5}, T)});
+      test::add_noise(all.back().image, random);
+    }
+    return all;
+  }();
+  return kWalk;
+}
+
+/// A mapper that integrates the long walk, and what that costs.
+struct Walker {
+  explicit Walker(double resolution_m) : mapper(config_at(resolution_m)) {}
+
+  static MapperConfig config_at(double resolution_m) {
+    MapperConfig config;
+    config.resolution_m = resolution_m;
+    return config;
+  }
+  static std::size_t keyframe_of(std::size_t frame) { return frame / kFramesPerKeyframe * kFramesPerKeyframe; }
+
+  /// At the key-frame pose that the graph gave last.
+  void integrate(std::size_t i) {
+    const View& view = long_walk()[i];
+    const geometry::Pose& T_map_keyframe = long_walk()[keyframe_of(i)].T_map_camera;
+    integration_s.push_back(cpu_s_of([&] {
+      std::string error;
+      mapper.integrate({{},
+                        keyframe_of(i),
+                        T_map_keyframe,
+                        T_map_keyframe.inverse() * view.T_map_camera,
+                        0,
+                        mapping::CompactFrame::make({320, 180, 160, 160, 159.5, 89.5}, view.image.depth,
+                                                    &view.image.labels, {1, 40}, error)
+                            .value()});
+    }));
+  }
+
+  SemanticMapper mapper;
+  std::vector<double> integration_s;
+};
+
+double sum(const std::vector<double>& values) { return std::accumulate(values.begin(), values.end(), 0.0); }
+
+/// A loop closes at the end of the walk: all frames move, the last ones by half a metre and three degrees.
+void loop_correction(benchmark::State& state, double resolution_m) {
+  Walker walker(resolution_m);
+  const std::size_t frames = long_walk().size();
+  for (std::size_t i = 0; i < frames; ++i) walker.integrate(i);
+  std::vector<KeyframePose> poses;
+  for (std::size_t i = 0; i < frames; i += kFramesPerKeyframe) {
+    const double share = ratio(i, frames);
+    const geometry::Vector6d xi = (geometry::Vector6d() << 0.4, 0.3, 0.0, 0.0, 0.0, 0.05).finished() * share;
+    poses.push_back({i, geometry::se3_exp(xi) * long_walk()[i].T_map_camera});
+  }
+  std::vector<double> slice_s;
+  std::size_t moved = 0;
+  double update_s = 0.0;
+  for (auto _ : state) {
+    update_s = cpu_s_of([&] { walker.mapper.update_keyframe_poses(2, poses); });
+    while (walker.mapper.frames_off() > 0)
+      slice_s.push_back(cpu_s_of([&] { moved += walker.mapper.re_anchor(kWorkPerCycle); }));
+    state.SetIterationTime(update_s + sum(slice_s));
+  }
+  state.counters["moved"] = static_cast<double>(moved);
+  state.counters["slices"] = static_cast<double>(slice_s.size());
+  state.counters["slice_p95"] = quantile_ms(slice_s, 0.95);
+  state.counters["to_first_integration"] = (update_s + sum(slice_s)) / sum(walker.integration_s) * ratio(frames, moved);
+  state.counters["B_per_frame"] = ratio(walker.mapper.frame_bytes(), frames);
+}
+
+/// With every new key-frame the newest eight are estimated again: 5 mm and 0.2 degrees of noise each time.
+void local_corrections(benchmark::State& state, double resolution_m) {
+  constexpr std::size_t kWindow = 8;
+  Walker walker(resolution_m);
+  std::mt19937 random(3);
+  std::normal_distribution<double> normal;
+  std::vector<double> correction_s;
+  std::size_t moved = 0;
+  for (auto _ : state) {
+    for (std::size_t i = 0; i < long_walk().size(); ++i) {
+      walker.integrate(i);
+      std::vector<KeyframePose> poses;
+      for (std::size_t back = 0; back < kWindow && i % kFramesPerKeyframe == 0; ++back) {
+        if (i < back * kFramesPerKeyframe) break;
+        const std::size_t id = i - back * kFramesPerKeyframe;
+        geometry::Vector6d xi;
+        for (int k = 0; k < 6; ++k) xi[k] = normal(random) * (k < 3 ? 0.005 : 0.0035);
+        poses.push_back({id, long_walk()[id].T_map_camera * geometry::se3_exp(xi)});
+      }
+      correction_s.push_back(cpu_s_of([&] {
+        walker.mapper.update_keyframe_poses(i + 1, poses);
+        moved += walker.mapper.re_anchor(kWorkPerCycle);
+      }));
+    }
+    state.SetIterationTime(sum(correction_s));
+  }
+  state.counters["moved"] = static_cast<double>(moved);
+  state.counters["p95"] = quantile_ms(correction_s, 0.95);
+  state.counters["to_first_integration"] = sum(correction_s) / sum(walker.integration_s);
+}
+
 void register_all() {
+  const auto once = [](const std::string& name, auto run) {
+    benchmark::RegisterBenchmark(name.c_str(), run)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+  };
   for (const auto& [name, resolution_m] : {std::pair{"0.25m", 0.25}, {"0.10m", 0.10}, {"0.05m", 0.05}}) {
     for (const int stride : {1, 2}) {
       const std::string full_name = "insert/" + std::string(name) + "/stride" + std::to_string(stride);
@@ -153,6 +268,9 @@ void register_all() {
           ->UseManualTime()
           ->Unit(benchmark::kMillisecond);
     }
+    const double r = resolution_m;
+    once("loop_correction/" + std::string(name), [r](benchmark::State& s) { loop_correction(s, r); });
+    once("local_corrections/" + std::string(name), [r](benchmark::State& s) { local_corrections(s, r); });
   }
 }
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/mapping/packed_frame.hpp"
+#include "common/mapping/frame_codec.hpp"
 #include "tests/support/synthetic_room.hpp"
 
 namespace lapis::mapping {
@@ -98,7 +98,7 @@ TEST(CompactFrame, MedianIsThatOfTheMeasuredDepths) {
   EXPECT_EQ(CompactFrame::make(kCamera, nothing, nullptr, {1, 0}, error)->median_depth_m(), 0.0);
 }
 
-TEST(PackedFrame, UnpacksToTheSameFrame) {
+TEST(FrameCodec, UnpacksToTheSameFrame) {
   std::mt19937 random(2);
   std::uniform_real_distribution<float> depth_m(-1.0f, 70.0f);
   std::uniform_int_distribution<int> label(0, 65535);
@@ -110,7 +110,7 @@ TEST(PackedFrame, UnpacksToTheSameFrame) {
     std::string error;
     const auto frame = CompactFrame::make(kCamera, depth, with_labels, {3, 60000}, error);
     ASSERT_TRUE(frame) << error;
-    const CompactFrame again = PackedFrame(*frame).unpack();
+    const CompactFrame again = *unpack_frame(pack(*frame));
     EXPECT_EQ(again.depth_mm(), frame->depth_mm());
     EXPECT_EQ(again.labels(), frame->labels());
     EXPECT_EQ(again.labels_out_of_list(), frame->labels_out_of_list());
@@ -119,14 +119,24 @@ TEST(PackedFrame, UnpacksToTheSameFrame) {
   }
 }
 
-TEST(PackedFrame, TakesAFractionOfTheImagesMemory) {
+TEST(FrameCodec, DamagedBytesGiveNothing) {
+  std::string error;
+  const auto frame = CompactFrame::make(kCamera, {kCamera.width, kCamera.height, 1.0f}, nullptr, {}, error);
+  std::vector<std::uint8_t> bytes = pack(*frame);
+  EXPECT_FALSE(unpack_votes(bytes));
+  bytes.resize(bytes.size() / 2);
+  EXPECT_FALSE(unpack_frame(bytes));
+  EXPECT_FALSE(unpack_frame({}));
+}
+
+TEST(FrameCodec, TakesAFractionOfTheImagesMemory) {
   const geometry::PinholeCamera camera{640, 360, 320, 320, 319.5, 179.5};
   const auto image =
       lapis::test::render(lapis::test::furnished_room(), camera, lapis::test::look({-2, -1, 1}, 0.4, 0.1));
   std::string error;
   const auto frame = CompactFrame::make(camera, image.depth, &image.labels, {}, error);
   ASSERT_TRUE(frame);
-  EXPECT_LT(PackedFrame(*frame).bytes().size(), 40'000u);  // images: 640 * 360 * 6 = 1,382,400
+  EXPECT_LT(pack(*frame).size(), 40'000u);  // images: 640 * 360 * 6 = 1,382,400
 }
 
 }  // namespace

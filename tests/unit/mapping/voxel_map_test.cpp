@@ -8,6 +8,7 @@
 
 #include <gtest/gtest.h>
 
+#include "common/mapping/frame_codec.hpp"
 #include "tests/unit/mapping/random_votes.hpp"
 
 namespace lapis::mapping {
@@ -108,6 +109,36 @@ TEST(VoxelMap, AddThenSubtractLeavesNothing) {
     ASSERT_EQ(map, rest) << "after taking out " << i + 1 << " frames";
   }
   EXPECT_EQ(map.block_count(), 0u);
+}
+
+TEST(FrameVotes, PackedVotesUnpackToTheSame) {
+  for (const FrameVotes& votes : many_votes(7, 20)) EXPECT_EQ(unpack_votes(pack(votes)), votes);
+  EXPECT_EQ(unpack_votes(pack(FrameVotes{})), FrameVotes{});
+}
+
+TEST(FrameVotes, WithoutWhatIsCommonTheyMakeTheSameMap) {
+  std::mt19937 random(8);
+  for (const FrameVotes& before : many_votes(9, 40)) {
+    FrameVotes after = random() % 3 == 0 ? random_votes(random, kOneVote, 3) : before;
+    for (BlockVotes& block : after.blocks) block.passes[random() % 8] ^= random();
+    for (HitVote& hit : after.hits) hit.label = static_cast<std::uint16_t>(hit.label + (random() % 4 == 0 ? 1 : 0));
+    VoxelMap map(0.1), expected(0.1);
+    map.add(before);
+    expected.add(after);
+    FrameVotes gone = before, come = after;
+    drop_common(gone, come);
+    for (const BlockVotes& a : gone.blocks)
+      for (const BlockVotes& b : come.blocks)
+        for (std::size_t i = 0; i < a.passes.size(); ++i)
+          EXPECT_TRUE(!(a.block == b.block) || (a.passes[i] & b.passes[i]) == 0);
+    map.subtract(gone);
+    map.add(come);
+    ASSERT_EQ(map, expected);
+    FrameVotes same = before;
+    gone = before;
+    drop_common(gone, same);
+    EXPECT_TRUE(gone.blocks.empty() && same.hits.empty());
+  }
 }
 
 TEST(VoxelMap, SubtractingWhatIsNotThereIsABug) {

@@ -90,7 +90,7 @@ VoxelBlock read_block(files::ByteReader& in) {
   if ((word & 3u) == kUniform) {
     const std::uint64_t passes = word >> 2;
     if (passes == 0 || passes > std::numeric_limits<std::uint32_t>::max()) in.fail();
-    for (int offset = 0; offset < kBlockVoxels; ++offset) block.add_pass(offset, static_cast<std::uint32_t>(passes));
+    block = VoxelBlock(static_cast<std::uint32_t>(passes));
   } else if (word == kVoxels || word == (kVoxels | kWholeVotes)) {
     read_voxels(in, word & kWholeVotes ? kOneVote : 1, block);
   } else if (word != kEmpty) {

@@ -1,53 +1,40 @@
 #include "common/mapping/compact_frame.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
-
-#include "common/mapping/zstd_codec.hpp"
+#include <array>
+#include <limits>
 
 namespace lapis::mapping {
 namespace {
 
-constexpr int kCompressionLevel = 1;
 constexpr int kLargestLabel = 65534;  // integration.cpp needs one value for itself
 
-std::uint16_t to_millimetres(float depth_m) {
-  if (!std::isfinite(depth_m) || depth_m <= 0.0f) return 0;
-  return static_cast<std::uint16_t>(std::min(depth_m * 1000.0f + 0.5f, 65535.0f));
+/// Every stride-th pixel of a row.
+template <class Pixel>
+const Pixel* sample_row(const geometry::Image<Pixel>& image, int row, int stride, std::vector<Pixel>& sampled) {
+  const Pixel* pixels = &image.pixels[static_cast<std::size_t>(row) * static_cast<std::size_t>(image.width)];
+  if (stride == 1) return pixels;
+  for (std::size_t i = 0; i < sampled.size(); ++i) sampled[i] = pixels[i * static_cast<std::size_t>(stride)];
+  return sampled.data();
 }
 
-double median_m(std::vector<std::uint16_t> depth_mm) {
-  std::erase(depth_mm, std::uint16_t{0});
-  if (depth_mm.empty()) return 0.0;
-  const auto middle = depth_mm.begin() + static_cast<std::ptrdiff_t>(depth_mm.size() / 2);
-  std::nth_element(depth_mm.begin(), middle, depth_mm.end());
-  return *middle * 1e-3;
-}
-
-/// Differences to the left neighbour (modulo 2^16), low bytes first, then high bytes: smooth surfaces become runs.
-void append_differences(const std::vector<std::uint16_t>& values, std::vector<std::uint8_t>& out) {
-  const std::size_t begin = out.size(), count = values.size();
-  out.resize(begin + 2 * count);
-  std::uint16_t previous = 0;
+void to_millimetres(const float* depth_m, std::size_t count, std::uint16_t* depth_mm) {
   for (std::size_t i = 0; i < count; ++i) {
-    const auto step = static_cast<std::uint16_t>(values[i] - previous);
-    // Zigzag keeps the high byte of small negative steps zero.
-    const auto coded = static_cast<std::uint16_t>((static_cast<unsigned>(step) << 1) ^ (step & 0x8000u ? 0xffffu : 0u));
-    out[begin + i] = static_cast<std::uint8_t>(coded & 0xffu);
-    out[begin + count + i] = static_cast<std::uint8_t>(coded >> 8);
-    previous = values[i];
+    const bool is_measured = depth_m[i] > 0.0f && depth_m[i] <= std::numeric_limits<float>::max();
+    const float mm = std::min(is_measured ? depth_m[i] * 1000.0f + 0.5f : 0.0f, 65535.0f);
+    depth_mm[i] = static_cast<std::uint16_t>(static_cast<std::int32_t>(mm));
   }
 }
 
-void read_differences(const std::uint8_t* bytes, std::vector<std::uint16_t>& values) {
-  std::uint16_t previous = 0;
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    const unsigned coded = bytes[i] | static_cast<unsigned>(bytes[values.size() + i]) << 8;
-    const unsigned step = (coded >> 1) ^ (coded & 1u ? 0xffffu : 0u);
-    previous = static_cast<std::uint16_t>(previous + step);
-    values[i] = previous;
+/// Returns how many labels are above `largest`, which become unlabelled.
+std::size_t keep_listed(const std::uint16_t* labels, std::size_t count, std::uint16_t largest, std::uint16_t* kept) {
+  std::size_t above = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_listed = labels[i] <= largest;
+    kept[i] = is_listed ? labels[i] : std::uint16_t{0};
+    above += is_listed ? 0 : 1;
   }
+  return above;
 }
 
 }  // namespace
@@ -69,40 +56,32 @@ std::optional<CompactFrame> CompactFrame::make(const geometry::PinholeCamera& ca
   CompactFrame frame;
   frame.camera_ = camera;
   frame.stride_ = config.stride;
-  frame.columns_ = (depth.width + config.stride - 1) / config.stride;
-  frame.rows_ = (depth.height + config.stride - 1) / config.stride;
-  frame.has_labels_ = labels != nullptr;
-  Samples samples;
-  for (int row = 0; row < depth.height; row += config.stride)
-    for (int column = 0; column < depth.width; column += config.stride) {
-      samples.depth_mm.push_back(to_millimetres(depth(column, row)));
-      if (!labels) continue;
-      const std::uint16_t label = (*labels)(column, row);
-      const bool is_listed = label <= std::min(config.max_label, kLargestLabel);
-      frame.labels_out_of_list_ += is_listed ? 0 : 1;
-      samples.labels.push_back(is_listed ? label : std::uint16_t{0});
-    }
-  frame.median_depth_m_ = median_m(samples.depth_mm);
-  std::vector<std::uint8_t> plain;
-  append_differences(samples.depth_mm, plain);
-  append_differences(samples.labels, plain);
-  frame.data_ = zstd_compress(plain, kCompressionLevel);
+  const auto columns = static_cast<std::size_t>(frame.columns());
+  const auto largest = static_cast<std::uint16_t>(std::clamp(config.max_label, 0, kLargestLabel));
+  frame.depth_mm_.resize(columns * static_cast<std::size_t>(frame.rows()));
+  if (labels) frame.labels_.resize(frame.depth_mm_.size());
+  std::vector<float> depth_row(columns);
+  std::vector<std::uint16_t> label_row(columns);
+  for (int row = 0; row < frame.rows(); ++row) {
+    const std::size_t begin = static_cast<std::size_t>(row) * columns;
+    const int image_row = row * config.stride;
+    to_millimetres(sample_row(depth, image_row, config.stride, depth_row), columns, &frame.depth_mm_[begin]);
+    if (!labels) continue;
+    frame.labels_out_of_list_ +=
+        keep_listed(sample_row(*labels, image_row, config.stride, label_row), columns, largest, &frame.labels_[begin]);
+  }
   return frame;
 }
 
-CompactFrame::Samples CompactFrame::unpack() const {
-  const std::size_t count = static_cast<std::size_t>(columns_) * static_cast<std::size_t>(rows_);
-  const std::size_t expected = count * (has_labels_ ? 4 : 2);
-  const auto plain = zstd_decompress(data_, expected);
-  if (!plain || plain->size() != expected) throw std::logic_error("CompactFrame: damaged in memory");
-  Samples samples;
-  samples.depth_mm.resize(count);
-  read_differences(plain->data(), samples.depth_mm);
-  if (has_labels_) {
-    samples.labels.resize(count);
-    read_differences(plain->data() + 2 * count, samples.labels);
+double CompactFrame::median_depth_m() const {
+  std::array<std::uint32_t, 65536> count{};
+  for (const std::uint16_t mm : depth_mm_) ++count[mm];
+  std::size_t below = (depth_mm_.size() - count[0]) / 2 + 1;  // the median is the below-th smallest of the measured
+  for (std::size_t mm = 1; mm < count.size(); ++mm) {
+    if (count[mm] >= below) return static_cast<double>(mm) * 1e-3;
+    below -= count[mm];
   }
-  return samples;
+  return 0.0;
 }
 
 }  // namespace lapis::mapping

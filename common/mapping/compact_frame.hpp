@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,16 +20,9 @@ struct CompactFrameConfig {
 /// What the mapper keeps of a camera frame, and the only thing it ever integrates. Because the map is moved with the
 /// pose graph by taking frames out and putting them back, what is put in must be exactly what can be put in again;
 /// integrating the raw image once and the compact frame later would leave traces. Depth is kept in millimetres (the
-/// unit of the depth topic; 0 = no measurement, 65535 = that far or further), sampled on a regular grid of pixels,
-/// coded as differences along the row and compressed with zstd level 1: some 20 to 40 kB for 640x360 at stride 2.
+/// unit of the depth topic), sampled on a regular grid of pixels. frame_codec.hpp packs it.
 class CompactFrame {
  public:
-  /// The samples of a frame, row by row. `labels` is empty when the frame has none.
-  struct Samples {
-    std::vector<std::uint16_t> depth_mm;
-    std::vector<std::uint16_t> labels;
-  };
-
   /// @param camera intrinsics of the full images
   /// @param labels null, or an image of the same size
   /// Returns nothing, with the reason in `error`, when sizes disagree or the camera is not valid. Depth that is not
@@ -39,29 +33,29 @@ class CompactFrame {
 
   const geometry::PinholeCamera& camera() const { return camera_; }
   int stride() const { return stride_; }
-  int columns() const { return columns_; }  ///< samples per row
-  int rows() const { return rows_; }
-  bool has_labels() const { return has_labels_; }
-  /// Median of the measured depths [m]; 0 when nothing was measured.
-  double median_depth_m() const { return median_depth_m_; }
+  int columns() const { return (camera_.width + stride_ - 1) / stride_; }  ///< samples per row
+  int rows() const { return (camera_.height + stride_ - 1) / stride_; }
+  std::size_t samples() const { return depth_mm_.size(); }
+  bool has_labels() const { return !labels_.empty(); }
+  /// Samples row by row; 0 = no measurement, 65535 = that far or further.
+  const std::vector<std::uint16_t>& depth_mm() const { return depth_mm_; }
+  /// Class per sample, 0 = unlabelled; empty when the frame has no labels.
+  const std::vector<std::uint16_t>& labels() const { return labels_; }
   /// Samples whose label was above CompactFrameConfig::max_label.
   std::size_t labels_out_of_list() const { return labels_out_of_list_; }
-  /// Memory of this frame [bytes].
-  std::size_t bytes() const { return sizeof(CompactFrame) + data_.capacity(); }
-
-  Samples unpack() const;
+  /// Median of the measured depths [m]; 0 when nothing was measured.
+  double median_depth_m() const;
 
  private:
+  friend std::vector<std::uint8_t> pack(const CompactFrame& frame);
+  friend std::optional<CompactFrame> unpack_frame(std::span<const std::uint8_t> bytes);
   CompactFrame() = default;
 
   geometry::PinholeCamera camera_;
   int stride_ = 1;
-  int columns_ = 0;
-  int rows_ = 0;
-  bool has_labels_ = false;
-  double median_depth_m_ = 0.0;
   std::size_t labels_out_of_list_ = 0;
-  std::vector<std::uint8_t> data_;  ///< zstd: low bytes, high bytes of depth differences; labels likewise if present
+  std::vector<std::uint16_t> depth_mm_;
+  std::vector<std::uint16_t> labels_;
 };
 
 }  // namespace lapis::mapping

@@ -4,6 +4,7 @@
 #include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "common/mapping/voxel_index.hpp"
@@ -12,6 +13,9 @@ namespace lapis::mapping {
 
 /// One vote in fixed point. Every contribution is a whole number of these 1/256 votes, so sums are exact in any order.
 inline constexpr std::uint32_t kOneVote = 256;
+
+/// One bit per voxel of a block: bit offset % 64 of word offset / 64.
+using BlockMask = std::array<std::uint64_t, kBlockVoxels / 64>;
 
 /// A vote for `label` (0 = unlabelled) in one voxel of a block.
 struct HitVote {
@@ -24,8 +28,8 @@ struct HitVote {
 /// What one frame says about one block. A voxel is in `passes` (weight kOneVote) or in the hits, never in both.
 struct BlockVotes {
   BlockIndex block;
-  std::array<std::uint64_t, kBlockVoxels / 64> passes{};  ///< bit offset%64 of word offset/64
-  std::uint32_t hits_begin = 0;                           ///< range in FrameVotes::hits, sorted by offset
+  BlockMask passes{};
+  std::uint32_t hits_begin = 0;  ///< range in FrameVotes::hits, sorted by offset
   std::uint32_t hits_end = 0;
   bool operator==(const BlockVotes&) const = default;
 };
@@ -35,6 +39,9 @@ struct FrameVotes {
   std::vector<BlockVotes> blocks;
   std::vector<HitVote> hits;
 
+  std::span<const HitVote> hits_of(const BlockVotes& block) const {
+    return std::span(hits).subspan(block.hits_begin, block.hits_end - block.hits_begin);
+  }
   std::size_t hit_count() const { return hits.size(); }
   std::size_t pass_count() const {
     std::size_t count = 0;
@@ -44,5 +51,9 @@ struct FrameVotes {
   }
   bool operator==(const FrameVotes&) const = default;
 };
+
+/// Takes out of both what both say, so that they become the difference: taking `a` out of a map and putting `b` in
+/// does the same before and after.
+void drop_common(FrameVotes& a, FrameVotes& b);
 
 }  // namespace lapis::mapping

@@ -2,16 +2,27 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+#include <limits>
 #include <stdexcept>
 #include <string>
+
+// Functions that the compiler vectorises come in two versions, of which the processor chooses when the program starts.
+// Both give the same bits: neither fuses multiplication and addition.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+#define LAPIS_VECTORISED __attribute__((target_clones("avx2", "default")))
+#else
+#define LAPIS_VECTORISED
+#endif
 
 namespace lapis::mapping {
 namespace {
 
 /// Cells of the frame's box are numbered block by block (512 per block), so that ascending ids are in the order of
-/// FrameVotes and a block's passes are 64 consecutive bytes of the bit mask.
+/// FrameVotes.
 using CellId = std::uint32_t;
 
 /// Box of whole blocks, in voxels of the map, that holds everything the frame can reach.
@@ -24,45 +35,33 @@ class FrameBox {
       first_block_[axis] = floor_divide(first, kBlockEdge);
       blocks_[axis] = floor_divide(last, kBlockEdge) - first_block_[axis] + 1;
     }
-    // id = table[0][x] + table[1][y] + table[2][z]: walking needs no divisions.
-    const std::array<int, 3> block_stride = {1, blocks_[0], blocks_[0] * blocks_[1]};
-    const std::array<int, 3> cell_stride = {1, kBlockEdge, kBlockEdge * kBlockEdge};
-    for (std::size_t axis = 0; axis < 3; ++axis)
-      for (int i = 0; i < blocks_[static_cast<int>(axis)] * kBlockEdge; ++i)
-        table_[axis].push_back(static_cast<CellId>(i / kBlockEdge * block_stride[axis] * kBlockVoxels +
-                                                   i % kBlockEdge * cell_stride[axis]));
   }
 
   /// Corner of the box [voxels of the map].
   Eigen::Vector3d origin() const { return (first_block_ * kBlockEdge).cast<double>(); }
-  int edge(int axis) const { return blocks_[axis] * kBlockEdge; }
+  Eigen::Vector3i blocks() const { return blocks_; }
   std::size_t block_count() const { return static_cast<std::size_t>(blocks_.prod()); }
-  const CellId* table(std::size_t axis) const { return table_[axis].data(); }
-  CellId id(int x, int y, int z) const {
-    return table_[0][static_cast<std::size_t>(x)] + table_[1][static_cast<std::size_t>(y)] +
-           table_[2][static_cast<std::size_t>(z)];
+  /// Of the cell with these coordinates in the box.
+  CellId id(unsigned x, unsigned y, unsigned z) const {
+    const auto columns = static_cast<unsigned>(blocks_[0]), rows = static_cast<unsigned>(blocks_[1]);
+    const unsigned block = ((z >> 3) * rows + (y >> 3)) * columns + (x >> 3);
+    return block << 9 | (z & 7u) << 6 | (y & 7u) << 3 | (x & 7u);
   }
-  BlockIndex block(std::size_t number) const {
-    const auto n = static_cast<std::int32_t>(number);
-    return {first_block_[0] + n % blocks_[0], first_block_[1] + n / blocks_[0] % blocks_[1],
-            first_block_[2] + n / (blocks_[0] * blocks_[1])};
+  BlockIndex block(const Eigen::Vector3i& b) const {
+    return {first_block_[0] + b[0], first_block_[1] + b[1], first_block_[2] + b[2]};
   }
 
  private:
   Eigen::Vector3i first_block_;
   Eigen::Vector3i blocks_;
-  std::array<std::vector<CellId>, 3> table_;
 };
 
-constexpr std::uint16_t kBeyondRange = 0xffff;  ///< label of a sample that ends its ray without a hit
-
-/// Neighbouring samples of a row that fall into the same cell with the same label.
-struct Run {
-  CellId cell;
-  std::uint16_t label;
-  std::uint16_t count;
-  std::uint32_t first_sample;
-};
+/// A sample's cell in the box, as x | y << 10 | z << 20 (a box has fewer than 2 * kMaxRangeInVoxels + 24 cells along an
+/// axis), and kBeyond if its ray ends there without a hit.
+using SampleCell = std::uint32_t;
+constexpr SampleCell kBeyond = 1u << 30;
+constexpr SampleCell kNoCell = 0xffffffffu;  ///< of a sample that says nothing
+static_assert(2 * kMaxRangeInVoxels + 24 <= 1024);
 
 /// The frame in box coordinates: p_box = offset + depth_mm * (x_step * column + y_step * row + corner).
 class Projector {
@@ -78,10 +77,11 @@ class Projector {
     camera_ = T_map_camera.translation() / resolution_m - box.origin();
   }
   const Eigen::Vector3d& camera() const { return camera_; }
-  /// From the camera to the point at 1 mm depth [voxels].
-  Eigen::Vector3d direction(int column, int row) const { return corner_ + x_step_ * column + y_step_ * row; }
+  const Eigen::Vector3d& y_step() const { return y_step_; }
+  /// From the camera to the point at 1 mm depth [voxels] in row 0.
+  Eigen::Vector3d direction(int column) const { return corner_ + x_step_ * column; }
   Eigen::Vector3d direction_of_sample(std::uint32_t sample) const {
-    return direction(static_cast<int>(sample) % columns_, static_cast<int>(sample) / columns_);
+    return direction(static_cast<int>(sample) % columns_) + y_step_ * (static_cast<int>(sample) / columns_);
   }
 
  private:
@@ -105,40 +105,157 @@ FrameBox box_of(const CompactFrame& frame, const geometry::Pose& T_map_camera, d
   return FrameBox(low / resolution_m, high / resolution_m);
 }
 
-/// Assigns every usable sample to a cell, in scan order.
-std::vector<Run> find_runs(const CompactFrame& frame, const CompactFrame::Samples& samples, const Projector& projector,
-                           const FrameBox& box, const IntegrationConfig& config, double resolution_m) {
-  std::vector<Run> runs;
-  const double max_range = config.max_range_m / resolution_m, min_range = config.min_range_m / resolution_m;
-  std::uint32_t sample = 0;
-  for (int row = 0; row < frame.rows(); ++row)
-    for (int column = 0; column < frame.columns(); ++column, ++sample) {
-      const std::uint16_t depth_mm = samples.depth_mm[sample];
-      if (depth_mm == 0) continue;
-      Eigen::Vector3d ray = projector.direction(column, row) * depth_mm;
-      const double squared_range = ray.squaredNorm();
-      if (squared_range < min_range * min_range) continue;
-      std::uint16_t label = samples.labels.empty() ? std::uint16_t{0} : samples.labels[sample];
-      if (squared_range > max_range * max_range) {
-        ray *= max_range / std::sqrt(squared_range);
-        label = kBeyondRange;
-      }
-      // Box coordinates are positive, so truncation rounds down.
-      const Eigen::Vector3i p = (projector.camera() + ray).cast<int>();
-      const CellId cell = box.id(p.x(), p.y(), p.z());
-      if (!runs.empty() && runs.back().cell == cell && runs.back().label == label && runs.back().count < 0xffff &&
-          runs.back().first_sample + runs.back().count == sample)
-        ++runs.back().count;
-      else
-        runs.push_back({cell, label, 1, sample});
+/// Neighbouring samples of a row that fall into the same cell with the same label.
+struct Run {
+  CellId cell;
+  std::uint32_t first_sample;
+  std::uint32_t count;
+  std::uint16_t label;
+  std::uint16_t is_beyond;
+};
+
+/// Working memory of compute_votes. Kept by each thread, because fresh memory from the system costs more time than
+/// most of what is done with it.
+struct Scratch {
+  std::array<std::vector<double>, 3> directions;  ///< per column, in row 0
+  std::array<std::vector<double>, 3> ray;         ///< per column of the current row: camera to point [voxels]
+  std::vector<double> squared_range, cut;
+  std::vector<SampleCell> cells;
+  std::vector<std::uint8_t> is_start;  ///< 1 where a run begins; whole words, zero after the row
+  std::vector<std::uint32_t> starts;   ///< columns where runs begin, then the number of columns
+  std::vector<std::uint16_t> no_labels;
+  std::vector<Run> runs, sorted_runs;
+  std::vector<std::uint8_t> marks;  ///< one byte per cell of the box, x fastest
+
+  void resize_row(std::size_t columns) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      directions[axis].resize(columns);
+      ray[axis].resize(columns);
     }
-  return runs;
+    squared_range.resize(columns);
+    cut.resize(columns);
+    cells.resize(columns);
+    is_start.assign((columns + 7) / 8 * 8, 0);
+    starts.resize(columns + 1);
+    no_labels.resize(columns);
+  }
+};
+
+LAPIS_VECTORISED
+void scale_directions(const double* directions, double row_offset, const std::uint16_t* depth_mm, std::size_t count,
+                      double* ray) {
+  for (std::size_t i = 0; i < count; ++i) ray[i] = (directions[i] + row_offset) * depth_mm[i];
+}
+
+LAPIS_VECTORISED
+void square_ranges(const double* x, const double* y, const double* z, std::size_t count, double* squared) {
+  for (std::size_t i = 0; i < count; ++i) squared[i] = x[i] * x[i] + (y[i] * y[i] + z[i] * z[i]);
+}
+
+/// Box coordinates are positive, so truncation rounds down.
+LAPIS_VECTORISED
+void locate(const double* ray, double camera, unsigned shift, std::size_t count, SampleCell* cells) {
+  for (std::size_t i = 0; i < count; ++i)
+    cells[i] |= static_cast<SampleCell>(static_cast<std::int32_t>(camera + ray[i])) << shift;
+}
+
+/// Begins the cells of a row with kNoCell for samples that say nothing and 0 for all others; returns how many are
+/// beyond the range.
+LAPIS_VECTORISED
+std::int32_t judge_ranges(const double* squared_range, const std::uint16_t* depth_mm, double squared_min,
+                          double squared_max, std::size_t count, SampleCell* cells) {
+  std::int32_t beyond = 0;
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool says_nothing = (squared_range[i] < squared_min) | (depth_mm[i] == 0);
+    cells[i] = says_nothing ? kNoCell : 0;
+    beyond += squared_range[i] > squared_max ? 1 : 0;
+  }
+  return beyond;
+}
+
+/// Shares of the rays that are within the range.
+LAPIS_VECTORISED
+void find_cuts(const double* squared_range, double max_range, std::size_t count, double* cut, SampleCell* cells) {
+  for (std::size_t i = 0; i < count; ++i) {
+    const bool is_beyond = squared_range[i] > max_range * max_range;
+    cut[i] = is_beyond ? max_range / std::sqrt(squared_range[i]) : 1.0;
+    cells[i] |= is_beyond ? kBeyond : 0;
+  }
+}
+
+LAPIS_VECTORISED
+void cut_rays(const double* cut, std::size_t count, double* ray) {
+  for (std::size_t i = 0; i < count; ++i) ray[i] *= cut[i];
+}
+
+/// Cells of the samples of a row.
+void locate_row(const Projector& projector, int row, const std::uint16_t* depth_mm, double min_range, double max_range,
+                Scratch& s) {
+  const std::size_t columns = s.cells.size();
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    scale_directions(s.directions[axis].data(), projector.y_step()[static_cast<int>(axis)] * row, depth_mm, columns,
+                     s.ray[axis].data());
+  square_ranges(s.ray[0].data(), s.ray[1].data(), s.ray[2].data(), columns, s.squared_range.data());
+  const std::int32_t beyond = judge_ranges(s.squared_range.data(), depth_mm, min_range * min_range,
+                                           max_range * max_range, columns, s.cells.data());
+  if (beyond > 0) {
+    find_cuts(s.squared_range.data(), max_range, columns, s.cut.data(), s.cells.data());
+    for (std::vector<double>& ray : s.ray) cut_rays(s.cut.data(), columns, ray.data());
+  }
+  for (std::size_t axis = 0; axis < 3; ++axis)
+    locate(s.ray[axis].data(), projector.camera()[static_cast<int>(axis)], static_cast<unsigned>(10 * axis), columns,
+           s.cells.data());
+}
+
+LAPIS_VECTORISED
+void find_starts(const SampleCell* cells, const std::uint16_t* labels, std::size_t count, std::uint8_t* is_start) {
+  is_start[0] = 1;
+  for (std::size_t i = 1; i < count; ++i) is_start[i] = (cells[i] != cells[i - 1]) | (labels[i] != labels[i - 1]);
+}
+
+/// Appends the runs of a row.
+void append_runs(const FrameBox& box, const std::uint16_t* labels, std::uint32_t first_sample, Scratch& s) {
+  const std::size_t columns = s.cells.size();
+  find_starts(s.cells.data(), labels, columns, s.is_start.data());
+  std::size_t count = 0;
+  for (std::size_t word = 0; word < columns; word += 8) {
+    std::uint64_t starts = 0;
+    std::memcpy(&starts, &s.is_start[word], sizeof starts);
+    for (; starts != 0; starts &= starts - 1)
+      s.starts[count++] = static_cast<std::uint32_t>(word) + static_cast<std::uint32_t>(std::countr_zero(starts)) / 8;
+  }
+  s.starts[count] = static_cast<std::uint32_t>(columns);
+  for (std::size_t k = 0; k < count; ++k) {
+    const std::uint32_t begin = s.starts[k];
+    const SampleCell c = s.cells[begin];
+    if (c == kNoCell) continue;
+    const CellId cell = box.id(c & 0x3ffu, c >> 10 & 0x3ffu, c >> 20 & 0x3ffu);
+    s.runs.push_back({cell, first_sample + begin, s.starts[k + 1] - begin, labels[begin], (c & kBeyond) != 0});
+  }
+}
+
+/// Assigns every usable sample to a cell, in scan order.
+void find_runs(const CompactFrame& frame, const Projector& projector, const FrameBox& box,
+               const IntegrationConfig& config, double resolution_m, Scratch& s) {
+  const auto columns = static_cast<std::size_t>(frame.columns());
+  s.resize_row(columns);
+  s.runs.clear();
+  for (int column = 0; column < frame.columns(); ++column)
+    for (std::size_t axis = 0; axis < 3; ++axis)
+      s.directions[axis][static_cast<std::size_t>(column)] = projector.direction(column)[static_cast<int>(axis)];
+  const double max_range = config.max_range_m / resolution_m, min_range = config.min_range_m / resolution_m;
+  for (int row = 0; row < frame.rows(); ++row) {
+    const std::size_t first = static_cast<std::size_t>(row) * columns;
+    locate_row(projector, row, &frame.depth_mm()[first], min_range, max_range, s);
+    append_runs(box, frame.has_labels() ? &frame.labels()[first] : s.no_labels.data(),
+                static_cast<std::uint32_t>(first), s);
+  }
 }
 
 /// Stable sort by cell: least significant digit radix sort, about ten times faster here than std::stable_sort.
-void sort_by_cell(std::vector<Run>& runs, std::size_t cell_count) {
+void sort_by_cell(std::vector<Run>& runs, std::vector<Run>& sorted, std::size_t cell_count) {
   constexpr unsigned kDigitBits = 11;
-  std::vector<Run> sorted(runs.size());
+  sorted.resize(runs.size());
   for (unsigned shift = 0; cell_count >> shift != 0; shift += kDigitBits) {
     const auto digit = [shift](const Run& run) { return run.cell >> shift & ((1u << kDigitBits) - 1u); };
     std::array<std::uint32_t, (1u << kDigitBits) + 1> begin{};
@@ -161,8 +278,8 @@ CellSummary summarise(const Run* first, const Run* last, std::vector<std::pair<s
   tally.clear();
   std::uint32_t hits = 0, beyond = 0;
   for (const Run* run = first; run != last; ++run) {
-    (run->label == kBeyondRange ? beyond : hits) += run->count;
-    if (run->label == kBeyondRange || run->label == 0) continue;
+    (run->is_beyond ? beyond : hits) += run->count;
+    if (run->is_beyond || run->label == 0) continue;
     const auto same = [run](const auto& entry) { return entry.first == run->label; };
     const auto it = std::find_if(tally.begin(), tally.end(), same);
     if (it == tally.end())
@@ -181,7 +298,7 @@ CellSummary summarise(const Run* first, const Run* last, std::vector<std::pair<s
   // The middle sample in scan order, of those that decide what the cell is.
   std::uint32_t skip = (summary.is_hit ? hits : beyond) / 2;
   for (const Run* run = first; run != last; ++run) {
-    if ((run->label == kBeyondRange) == summary.is_hit) continue;
+    if ((run->is_beyond != 0) == summary.is_hit) continue;
     if (skip < run->count) {
       summary.ray_sample = run->first_sample + skip;
       break;
@@ -191,67 +308,113 @@ CellSummary summarise(const Run* first, const Run* last, std::vector<std::pair<s
   return summary;
 }
 
-/// One bit per cell of the box.
-class CellMask {
- public:
-  explicit CellMask(std::size_t block_count) : words_(block_count * (kBlockVoxels / 64)) {}
-  void set(CellId cell) { words_[cell >> 6] |= std::uint64_t{1} << (cell & 63u); }
-  void clear(CellId cell) { words_[cell >> 6] &= ~(std::uint64_t{1} << (cell & 63u)); }
-  const std::uint64_t* block(std::size_t number) const { return &words_[number * (kBlockVoxels / 64)]; }
-  std::uint64_t* block(std::size_t number) { return &words_[number * (kBlockVoxels / 64)]; }
-
- private:
-  std::vector<std::uint64_t> words_;
-};
-
 /// One axis of a walk through the cells. Distances along the ray are 64-bit fixed point (kRayLength = its whole
-/// length): additions are exact, and masks replace the branches that a processor could not predict.
+/// length), so that additions are exact. The lowest two bits hold the axis: when a ray meets an edge, the lower axis is
+/// first.
 struct AxisWalk {
   static constexpr std::int64_t kRayLength = std::int64_t{1} << 44;
 
-  AxisWalk(double start, double along, const CellId* table) {
+  AxisWalk() = default;
+  AxisWalk(double start, double along, std::int64_t axis, std::ptrdiff_t pitch) {
     const int cell = static_cast<int>(start);
     const double to_wall = along > 0.0 ? cell + 1 - start : start - cell;
-    entry = table + cell;
-    step = along > 0.0 ? 1 : -1;
+    step = along > 0.0 ? pitch : -pitch;
     t_cell = fixed(1.0 / std::abs(along));
-    t_exit = along == 0.0 ? kNever : fixed(to_wall / std::abs(along));
+    t_exit = (along == 0.0 ? kNever : fixed(to_wall / std::abs(along))) + axis;
   }
-  /// Crosses into the next cell if `mask` is -1, stays if it is 0.
-  void advance(std::int64_t mask) {
-    entry += step & mask;
-    t_exit += t_cell & mask;
+  static std::int64_t end(double share) {
+    return 4 * static_cast<std::int64_t>(share * static_cast<double>(kRayLength)) + 3;
   }
 
-  const CellId* entry;  ///< the cell's part of the id
-  std::ptrdiff_t step;  ///< +1 or -1
   std::int64_t t_exit;  ///< where the ray leaves the cell
   std::int64_t t_cell;  ///< from wall to wall
+  std::ptrdiff_t step;  ///< to the next cell's mark
 
  private:
-  static constexpr std::int64_t kNever = std::int64_t{1} << 62;
+  static constexpr std::int64_t kNever = std::int64_t{1} << 60;
   static std::int64_t fixed(double t) {
-    return t < 1024.0 ? static_cast<std::int64_t>(t * static_cast<double>(kRayLength)) : kNever;
+    return t < 1024.0 ? 4 * static_cast<std::int64_t>(t * static_cast<double>(kRayLength)) : kNever;
   }
 };
 
-/// Marks every cell that the segment from `start` along `ray` [voxels] leaves before the share `t_end` of its length.
-void mark_passes(const FrameBox& box, const Eigen::Vector3d& start, const Eigen::Vector3d& ray, double t_end,
-                 CellMask& mask) {
-  AxisWalk x(start.x(), ray.x(), box.table(0)), y(start.y(), ray.y(), box.table(1)),
-      z(start.z(), ray.z(), box.table(2));
-  const auto end = static_cast<std::int64_t>(t_end * static_cast<double>(AxisWalk::kRayLength));
-  while (true) {
-    const std::int64_t t = std::min(x.t_exit, std::min(y.t_exit, z.t_exit));
-    if (t > end) return;
-    mask.set(*x.entry + *y.entry + *z.entry);
-    const std::int64_t along_x = -static_cast<std::int64_t>(x.t_exit == t);
-    const std::int64_t along_y = ~along_x & -static_cast<std::int64_t>(y.t_exit == t);
-    x.advance(along_x);
-    y.advance(along_y);
-    z.advance(~(along_x | along_y));
+/// A ray on its way through the cells. Axis `d` is the one along which it goes furthest, so that between two walls of d
+/// it meets at most one wall of each other axis.
+struct Walk {
+  AxisWalk d, a, b;
+  std::int64_t end;
+  std::uint8_t* mark;
+
+  /// Wall by wall until the first wall of d; false when the walk ends before.
+  bool to_wall_of_d() {
+    while (true) {
+      AxisWalk& next = d.t_exit < std::min(a.t_exit, b.t_exit) ? d : a.t_exit < b.t_exit ? a : b;
+      if (next.t_exit > end) return false;
+      *mark = 1;
+      next.t_exit += next.t_cell;
+      mark += next.step;
+      if (&next == &d) return true;
+    }
   }
-}
+
+  /// From a wall of d to the next ones. Masks replace the branches that a processor could not predict.
+  void along_d() {
+    for (; d.t_exit <= end; d.t_exit += d.t_cell) {
+      const std::int64_t meets_a = (a.t_exit - d.t_exit) >> 63, meets_b = (b.t_exit - d.t_exit) >> 63;
+      const std::int64_t a_first = (a.t_exit - b.t_exit) >> 63;
+      const std::ptrdiff_t step_a = a.step & meets_a, step_b = b.step & meets_b;
+      a.t_exit += a.t_cell & meets_a;
+      b.t_exit += b.t_cell & meets_b;
+      *mark = 1;
+      mark[(step_a & a_first) | (step_b & ~a_first)] = 1;
+      mark += step_a + step_b;
+      *mark = 1;
+      mark += d.step;
+    }
+  }
+};
+
+/// One byte per cell of the box, x fastest; not zero where a ray passed.
+struct Marks {
+  std::uint8_t* cells;
+  std::array<std::ptrdiff_t, 3> pitch;
+
+  Marks(const FrameBox& box, std::vector<std::uint8_t>& memory) {
+    memory.assign(box.block_count() * kBlockVoxels, 0);
+    cells = memory.data();
+    const Eigen::Vector3i edges = box.blocks() * kBlockEdge;
+    pitch = {1, edges[0], static_cast<std::ptrdiff_t>(edges[0]) * edges[1]};
+  }
+
+  /// Marks every cell that the segment from `start` along `ray` [voxels] leaves before the share `t_end` of its length.
+  void add_ray(const Eigen::Vector3d& start, const Eigen::Vector3d& ray, double t_end) {
+    std::array<AxisWalk, 3> axes;
+    std::uint8_t* mark = cells;
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const auto i = static_cast<int>(axis);
+      axes[axis] = AxisWalk(start[i], ray[i], i, pitch[axis]);
+      mark += static_cast<int>(start[i]) * pitch[axis];
+    }
+    int d = 0;
+    ray.cwiseAbs().maxCoeff(&d);
+    const auto dominant = static_cast<std::size_t>(d);
+    Walk walk{axes[dominant], axes[(dominant + 1) % 3], axes[(dominant + 2) % 3], AxisWalk::end(t_end), mark};
+    if (!walk.to_wall_of_d()) return;
+    walk.along_d();
+    walk.to_wall_of_d();  // the walls of the other axes in the last cells
+  }
+
+  /// The 64 cells of a layer of a block, from the cell at `first`, as bits.
+  std::uint64_t layer_bits(std::ptrdiff_t first) const {
+    static_assert(std::endian::native == std::endian::little);
+    std::uint64_t bits = 0;
+    for (int y = 0; y < kBlockEdge; ++y) {
+      std::uint64_t row = 0;
+      std::memcpy(&row, cells + first + y * pitch[1], sizeof row);
+      bits |= (row * 0x0102040810204080ull >> 56) << (8 * y);  // byte i of zeros and ones becomes bit i
+    }
+    return bits;
+  }
+};
 
 /// Share of the way to a measured point within which cells may be passed.
 double free_share(double range_voxels, double depth_m, const IntegrationConfig& config, double resolution_m) {
@@ -260,41 +423,54 @@ double free_share(double range_voxels, double depth_m, const IntegrationConfig& 
   return 1.0 - margin_voxels / range_voxels;
 }
 
-/// Removes passes outside the height limits from a block.
-void cut_heights(const BlockIndex& block, const IntegrationConfig& config, double resolution_m, std::uint64_t* passes) {
-  for (int layer = 0; layer < kBlockEdge; ++layer) {
-    const double center_m = (block.z * kBlockEdge + layer + 0.5) * resolution_m;
-    if (center_m < config.min_height_m || center_m > config.max_height_m) passes[layer] = 0;
-  }
-}
-
 struct CellHit {
   CellId cell;
   std::uint16_t label;
 };
 
-FrameVotes collect(const FrameBox& box, const std::vector<CellHit>& hits, CellMask& passes,
+bool is_within_heights(const BlockIndex& block, int layer, const IntegrationConfig& config, double resolution_m) {
+  const double center_m = (block.z * kBlockEdge + layer + 0.5) * resolution_m;
+  return center_m >= config.min_height_m && center_m <= config.max_height_m;
+}
+
+/// Votes of the block number `number` at `at` of the box; `hit` is the first hit of the block and becomes that of the
+/// next.
+void collect_block(const FrameBox& box, const Eigen::Vector3i& at, CellId number, const Marks& marks,
+                   const IntegrationConfig& config, double resolution_m, const CellHit*& hit, const CellHit* hits_end,
+                   FrameVotes& votes) {
+  BlockVotes of_block;
+  of_block.block = box.block(at);
+  std::uint64_t any = 0;
+  for (int layer = 0; layer < kBlockEdge; ++layer) {
+    if (!is_within_heights(of_block.block, layer, config, resolution_m)) continue;
+    const std::ptrdiff_t first =
+        kBlockEdge * (at[0] + at[1] * marks.pitch[1]) + (kBlockEdge * at[2] + layer) * marks.pitch[2];
+    any |= of_block.passes[static_cast<std::size_t>(layer)] = marks.layer_bits(first);
+  }
+  of_block.hits_begin = static_cast<std::uint32_t>(votes.hits.size());
+  for (; hit != hits_end && hit->cell / kBlockVoxels == number; ++hit) {
+    const auto offset = static_cast<std::uint16_t>(hit->cell % kBlockVoxels);
+    of_block.passes[offset / 64u] &= ~(std::uint64_t{1} << offset % 64u);
+    if (is_within_heights(of_block.block, offset >> 6, config, resolution_m))
+      votes.hits.push_back({offset, hit->label, kOneVote});
+  }
+  of_block.hits_end = static_cast<std::uint32_t>(votes.hits.size());
+  const auto& passes = of_block.passes;
+  const bool is_passed = any != 0 && std::any_of(passes.begin(), passes.end(), [](std::uint64_t w) { return w != 0; });
+  if (is_passed || of_block.hits_end > of_block.hits_begin) votes.blocks.push_back(of_block);
+}
+
+FrameVotes collect(const FrameBox& box, const std::vector<CellHit>& hits, const Marks& marks,
                    const IntegrationConfig& config, double resolution_m) {
   FrameVotes votes;
   votes.hits.reserve(hits.size());
-  auto hit = hits.begin();
-  for (std::size_t number = 0; number < box.block_count(); ++number) {
-    BlockVotes of_block;
-    of_block.block = box.block(number);
-    std::uint64_t* words = passes.block(number);
-    cut_heights(of_block.block, config, resolution_m, words);
-    of_block.hits_begin = static_cast<std::uint32_t>(votes.hits.size());
-    for (; hit != hits.end() && hit->cell / kBlockVoxels == number; ++hit) {
-      const auto offset = static_cast<std::uint16_t>(hit->cell % kBlockVoxels);
-      const double center_m = (of_block.block.z * kBlockEdge + (offset >> 6) + 0.5) * resolution_m;
-      if (center_m >= config.min_height_m && center_m <= config.max_height_m)
-        votes.hits.push_back({offset, hit->label, kOneVote});
-    }
-    of_block.hits_end = static_cast<std::uint32_t>(votes.hits.size());
-    std::copy_n(words, of_block.passes.size(), of_block.passes.begin());
-    const bool has_passes = std::any_of(words, words + of_block.passes.size(), [](std::uint64_t w) { return w != 0; });
-    if (has_passes || of_block.hits_end > of_block.hits_begin) votes.blocks.push_back(of_block);
-  }
+  const CellHit* hit = hits.data();
+  const Eigen::Vector3i blocks = box.blocks();
+  CellId number = 0;
+  for (int z = 0; z < blocks[2]; ++z)
+    for (int y = 0; y < blocks[1]; ++y)
+      for (int x = 0; x < blocks[0]; ++x, ++number)
+        collect_block(box, {x, y, z}, number, marks, config, resolution_m, hit, hits.data() + hits.size(), votes);
   return votes;
 }
 
@@ -317,32 +493,31 @@ FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_
                          double resolution_m) {
   if (config.max_range_m / resolution_m > kMaxRangeInVoxels)
     throw std::runtime_error("integration: max_range_m exceeds 500 voxels; lower it or raise the map resolution");
+  thread_local Scratch s;
   const FrameBox box = box_of(frame, T_map_camera, config.max_range_m, resolution_m);
   const Projector projector(frame, T_map_camera, box, resolution_m);
-  const CompactFrame::Samples samples = frame.unpack();
-  std::vector<Run> runs = find_runs(frame, samples, projector, box, config, resolution_m);
-  sort_by_cell(runs, box.block_count() * kBlockVoxels);
+  find_runs(frame, projector, box, config, resolution_m, s);
+  sort_by_cell(s.runs, s.sorted_runs, box.block_count() * kBlockVoxels);
 
-  CellMask passes(box.block_count());
+  Marks marks(box, s.marks);
   std::vector<CellHit> hits;
   std::vector<std::pair<std::uint16_t, std::uint32_t>> tally;
-  for (std::size_t first = 0, last = 0; first < runs.size(); first = last) {
-    while (last < runs.size() && runs[last].cell == runs[first].cell) ++last;
-    const CellSummary cell = summarise(&runs[first], &runs[first] + (last - first), tally);
-    const double depth_mm = samples.depth_mm[cell.ray_sample];
+  for (std::size_t first = 0, last = 0; first < s.runs.size(); first = last) {
+    while (last < s.runs.size() && s.runs[last].cell == s.runs[first].cell) ++last;
+    const CellSummary cell = summarise(&s.runs[first], &s.runs[first] + (last - first), tally);
+    const double depth_mm = frame.depth_mm()[cell.ray_sample];
     Eigen::Vector3d ray = projector.direction_of_sample(cell.ray_sample) * depth_mm;
     const double range = ray.norm();
     double t_end = 1.0;
     if (cell.is_hit) {
-      hits.push_back({runs[first].cell, cell.label});
+      hits.push_back({s.runs[first].cell, cell.label});
       t_end = free_share(range, depth_mm * 1e-3, config, resolution_m);
     } else {
       ray *= config.max_range_m / resolution_m / range;
     }
-    mark_passes(box, projector.camera(), ray, t_end, passes);
+    marks.add_ray(projector.camera(), ray, t_end);
   }
-  for (const CellHit& hit : hits) passes.clear(hit.cell);
-  return collect(box, hits, passes, config, resolution_m);
+  return collect(box, hits, marks, config, resolution_m);
 }
 
 }  // namespace lapis::mapping

@@ -3,6 +3,17 @@
 #include <algorithm>
 
 namespace lapis::mapping {
+namespace {
+
+/// Order of the hits of a block.
+template <class Entry>
+std::uint32_t key(const Entry& entry) {
+  return static_cast<std::uint32_t>(entry.offset) << 16 | entry.label;
+}
+
+constexpr auto kByKey = [](const auto& a, const auto& b) { return key(a) < key(b); };
+
+}  // namespace
 
 VoxelBlock::VoxelBlock(const VoxelBlock& other)
     : passes_(other.passes_), hits_(other.hits_ ? std::make_unique<Hits>(*other.hits_) : nullptr) {}
@@ -12,104 +23,79 @@ VoxelBlock& VoxelBlock::operator=(const VoxelBlock& other) {
   return *this;
 }
 
-std::vector<VoxelBlock::Overflow>::iterator VoxelBlock::find(std::vector<Overflow>& more, std::uint32_t key) {
-  return std::lower_bound(more.begin(), more.end(), key,
-                          [](const Overflow& entry, std::uint32_t wanted) { return entry.key < wanted; });
-}
-
-bool VoxelBlock::has_hits(int offset) const {
-  if (!hits_) return false;
-  if (hits_->count[static_cast<std::size_t>(offset)] > 0) return true;
-  const auto it = find(hits_->more, key_of(offset, 0));
-  return it != hits_->more.end() && it->key >> 16 == static_cast<std::uint32_t>(offset);
-}
-
 void VoxelBlock::read(int offset, VoxelCounts& counts) const {
-  const auto i = static_cast<std::size_t>(offset);
-  counts.passes = passes_[i];
+  counts.passes = passes_.at(offset);
   counts.hits.clear();
-  if (!hits_) return;
-  const bool has_inline = hits_->count[i] > 0;
-  if (has_inline) counts.hits.push_back({hits_->label[i], hits_->count[i]});
-  for (auto it = find(hits_->more, key_of(offset, 0));
-       it != hits_->more.end() && it->key >> 16 == static_cast<std::uint32_t>(offset); ++it)
-    counts.hits.push_back({static_cast<std::uint16_t>(it->key & 0xffffu), it->count});
-  // The inline class is whichever came first; readers see classes by id.
-  if (has_inline && counts.hits.size() > 1)
-    std::sort(counts.hits.begin(), counts.hits.end(),
-              [](const ClassCount& a, const ClassCount& b) { return a.label < b.label; });
+  if (!has_hits(offset)) return;
+  const Hit first{static_cast<std::uint16_t>(offset), 0, 0};
+  auto hit = std::lower_bound(hits_->list.begin(), hits_->list.end(), first, kByKey);
+  for (; hit != hits_->list.end() && hit->offset == first.offset; ++hit)
+    counts.hits.push_back({hit->label, hit->count});
 }
 
 void VoxelBlock::add_hit(int offset, std::uint16_t label, std::uint32_t weight) {
-  if (weight == 0) return;
+  const HitVote vote{static_cast<std::uint16_t>(offset), label, weight};
+  add({}, {&vote, 1});
+}
+
+void VoxelBlock::add(const BlockMask& passes, std::span<const HitVote> votes) {
+  passes_.add_votes(passes);
+  if (votes.empty()) return;
   if (!hits_) hits_ = std::make_unique<Hits>();
-  const auto i = static_cast<std::size_t>(offset);
-  if (hits_->count[i] > 0 && hits_->label[i] == label) {
-    hits_->count[i] += weight;
-    return;
+  thread_local std::vector<HitVote> fresh;
+  fresh.clear();
+  auto hit = hits_->list.begin();
+  for (const HitVote& vote : votes) {
+    if (vote.weight == 0) continue;
+    while (hit != hits_->list.end() && key(*hit) < key(vote)) ++hit;
+    if (hit != hits_->list.end() && key(*hit) == key(vote))
+      hit->count += vote.weight;
+    else
+      fresh.push_back(vote);
   }
-  const std::uint32_t key = key_of(offset, label);
-  const auto it = find(hits_->more, key);
-  if (it != hits_->more.end() && it->key == key) {
-    it->count += weight;
-  } else if (hits_->count[i] == 0) {
-    hits_->label[i] = label;
-    hits_->count[i] = weight;
-  } else {
-    hits_->more.insert(it, {key, weight});
+  insert(fresh);
+}
+
+/// Merges votes for classes that their voxels do not have yet into the list, from its end.
+void VoxelBlock::insert(std::span<const HitVote> votes) {
+  std::vector<Hit>& list = hits_->list;
+  std::size_t from = list.size(), to = from + votes.size();
+  if (to > list.capacity()) list.reserve(to + to / 4);
+  list.resize(to);
+  for (auto vote = votes.rbegin(); vote != votes.rend(); ++vote) {
+    while (from > 0 && key(list[from - 1]) > key(*vote)) list[--to] = list[--from];
+    list[--to] = {vote->offset, vote->label, vote->weight};
+    hits_->voxels[vote->offset / 64u] |= std::uint64_t{1} << vote->offset % 64u;
   }
 }
 
-bool VoxelBlock::subtract_pass(int offset, std::uint32_t weight) {
-  std::uint32_t& passes = passes_[static_cast<std::size_t>(offset)];
-  if (passes < weight) return false;
-  passes -= weight;
-  return true;
-}
-
-bool VoxelBlock::subtract_hit(int offset, std::uint16_t label, std::uint32_t weight) {
-  if (weight == 0) return true;
+bool VoxelBlock::subtract(const BlockMask& passes, std::span<const HitVote> votes) {
+  if (!passes_.subtract_votes(passes)) return false;
+  if (votes.empty()) return true;
   if (!hits_) return false;
-  const auto i = static_cast<std::size_t>(offset);
-  if (hits_->count[i] > 0 && hits_->label[i] == label) {
-    if (hits_->count[i] < weight) return false;
-    hits_->count[i] -= weight;
-    return true;
+  std::vector<Hit>& list = hits_->list;
+  auto hit = list.begin();
+  for (const HitVote& vote : votes) {
+    hit = std::lower_bound(hit, list.end(), vote, kByKey);
+    if (hit == list.end() || key(*hit) != key(vote) || hit->count < vote.weight) return false;
+    hit->count -= vote.weight;
   }
-  const std::uint32_t key = key_of(offset, label);
-  const auto it = find(hits_->more, key);
-  if (it == hits_->more.end() || it->key != key || it->count < weight) return false;
-  it->count -= weight;
-  if (it->count == 0) hits_->more.erase(it);
+  if (std::erase_if(list, [](const Hit& h) { return h.count == 0; }) > 0) {
+    hits_->voxels = {};
+    for (const Hit& h : list) hits_->voxels[h.offset / 64u] |= std::uint64_t{1} << h.offset % 64u;
+  }
+  if (list.empty()) hits_.reset();
   return true;
-}
-
-bool VoxelBlock::is_empty() const {
-  const auto is_zero = [](std::uint32_t n) { return n == 0; };
-  if (hits_ && !(hits_->more.empty() && std::all_of(hits_->count.begin(), hits_->count.end(), is_zero))) return false;
-  return std::all_of(passes_.begin(), passes_.end(), is_zero);
-}
-
-bool VoxelBlock::is_uniform() const {
-  const auto is_zero = [](std::uint32_t n) { return n == 0; };
-  if (hits_ && !(hits_->more.empty() && std::all_of(hits_->count.begin(), hits_->count.end(), is_zero))) return false;
-  return std::all_of(passes_.begin(), passes_.end(), [this](std::uint32_t n) { return n == passes_[0]; });
 }
 
 std::size_t VoxelBlock::bytes() const {
-  return sizeof(VoxelBlock) + (hits_ ? sizeof(Hits) + hits_->more.capacity() * sizeof(Overflow) : 0);
+  const std::size_t hits = hits_ ? sizeof(Hits) + hits_->list.capacity() * sizeof(Hit) : 0;
+  return sizeof(VoxelBlock) + passes_.heap_bytes() + hits;
 }
 
 bool VoxelBlock::operator==(const VoxelBlock& other) const {
-  if (passes_ != other.passes_) return false;
-  if (!hits_ && !other.hits_) return true;
-  VoxelCounts mine, theirs;  // by content: which class sits inline depends on the order of updates
-  for (int offset = 0; offset < kBlockVoxels; ++offset) {
-    read(offset, mine);
-    other.read(offset, theirs);
-    if (mine != theirs) return false;
-  }
-  return true;
+  if (!(passes_ == other.passes_) || (hits_ == nullptr) != (other.hits_ == nullptr)) return false;
+  return !hits_ || hits_->list == other.hits_->list;
 }
 
 }  // namespace lapis::mapping

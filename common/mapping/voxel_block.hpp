@@ -1,12 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <vector>
 
-#include "common/mapping/voxel_index.hpp"
+#include "common/mapping/frame_votes.hpp"
+#include "common/mapping/pass_counts.hpp"
 
 namespace lapis::mapping {
 
@@ -26,55 +27,58 @@ struct VoxelCounts {
   bool operator==(const VoxelCounts&) const = default;
 };
 
-/// Counts of 8x8x8 voxels. Free space costs four bytes per voxel; the first hit in a block adds room for one class per
-/// voxel (six bytes), and further classes of a voxel (object borders) go to one sorted list per block. Counts are exact
-/// up to 2^32 - 1, which is 16,777,215 one-vote frames: 155 h at 30 Hz of looking at one voxel.
+/// Counts of 8x8x8 voxels. Passes take as few bytes as they need (PassCounts), hits eight bytes per voxel and class
+/// that was seen there, plus one bit per voxel. Counts are exact up to 2^32 - 1, which is 16,777,215 one-vote frames:
+/// 155 h at 30 Hz of looking at one voxel.
 class VoxelBlock {
  public:
   VoxelBlock() = default;
+  /// Every voxel has the same passes and none has hits.
+  explicit VoxelBlock(std::uint32_t passes) : passes_(passes) {}
   VoxelBlock(const VoxelBlock& other);
   VoxelBlock& operator=(const VoxelBlock& other);
   VoxelBlock(VoxelBlock&&) noexcept = default;
   VoxelBlock& operator=(VoxelBlock&&) noexcept = default;
   ~VoxelBlock() = default;
 
-  std::uint32_t passes(int offset) const { return passes_[static_cast<std::size_t>(offset)]; }
-  bool has_hits(int offset) const;
+  std::uint32_t passes(int offset) const { return passes_.at(offset); }
+  bool has_hits(int offset) const {
+    return hits_ && (hits_->voxels[static_cast<std::size_t>(offset) / 64] >> offset % 64 & 1u) != 0;
+  }
   bool is_observed(int offset) const { return passes(offset) > 0 || has_hits(offset); }
   /// Fills `counts` (its memory is reused) with the voxel's content.
   void read(int offset, VoxelCounts& counts) const;
 
-  void add_pass(int offset, std::uint32_t weight) { passes_[static_cast<std::size_t>(offset)] += weight; }
+  void add_pass(int offset, std::uint32_t weight) { passes_.add(offset, weight); }
   void add_hit(int offset, std::uint16_t label, std::uint32_t weight);
-  /// False, and nothing changed, when less than `weight` is there.
-  [[nodiscard]] bool subtract_pass(int offset, std::uint32_t weight);
-  [[nodiscard]] bool subtract_hit(int offset, std::uint16_t label, std::uint32_t weight);
+  /// Votes of one frame: at most one hit per voxel, sorted by offset.
+  void add(const BlockMask& passes, std::span<const HitVote> hits);
+  /// Inverse of add. False, and the block is unspecified, when the votes were never added.
+  [[nodiscard]] bool subtract(const BlockMask& passes, std::span<const HitVote> hits);
 
   /// True when no voxel was ever observed.
-  bool is_empty() const;
+  bool is_empty() const { return is_uniform() && passes(0) == 0; }
   /// True when every voxel has the same passes and none has hits.
-  bool is_uniform() const;
+  bool is_uniform() const { return !hits_ && passes_.is_uniform(); }
   std::size_t bytes() const;
   bool operator==(const VoxelBlock& other) const;
 
  private:
-  struct Overflow {
-    std::uint32_t key;    ///< offset << 16 | label
-    std::uint32_t count;  ///< > 0
+  struct Hit {
+    std::uint16_t offset;
+    std::uint16_t label;
+    std::uint32_t count;  ///< [1/256 vote], > 0
+    bool operator==(const Hit&) const = default;
   };
   struct Hits {
-    std::array<std::uint32_t, kBlockVoxels> count{};  ///< of the voxel's inline class; 0 = slot free
-    std::array<std::uint16_t, kBlockVoxels> label{};
-    std::vector<Overflow> more;  ///< sorted by key; never holds the inline class of its voxel
+    BlockMask voxels{};     ///< that have hits
+    std::vector<Hit> list;  ///< sorted by offset, then label
   };
 
-  static std::uint32_t key_of(int offset, std::uint16_t label) {
-    return static_cast<std::uint32_t>(offset) << 16 | label;
-  }
-  static std::vector<Overflow>::iterator find(std::vector<Overflow>& more, std::uint32_t key);
+  void insert(std::span<const HitVote> votes);
 
-  std::array<std::uint32_t, kBlockVoxels> passes_{};
-  std::unique_ptr<Hits> hits_;  ///< null while the block has only passes
+  PassCounts passes_;
+  std::unique_ptr<Hits> hits_;  ///< null when the block has none
 };
 
 }  // namespace lapis::mapping

@@ -1,23 +1,11 @@
 #include "common/mapping/voxel_map.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 
 namespace lapis::mapping {
-namespace {
-
-template <class Visitor>
-void for_each_pass(const BlockVotes& votes, Visitor&& visit) {
-  for (std::size_t word = 0; word < votes.passes.size(); ++word)
-    for (std::uint64_t bits = votes.passes[word]; bits != 0; bits &= bits - 1)
-      visit(static_cast<int>(word) * 64 + std::countr_zero(bits));
-}
-
-}  // namespace
-
 VoxelMap::VoxelMap(double resolution_m) : resolution_m_(resolution_m) {
   if (!(resolution_m >= kMinResolution_m && resolution_m <= kMaxResolution_m))
     throw std::runtime_error("map resolution " + std::to_string(resolution_m) + " m is outside [0.02, 0.5] m");
@@ -33,25 +21,15 @@ Eigen::Vector3d VoxelMap::center_of(const VoxelIndex& voxel) const {
 }
 
 void VoxelMap::add(const FrameVotes& votes) {
-  for (const BlockVotes& of_block : votes.blocks) {
-    VoxelBlock& block = blocks_[of_block.block];
-    for_each_pass(of_block, [&](int offset) { block.add_pass(offset, kOneVote); });
-    for (std::uint32_t i = of_block.hits_begin; i < of_block.hits_end; ++i)
-      block.add_hit(votes.hits[i].offset, votes.hits[i].label, votes.hits[i].weight);
-  }
+  for (const BlockVotes& of_block : votes.blocks) blocks_[of_block.block].add(of_block.passes, votes.hits_of(of_block));
 }
 
 void VoxelMap::subtract(const FrameVotes& votes) {
   for (const BlockVotes& of_block : votes.blocks) {
-    const auto it = blocks_.find(of_block.block);
-    if (it == blocks_.end()) throw std::logic_error("VoxelMap::subtract: votes that were never added");
-    VoxelBlock& block = it->second;
-    bool was_there = true;
-    for_each_pass(of_block, [&](int offset) { was_there &= block.subtract_pass(offset, kOneVote); });
-    for (std::uint32_t i = of_block.hits_begin; i < of_block.hits_end; ++i)
-      was_there &= block.subtract_hit(votes.hits[i].offset, votes.hits[i].label, votes.hits[i].weight);
-    if (!was_there) throw std::logic_error("VoxelMap::subtract: votes that were never added");
-    if (block.is_empty()) blocks_.erase(it);
+    const auto block = blocks_.find(of_block.block);
+    if (block == blocks_.end() || !block->second.subtract(of_block.passes, votes.hits_of(of_block)))
+      throw std::logic_error("VoxelMap::subtract: votes that were never added");
+    if (block->second.is_empty()) blocks_.erase(block);
   }
 }
 
@@ -82,8 +60,8 @@ std::vector<BlockIndex> VoxelMap::sorted_blocks() const {
 }
 
 std::size_t VoxelMap::bytes() const {
-  std::size_t total = 0;
-  for (const auto& [index, block] : blocks_) total += block.bytes() + sizeof(index) + 2 * sizeof(void*);
+  std::size_t total = blocks_.bucket_count() * sizeof(void*);
+  for (const auto& [index, block] : blocks_) total += block.bytes() + sizeof(index) + sizeof(void*);
   return total;
 }
 

@@ -1,26 +1,51 @@
 #include "common/mapping/zstd_codec.hpp"
 
+#include <memory>
 #include <stdexcept>
 #include <string>
 
 #include <zstd.h>
 
 namespace lapis::mapping {
+namespace {
+
+// Contexts and the buffer live as long as their thread: memory from the system costs more time than the compression.
+struct Compressor {
+  std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(), &ZSTD_freeCCtx};
+  std::vector<std::uint8_t> packed;
+};
+
+}  // namespace
 
 std::vector<std::uint8_t> zstd_compress(std::span<const std::uint8_t> bytes, int level) {
-  std::vector<std::uint8_t> packed(ZSTD_compressBound(bytes.size()));
-  const std::size_t size = ZSTD_compress(packed.data(), packed.size(), bytes.data(), bytes.size(), level);
+  thread_local Compressor compressor;
+  std::vector<std::uint8_t>& packed = compressor.packed;
+  if (packed.size() < ZSTD_compressBound(bytes.size())) packed.resize(ZSTD_compressBound(bytes.size()));
+  const std::size_t size =
+      ZSTD_compressCCtx(compressor.context.get(), packed.data(), packed.size(), bytes.data(), bytes.size(), level);
   if (ZSTD_isError(size)) throw std::runtime_error(std::string("zstd: ") + ZSTD_getErrorName(size));
   return {packed.begin(), packed.begin() + static_cast<std::ptrdiff_t>(size)};
 }
 
 std::optional<std::vector<std::uint8_t>> zstd_decompress(std::span<const std::uint8_t> bytes, std::size_t max_bytes) {
-  const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
-  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN || size > max_bytes) return std::nullopt;
-  std::vector<std::uint8_t> content(static_cast<std::size_t>(size));
-  const std::size_t got = ZSTD_decompress(content.data(), content.size(), bytes.data(), bytes.size());
-  if (ZSTD_isError(got) || got != content.size()) return std::nullopt;
+  const auto size = zstd_content_size(bytes);
+  if (!size || *size > max_bytes) return std::nullopt;
+  std::vector<std::uint8_t> content(*size);
+  if (!zstd_decompress_into(bytes, content)) return std::nullopt;
   return content;
+}
+
+std::optional<std::size_t> zstd_content_size(std::span<const std::uint8_t> bytes) {
+  const unsigned long long size = ZSTD_getFrameContentSize(bytes.data(), bytes.size());
+  if (size == ZSTD_CONTENTSIZE_ERROR || size == ZSTD_CONTENTSIZE_UNKNOWN) return std::nullopt;
+  return static_cast<std::size_t>(size);
+}
+
+bool zstd_decompress_into(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> content) {
+  thread_local const std::unique_ptr<ZSTD_DCtx, decltype(&ZSTD_freeDCtx)> context{ZSTD_createDCtx(), &ZSTD_freeDCtx};
+  const std::size_t got =
+      ZSTD_decompressDCtx(context.get(), content.data(), content.size(), bytes.data(), bytes.size());
+  return !ZSTD_isError(got) && got == content.size();
 }
 
 }  // namespace lapis::mapping

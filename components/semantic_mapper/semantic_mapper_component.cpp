@@ -90,7 +90,7 @@ void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
   if (cycle.is_final) {
     mapper_->flush();
   } else {
-    mapper_->re_anchor(static_cast<std::size_t>(config_.re_anchored_frames_per_cycle));
+    mapper_->re_anchor(static_cast<std::size_t>(config_.re_anchor_work_per_cycle));
   }
   publish(cycle.is_final);
 }
@@ -151,6 +151,17 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
   ++frames_integrated_;
   context_.status().value("frames", frames_integrated_);
   context_.status().value("stored_frames_mb", std::to_string(mapper_->frame_bytes() >> 20));
+  report_store(mapper_->store());
+}
+
+void SemanticMapperComponent::report_store(const FrameStore& store) {
+  context_.status().value("spilled_frames_mb", std::to_string(store.disk_bytes() >> 20));
+  if (store.let_go() == 0) return;
+  context_.status().value("frames_that_cannot_move", static_cast<std::uint64_t>(store.let_go()));
+  if (context_.rate_limit().pass("store")) {
+    spdlog::warn("{} frames stay in the map where they are: {}; see semantic_mapper.stored_frames", store.let_go(),
+                 store.problem());
+  }
 }
 
 void SemanticMapperComponent::drop(const std::string& reason) {

@@ -37,6 +37,7 @@ class SemanticMapperComponent {
   bool next_frame(const runtime::Cycle& cycle);
   void integrate(const Tracked& tracked, const Image& depth, const Image* labels, const Info& info);
   void follow_graph(const Graph& graph);
+  void report_store(const FrameStore& store);
   void drop(const std::string& reason);
   void start_new_map(std::int64_t session, time::Time stamp);
   void end_map();

@@ -22,7 +22,7 @@ struct SemanticMapperComponentConfig {
   double tile_period_s = 0.5;
   double view_period_s = 1.0;
   double obstacle_period_s = 0.5;
-  int re_anchored_frames_per_cycle = 20;
+  int re_anchor_work_per_cycle = 1'000'000;
   std::string resume_from;
   std::string output_dir;
   double save_period_s = 30.0;
@@ -45,6 +45,14 @@ void describe(Field& field, ObstacleConfig& c) {
 }
 
 template <class Field>
+void describe(Field& field, FrameStoreConfig& c) {
+  field("memory_mb", c.memory_mb, config::in_range(0, 1'000'000),
+        "memory for frames that may have to move; the oldest beyond it wait on disk [MB]");
+  field("spill_dir", c.spill_dir, config::anything(),
+        "folder for them, in a file without a name; a frame that does not fit stays in the map where it is");
+}
+
+template <class Field>
 void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("resolution_m", c.map.resolution_m, config::in_range(0.02, 0.5), "edge of a voxel [m]");
   field("tile_edge_m", c.map.tile_edge_m, config::in_range(0.1, 6.4), "least edge of a tile [m]");
@@ -57,8 +65,9 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
         "frames follow the pose graph; false: the paper's frozen map");
   field("re_anchor_threshold_voxels", c.map.re_anchor_threshold_voxels, config::in_range(0.0, 10.0),
         "a frame is moved when a point at its median depth is off by more");
-  field("re_anchored_frames_per_cycle", c.re_anchored_frames_per_cycle, config::in_range(1, 10000),
-        "bound of the work per cycle");
+  field("re_anchor_work_per_cycle", c.re_anchor_work_per_cycle, config::in_range(1, 1'000'000'000),
+        "frames are moved until their samples and votes exceed this; the next cycle goes on");
+  field("stored_frames", c.map.stored_frames);
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
         "between pose, depth, labels and camera info of one frame [s]");
   field("frame_interval_s", c.frame_interval_s, config::in_range(0.0, 60.0),

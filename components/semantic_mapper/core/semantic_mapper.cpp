@@ -1,6 +1,7 @@
 #include "semantic_mapper/core/semantic_mapper.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -27,6 +28,7 @@ const MapperConfig& validated(const MapperConfig& config) {
     throw std::runtime_error("mapper: re_anchor_threshold_voxels must be in [0, 10]");
   if (!(config.tile_edge_m >= 0.1 && config.tile_edge_m <= 6.4))
     throw std::runtime_error("mapper: tile_edge_m must be in [0.1, 6.4]");
+  if (config.stored_frames.memory_mb < 0) throw std::runtime_error("mapper: stored_frames.memory_mb must be positive");
   return config;
 }
 
@@ -48,7 +50,7 @@ SemanticMapper::SemanticMapper(const MapperConfig& config)
 SemanticMapper::SemanticMapper(const MapperConfig& config, mapping::VoxelMap base)
     : config_(validated(config)),
       blocks_per_tile_edge_(mapping::blocks_per_tile_edge(config.resolution_m, config.tile_edge_m)),
-      map_(std::move(base)), frames_before_(most_votes(map_)) {
+      map_(std::move(base)), frames_before_(most_votes(map_)), store_(config.stored_frames) {
   if (map_.resolution_m() != config.resolution_m)
     throw std::runtime_error("mapper: the map to go on with has voxels of another size");
   for (const mapping::BlockIndex& block : map_.sorted_blocks())
@@ -63,13 +65,16 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   const bool is_newer = input.graph_version >= graph_version_;
   if (is_newer || !keyframe_poses_.contains(input.keyframe_id)) move_keyframe(input.keyframe_id, input.T_map_keyframe);
 
-  StoredFrame stored{input.stamp, input.keyframe_id, input.T_keyframe_camera, Pose::Identity(), std::move(input.frame)};
+  StoredFrame stored{input.stamp, input.keyframe_id, input.T_keyframe_camera, Pose::Identity()};
   stored.T_map_camera = wanted_pose(stored);
+  stored.median_depth_m = input.frame.median_depth_m();
   mapping::FrameVotes votes =
-      mapping::compute_votes(stored.frame, stored.T_map_camera, config_.integration, config_.resolution_m);
+      mapping::compute_votes(input.frame, stored.T_map_camera, config_.integration, config_.resolution_m);
   map_.add(votes);
   mark_changed(votes);
-  frame_bytes_ += stored.frame.bytes() + sizeof(StoredFrame) - sizeof(mapping::CompactFrame);
+  stored.work = input.frame.samples() + votes.hit_count() + votes.pass_count();
+  store_.add(input.frame, votes);
+  p_map_robot_ = stored.T_map_camera.translation();
   frames_of_keyframe_[stored.keyframe_id].push_back(frames_.size());
   frames_.push_back(std::move(stored));
   return {IntegrationStatus::kIntegrated, std::move(votes)};
@@ -104,30 +109,44 @@ Pose SemanticMapper::wanted_pose(const StoredFrame& frame) const {
 double SemanticMapper::offset_voxels(const StoredFrame& frame, const Pose& T_map_camera) const {
   // Upper bound of how far any point at the median depth has moved.
   const Pose moved = frame.T_map_camera.inverse() * T_map_camera;
-  const double turn_m = geometry::rotation_angle(moved.linear()) * frame.frame.median_depth_m();
+  const double turn_m = geometry::rotation_angle(moved.linear()) * frame.median_depth_m;
   return (moved.translation().norm() + turn_m) / config_.resolution_m;
 }
 
-void SemanticMapper::move_frame(std::size_t index, const Pose& T_map_camera) {
-  StoredFrame& frame = frames_[index];
-  const auto votes_at = [&](const Pose& pose) {
-    return mapping::compute_votes(frame.frame, pose, config_.integration, config_.resolution_m);
-  };
-  const mapping::FrameVotes old_votes = votes_at(frame.T_map_camera), new_votes = votes_at(T_map_camera);
-  map_.subtract(old_votes);
-  map_.add(new_votes);
-  mark_changed(old_votes);
-  mark_changed(new_votes);
-  frame.T_map_camera = T_map_camera;
+/// False when the frame was let go, so that it stays where it is.
+bool SemanticMapper::move_frame(std::size_t index) {
+  if (!store_.has(index)) return false;
+  const auto samples = store_.frame(index);
+  auto gone = store_.votes(index);
+  if (!samples || !gone) return false;
+  const Pose wanted = wanted_pose(frames_[index]);
+  mapping::FrameVotes come = mapping::compute_votes(*samples, wanted, config_.integration, config_.resolution_m);
+  if (!store_.replace_votes(index, come)) return false;
+  frames_[index].T_map_camera = wanted;
+  frames_[index].work = samples->samples() + come.hit_count() + come.pass_count();
+  mapping::drop_common(*gone, come);
+  map_.subtract(*gone);
+  map_.add(come);
+  mark_changed(*gone);
+  mark_changed(come);
+  return true;
 }
 
-std::size_t SemanticMapper::re_anchor(std::size_t max_frames) {
+std::size_t SemanticMapper::re_anchor(std::size_t max_work) {
   if (!config_.re_anchor) return 0;
-  std::size_t moved = 0;
-  for (; moved < max_frames && !off_.empty(); ++moved) {
-    const std::size_t index = *off_.begin();
-    move_frame(index, wanted_pose(frames_[index]));
-    off_.erase(off_.begin());
+  using Candidate = std::pair<double, std::size_t>;  // squared distance from the robot [m2], index
+  std::vector<Candidate> nearest;
+  for (const std::size_t index : off_)
+    nearest.emplace_back((wanted_pose(frames_[index]).translation() - p_map_robot_).squaredNorm(), index);
+  std::make_heap(nearest.begin(), nearest.end(), std::greater<>());
+  std::size_t moved = 0, work = 0;
+  while (!nearest.empty() && work < max_work) {
+    std::pop_heap(nearest.begin(), nearest.end(), std::greater<>());
+    const std::size_t index = nearest.back().second;
+    nearest.pop_back();
+    off_.erase(index);
+    work += frames_[index].work;
+    moved += move_frame(index) ? 1 : 0;
   }
   return moved;
 }
@@ -135,12 +154,8 @@ std::size_t SemanticMapper::re_anchor(std::size_t max_frames) {
 std::size_t SemanticMapper::flush() {
   if (!config_.re_anchor) return 0;
   std::size_t moved = 0;
-  for (std::size_t index = 0; index < frames_.size(); ++index) {
-    const Pose wanted = wanted_pose(frames_[index]);
-    if (is_equal(wanted, frames_[index].T_map_camera)) continue;
-    move_frame(index, wanted);
-    ++moved;
-  }
+  for (std::size_t index = 0; index < frames_.size(); ++index)
+    if (!is_equal(wanted_pose(frames_[index]), frames_[index].T_map_camera)) moved += move_frame(index) ? 1 : 0;
   off_.clear();
   return moved;
 }

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <set>
 #include <span>
 #include <unordered_map>
@@ -16,6 +17,7 @@
 #include "common/mapping/tile_codec.hpp"
 #include "common/mapping/voxel_map.hpp"
 #include "common/time/time.hpp"
+#include "semantic_mapper/core/frame_store.hpp"
 
 namespace lapis::semantic_mapper {
 
@@ -26,6 +28,7 @@ struct MapperConfig {
   /// A frame is moved when a point at its median depth is off by more than this, in [0, 10] voxels.
   double re_anchor_threshold_voxels = 0.2;
   bool re_anchor = true;  ///< false: frames stay where they were first put (the paper's frozen map)
+  FrameStoreConfig stored_frames;
 };
 
 /// A camera frame and where it was taken: T_map_camera = T_map_keyframe * T_keyframe_camera. The pose graph may move
@@ -44,13 +47,14 @@ struct KeyframePose {
   geometry::Pose T_map_keyframe = geometry::Pose::Identity();
 };
 
-/// A frame in the map.
+/// A frame in the map; FrameStore has its samples and votes.
 struct StoredFrame {
   time::Time stamp;
   std::uint64_t keyframe_id = 0;
   geometry::Pose T_keyframe_camera = geometry::Pose::Identity();
   geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< at which its votes are in the map now
-  mapping::CompactFrame frame;
+  double median_depth_m = 0.0;
+  std::size_t work = 0;  ///< of moving it: its samples and votes
 };
 
 struct TileUpdate {
@@ -72,9 +76,9 @@ struct IntegrationReport {
 };
 
 /// Semantic map that follows the pose graph. Every integrated frame is kept in compact form with the pose at which it
-/// is in the map; when the graph moves its key-frame, its votes are taken out at the old pose and put back at the new
-/// one. At any instant the map equals, bit for bit, one built from the stored frames at their recorded poses, plus the
-/// map that it began with.
+/// is in the map and the votes that it has there; when the graph moves its key-frame, the difference between these
+/// votes and those at the new pose is put into the map. At any instant the map equals, bit for bit, one built from the
+/// stored frames at their recorded poses, plus the map that it began with.
 class SemanticMapper {
  public:
   /// Throws std::runtime_error naming the value that is out of range.
@@ -88,19 +92,23 @@ class SemanticMapper {
   /// Newest poses of the graph. Key-frames that are not listed keep theirs; older versions are ignored. Moves nothing
   /// yet.
   void update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses);
-  /// Moves up to `max_frames` of the frames that are off by more than the threshold, oldest first; returns how many.
-  std::size_t re_anchor(std::size_t max_frames);
+  /// Moves frames that are off by more than the threshold, nearest to the newest frame first, until their
+  /// StoredFrame::work exceeds `max_work` (at least one); returns how many.
+  std::size_t re_anchor(std::size_t max_work);
   /// Moves every frame that is off at all: afterwards the map equals a build at the graph's poses. Returns how many.
   std::size_t flush();
   /// Frames that re_anchor has still to move.
   std::size_t frames_off() const { return off_.size(); }
 
   const mapping::VoxelMap& map() const { return map_; }
+  /// Samples of a stored frame; nothing when it was let go (FrameStore).
+  std::optional<mapping::CompactFrame> stored_frame(std::size_t index) { return store_.frame(index); }
+  const FrameStore& store() const { return store_; }
   const std::vector<StoredFrame>& frames() const { return frames_; }
   const MapperConfig& config() const { return config_; }
   std::uint64_t graph_version() const { return graph_version_; }
   /// Memory of the stored frames [bytes].
-  std::size_t frame_bytes() const { return frame_bytes_; }
+  std::size_t frame_bytes() const { return store_.memory_bytes() + frames_.size() * sizeof(StoredFrame); }
 
   bool has_changes() const { return !changed_tiles_.empty(); }
   /// Blocks of the tiles that the next take_changed_tiles will look at, in any order.
@@ -117,7 +125,7 @@ class SemanticMapper {
   std::size_t tiles_too_large() const { return tiles_too_large_; }
 
  private:
-  void move_frame(std::size_t index, const geometry::Pose& T_map_camera);
+  bool move_frame(std::size_t index);
   void move_keyframe(std::uint64_t id, const geometry::Pose& T_map_keyframe);
   geometry::Pose wanted_pose(const StoredFrame& frame) const;
   double offset_voxels(const StoredFrame& frame, const geometry::Pose& T_map_camera) const;
@@ -128,7 +136,8 @@ class SemanticMapper {
   mapping::VoxelMap map_;
   std::size_t frames_before_ = 0;    ///< at least so many gave the map that it began with its counts
   std::vector<StoredFrame> frames_;  ///< in order of integration
-  std::size_t frame_bytes_ = 0;
+  FrameStore store_;
+  Eigen::Vector3d p_map_robot_ = Eigen::Vector3d::Zero();  ///< camera of the newest frame
 
   std::uint64_t graph_version_ = 0;
   std::unordered_map<std::uint64_t, geometry::Pose> keyframe_poses_;

@@ -1,11 +1,13 @@
 #include "common/mapping/compact_frame.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "common/mapping/frame_codec.hpp"
 #include "tests/support/synthetic_room.hpp"
 
 namespace lapis::mapping {
@@ -25,15 +27,14 @@ TEST(CompactFrame, KeepsSampledDepthInMillimetresAndLabels) {
     std::string error;
     const auto frame = CompactFrame::make(kCamera, depth, &labels, {stride, 65534}, error);
     ASSERT_TRUE(frame) << error;
-    const CompactFrame::Samples samples = frame->unpack();
-    ASSERT_EQ(samples.depth_mm.size(), static_cast<std::size_t>(frame->columns() * frame->rows()));
+    ASSERT_EQ(frame->samples(), static_cast<std::size_t>(frame->columns() * frame->rows()));
     for (int row = 0; row < frame->rows(); ++row)
       for (int column = 0; column < frame->columns(); ++column) {
         const int position = row * frame->columns() + column;
         const auto i = static_cast<std::size_t>(position);
         const float true_m = depth(column * stride, row * stride);
-        EXPECT_NEAR(samples.depth_mm[i] * 1e-3f, std::min(true_m, 65.535f), 0.00051f);
-        EXPECT_EQ(samples.labels[i], labels(column * stride, row * stride));
+        EXPECT_NEAR(frame->depth_mm()[i] * 1e-3f, std::min(true_m, 65.535f), 0.00051f);
+        EXPECT_EQ(frame->labels()[i], labels(column * stride, row * stride));
       }
   }
 }
@@ -47,12 +48,11 @@ TEST(CompactFrame, DepthThatIsNoMeasurementIsZero) {
   std::string error;
   const auto frame = CompactFrame::make(kCamera, depth, nullptr, {1, 0}, error);
   ASSERT_TRUE(frame);
-  const auto samples = frame->unpack();
-  EXPECT_EQ(samples.depth_mm[0], 0);
-  EXPECT_EQ(samples.depth_mm[1], 0);
-  EXPECT_EQ(samples.depth_mm[2], 0);
-  EXPECT_EQ(samples.depth_mm[3], 2000);
-  EXPECT_TRUE(samples.labels.empty());
+  EXPECT_EQ(frame->depth_mm()[0], 0);
+  EXPECT_EQ(frame->depth_mm()[1], 0);
+  EXPECT_EQ(frame->depth_mm()[2], 0);
+  EXPECT_EQ(frame->depth_mm()[3], 2000);
+  EXPECT_TRUE(frame->labels().empty());
   EXPECT_DOUBLE_EQ(frame->median_depth_m(), 2.0);
 }
 
@@ -65,8 +65,8 @@ TEST(CompactFrame, LabelsAboveTheListBecomeUnlabelledAndAreCounted) {
   const auto frame = CompactFrame::make(kCamera, depth, &labels, {1, 40}, error);
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->labels_out_of_list(), 2u);
-  EXPECT_EQ(frame->unpack().labels[0], 0);
-  EXPECT_EQ(frame->unpack().labels[1], 40);
+  EXPECT_EQ(frame->labels()[0], 0);
+  EXPECT_EQ(frame->labels()[1], 40);
 }
 
 TEST(CompactFrame, NamesWhatDisagrees) {
@@ -83,14 +83,60 @@ TEST(CompactFrame, NamesWhatDisagrees) {
   EXPECT_NE(error.find("stride"), std::string::npos);
 }
 
-TEST(CompactFrame, TakesAFractionOfTheImagesMemory) {
+TEST(CompactFrame, MedianIsThatOfTheMeasuredDepths) {
+  std::mt19937 random(3);
+  std::uniform_int_distribution<int> mm(-500, 9000);
+  geometry::DepthImage depth(kCamera.width, kCamera.height);
+  for (float& d : depth.pixels) d = static_cast<float>(mm(random)) * 1e-3f;
+  std::vector<float> measured = depth.pixels;
+  std::erase_if(measured, [](float d) { return d <= 0.0f; });
+  std::sort(measured.begin(), measured.end());
+  std::string error;
+  const auto frame = CompactFrame::make(kCamera, depth, nullptr, {1, 0}, error);
+  EXPECT_NEAR(frame->median_depth_m(), measured[measured.size() / 2], 1e-6);
+  const geometry::DepthImage nothing(kCamera.width, kCamera.height);
+  EXPECT_EQ(CompactFrame::make(kCamera, nothing, nullptr, {1, 0}, error)->median_depth_m(), 0.0);
+}
+
+TEST(FrameCodec, UnpacksToTheSameFrame) {
+  std::mt19937 random(2);
+  std::uniform_real_distribution<float> depth_m(-1.0f, 70.0f);
+  std::uniform_int_distribution<int> label(0, 65535);
+  geometry::DepthImage depth(kCamera.width, kCamera.height);
+  geometry::LabelImage labels(kCamera.width, kCamera.height);
+  for (float& d : depth.pixels) d = depth_m(random);
+  for (std::uint16_t& l : labels.pixels) l = static_cast<std::uint16_t>(label(random));
+  for (const geometry::LabelImage* with_labels : {&labels, static_cast<geometry::LabelImage*>(nullptr)}) {
+    std::string error;
+    const auto frame = CompactFrame::make(kCamera, depth, with_labels, {3, 60000}, error);
+    ASSERT_TRUE(frame) << error;
+    const CompactFrame again = *unpack_frame(pack(*frame));
+    EXPECT_EQ(again.depth_mm(), frame->depth_mm());
+    EXPECT_EQ(again.labels(), frame->labels());
+    EXPECT_EQ(again.labels_out_of_list(), frame->labels_out_of_list());
+    EXPECT_EQ(again.stride(), 3);
+    EXPECT_EQ(again.camera().fx, kCamera.fx);
+  }
+}
+
+TEST(FrameCodec, DamagedBytesGiveNothing) {
+  std::string error;
+  const auto frame = CompactFrame::make(kCamera, {kCamera.width, kCamera.height, 1.0f}, nullptr, {}, error);
+  std::vector<std::uint8_t> bytes = pack(*frame);
+  EXPECT_FALSE(unpack_votes(bytes));
+  bytes.resize(bytes.size() / 2);
+  EXPECT_FALSE(unpack_frame(bytes));
+  EXPECT_FALSE(unpack_frame({}));
+}
+
+TEST(FrameCodec, TakesAFractionOfTheImagesMemory) {
   const geometry::PinholeCamera camera{640, 360, 320, 320, 319.5, 179.5};
   const auto image =
       lapis::test::render(lapis::test::furnished_room(), camera, lapis::test::look({-2, -1, 1}, 0.4, 0.1));
   std::string error;
   const auto frame = CompactFrame::make(camera, image.depth, &image.labels, {}, error);
   ASSERT_TRUE(frame);
-  EXPECT_LT(frame->bytes(), 40'000u);  // images: 640 * 360 * 6 = 1,382,400
+  EXPECT_LT(pack(*frame).size(), 40'000u);  // images: 640 * 360 * 6 = 1,382,400
 }
 
 }  // namespace

@@ -9,17 +9,15 @@
 #include <gtest/gtest.h>
 
 #include "common/mapping/voxel_map.hpp"
-#include "tests/support/synthetic_room.hpp"
+#include "tests/support/synthetic_flat.hpp"
+#include "tests/unit/mapping/plain_votes.hpp"
 
 namespace lapis::mapping {
 namespace {
 
 using geometry::Pose;
 
-struct PlainVotes {
-  std::set<VoxelIndex> passes;
-  std::map<VoxelIndex, int> hits;
-};
+using test::PlainVotes;
 
 PlainVotes plain(const FrameVotes& votes) {
   PlainVotes p;
@@ -108,6 +106,27 @@ TEST(ComputeVotes, EqualsSlabTestOfEveryVoxelAndRay) {
     for (const auto& [voxel, label] : expected.hits) expected.passes.erase(voxel);
     EXPECT_EQ(got.passes, expected.passes) << "trial " << trial;
     EXPECT_EQ(got.hits, expected.hits) << "trial " << trial;
+  }
+}
+
+TEST(ComputeVotes, EqualsItsPlainestFormToTheLastVote) {
+  const geometry::PinholeCamera camera{160, 91, 80, 80, 79.5, 44.5};
+  const auto flat = lapis::test::furnished_flat();
+  std::mt19937 random(5);
+  for (const Pose& T : lapis::test::walk_through_flat(2)) {
+    auto image = lapis::test::render(flat, camera, T);
+    lapis::test::add_noise(image, random);
+    for (std::size_t i = 0; i < image.depth.pixels.size(); i += 17) image.depth.pixels[i] = 0.0f;
+    for (const double r : {0.5, 0.25, 0.1, 0.05, 0.02}) {
+      IntegrationConfig config;
+      config.max_range_m = r < 0.1 ? 3.0 : 5.0;
+      config.min_range_m = r < 0.2 ? 0.0 : 0.3;
+      config.end_margin_voxels = r > 0.2 ? 0.5 : 0.0;
+      const CompactFrame frame = frame_of(camera, image.depth, &image.labels, r < 0.1 ? 3 : 1);
+      const PlainVotes expected = test::PlainIntegration(frame, T, config, r).votes();
+      ASSERT_EQ(plain(compute_votes(frame, T, config, r)), expected) << r;
+      ASSERT_GT(expected.passes.size(), 100u);
+    }
   }
 }
 

@@ -1,11 +1,14 @@
 #include "common/mapping/voxel_map.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <iostream>
 #include <set>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
+#include "common/mapping/frame_codec.hpp"
 #include "tests/unit/mapping/random_votes.hpp"
 
 namespace lapis::mapping {
@@ -108,6 +111,36 @@ TEST(VoxelMap, AddThenSubtractLeavesNothing) {
   EXPECT_EQ(map.block_count(), 0u);
 }
 
+TEST(FrameVotes, PackedVotesUnpackToTheSame) {
+  for (const FrameVotes& votes : many_votes(7, 20)) EXPECT_EQ(unpack_votes(pack(votes)), votes);
+  EXPECT_EQ(unpack_votes(pack(FrameVotes{})), FrameVotes{});
+}
+
+TEST(FrameVotes, WithoutWhatIsCommonTheyMakeTheSameMap) {
+  std::mt19937 random(8);
+  for (const FrameVotes& before : many_votes(9, 40)) {
+    FrameVotes after = random() % 3 == 0 ? random_votes(random, kOneVote, 3) : before;
+    for (BlockVotes& block : after.blocks) block.passes[random() % 8] ^= random();
+    for (HitVote& hit : after.hits) hit.label = static_cast<std::uint16_t>(hit.label + (random() % 4 == 0 ? 1 : 0));
+    VoxelMap map(0.1), expected(0.1);
+    map.add(before);
+    expected.add(after);
+    FrameVotes gone = before, come = after;
+    drop_common(gone, come);
+    for (const BlockVotes& a : gone.blocks)
+      for (const BlockVotes& b : come.blocks)
+        for (std::size_t i = 0; i < a.passes.size(); ++i)
+          EXPECT_TRUE(!(a.block == b.block) || (a.passes[i] & b.passes[i]) == 0);
+    map.subtract(gone);
+    map.add(come);
+    ASSERT_EQ(map, expected);
+    FrameVotes same = before;
+    gone = before;
+    drop_common(gone, same);
+    EXPECT_TRUE(gone.blocks.empty() && same.hits.empty());
+  }
+}
+
 TEST(VoxelMap, SubtractingWhatIsNotThereIsABug) {
   const std::vector<FrameVotes> all = many_votes(6, 2);
   VoxelMap map(0.1);
@@ -123,9 +156,80 @@ TEST(VoxelMap, ManyClassesInOneVoxelAreAllKept) {
   ASSERT_EQ(counts.hits.size(), 300u);
   EXPECT_TRUE(std::is_sorted(counts.hits.begin(), counts.hits.end(),
                              [](const ClassCount& a, const ClassCount& b) { return a.label < b.label; }));
-  for (int label = 1; label <= 300; ++label)
-    EXPECT_TRUE(block.subtract_hit(511, static_cast<std::uint16_t>(label), 256));
+  for (int label = 1; label <= 300; ++label) {
+    const HitVote vote{511, static_cast<std::uint16_t>(label), 256};
+    EXPECT_TRUE(block.subtract({}, {&vote, 1}));
+  }
   EXPECT_TRUE(block.is_empty());
+}
+
+/// Counts of one byte, two and four, parts of votes and numbers for whole blocks, in any order.
+TEST(PassCounts, EqualPlainSumsInEveryForm) {
+  std::mt19937 random(9);
+  const auto number = [&random](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
+  for (int trial = 0; trial < 40; ++trial) {
+    PassCounts counts;
+    std::array<std::uint32_t, kBlockVoxels> plain{};
+    std::vector<BlockMask> added;
+    for (int step = 0; step < 700; ++step) {
+      BlockMask mask;
+      for (std::uint64_t& word : mask)
+        word = trial % 2 == 0 ? random() * std::uint64_t{0x100000001} : ~std::uint64_t{0};
+      if (number(0, 99) == 0) mask[static_cast<std::size_t>(number(0, 7))] ^= 1;
+      counts.add_votes(mask);
+      added.push_back(mask);
+      for (std::size_t i = 0; i < kBlockVoxels; ++i) plain[i] += (mask[i / 64] >> i % 64 & 1u) != 0 ? kOneVote : 0;
+      if (trial % 5 != 0 || number(0, 99) > 0) continue;
+      const int offset = number(0, kBlockVoxels - 1);
+      const auto weight = static_cast<std::uint32_t>(trial % 3 == 0 ? number(1, 600) : 70000 * 256);
+      counts.add(offset, weight);
+      plain[static_cast<std::size_t>(offset)] += weight;
+    }
+    PassCounts copy(counts);
+    for (int offset = 0; offset < kBlockVoxels; ++offset)
+      ASSERT_EQ(copy.at(offset), plain[static_cast<std::size_t>(offset)]) << trial;
+    for (const BlockMask& mask : added) {
+      ASSERT_TRUE(counts.subtract_votes(mask));
+      for (std::size_t i = 0; i < kBlockVoxels; ++i) plain[i] -= (mask[i / 64] >> i % 64 & 1u) != 0 ? kOneVote : 0;
+    }
+    for (int offset = 0; offset < kBlockVoxels; ++offset)
+      ASSERT_EQ(counts.at(offset), plain[static_cast<std::size_t>(offset)]) << trial;
+    EXPECT_FALSE(counts == copy);
+  }
+}
+
+TEST(PassCounts, TakingOutWhatIsNotThereIsToldInEveryForm) {
+  const BlockMask one{1};
+  EXPECT_FALSE(PassCounts().subtract_votes(one));
+  for (const std::uint32_t weight : {kOneVote, 300 * kOneVote, 70000 * kOneVote, 7u}) {
+    PassCounts counts;
+    counts.add(5, weight);
+    EXPECT_FALSE(counts.subtract_votes(one)) << weight;
+  }
+}
+
+/// Known free space: a building of 10^8 voxels that two hundred frames have looked through.
+TEST(VoxelMap, HundredMillionFreeVoxelsTakeFewBytes) {
+  constexpr int kEdge = 58;  // blocks
+  VoxelMap map(0.05);
+  FrameVotes votes;
+  for (int z = 0; z < kEdge; ++z)
+    for (int y = 0; y < kEdge; ++y)
+      for (int x = 0; x < kEdge; ++x) {
+        votes.blocks.push_back({{x, y, z}, {}, 0, 0});
+        votes.blocks.back().passes.fill(~std::uint64_t{0});
+      }
+  for (int frame = 0; frame < 20; ++frame) map.add(votes);
+  const double voxels = std::pow(kEdge * kBlockEdge, 3);
+  EXPECT_GT(voxels, 99.8e6);
+  std::cout << "uniform blocks: " << static_cast<double>(map.bytes()) / voxels << " bytes per voxel\n";
+  EXPECT_LT(map.bytes(), 20'000'000u);
+  EXPECT_EQ(map.read({1, 2, 3}).passes, 20 * kOneVote);
+  VoxelMap torn(0.05);  // the same when every block has one voxel less
+  for (BlockVotes& block : votes.blocks) block.passes[3] = 1;
+  for (int frame = 0; frame < 3; ++frame) torn.add(votes);
+  std::cout << "one byte per voxel: " << static_cast<double>(torn.bytes()) / voxels << " bytes per voxel\n";
+  EXPECT_LT(torn.bytes(), 125'000'000u);
 }
 
 TEST(VoxelMap, UnknownVoxelReadsAsNeverObserved) { EXPECT_FALSE(VoxelMap(0.25).read({3, -7, 12}).is_observed()); }

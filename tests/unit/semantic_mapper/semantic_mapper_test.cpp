@@ -2,8 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <csignal>
 #include <limits>
 #include <random>
+#include <set>
+
+#include <sys/resource.h>
 
 #include <gtest/gtest.h>
 
@@ -58,13 +62,16 @@ const Tour& tour() {
   return kTour;
 }
 
-mapping::VoxelMap built_from_records(const SemanticMapper& mapper) {
-  mapping::VoxelMap map(mapper.config().resolution_m);
-  for (const StoredFrame& frame : mapper.frames())
-    map.add(mapping::compute_votes(frame.frame, frame.T_map_camera, mapper.config().integration,
-                                   mapper.config().resolution_m));
+mapping::VoxelMap built_from_records(SemanticMapper& mapper) {
+  const MapperConfig& config = mapper.config();
+  mapping::VoxelMap map(config.resolution_m);
+  for (std::size_t i = 0; i < mapper.frames().size(); ++i)
+    map.add(mapping::compute_votes(mapper.stored_frame(i).value(), mapper.frames()[i].T_map_camera, config.integration,
+                                   config.resolution_m));
   return map;
 }
+
+constexpr std::size_t kAllWork = 1'000'000'000;
 
 SemanticMapper mapper_with_tour(const MapperConfig& config = {}) {
   SemanticMapper mapper(config);
@@ -79,28 +86,41 @@ std::vector<KeyframePose> corrected(std::mt19937& random, double size) {
   return poses;
 }
 
-TEST(SemanticMapper, EqualsBuildFromRecordsAtEveryInstantAndFromScratchAfterFlush) {
-  for (unsigned seed = 0; seed < 5; ++seed) {
-    std::mt19937 random(seed);
-    MapperConfig config;
-    config.resolution_m = seed % 2 == 0 ? 0.25 : 0.1;
-    SemanticMapper mapper(config);
-    std::vector<KeyframePose> last = tour().keyframes;
-    std::uint64_t version = 1;
-    for (std::size_t i = 0; i < tour().frames.size(); ++i) {
-      AnchoredFrame frame = tour().frames[i];
-      frame.graph_version = version;
-      const auto known =
-          std::find_if(last.begin(), last.end(), [&](const auto& k) { return k.id == frame.keyframe_id; });
-      frame.T_map_keyframe = known->T_map_keyframe;
-      mapper.integrate(frame);
-      if (i % 7 == 6) mapper.update_keyframe_poses(++version, last = corrected(random, 0.05));
-      mapper.re_anchor(2);
-      ASSERT_EQ(mapper.map(), built_from_records(mapper)) << "after frame " << i;
+/// The tour with random corrections on the way; returns the last key-frame poses. The map must equal a build from the
+/// records at any time.
+std::vector<KeyframePose> drive_with_corrections(SemanticMapper& mapper, unsigned seed) {
+  std::mt19937 random(seed);
+  std::vector<KeyframePose> last = tour().keyframes;
+  std::uint64_t version = 1;
+  for (std::size_t i = 0; i < tour().frames.size(); ++i) {
+    AnchoredFrame frame = tour().frames[i];
+    frame.graph_version = version;
+    const auto is_its = [&frame](const KeyframePose& k) { return k.id == frame.keyframe_id; };
+    frame.T_map_keyframe = std::find_if(last.begin(), last.end(), is_its)->T_map_keyframe;
+    mapper.integrate(frame);
+    if (i % 7 == seed % 7) mapper.update_keyframe_poses(++version, last = corrected(random, 0.05));
+    mapper.re_anchor(10'000);
+    if ((i + seed) % 13 == 0) {
+      EXPECT_EQ(mapper.map(), built_from_records(mapper)) << "after frame " << i;
     }
+  }
+  mapper.update_keyframe_poses(++version, last = corrected(random, 0.05));
+  return last;
+}
+
+TEST(SemanticMapper, EqualsBuildFromRecordsAtEveryInstantAndFromScratchAfterFlush) {
+  for (unsigned seed = 0; seed < 100; ++seed) {
+    MapperConfig config;
+    config.resolution_m = seed % 4 == 3 ? 0.1 : 0.25;
+    config.stored_frames.memory_mb = seed % 3 == 0 ? 0 : 100;
+    config.stored_frames.spill_dir = testing::TempDir();
+    SemanticMapper mapper(config);
+    const std::vector<KeyframePose> last = drive_with_corrections(mapper, seed);
     EXPECT_GT(mapper.flush(), 0u);
-    EXPECT_EQ(mapper.map(), built_from_records(mapper));
+    ASSERT_EQ(mapper.map(), built_from_records(mapper)) << seed;
     EXPECT_EQ(mapper.frames_off(), 0u);
+    EXPECT_EQ(mapper.store().disk_bytes() > 0, config.stored_frames.memory_mb == 0);
+    EXPECT_EQ(mapper.store().let_go(), 0u);
 
     SemanticMapper scratch(config);
     for (AnchoredFrame frame : tour().frames) {
@@ -108,9 +128,110 @@ TEST(SemanticMapper, EqualsBuildFromRecordsAtEveryInstantAndFromScratchAfterFlus
         if (k.id == frame.keyframe_id) frame.T_map_keyframe = k.T_map_keyframe;
       scratch.integrate(frame);
     }
-    EXPECT_EQ(mapper.map(), scratch.map());
+    ASSERT_EQ(mapper.map(), scratch.map()) << seed;
     EXPECT_EQ(mapper.flush(), 0u);
   }
+}
+
+TEST(SemanticMapper, FramesThatTheDiskDoesNotTakeStayWhereTheyAreAndMappingGoesOn) {
+  MapperConfig config;
+  config.stored_frames = {0, testing::TempDir() + "/no_such_folder"};
+  SemanticMapper mapper = mapper_with_tour(config);
+  EXPECT_EQ(mapper.store().let_go(), tour().frames.size());
+  EXPECT_NE(mapper.store().problem().find("no_such_folder"), std::string::npos);
+  EXPECT_EQ(mapper.store().memory_bytes(), 0u);
+  const mapping::VoxelMap before = mapper.map();
+  EXPECT_EQ(before, mapper_with_tour().map());
+  std::mt19937 random(1);
+  mapper.update_keyframe_poses(2, corrected(random, 0.3));
+  EXPECT_EQ(mapper.re_anchor(kAllWork), 0u);
+  EXPECT_EQ(mapper.frames_off(), 0u);
+  EXPECT_EQ(mapper.flush(), 0u);
+  EXPECT_EQ(mapper.map(), before);
+}
+
+/// Files may not grow beyond some size while this lives: as a disk that is full.
+class FullDisk {
+ public:
+  explicit FullDisk(std::uint64_t bytes) {
+    std::signal(SIGXFSZ, SIG_IGN);
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FullDisk(const FullDisk&) = delete;
+  FullDisk& operator=(const FullDisk&) = delete;
+  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(SemanticMapper, DiskThatFillsUpLetsFramesGoAndMapsOn) {
+  MapperConfig config;
+  config.stored_frames = {0, testing::TempDir()};
+  const FullDisk disk(150'000);
+  SemanticMapper mapper = mapper_with_tour(config);
+  const std::size_t lost = mapper.store().let_go();
+  EXPECT_GT(lost, 0u);
+  EXPECT_LT(lost, tour().frames.size());
+  EXPECT_FALSE(mapper.store().problem().empty());
+  EXPECT_EQ(mapper.map(), mapper_with_tour().map());
+  std::mt19937 random(1);
+  mapper.update_keyframe_poses(2, corrected(random, 0.3));
+  EXPECT_LE(mapper.flush(), tour().frames.size() - lost);
+  mapping::VoxelMap expected = mapper_with_tour().map();
+  for (std::size_t i = 0; i < mapper.frames().size(); ++i) {
+    const auto votes_at = [&](const Pose& T) {
+      return mapping::compute_votes(tour().frames[i].frame, T, config.integration, config.resolution_m);
+    };
+    expected.subtract(votes_at(tour().frames[i].T_map_keyframe * tour().frames[i].T_keyframe_camera));
+    expected.add(votes_at(mapper.frames()[i].T_map_camera));
+  }
+  EXPECT_EQ(mapper.map(), expected);
+}
+
+TEST(SemanticMapper, NearestFramesMoveFirst) {
+  SemanticMapper mapper = mapper_with_tour();
+  std::mt19937 random(4);
+  mapper.update_keyframe_poses(2, corrected(random, 0.2));
+  EXPECT_EQ(mapper.frames_off(), tour().frames.size());
+  const Eigen::Vector3d robot = mapper.frames().back().T_map_camera.translation();
+  const std::vector<StoredFrame> before = mapper.frames();
+  for (int i = 0; i < 6; ++i) EXPECT_EQ(mapper.re_anchor(1), 1u);
+  const std::vector<StoredFrame> after = mapper.frames();
+  mapper.flush();
+  double farthest_moved_m = 0.0, nearest_left_m = 1e9;
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    const bool was_moved = after[i].T_map_camera.matrix() != before[i].T_map_camera.matrix();
+    const double distance_m = (mapper.frames()[i].T_map_camera.translation() - robot).norm();
+    double& bound_m = was_moved ? farthest_moved_m : nearest_left_m;
+    bound_m = was_moved ? std::max(bound_m, distance_m) : std::min(bound_m, distance_m);
+  }
+  EXPECT_LE(farthest_moved_m, nearest_left_m);
+}
+
+TEST(SemanticMapper, OnlyTilesThatReallyChangeAreSentAgain) {
+  MapperConfig config;
+  config.resolution_m = 0.25;
+  SemanticMapper mapper = mapper_with_tour(config);
+  mapper.take_changed_tiles();
+  std::vector<KeyframePose> poses = tour().keyframes;
+  poses[2].T_map_keyframe.translation().x() += 0.06;
+  mapper.update_keyframe_poses(2, poses);
+  const mapping::VoxelMap before = mapper.map();
+  EXPECT_EQ(mapper.re_anchor(kAllWork), 5u);
+  std::set<mapping::TileIndex> changed;
+  const int edge = mapping::blocks_per_tile_edge(config.resolution_m, config.tile_edge_m);
+  for (const mapping::VoxelMap* map : {&before, &mapper.map()})
+    map->for_each_observed([&](const mapping::VoxelIndex& voxel, const mapping::VoxelCounts& counts) {
+      const mapping::VoxelMap& other = map == &before ? mapper.map() : before;
+      if (!(other.read(voxel) == counts)) changed.insert(mapping::tile_of(mapping::block_of(voxel), edge));
+    });
+  const std::vector<TileUpdate> sent = mapper.take_changed_tiles();
+  for (const TileUpdate& tile : sent) changed.erase(tile.index);
+  EXPECT_TRUE(changed.empty());
+  EXPECT_LT(sent.size(), mapper.all_tiles().size());
 }
 
 TEST(SemanticMapper, OrderOfFramesDoesNotMatter) {
@@ -128,10 +249,12 @@ TEST(SemanticMapper, ThresholdDecidesWhichFramesMoveAndSlicesAreBounded) {
   poses[5].T_map_keyframe.translation().x() += 0.001;  // far below 0.2 voxel
   mapper.update_keyframe_poses(2, poses);
   EXPECT_EQ(mapper.frames_off(), 5u);
-  EXPECT_EQ(mapper.re_anchor(3), 3u);
+  EXPECT_EQ(mapper.re_anchor(1), 1u);
+  EXPECT_EQ(mapper.frames_off(), 4u);
+  EXPECT_EQ(mapper.re_anchor(mapper.frames()[10].work * 3 / 2), 2u);
   EXPECT_EQ(mapper.frames_off(), 2u);
-  EXPECT_EQ(mapper.re_anchor(100), 2u);
-  EXPECT_EQ(mapper.re_anchor(100), 0u);
+  EXPECT_EQ(mapper.re_anchor(kAllWork), 2u);
+  EXPECT_EQ(mapper.re_anchor(kAllWork), 0u);
   EXPECT_EQ(mapper.flush(), 5u);
 }
 
@@ -165,7 +288,7 @@ TEST(SemanticMapper, FrozenMapNeverMoves) {
   const mapping::VoxelMap before = mapper.map();
   std::mt19937 random(1);
   mapper.update_keyframe_poses(2, corrected(random, 0.3));
-  EXPECT_EQ(mapper.re_anchor(100), 0u);
+  EXPECT_EQ(mapper.re_anchor(kAllWork), 0u);
   EXPECT_EQ(mapper.flush(), 0u);
   EXPECT_EQ(mapper.map(), before);
 }

@@ -129,7 +129,7 @@ void insert_beside_octomap(benchmark::State& state, double resolution_m, int str
     const IntegrationReport report = mapper.integrate(std::move(frame));
     total_s.push_back(cpu_s() - begin_s);
     state.SetIterationTime(total_s.back());
-    votes += report.hits + report.passes;
+    votes += report.votes.hit_count() + report.votes.pass_count();
     ++i;
   }
   octomap::OcTree tree(resolution_m);
@@ -224,8 +224,8 @@ void loop_correction(benchmark::State& state, double resolution_m) {
   state.counters["B_per_frame"] = ratio(walker.mapper.frame_bytes(), frames);
 }
 
-/// With every new key-frame the newest eight are estimated again: 5 mm and 0.2 degrees of noise each time.
-void local_corrections(benchmark::State& state, double resolution_m) {
+/// With every new key-frame the newest eight are estimated again, each time with noise: metres and radians per axis.
+void local_corrections(benchmark::State& state, double resolution_m, double noise_m, double noise_rad) {
   constexpr std::size_t kWindow = 8;
   Walker walker(resolution_m);
   std::mt19937 random(3);
@@ -240,7 +240,7 @@ void local_corrections(benchmark::State& state, double resolution_m) {
         if (i < back * kFramesPerKeyframe) break;
         const std::size_t id = i - back * kFramesPerKeyframe;
         geometry::Vector6d xi;
-        for (int k = 0; k < 6; ++k) xi[k] = normal(random) * (k < 3 ? 0.005 : 0.0035);
+        for (int k = 0; k < 6; ++k) xi[k] = normal(random) * (k < 3 ? noise_m : noise_rad);
         poses.push_back({id, long_walk()[id].T_map_camera * geometry::se3_exp(xi)});
       }
       correction_s.push_back(cpu_s_of([&] {
@@ -252,6 +252,7 @@ void local_corrections(benchmark::State& state, double resolution_m) {
   }
   state.counters["moved"] = static_cast<double>(moved);
   state.counters["p95"] = quantile_ms(correction_s, 0.95);
+  state.counters["still_off"] = static_cast<double>(walker.mapper.frames_off());
   state.counters["to_first_integration"] = sum(correction_s) / sum(walker.integration_s);
 }
 
@@ -270,7 +271,10 @@ void register_all() {
     }
     const double r = resolution_m;
     once("loop_correction/" + std::string(name), [r](benchmark::State& s) { loop_correction(s, r); });
-    once("local_corrections/" + std::string(name), [r](benchmark::State& s) { local_corrections(s, r); });
+    once("local_corrections/3mm/" + std::string(name),
+         [r](benchmark::State& s) { local_corrections(s, r, 0.003, 0.001); });
+    once("local_corrections/10mm/" + std::string(name),
+         [r](benchmark::State& s) { local_corrections(s, r, 0.010, 0.0035); });
   }
 }
 

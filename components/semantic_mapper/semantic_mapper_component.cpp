@@ -40,6 +40,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
       info_(context, topics::kColorInfo, "camera info", kWaitingFrames) {
   config_.map.integration.max_range_m = config_.robot.sensing_range_m;
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "semantic_mapper.output_dir");
+  files::require_writable_folder(config_.map.stored_frames.spill_dir, "semantic_mapper.stored_frames.spill_dir");
   if (!config_.resume_from.empty()) load_map();
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });

@@ -73,6 +73,7 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   map_.add(votes);
   mark_changed(votes);
   stored.work = input.frame.samples() + votes.hit_count() + votes.pass_count();
+  credit_ += static_cast<std::int64_t>(stored.work * 3 / 4);
   store_.add(input.frame, votes);
   p_map_robot_ = stored.T_map_camera.translation();
   frames_of_keyframe_[stored.keyframe_id].push_back(frames_.size());
@@ -144,6 +145,10 @@ std::size_t SemanticMapper::re_anchor(std::size_t max_work) {
     std::pop_heap(nearest.begin(), nearest.end(), std::greater<>());
     const std::size_t index = nearest.back().second;
     nearest.pop_back();
+    if (offset_voxels(frames_[index], wanted_pose(frames_[index])) <= 1.0) {
+      if (credit_ <= 0) continue;
+      credit_ -= static_cast<std::int64_t>(frames_[index].work);
+    }
     off_.erase(index);
     work += frames_[index].work;
     moved += move_frame(index) ? 1 : 0;

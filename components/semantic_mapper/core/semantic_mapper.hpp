@@ -93,7 +93,9 @@ class SemanticMapper {
   /// yet.
   void update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses);
   /// Moves frames that are off by more than the threshold, nearest to the newest frame first, until their
-  /// StoredFrame::work exceeds `max_work` (at least one); returns how many.
+  /// StoredFrame::work exceeds `max_work` (at least one); returns how many. Frames that are off by less than a voxel
+  /// wait when, over time, moving such frames would cost more work than integrating new ones: bundle adjustment may
+  /// correct its key-frames again and again.
   std::size_t re_anchor(std::size_t max_work);
   /// Moves every frame that is off at all: afterwards the map equals a build at the graph's poses. Returns how many.
   std::size_t flush();
@@ -137,6 +139,7 @@ class SemanticMapper {
   std::size_t frames_before_ = 0;    ///< at least so many gave the map that it began with its counts
   std::vector<StoredFrame> frames_;  ///< in order of integration
   FrameStore store_;
+  std::int64_t credit_ = 0;  ///< work for moves of less than a voxel: 3/4 of what was integrated, less what they took
   Eigen::Vector3d p_map_robot_ = Eigen::Vector3d::Zero();  ///< camera of the newest frame
 
   std::uint64_t graph_version_ = 0;

@@ -211,6 +211,27 @@ TEST(SemanticMapper, NearestFramesMoveFirst) {
   EXPECT_LE(farthest_moved_m, nearest_left_m);
 }
 
+TEST(SemanticMapper, CorrectionsOfLessThanAVoxelNeverCostMoreThanNewFrames) {
+  MapperConfig config;
+  SemanticMapper mapper = mapper_with_tour(config);
+  std::size_t integrated = 0, moved = 0;
+  for (const StoredFrame& frame : mapper.frames()) integrated += frame.work;
+  const auto shifted = [](std::size_t step, double size_m) {
+    std::vector<KeyframePose> poses = tour().keyframes;
+    for (KeyframePose& pose : poses) pose.T_map_keyframe.translation().x() += step % 2 == 0 ? size_m : 0.0;
+    return poses;
+  };
+  for (std::size_t step = 0; step < 10; ++step) {
+    mapper.update_keyframe_poses(2 + step, shifted(step, 0.1));
+    for (std::size_t frames = mapper.re_anchor(kAllWork); frames > 0; --frames) moved += mapper.frames()[0].work;
+  }
+  EXPECT_GT(mapper.frames_off(), 0u);
+  EXPECT_LT(moved, 3 * integrated / 2);  // frames differ in work
+  mapper.update_keyframe_poses(100, shifted(0, 0.6));
+  EXPECT_EQ(mapper.re_anchor(kAllWork), tour().frames.size());  // larger ones do not wait
+  EXPECT_EQ(mapper.frames_off(), 0u);
+}
+
 TEST(SemanticMapper, OnlyTilesThatReallyChangeAreSentAgain) {
   MapperConfig config;
   config.resolution_m = 0.25;

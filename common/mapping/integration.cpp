@@ -178,7 +178,8 @@ LAPIS_VECTORISED
 void find_cuts(const double* squared_range, double max_range, std::size_t count, double* cut, SampleCell* cells) {
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_beyond = squared_range[i] > max_range * max_range;
-    cut[i] = is_beyond ? max_range / std::sqrt(squared_range[i]) : 1.0;
+    const double share = max_range / std::sqrt(squared_range[i]);
+    cut[i] = is_beyond ? share : 1.0;
     cells[i] |= is_beyond ? kBeyond : 0;
   }
 }

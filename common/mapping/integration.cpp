@@ -11,8 +11,10 @@
 #include <string>
 
 // Functions that the compiler vectorises come in two versions, of which the processor chooses when the program starts.
-// Both give the same bits: neither fuses multiplication and addition.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// Both give the same bits: neither fuses multiplication and addition. Not under sanitizers: the choice is made before
+// they are ready.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define LAPIS_VECTORISED __attribute__((target_clones("avx2", "default")))
 #else
 #define LAPIS_VECTORISED

@@ -21,8 +21,8 @@ const Pixel* sample_row(const geometry::Image<Pixel>& image, int row, int stride
 void to_millimetres(const float* depth_m, std::size_t count, std::uint16_t* depth_mm) {
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_measured = depth_m[i] > 0.0f && depth_m[i] <= std::numeric_limits<float>::max();
-    const float mm = std::min(is_measured ? depth_m[i] * 1000.0f + 0.5f : 0.0f, 65535.0f);
-    depth_mm[i] = static_cast<std::uint16_t>(static_cast<std::int32_t>(mm));
+    const float mm = std::min(depth_m[i] * 1000.0f + 0.5f, 65535.0f);
+    depth_mm[i] = static_cast<std::uint16_t>(static_cast<std::int32_t>(is_measured ? mm : 0.0f));
   }
 }
 

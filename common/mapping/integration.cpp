@@ -11,8 +11,10 @@
 #include <string>
 
 // Functions that the compiler vectorises come in two versions, of which the processor chooses when the program starts.
-// Both give the same bits: neither fuses multiplication and addition.
-#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__)
+// Both give the same bits: neither fuses multiplication and addition. Not under sanitizers: the choice is made before
+// they are ready.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
+    !defined(__SANITIZE_THREAD__)
 #define LAPIS_VECTORISED __attribute__((target_clones("avx2", "default")))
 #else
 #define LAPIS_VECTORISED
@@ -178,7 +180,8 @@ LAPIS_VECTORISED
 void find_cuts(const double* squared_range, double max_range, std::size_t count, double* cut, SampleCell* cells) {
   for (std::size_t i = 0; i < count; ++i) {
     const bool is_beyond = squared_range[i] > max_range * max_range;
-    cut[i] = is_beyond ? max_range / std::sqrt(squared_range[i]) : 1.0;
+    const double share = max_range / std::sqrt(squared_range[i]);
+    cut[i] = is_beyond ? share : 1.0;
     cells[i] |= is_beyond ? kBeyond : 0;
   }
 }

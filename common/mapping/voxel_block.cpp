@@ -38,14 +38,14 @@ void VoxelBlock::add_hit(int offset, std::uint16_t label, std::uint32_t weight) 
   add({}, {&vote, 1});
 }
 
-void VoxelBlock::add(const BlockMask& passes, std::span<const HitVote> votes) {
+void VoxelBlock::add(const BlockMask& passes, std::span<const HitVote> hits) {
   passes_.add_votes(passes);
-  if (votes.empty()) return;
+  if (hits.empty()) return;
   if (!hits_) hits_ = std::make_unique<Hits>();
   thread_local std::vector<HitVote> fresh;
   fresh.clear();
   auto hit = hits_->list.begin();
-  for (const HitVote& vote : votes) {
+  for (const HitVote& vote : hits) {
     if (vote.weight == 0) continue;
     while (hit != hits_->list.end() && key(*hit) < key(vote)) ++hit;
     if (hit != hits_->list.end() && key(*hit) == key(vote))
@@ -54,6 +54,7 @@ void VoxelBlock::add(const BlockMask& passes, std::span<const HitVote> votes) {
       fresh.push_back(vote);
   }
   insert(fresh);
+  if (hits_->list.empty()) hits_.reset();
 }
 
 /// Merges votes for classes that their voxels do not have yet into the list, from its end.
@@ -62,20 +63,22 @@ void VoxelBlock::insert(std::span<const HitVote> votes) {
   std::size_t from = list.size(), to = from + votes.size();
   if (to > list.capacity()) list.reserve(to + to / 4);
   list.resize(to);
-  for (auto vote = votes.rbegin(); vote != votes.rend(); ++vote) {
-    while (from > 0 && key(list[from - 1]) > key(*vote)) list[--to] = list[--from];
-    list[--to] = {vote->offset, vote->label, vote->weight};
-    hits_->voxels[vote->offset / 64u] |= std::uint64_t{1} << vote->offset % 64u;
+  for (; !votes.empty(); votes = votes.first(votes.size() - 1)) {
+    const HitVote& vote = votes.back();
+    while (from > 0 && key(list[from - 1]) > key(vote)) list[--to] = list[--from];
+    list[--to] = {vote.offset, vote.label, vote.weight};
+    hits_->voxels[vote.offset / 64u] |= std::uint64_t{1} << vote.offset % 64u;
   }
 }
 
-bool VoxelBlock::subtract(const BlockMask& passes, std::span<const HitVote> votes) {
+bool VoxelBlock::subtract(const BlockMask& passes, std::span<const HitVote> hits) {
   if (!passes_.subtract_votes(passes)) return false;
-  if (votes.empty()) return true;
+  if (hits.empty()) return true;
   if (!hits_) return false;
   std::vector<Hit>& list = hits_->list;
   auto hit = list.begin();
-  for (const HitVote& vote : votes) {
+  for (const HitVote& vote : hits) {
+    if (vote.weight == 0) continue;
     hit = std::lower_bound(hit, list.end(), vote, kByKey);
     if (hit == list.end() || key(*hit) != key(vote) || hit->count < vote.weight) return false;
     hit->count -= vote.weight;

@@ -61,7 +61,7 @@ double cpu_s_of(Work&& work) {
 }
 
 double quantile_ms(std::vector<double> seconds, double share) {
-  const auto at = static_cast<std::ptrdiff_t>(share * static_cast<double>(seconds.size() - 1) + 0.5);
+  const auto at = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(seconds.size() - 1)));
   std::nth_element(seconds.begin(), seconds.begin() + at, seconds.end());
   return seconds[static_cast<std::size_t>(at)] * 1e3;
 }

@@ -60,7 +60,8 @@ inline std::vector<Box> furnished_flat() {
   for (int i = 0; i < 3; ++i)
     for (int j = 0; j < 2; ++j) {
       const Eigen::Vector3d corner(i * kRoomLength_m, j * kRoomWidth_m, 0);
-      for (const Box& box : rooms[static_cast<std::size_t>(3 * j + i)]) {
+      const int room = 3 * j + i;
+      for (const Box& box : rooms[static_cast<std::size_t>(room)]) {
         const Eigen::Vector3d low = corner + box.low.cwiseProduct(Eigen::Vector3d(kStretch, kStretch, 1.0));
         boxes.push_back({low, low + box.high - box.low, box.label});
       }

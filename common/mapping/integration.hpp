@@ -21,8 +21,8 @@ struct IntegrationConfig {
 /// Throws std::runtime_error naming the value that is out of range.
 void validate(const IntegrationConfig& config);
 
-/// Largest ratio of range to resolution that compute_votes accepts; bounds its scratch memory, one byte per voxel of the
-/// box around the view: 3 MB at 100 voxels, about 0.5 GB at 500.
+/// Largest ratio of range to resolution that compute_votes accepts; bounds its scratch memory, one byte per voxel of
+/// the box around the view: 3 MB at 100 voxels, about 0.5 GB at 500.
 inline constexpr double kMaxRangeInVoxels = 500.0;
 
 /// What a frame, seen from a pose, says about the map. Each voxel gets at most one vote:

@@ -479,7 +479,6 @@ struct CellHit {
   std::uint16_t label;
   std::uint16_t label_weight;       ///< for the label [1/256 vote]
   std::uint16_t weight = kOneVote;  ///< altogether
-  bool is_measured = true;          ///< a point fell into the cell
 };
 
 bool is_within_heights(const BlockIndex& block, int layer, const IntegrationConfig& config, double resolution_m) {
@@ -510,10 +509,7 @@ void collect_block(const FrameBox& box, const Eigen::Vector3i& at, CellId number
   of_block.hits_begin = static_cast<std::uint32_t>(votes.hits.size());
   for (; hit != hits_end && hit->cell / kBlockVoxels == number; ++hit) {
     const auto offset = static_cast<std::uint16_t>(hit->cell % kBlockVoxels);
-    const std::uint64_t voxel = std::uint64_t{1} << offset % 64u;
-    std::uint64_t& passes_of_layer = of_block.passes[offset / 64u];
-    if (!hit->is_measured && (passes_of_layer & voxel) != 0) continue;
-    passes_of_layer &= ~voxel;
+    of_block.passes[offset / 64u] &= ~(std::uint64_t{1} << offset % 64u);
     if (is_within_heights(of_block.block, offset >> 6, config, resolution_m)) append_votes(*hit, offset, votes.hits);
   }
   of_block.hits_end = static_cast<std::uint32_t>(votes.hits.size());
@@ -539,8 +535,8 @@ void spread(const CellHit& hit, const Eigen::Vector3d& point, double length, con
       }
 }
 
-/// The vote of one cell, of all that hits around it say.
-CellHit summarise(std::span<const KernelVote> votes, bool is_measured, std::vector<LabelTally>& tally) {
+/// The vote of one cell, of all that the hits around it say.
+CellHit summarise(std::span<const KernelVote> votes, std::vector<LabelTally>& tally) {
   tally.clear();
   std::uint32_t sum = 0, labelled = 0;
   for (const KernelVote& vote : votes) {
@@ -550,22 +546,20 @@ CellHit summarise(std::span<const KernelVote> votes, bool is_measured, std::vect
   }
   const std::uint32_t weight = std::min(sum, kOneVote);
   return {votes.front().cell, winner(tally).label, static_cast<std::uint16_t>(weight * labelled / sum),
-          static_cast<std::uint16_t>(weight), is_measured};
+          static_cast<std::uint16_t>(weight)};
 }
 
-/// What the hits say about their cells and those around them; sorted by cell, as the hits are.
-std::vector<CellHit> summarise(const std::vector<KernelVote>& votes, const std::vector<CellHit>& hits) {
-  std::vector<CellHit> spread_hits;
+/// Replaces what hits say by what all around them say. Both are sorted by cell.
+void smooth(const std::vector<KernelVote>& votes, std::vector<CellHit>& hits) {
   std::vector<LabelTally> tally;
-  auto hit = hits.begin();
-  for (std::size_t first = 0, last = 0; first < votes.size(); first = last) {
-    const CellId cell = votes[first].cell;
-    while (last < votes.size() && votes[last].cell == cell) ++last;
-    while (hit != hits.end() && hit->cell < cell) ++hit;
-    const bool is_measured = hit != hits.end() && hit->cell == cell;
-    spread_hits.push_back(summarise(std::span(votes).subspan(first, last - first), is_measured, tally));
+  auto first = votes.begin();
+  for (CellHit& hit : hits) {
+    while (first->cell < hit.cell) ++first;
+    auto last = first;
+    while (last != votes.end() && last->cell == hit.cell) ++last;
+    hit = summarise(std::span(first, last), tally);
+    first = last;
   }
-  return spread_hits;
 }
 
 FrameVotes collect(const FrameBox& box, const std::vector<CellHit>& hits, const Marks& marks,
@@ -638,7 +632,7 @@ FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_
   }
   if (config.kernel_length_voxels > 0.0) {
     sort_by_cell(s.kernel_votes, s.sorted_kernel_votes, box.block_count() * kBlockVoxels);
-    hits = summarise(s.kernel_votes, hits);
+    smooth(s.kernel_votes, hits);
   }
   return collect(box, hits, marks, config, resolution_m);
 }

@@ -16,7 +16,7 @@ struct IntegrationConfig {
   /// Depth noise: standard deviation of depth z is this times z^2 [1/m]; passes also keep two standard deviations away
   /// from the surface, in [0, 0.05].
   double depth_noise_per_m = 0.0013;
-  /// Length of the kernel that spreads hits to the voxels around them, in [1.5, 3]; 0: not at all.
+  /// Length of the kernel by which hits vote for the voxels of other hits around them, in [1.5, 3]; 0: not at all.
   double kernel_length_voxels = 0.0;
 };
 
@@ -42,11 +42,11 @@ inline constexpr double kMaxRangeInVoxels = 500.0;
 /// the
 ///   middle one in scan order), traversed exactly [Amanatides & Woo 1987]. Returns beyond max_range_m end rays there
 ///   without a hit. Pixels without depth say nothing.
-/// With a kernel each hit votes from the point at which its ray ends, for every voxel within the kernel's length of it,
-/// as much as the kernel is worth at the voxel's centre. The sum, at most one vote, goes to the class with most of it;
-/// a voxel in which nothing was measured keeps its pass instead, if a ray goes through it.
-/// Deterministic: the same frame, pose, configuration and resolution give the same votes.
-/// Throws std::runtime_error when max_range_m / resolution_m exceeds kMaxRangeInVoxels.
+/// With a kernel each voxel with a hit asks the hits around it, too: a hit is worth, at the point at which its ray
+/// ends, what the kernel is worth at the distance to the voxel's centre. The sum, at most one vote, goes to the class
+/// with most of it. Voxels in which nothing was measured get no votes: walls would grow. Deterministic: the same frame,
+/// pose, configuration and resolution give the same votes. Throws std::runtime_error when max_range_m / resolution_m
+/// exceeds kMaxRangeInVoxels.
 FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_camera, const IntegrationConfig& config,
                          double resolution_m);
 

@@ -25,7 +25,7 @@ struct SensorModel {
   /// How counts become beliefs:
   /// - "log_odds": multi-class log-odds, eq. 9-11 of the paper;
   /// - "dirichlet": counts are concentrations of a Dirichlet distribution over free space and the classes;
-  /// - "bki": likewise, of votes that a kernel spread (IntegrationConfig) [Gan et al. 2019].
+  /// - "bki": likewise, of votes that a kernel has smoothed (IntegrationConfig) [Gan et al. 2019].
   std::string fusion = "log_odds";
   /// Of a Dirichlet prior: as many votes as say what prior_occupied and the class priors say, in (0, 1000].
   double prior_votes = 2.0;

@@ -62,7 +62,7 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("sensor_model", c.sensor_model);
   field("kernel_length_voxels", c.kernel_length_voxels,
         config::in_range(mapping::kMinKernelLength_voxels, mapping::kMaxKernelLength_voxels),
-        "of the kernel that spreads hits to the voxels around them with sensor_model.fusion: bki");
+        "of the kernel by which hits vote for the voxels of other hits around them, with sensor_model.fusion: bki");
   field("grid", c.grid);
   field("obstacles", c.obstacles);
   field("re_anchor", c.map.re_anchor, config::anything(),

@@ -125,7 +125,7 @@ TEST(ComputeVotes, EqualsItsPlainestFormToTheLastVote) {
       config.max_range_m = r < 0.1 ? 3.0 : 5.0;
       config.min_range_m = r < 0.2 ? 0.0 : 0.3;
       config.end_margin_voxels = r > 0.2 ? 0.5 : 0.0;
-      config.kernel_length_voxels = r < 0.2 ? 0.0 : 2.2;
+      config.kernel_length_voxels = r < 0.5 ? 0.0 : 2.2;
       const auto* certainty = r == 0.25 || r == 0.05 ? nullptr : &confidence;
       const CompactFrame frame = frame_of(camera, image.depth, &image.labels, r < 0.1 ? 3 : 1, certainty);
       const PlainVotes expected = test::PlainIntegration(frame, T, config, r).votes();
@@ -203,21 +203,22 @@ TEST(ComputeVotes, PixelsWeighAsMuchAsTheirLabelsAreCertain) {
   EXPECT_EQ(vote(), test::whole_vote(0)) << "a surface is there, of whatever class";
 }
 
-TEST(ComputeVotes, AKernelSpreadsAVoteToTheCellsBehindAndBeside) {
-  TwoPixels s;
-  s.labels.pixels.assign(9, 4);
+TEST(ComputeVotes, AKernelLetsNeighboursOutvoteALoneLabelAndAddsNoVoxels) {
+  // A wall of 9 x 3 voxels of half a metre, a pixel in each.
+  const geometry::PinholeCamera camera{9, 3, 4, 4, 4, 1};
+  const Pose T = lapis::test::look({0.1, 0.2, 0.2}, 0.0);
+  const geometry::DepthImage depth(9, 3, 2.0f);
+  geometry::LabelImage labels(9, 3, 4);
+  labels(4, 1) = 7;
   IntegrationConfig config = exact_config();
-  config.kernel_length_voxels = 2.0;
-  const double r = 0.5;  // the wall's point (2.1, 0.1, 0.1) lies in voxel (4, 0, 0), whose centre is (2.25, 0.25, 0.25)
-  const PlainVotes got = plain(compute_votes(frame_of(s.camera, s.depth, &s.labels), s.T, config, r));
-  const auto weight = [&](double dx, double dy, double dz) {
-    return static_cast<std::uint32_t>(std::floor(sparse_kernel(std::hypot(dx, dy, dz) / r / 2.0) * kOneVote + 0.5));
-  };
-  EXPECT_EQ(got.hits.at({4, 0, 0}), (test::Ballot{{4, weight(0.15, 0.15, 0.15)}}));
-  EXPECT_EQ(got.hits.at({4, -1, 0}), (test::Ballot{{4, weight(0.15, 0.35, 0.15)}}));
-  EXPECT_EQ(got.hits.at({5, 0, 0}), (test::Ballot{{4, weight(0.65, 0.15, 0.15)}}));
-  EXPECT_TRUE(got.passes.contains({3, 0, 0})) << "a ray went through it";
-  EXPECT_FALSE(got.hits.contains({3, 0, 0}));
+  const PlainVotes sharp = plain(compute_votes(frame_of(camera, depth, &labels), T, config, 0.5));
+  config.kernel_length_voxels = 3.0;
+  const PlainVotes smooth = plain(compute_votes(frame_of(camera, depth, &labels), T, config, 0.5));
+  ASSERT_EQ(sharp.hits.size(), 27u);
+  EXPECT_EQ(sharp.hits.at({4, 0, 0}), test::whole_vote(7));
+  EXPECT_EQ(smooth.hits.at({4, 0, 0}), test::whole_vote(4));
+  EXPECT_EQ(smooth.hits.size(), sharp.hits.size());
+  EXPECT_EQ(smooth.passes, sharp.passes);
 }
 
 TEST(SparseKernel, FallsFromOneToZero) {

@@ -66,7 +66,7 @@ class PlainIntegration {
       pass(middle, is_hit, votes.passes);
     }
     for (const auto& [index, ballot] : votes.hits) votes.passes.erase(index);
-    if (config_.kernel_length_voxels > 0.0) spread(points, votes);
+    if (config_.kernel_length_voxels > 0.0) smooth(points, votes);
     return votes;
   }
 
@@ -123,42 +123,32 @@ class PlainIntegration {
     return ballot;
   }
 
-  /// Every voxel asks every hit.
-  void spread(const std::map<VoxelIndex, Eigen::Vector3d>& points, PlainVotes& votes) const {
-    const int reach = 1 + static_cast<int>(std::ceil(config_.kernel_length_voxels));
-    std::set<VoxelIndex> near;
-    for (const auto& [hit, point] : points)
-      for (int z = -reach; z <= reach; ++z)
-        for (int y = -reach; y <= reach; ++y)
-          for (int x = -reach; x <= reach; ++x) near.insert({hit.x + x, hit.y + y, hit.z + z});
-    std::map<VoxelIndex, Ballot> spread;
-    for (const VoxelIndex& v : near) {
-      if (votes.passes.contains(v)) continue;
+  /// Every voxel with a hit asks the others.
+  void smooth(const std::map<VoxelIndex, Eigen::Vector3d>& points, PlainVotes& votes) const {
+    std::map<VoxelIndex, Ballot> smoothed;
+    for (const auto& [voxel, own] : votes.hits) {
+      const Eigen::Vector3d center =
+          (Eigen::Vector3i(voxel.x, voxel.y, voxel.z) - corner_).cast<double>().array() + 0.5;
       std::map<int, std::uint32_t> tally;
       std::uint32_t sum = 0, labelled = 0;
-      const Eigen::Vector3d center = (Eigen::Vector3i(v.x, v.y, v.z) - corner_).cast<double>().array() + 0.5;
-      for (int z = -reach; z <= reach; ++z)
-        for (int y = -reach; y <= reach; ++y)
-          for (int x = -reach; x <= reach; ++x) {
-            const auto hit = points.find({v.x + x, v.y + y, v.z + z});
-            if (hit == points.end()) continue;
-            const double share = (center - hit->second).norm() / config_.kernel_length_voxels;
-            const auto weight = static_cast<std::uint32_t>(std::floor(sparse_kernel(share) * kOneVote + 0.5));
-            sum += weight;
-            for (const auto& [label, part] : votes.hits.at(hit->first)) {
-              if (label == 0) continue;
-              tally[label] += weight * part / kOneVote;
-              labelled += weight * part / kOneVote;
-            }
-          }
-      if (sum == 0) continue;
+      for (const auto& [hit, point] : points) {
+        const double share = (center - point).norm() / config_.kernel_length_voxels;
+        const auto weight = static_cast<std::uint32_t>(std::floor(sparse_kernel(share) * kOneVote + 0.5));
+        sum += weight;
+        for (const auto& [label, part] : votes.hits.at(hit)) {
+          if (label == 0) continue;
+          tally[label] += weight * part / kOneVote;
+          labelled += weight * part / kOneVote;
+        }
+      }
       int best = 0;
+      std::uint32_t most = 0;
       for (const auto& [label, weight] : tally)
-        if (weight > (best == 0 ? 0 : tally[best])) best = label;
+        if (weight > most) best = label, most = weight;
       const std::uint32_t weight = std::min(sum, kOneVote);
-      spread[v] = split(best, weight * labelled / sum, weight);
+      smoothed[voxel] = split(best, weight * labelled / sum, weight);
     }
-    votes.hits = std::move(spread);
+    votes.hits = std::move(smoothed);
   }
 
   void pass(std::uint32_t sample, bool is_hit, std::set<VoxelIndex>& passes) const {

@@ -527,7 +527,7 @@ void spread(const CellHit& hit, const Eigen::Vector3d& point, double length, con
     for (int y = low[1]; y <= high[1]; ++y)
       for (int x = low[0]; x <= high[0]; ++x) {
         const double distance = (Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5) - point).norm();
-        const auto weight = static_cast<std::uint16_t>(sparse_kernel(distance / length) * kOneVote + 0.5);
+        const auto weight = static_cast<std::uint16_t>(std::lround(sparse_kernel(distance / length) * kOneVote));
         if (weight == 0) continue;
         const auto label_weight = static_cast<std::uint16_t>(weight * hit.label_weight / kOneVote);
         const CellId cell = box.id(static_cast<unsigned>(x), static_cast<unsigned>(y), static_cast<unsigned>(z));

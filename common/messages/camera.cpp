@@ -167,7 +167,7 @@ Converted<geometry::ConfidenceImage> to_confidence(const Image& message) {
   if (!is_float) return map_pixels<std::uint8_t>(message, 1, [](const std::uint8_t* p) { return *p; });
   return map_pixels<std::uint8_t>(message, 4, [](const std::uint8_t* p) {
     const auto share = read<float>(p);
-    return static_cast<std::uint8_t>(share > 0.0f ? std::min(share, 1.0f) * 255.0f + 0.5f : 0.0f);
+    return static_cast<std::uint8_t>(share > 0.0f ? std::lround(std::min(share, 1.0f) * 255.0f) : 0);
   });
 }
 

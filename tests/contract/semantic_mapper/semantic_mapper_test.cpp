@@ -160,6 +160,29 @@ TEST_F(MapperContract, RestartedSlamBeginsANewMapAndOldTilesAreGone) {
   EXPECT_EQ(epochs, (std::set<std::int64_t>{client.states.back().epoch()})) << "ended keys leave no samples behind";
 }
 
+class MapperWithSmallTiles : public MapperContract {
+ protected:
+  MapperWithSmallTiles() : MapperContract({"semantic_mapper.resolution_m=0.0235", "semantic_mapper.tile_edge_m=0.1"}) {}
+};
+
+TEST_F(MapperWithSmallTiles, TilesGrowWithTheMapAndNothingIsLost) {
+  ASSERT_TRUE(map_frame(0)) << mapper.log();
+  const auto first = client.states.back();
+  EXPECT_NEAR(first.tile_edge_m(), 0.188, 1e-9);
+  for (int i = 10; client.states.back().epoch() == first.epoch(); i += 10) {
+    ASSERT_LT(i, 300) << client.states.back().tiles() << " tiles" << mapper.log();
+    ASSERT_TRUE(map_frame(i)) << mapper.log();
+  }
+  EXPECT_NEAR(client.states.back().tile_edge_m(), 0.376, 1e-9);
+  EXPECT_EQ(client.states.back().session(), first.session());
+  EXPECT_LT(client.states.back().tiles(), first.tiles());
+  EXPECT_GE(client.mirror.map()->block_count(), first.tiles()) << "the old part is there, too";
+  TopicProbe late("late");
+  MapClient late_client(late);
+  ASSERT_TRUE(late.wait_until([&] { return late_client.has_map(); })) << mapper.log();
+  EXPECT_EQ(*late_client.mirror.map(), *client.mirror.map());
+}
+
 TEST_F(MapperContract, SaveWithoutAFolderIsRefusedWithTheKey) {
   auto& save = probe.client(topics::kSaveMap);
   ASSERT_TRUE(probe.wait_until([&] { return save.is_ready(); }));

@@ -182,13 +182,17 @@ void SemanticMapper::mark_all_changed() {
 }
 
 bool SemanticMapper::enlarge_tiles() {
-  if (std::max(tile_versions_.size(), changed_tiles_.size()) <= kMaxTiles) return false;
-  if (2 * blocks_per_tile_edge_ > kMaxBlocksPerEnlargedEdge) return false;
-  blocks_per_tile_edge_ *= 2;
+  const int before = blocks_per_tile_edge_;
+  std::size_t tiles = std::max(tile_versions_.size(), changed_tiles_.size());
+  while (tiles > kMaxTiles && 2 * blocks_per_tile_edge_ <= kMaxBlocksPerEnlargedEdge) {
+    blocks_per_tile_edge_ *= 2;
+    changed_tiles_.clear();
+    mark_all_changed();
+    tiles = changed_tiles_.size();
+  }
+  if (blocks_per_tile_edge_ == before) return false;
   tile_versions_.clear();
   checksum_ = 0;
-  changed_tiles_.clear();
-  mark_all_changed();
   return true;
 }
 

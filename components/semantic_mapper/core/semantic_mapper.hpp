@@ -118,7 +118,7 @@ class SemanticMapper {
   bool has_changes() const { return !changed_tiles_.empty(); }
   /// Blocks of the tiles that the next take_changed_tiles will look at, in any order.
   std::vector<mapping::BlockIndex> changed_blocks() const;
-  /// Doubles the edge of the tiles when there are too many for a late joiner: the cost of reliable samples grows with
+  /// Doubles the edge of the tiles while there are too many for a late joiner: the cost of reliable samples grows with
   /// the square of their number (docs/decisions/0029-late-joiners.md). When it returns true, all tiles are other ones
   /// and will be told again: the caller has to begin a new epoch.
   bool enlarge_tiles();

@@ -60,40 +60,6 @@ TEST_F(MapperContract, ViewsAreMadeForANewReaderAndAreFinite) {
   EXPECT_EQ(grid[0].data().size(), static_cast<std::size_t>(grid[0].info().width()) * grid[0].info().height());
 }
 
-TEST_F(MapperContract, GarbageIsCountedAndMappingGoesOn) {
-  ASSERT_TRUE(map_frame(0)) << mapper.log();
-  int index = 1;
-  const auto spoil = [&](const std::function<void(CameraFrame&, lapis_msgs::msg::TrackedFrame&)>& change) {
-    auto frame = feed.frame(index);
-    auto pose = tracked(index++);
-    change(frame, pose);
-    feed.send(frame);
-    slam.publish(pose);
-    return map_frame(index++);
-  };
-  EXPECT_TRUE(spoil([](auto& f, auto&) { f.depth->encoding("rgb8"); }));
-  EXPECT_TRUE(spoil([](auto& f, auto&) { f.depth->data().resize(10); }));
-  EXPECT_TRUE(spoil([](auto& f, auto&) { f.labels->encoding("32FC1"); }));
-  EXPECT_TRUE(spoil([](auto& f, auto&) { f.info->height(17); }));
-  EXPECT_TRUE(spoil([](auto&, auto& pose) { pose.keyframe_pose().orientation().w(7.0); }));
-  EXPECT_TRUE(spoil([](auto&, auto& pose) { pose.pose_in_keyframe().position().x(std::nan("")); }));
-  EXPECT_TRUE(spoil([](auto&, auto& pose) { pose.pose_in_keyframe().position().x(1e7); }));
-  EXPECT_TRUE(spoil([](auto&, auto& pose) {
-    pose.state(lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST);
-    pose.keyframe_pose({});
-  }));
-  for (const char* reason :
-       {"depth encoding 'rgb8'", "depth image has not step x height bytes", "label encoding '32FC1'",
-        "depth size differs", "keyframe_pose: quaternion is not a unit one",
-        "pose_in_keyframe: pose has numbers that are not finite", "more than 10 km", "slam does not track"}) {
-    EXPECT_TRUE(wait_for_count(reason, 1)) << reason << mapper.log();
-  }
-  EXPECT_EQ(sum_of(newest_values(diagnostics, "semantic_mapper"), "frames dropped"), 8);
-  EXPECT_EQ(client.states.back().frames_dropped(), 8u);
-  EXPECT_TRUE(mapper.is_running()) << mapper.log();
-  EXPECT_EQ(client.damaged, 0);
-}
-
 TEST_F(MapperContract, LabelsAboveTheListAreUnlabelledAndCounted) {
   int index = 0;
   // Repeated: the label list may come after the first frames.
@@ -116,30 +82,6 @@ TEST_F(MapperContract, DuplicateAndBackwardStampsAreDropped) {
   ASSERT_TRUE(map_frame(4)) << mapper.log();
   EXPECT_EQ(client.states.back().frames_integrated(), 5u);
   EXPECT_TRUE(wait_for_count("slam frame dropped", 2)) << mapper.log();
-}
-
-TEST_F(MapperContract, DepthWithoutMeasurementsAddsNothingAndHurtsNobody) {
-  ASSERT_TRUE(map_frame(0)) << mapper.log();
-  int index = 1;
-  for (const int fill : {0, 255}) {
-    SCOPED_TRACE(fill);
-    const auto before = client.states.back();
-    auto frame = feed.frame(index);
-    std::fill(frame.depth->data().begin(), frame.depth->data().end(), fill);
-    feed.send(frame);
-    slam.publish(tracked(index++));
-    const auto integrated = std::to_string(before.frames_integrated() + 1);
-    ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "semantic_mapper")["frames"] == integrated; }))
-        << mapper.log();
-    TopicProbe late("late");  // gets the newest state, whatever is still on its way to the other one
-    MapClient late_client(late);
-    ASSERT_TRUE(late.wait_until([&] { return late_client.has_map(); })) << mapper.log();
-    EXPECT_EQ(late_client.states.back().checksum(), before.checksum());
-    EXPECT_EQ(late_client.states.back().tiles(), before.tiles());
-    ASSERT_TRUE(map_frame(index++)) << mapper.log();
-    EXPECT_NE(client.states.back().checksum(), before.checksum()) << "a frame with depth does change the map";
-  }
-  EXPECT_TRUE(mapper.is_running());
 }
 
 TEST_F(MapperContract, RestartedSlamBeginsANewMapAndOldTilesAreGone) {

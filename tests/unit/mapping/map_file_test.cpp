@@ -1,9 +1,11 @@
 #include "common/mapping/map_file.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <memory>
 
 #include <sys/resource.h>
@@ -176,6 +178,25 @@ TEST_F(MapFileTest, AMapBeyondTheMemoryForMapsIsRefused) {
   const auto loaded = decode_map(bytes, error, file.map.bytes());
   ASSERT_TRUE(loaded) << error;
   EXPECT_EQ(loaded->map, file.map);
+}
+
+TEST_F(MapFileTest, HundredMillionVoxelsAreSavedAndLoaded) {
+  MapFile file{VoxelMap(0.05), {}, {}, {}};
+  VoxelBlock seen(20 * kOneVote), torn(20 * kOneVote);
+  torn.add_pass(7, kOneVote);
+  constexpr std::int32_t kEdge = 58;  // blocks
+  for (std::int32_t i = 0; i < kEdge * kEdge * kEdge; ++i)
+    file.map.set_block({i % kEdge, i / kEdge % kEdge, i / kEdge / kEdge}, i % 8 == 0 ? torn : seen);
+  ASSERT_EQ(save_map(path("map.lapis"), file), std::nullopt);
+  const auto begin = std::chrono::steady_clock::now();
+  std::string error;
+  const auto loaded = load_map(path("map.lapis"), error);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  ASSERT_TRUE(loaded) << error;
+  EXPECT_EQ(loaded->map, file.map);
+  std::cout << "file " << fs::file_size(path("map.lapis")) << " bytes, memory " << loaded->map.bytes()
+            << " bytes, loaded in " << taken.count() << " s\n";
+  EXPECT_LT(loaded->map.bytes(), 40'000'000u);
 }
 
 TEST_F(MapFileTest, ABlockThatIsLargerThanUsualIsRead) {

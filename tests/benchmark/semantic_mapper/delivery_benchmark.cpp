@@ -177,6 +177,8 @@ class MapPublisher {
     write([&] { state_.publish(message); });
   }
 
+  double longest_write_ms() const { return write_ms.empty() ? 0.0 : quantile(write_ms, 1.0); }
+
   std::vector<double> write_ms;
   std::size_t bytes = 0, tiles = 0;
 
@@ -255,7 +257,7 @@ void join(double tile_edge_m, std::size_t blocks, int socket_buffer_bytes) {
     return std::stod(log.substr(log.find(words) + words.size()));
   };
   std::printf("| %d | %.1f | %zu | %.1f | %.0f | %.0f | %.1f |\n", socket_buffer_bytes, tile_edge_m, tiles, mb,
-              number_after("complete after "), number_after("of work: "), quantile(publisher.write_ms, 1.0));
+              number_after("complete after "), number_after("of work: "), publisher.longest_write_ms());
   std::fflush(stdout);
 }
 

@@ -37,37 +37,15 @@ require_build
 export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
 mkdir -p "$out" || die "$out cannot be made a folder; choose another with --out DIR"
 read -r load _ </proc/loadavg
-# What the results of a scene depend on: those of other programs, settings or scenes are not kept.
-identity_of() {
-  {
-    cat "$bin"/lapis_{simulator,slam,semantic_mapper,evaluator} "$repository"/config/{robot.yaml,scenes/*,labels/*}
-    if [ -f "$1" ]; then cat "$1"; fi
-    ls -l /usr/share/sweethome3d/furniture 2>/dev/null || echo "parametric furniture"
-    echo "${settings[*]}"
-  } | sha256sum | cut -c 1-16
-}
-
-# run SCENE SEED FOLDER: an interruption ends the benchmark, a failure does not.
-run() {
-  local status=0
-  setpriv --pdeathsig TERM "$repository/launch_scripts/replay.sh" --scene "$1" --seed "$2" --out "$3" "${settings[@]}" \
-    >"$3.log" 2>&1 || status=$?
-  [ $status -lt 128 ] || exit $status
-  [ $status -eq 0 ] || tail -n 3 "$3.log" >&2
-  return $status
-}
-
 folders=()
 for scene in ${scenes//,/ }; do
-  identity=$(identity_of "$scene")
+  identity=$(identity_of "$scene" "${settings[@]}")
   for ((seed = 1; seed <= runs; ++seed)); do
     folder=$out/$(basename "$scene" .yaml)_$seed
     [[ " ${folders[*]} " != *" $folder "* ]] || die "two scenes are called $(basename "$scene" .yaml)"
     folders+=("$folder")
-    if [ "$(cat "$folder/identity" 2>/dev/null)" = "$identity" ]; then continue; fi
     echo "$scene, seed $seed"
-    rm -f "$folder/identity" "$folder/metrics.json"
-    if run "$scene" "$seed" "$folder"; then echo "$identity" >"$folder/identity"; fi
+    play_once "$folder" "$identity" --scene "$scene" --seed "$seed" "${settings[@]}"
   done
 done
 echo "load average before: $load"

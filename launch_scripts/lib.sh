@@ -20,6 +20,34 @@ require_build() {
   [ -x "$bin/lapis_slam" ] || "$repository/launch_scripts/setup.sh"
 }
 
+# identity_of SCENE SETTING...: what the results of a scene depend on; other programs, settings or scenes give another.
+identity_of() {
+  {
+    cat "$bin"/lapis_{simulator,sensor_replay,slam,semantic_mapper,evaluator} \
+      "$repository"/config/{robot.yaml,scenes/*,labels/*}
+    if [ -f "$1" ]; then cat "$1"; fi
+    ls -l /usr/share/sweethome3d/furniture 2>/dev/null || echo "parametric furniture"
+    echo "${@:2}"
+  } | sha256sum | cut -c 1-16
+}
+
+# has_run FOLDER IDENTITY: whether FOLDER has a good run of that identity.
+has_run() {
+  [ "$(cat "$1/identity" 2>/dev/null)" = "$2" ]
+}
+
+# play_once FOLDER IDENTITY ARGUMENT...: replay.sh into FOLDER, unless it has that run already. An interruption ends the
+# script; a failure shows the end of its log and leaves no identity.
+play_once() {
+  local folder=$1 identity=$2 status=0
+  shift 2
+  if has_run "$folder" "$identity"; then return 0; fi
+  rm -f "$folder/identity" "$folder/metrics.json"
+  setpriv --pdeathsig TERM "$repository/launch_scripts/replay.sh" "$@" --out "$folder" >"$folder.log" 2>&1 || status=$?
+  [ $status -lt 128 ] || exit $status
+  if [ $status -eq 0 ]; then echo "$identity" >"$folder/identity"; else tail -n 3 "$folder.log" >&2; fi
+}
+
 # start NAME ARGUMENT...: lapis_NAME in the background, its log in $out/logs/NAME.log. It ends with this shell, however
 # that ends.
 start() {

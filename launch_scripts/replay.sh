@@ -10,7 +10,8 @@ usage() {
 usage: replay.sh DATASET|--scene NAME [--out DIR] [--rate X] [--start S] [--duration S] [--labels FILE]
                  [--seed N] [--tour FILE] [--robot FILE]... [--set KEY=VALUE]...
 
-Plays DATASET (a folder in the layout of the TUM RGB-D benchmark, with camera.yaml), or drives a robot on a tour through
+Plays DATASET (a folder in the layout of the TUM RGB-D benchmark, with camera.yaml; what lapis_simulator --export-tum
+wrote has the scene's ground truth, too), or drives a robot on a tour through
 a simulated building, and leaves a run folder with trajectory, pose graph, semantic map, metrics.json and figures.
 
   --scene NAME     bundled scene, scene file, or folder of a scanned building (docs/scenes.md)
@@ -103,6 +104,7 @@ if [ "$source" = simulator ]; then
   [ -z "$rate" ] || play+=(--mode freerun --set simulator.wait_for_readers=3)
 else
   play=("$dataset" "${play[@]}")
+  [ ! -d "$dataset/ground_truth" ] || settings=(evaluator "evaluator.ground_truth_dir=$dataset/ground_truth" "${settings[@]}")
   [ -z "$rate" ] || play+=(--rate "$rate" --set sensor_replay.wait_for_readers=3)
 fi
 

@@ -41,7 +41,7 @@ std::size_t keep_listed(const std::uint16_t* labels, std::size_t count, std::uin
 
 std::optional<CompactFrame> CompactFrame::make(const geometry::PinholeCamera& camera, const geometry::DepthImage& depth,
                                                const geometry::LabelImage* labels, const CompactFrameConfig& config,
-                                               std::string& error) {
+                                               std::string& error, const geometry::ConfidenceImage* confidence) {
   error.clear();
   if (!geometry::is_valid(camera))
     error = "camera intrinsics are not valid";
@@ -51,6 +51,8 @@ std::optional<CompactFrame> CompactFrame::make(const geometry::PinholeCamera& ca
     error = "depth size differs from the camera's";
   else if (labels && (labels->width != depth.width || labels->height != depth.height))
     error = "label size differs from depth size";
+  else if (confidence && (confidence->width != depth.width || confidence->height != depth.height))
+    error = "confidence size differs from depth size";
   if (!error.empty()) return std::nullopt;
 
   CompactFrame frame;
@@ -60,8 +62,10 @@ std::optional<CompactFrame> CompactFrame::make(const geometry::PinholeCamera& ca
   const auto largest = static_cast<std::uint16_t>(std::clamp(config.max_label, 0, kLargestLabel));
   frame.depth_mm_.resize(columns * static_cast<std::size_t>(frame.rows()));
   if (labels) frame.labels_.resize(frame.depth_mm_.size());
+  if (labels && confidence) frame.confidence_.resize(frame.depth_mm_.size());
   std::vector<float> depth_row(columns);
   std::vector<std::uint16_t> label_row(columns);
+  std::vector<std::uint8_t> confidence_row(columns);
   for (int row = 0; row < frame.rows(); ++row) {
     const std::size_t begin = static_cast<std::size_t>(row) * columns;
     const int image_row = row * config.stride;
@@ -69,6 +73,8 @@ std::optional<CompactFrame> CompactFrame::make(const geometry::PinholeCamera& ca
     if (!labels) continue;
     frame.labels_out_of_list_ +=
         keep_listed(sample_row(*labels, image_row, config.stride, label_row), columns, largest, &frame.labels_[begin]);
+    if (!confidence) continue;
+    std::copy_n(sample_row(*confidence, image_row, config.stride, confidence_row), columns, &frame.confidence_[begin]);
   }
   return frame;
 }

@@ -25,11 +25,12 @@ class CompactFrame {
  public:
   /// @param camera intrinsics of the full images
   /// @param labels null, or an image of the same size
+  /// @param confidence of the labels; null (all are certain), or an image of the same size
   /// Returns nothing, with the reason in `error`, when sizes disagree or the camera is not valid. Depth that is not
   /// finite or not positive is taken as no measurement.
   static std::optional<CompactFrame> make(const geometry::PinholeCamera& camera, const geometry::DepthImage& depth,
                                           const geometry::LabelImage* labels, const CompactFrameConfig& config,
-                                          std::string& error);
+                                          std::string& error, const geometry::ConfidenceImage* confidence = nullptr);
 
   const geometry::PinholeCamera& camera() const { return camera_; }
   int stride() const { return stride_; }
@@ -41,6 +42,8 @@ class CompactFrame {
   const std::vector<std::uint16_t>& depth_mm() const { return depth_mm_; }
   /// Class per sample, 0 = unlabelled; empty when the frame has no labels.
   const std::vector<std::uint16_t>& labels() const { return labels_; }
+  /// Confidence per sample, 255 = certain; empty when all are.
+  const std::vector<std::uint8_t>& confidence() const { return confidence_; }
   /// Samples whose label was above CompactFrameConfig::max_label.
   std::size_t labels_out_of_list() const { return labels_out_of_list_; }
   /// Median of the measured depths [m]; 0 when nothing was measured.
@@ -56,6 +59,7 @@ class CompactFrame {
   std::size_t labels_out_of_list_ = 0;
   std::vector<std::uint16_t> depth_mm_;
   std::vector<std::uint16_t> labels_;
+  std::vector<std::uint8_t> confidence_;
 };
 
 }  // namespace lapis::mapping

@@ -33,6 +33,10 @@ void describe(Field& field, SensorModel& c) {
   field("hit_gain", c.hit_gain, config::in_range(0.01, 5.0), "log-odds gain of occupied by a first hit");
   field("pass_gain", c.pass_gain, config::in_range(0.01, 5.0), "log-odds loss of occupied by a pass");
   field("label_accuracy", c.label_accuracy, config::in_range(0.05, 0.999), "probability that a label is right");
+  field("fusion", c.fusion, config::one_of({"log_odds", "dirichlet", "bki"}),
+        "rule by which counts become beliefs");
+  field("prior_votes", c.prior_votes, config::in_range(0.01, 1000.0),
+        "of dirichlet and bki: so many votes weigh as much as the prior");
   field("prior_occupied", c.prior_occupied, config::in_range(0.001, 0.999), "of a voxel that was never observed");
 }
 

@@ -1,5 +1,6 @@
 #include "common/mapping/frame_codec.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include "common/mapping/zstd_codec.hpp"
@@ -14,7 +15,10 @@ struct FrameHeader {
   geometry::PinholeCamera camera;
   std::uint64_t labels_out_of_list;
   std::int32_t stride;
-  std::int32_t has_labels;
+  std::int16_t has_labels;
+  std::int16_t has_confidence;
+
+  std::size_t bytes_per_sample() const { return 2u + (has_labels ? 2u : 0u) + (has_confidence ? 1u : 0u); }
 };
 
 /// What packed votes begin with.
@@ -103,12 +107,14 @@ constexpr std::size_t kBytesPerHit = sizeof(HitVote::offset) + sizeof(HitVote::l
 
 std::vector<std::uint8_t> pack(const CompactFrame& frame) {
   const std::size_t count = frame.samples();
-  const FrameHeader header{frame.camera_, frame.labels_out_of_list_, frame.stride_, frame.has_labels() ? 1 : 0};
-  const std::span<std::uint8_t> plain = scratch(sizeof header + count * (frame.has_labels() ? 4 : 2));
+  const FrameHeader header{frame.camera_, frame.labels_out_of_list_, frame.stride_, frame.has_labels(),
+                           !frame.confidence_.empty()};
+  const std::span<std::uint8_t> plain = scratch(sizeof header + count * header.bytes_per_sample());
   std::memcpy(plain.data(), &header, sizeof header);
   std::uint8_t* values = plain.data() + sizeof header;
   write_differences(frame.depth_mm_.data(), count, values);
-  if (frame.has_labels()) write_differences(frame.labels_.data(), count, values + 2 * count);
+  if (header.has_labels) write_differences(frame.labels_.data(), count, values + 2 * count);
+  if (header.has_confidence) std::copy_n(frame.confidence_.data(), count, values + 4 * count);
   return zstd_compress(plain, kCompressionLevel);
 }
 
@@ -122,12 +128,13 @@ std::optional<CompactFrame> unpack_frame(std::span<const std::uint8_t> bytes) {
   frame.stride_ = header.stride;
   frame.labels_out_of_list_ = header.labels_out_of_list;
   const std::size_t count = static_cast<std::size_t>(frame.columns()) * static_cast<std::size_t>(frame.rows());
-  if (plain->size() != sizeof header + count * (header.has_labels ? 4 : 2)) return std::nullopt;
+  if (plain->size() != sizeof header + count * header.bytes_per_sample()) return std::nullopt;
   const std::uint8_t* values = plain->data() + sizeof header;
   frame.depth_mm_.resize(count);
   read_differences(values, count, frame.depth_mm_.data());
   frame.labels_.resize(header.has_labels ? count : 0);
   if (header.has_labels) read_differences(values + 2 * count, count, frame.labels_.data());
+  if (header.has_confidence) frame.confidence_.assign(values + 4 * count, values + 5 * count);
   return frame;
 }
 

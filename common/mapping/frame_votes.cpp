@@ -32,12 +32,16 @@ class VotesBuilder {
   BlockVotes current_;
 };
 
+bool is_before(const HitVote& a, const HitVote& b) {
+  return a.offset != b.offset ? a.offset < b.offset : a.label < b.label;
+}
+
 void split_hits(std::span<const HitVote> a, std::span<const HitVote> b, VotesBuilder& only_a, VotesBuilder& only_b) {
   while (!a.empty() || !b.empty()) {
     if (!a.empty() && !b.empty() && a.front() == b.front()) {
       a = a.subspan(1);
       b = b.subspan(1);
-    } else if (b.empty() || (!a.empty() && a.front().offset < b.front().offset)) {
+    } else if (b.empty() || (!a.empty() && is_before(a.front(), b.front()))) {
       only_a.hit(a.front());
       a = a.subspan(1);
     } else {

@@ -25,16 +25,18 @@ struct HitVote {
   bool operator==(const HitVote&) const = default;
 };
 
-/// What one frame says about one block. A voxel is in `passes` (weight kOneVote) or in the hits, never in both.
+/// What one frame says about one block. A voxel is in `passes` (weight kOneVote) or in the hits, never in both, and its
+/// hits weigh no more than kOneVote together.
 struct BlockVotes {
   BlockIndex block;
   BlockMask passes{};
-  std::uint32_t hits_begin = 0;  ///< range in FrameVotes::hits, sorted by offset
+  std::uint32_t hits_begin = 0;  ///< range in FrameVotes::hits, sorted by offset, then label
   std::uint32_t hits_end = 0;
   bool operator==(const BlockVotes&) const = default;
 };
 
-/// What one frame says about the map: at most one pass or one hit per voxel. Sorted by block.
+/// What one frame says about the map: at most one pass or one vote per voxel; a vote may be split between a class and
+/// "unlabelled". Sorted by block.
 struct FrameVotes {
   std::vector<BlockVotes> blocks;
   std::vector<HitVote> hits;

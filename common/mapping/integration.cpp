@@ -7,6 +7,9 @@
 #include <cstddef>
 #include <cstring>
 #include <limits>
+#include <numbers>
+#include <numeric>
+#include <span>
 #include <stdexcept>
 #include <string>
 
@@ -30,10 +33,10 @@ using CellId = std::uint32_t;
 /// Box of whole blocks, in voxels of the map, that holds everything the frame can reach.
 class FrameBox {
  public:
-  FrameBox(const Eigen::Vector3d& low_voxels, const Eigen::Vector3d& high_voxels) {
+  FrameBox(const Eigen::Vector3d& low_voxels, const Eigen::Vector3d& high_voxels, int margin_voxels) {
     for (int axis = 0; axis < 3; ++axis) {
-      const auto first = static_cast<std::int32_t>(std::floor(low_voxels[axis])) - 1;
-      const auto last = static_cast<std::int32_t>(std::floor(high_voxels[axis])) + 1;
+      const auto first = static_cast<std::int32_t>(std::floor(low_voxels[axis])) - margin_voxels;
+      const auto last = static_cast<std::int32_t>(std::floor(high_voxels[axis])) + margin_voxels;
       first_block_[axis] = floor_divide(first, kBlockEdge);
       blocks_[axis] = floor_divide(last, kBlockEdge) - first_block_[axis] + 1;
     }
@@ -58,12 +61,12 @@ class FrameBox {
   Eigen::Vector3i blocks_;
 };
 
-/// A sample's cell in the box, as x | y << 10 | z << 20 (a box has fewer than 2 * kMaxRangeInVoxels + 24 cells along an
-/// axis), and kBeyond if its ray ends there without a hit.
+/// A sample's cell in the box, as x | y << 10 | z << 20 (a box has at most 1024 cells along an axis), and kBeyond if
+/// its ray ends there without a hit.
 using SampleCell = std::uint32_t;
 constexpr SampleCell kBeyond = 1u << 30;
 constexpr SampleCell kNoCell = 0xffffffffu;  ///< of a sample that says nothing
-static_assert(2 * kMaxRangeInVoxels + 24 <= 1024);
+static_assert(2 * (kMaxRangeInVoxels + kMaxKernelLength_voxels) + 18 <= 1024);
 
 /// The frame in box coordinates: p_box = offset + depth_mm * (x_step * column + y_step * row + corner).
 class Projector {
@@ -91,8 +94,9 @@ class Projector {
   Eigen::Vector3d x_step_, y_step_, corner_, camera_;
 };
 
-FrameBox box_of(const CompactFrame& frame, const geometry::Pose& T_map_camera, double max_range_m,
+FrameBox box_of(const CompactFrame& frame, const geometry::Pose& T_map_camera, const IntegrationConfig& config,
                 double resolution_m) {
+  const double max_range_m = config.max_range_m;
   const geometry::PinholeCamera& camera = frame.camera();
   const Eigen::Vector3d center = T_map_camera.translation();
   Eigen::Vector3d low = center, high = center;
@@ -104,7 +108,8 @@ FrameBox box_of(const CompactFrame& frame, const geometry::Pose& T_map_camera, d
     }
   low = low.cwiseMax(center - Eigen::Vector3d::Constant(max_range_m));
   high = high.cwiseMin(center + Eigen::Vector3d::Constant(max_range_m));
-  return FrameBox(low / resolution_m, high / resolution_m);
+  const int margin_voxels = 1 + static_cast<int>(std::ceil(config.kernel_length_voxels));
+  return FrameBox(low / resolution_m, high / resolution_m, margin_voxels);
 }
 
 /// Neighbouring samples of a row that fall into the same cell with the same label.
@@ -114,6 +119,14 @@ struct Run {
   std::uint32_t count;
   std::uint16_t label;
   std::uint16_t is_beyond;
+};
+
+/// A vote of a hit for a cell near it.
+struct KernelVote {
+  CellId cell;
+  std::uint16_t label;
+  std::uint16_t label_weight;
+  std::uint16_t weight;
 };
 
 /// Working memory of compute_votes. Kept by each thread, because fresh memory from the system costs more time than
@@ -127,6 +140,7 @@ struct Scratch {
   std::vector<std::uint32_t> starts;   ///< columns where runs begin, then the number of columns
   std::vector<std::uint16_t> no_labels;
   std::vector<Run> runs, sorted_runs;
+  std::vector<KernelVote> kernel_votes, sorted_kernel_votes;
   std::vector<std::uint8_t> marks;  ///< one byte per cell of the box, x fastest
 
   void resize_row(std::size_t columns) {
@@ -243,6 +257,7 @@ void find_runs(const CompactFrame& frame, const Projector& projector, const Fram
   const auto columns = static_cast<std::size_t>(frame.columns());
   s.resize_row(columns);
   s.runs.clear();
+  s.kernel_votes.clear();
   for (int column = 0; column < frame.columns(); ++column)
     for (std::size_t axis = 0; axis < 3; ++axis)
       s.directions[axis][static_cast<std::size_t>(column)] = projector.direction(column)[static_cast<int>(axis)];
@@ -256,48 +271,81 @@ void find_runs(const CompactFrame& frame, const Projector& projector, const Fram
 }
 
 /// Stable sort by cell: least significant digit radix sort, about ten times faster here than std::stable_sort.
-void sort_by_cell(std::vector<Run>& runs, std::vector<Run>& sorted, std::size_t cell_count) {
+template <class Entry>
+void sort_by_cell(std::vector<Entry>& entries, std::vector<Entry>& sorted, std::size_t cell_count) {
   constexpr unsigned kDigitBits = 11;
-  sorted.resize(runs.size());
+  sorted.resize(entries.size());
   for (unsigned shift = 0; cell_count >> shift != 0; shift += kDigitBits) {
-    const auto digit = [shift](const Run& run) { return run.cell >> shift & ((1u << kDigitBits) - 1u); };
+    const auto digit = [shift](const Entry& entry) { return entry.cell >> shift & ((1u << kDigitBits) - 1u); };
     std::array<std::uint32_t, (1u << kDigitBits) + 1> begin{};
-    for (const Run& run : runs) ++begin[digit(run) + 1];
+    for (const Entry& entry : entries) ++begin[digit(entry) + 1];
     for (std::size_t i = 1; i < begin.size(); ++i) begin[i] += begin[i - 1];
-    for (const Run& run : runs) sorted[begin[digit(run)]++] = run;
-    runs.swap(sorted);
+    for (const Entry& entry : entries) sorted[begin[digit(entry)]++] = entry;
+    entries.swap(sorted);
   }
 }
+
+constexpr std::uint64_t kCertain = 255;  ///< confidence of a sample
+
+/// How much of the runs' samples in one cell is for a label.
+struct LabelTally {
+  std::uint16_t label;
+  std::uint32_t count;   ///< of samples
+  std::uint64_t weight;  ///< sum of their confidence
+};
 
 /// All samples of one cell.
 struct CellSummary {
   bool is_hit = false;
-  std::uint16_t label = 0;       ///< majority of the labelled samples
-  std::uint32_t ray_sample = 0;  ///< the sample whose ray is followed
+  std::uint16_t label = 0;         ///< with most weight of the labelled samples
+  std::uint16_t label_weight = 0;  ///< its share of the vote [1/256 vote]
+  std::uint32_t ray_sample = 0;    ///< the sample whose ray is followed
 };
 
+/// Sum of the confidence of a run's samples.
+std::uint64_t weight_of(const Run& run, const std::vector<std::uint8_t>& confidence) {
+  if (confidence.empty()) return kCertain * run.count;
+  const std::uint8_t* first = &confidence[run.first_sample];
+  return std::accumulate(first, first + run.count, std::uint64_t{0});
+}
+
+void add_to(std::vector<LabelTally>& tally, const LabelTally& votes) {
+  const auto same = [&votes](const LabelTally& entry) { return entry.label == votes.label; };
+  const auto it = std::find_if(tally.begin(), tally.end(), same);
+  if (it == tally.end()) {
+    tally.push_back(votes);
+  } else {
+    it->count += votes.count;
+    it->weight += votes.weight;
+  }
+}
+
+/// The label with most weight, ties to the smaller one; label 0 when there is none.
+LabelTally winner(const std::vector<LabelTally>& tally) {
+  LabelTally best{};
+  for (const LabelTally& entry : tally)
+    if (entry.weight > best.weight || (entry.weight == best.weight && entry.weight > 0 && entry.label < best.label))
+      best = entry;
+  return best;
+}
+
 /// Votes of the runs [first, last) of one cell.
-CellSummary summarise(const Run* first, const Run* last, std::vector<std::pair<std::uint16_t, std::uint32_t>>& tally) {
+CellSummary summarise(const Run* first, const Run* last, const std::vector<std::uint8_t>& confidence,
+                      std::vector<LabelTally>& tally) {
   tally.clear();
   std::uint32_t hits = 0, beyond = 0;
   for (const Run* run = first; run != last; ++run) {
     (run->is_beyond ? beyond : hits) += run->count;
     if (run->is_beyond || run->label == 0) continue;
-    const auto same = [run](const auto& entry) { return entry.first == run->label; };
-    const auto it = std::find_if(tally.begin(), tally.end(), same);
-    if (it == tally.end())
-      tally.emplace_back(run->label, run->count);
-    else
-      it->second += run->count;
+    add_to(tally, {run->label, run->count, weight_of(*run, confidence)});
   }
   CellSummary summary;
   summary.is_hit = hits > 0;
-  std::uint32_t most = 0;
-  for (const auto& [label, count] : tally)
-    if (count > most || (count == most && label < summary.label)) {
-      summary.label = label;
-      most = count;
-    }
+  if (const LabelTally most = winner(tally); most.label != 0) {
+    summary.label = most.label;
+    summary.label_weight =
+        static_cast<std::uint16_t>((most.weight * kOneVote + kCertain / 2 * most.count) / (kCertain * most.count));
+  }
   // The middle sample in scan order, of those that decide what the cell is.
   std::uint32_t skip = (summary.is_hit ? hits : beyond) / 2;
   for (const Run* run = first; run != last; ++run) {
@@ -429,11 +477,20 @@ double free_share(double range_voxels, double depth_m, const IntegrationConfig& 
 struct CellHit {
   CellId cell;
   std::uint16_t label;
+  std::uint16_t label_weight;       ///< for the label [1/256 vote]
+  std::uint16_t weight = kOneVote;  ///< altogether
+  bool is_measured = true;          ///< a point fell into the cell
 };
 
 bool is_within_heights(const BlockIndex& block, int layer, const IntegrationConfig& config, double resolution_m) {
   const double center_m = (block.z * kBlockEdge + layer + 0.5) * resolution_m;
   return center_m >= config.min_height_m && center_m <= config.max_height_m;
+}
+
+void append_votes(const CellHit& hit, std::uint16_t offset, std::vector<HitVote>& votes) {
+  if (hit.weight > hit.label_weight)
+    votes.push_back({offset, 0, static_cast<std::uint32_t>(hit.weight - hit.label_weight)});
+  if (hit.label_weight > 0) votes.push_back({offset, hit.label, hit.label_weight});
 }
 
 /// Votes of the block number `number` at `at` of the box; `hit` is the first hit of the block and becomes that of the
@@ -453,14 +510,62 @@ void collect_block(const FrameBox& box, const Eigen::Vector3i& at, CellId number
   of_block.hits_begin = static_cast<std::uint32_t>(votes.hits.size());
   for (; hit != hits_end && hit->cell / kBlockVoxels == number; ++hit) {
     const auto offset = static_cast<std::uint16_t>(hit->cell % kBlockVoxels);
-    of_block.passes[offset / 64u] &= ~(std::uint64_t{1} << offset % 64u);
-    if (is_within_heights(of_block.block, offset >> 6, config, resolution_m))
-      votes.hits.push_back({offset, hit->label, kOneVote});
+    const std::uint64_t voxel = std::uint64_t{1} << offset % 64u;
+    std::uint64_t& passes_of_layer = of_block.passes[offset / 64u];
+    if (!hit->is_measured && (passes_of_layer & voxel) != 0) continue;
+    passes_of_layer &= ~voxel;
+    if (is_within_heights(of_block.block, offset >> 6, config, resolution_m)) append_votes(*hit, offset, votes.hits);
   }
   of_block.hits_end = static_cast<std::uint32_t>(votes.hits.size());
   const auto& passes = of_block.passes;
   const bool is_passed = any != 0 && std::any_of(passes.begin(), passes.end(), [](std::uint64_t w) { return w != 0; });
   if (is_passed || of_block.hits_end > of_block.hits_begin) votes.blocks.push_back(of_block);
+}
+
+/// Votes of a hit at `point` [voxels of the box] for the cells whose centres are within the kernel's length.
+void spread(const CellHit& hit, const Eigen::Vector3d& point, double length, const FrameBox& box,
+            std::vector<KernelVote>& votes) {
+  const Eigen::Array3i low = (point.array() - length).floor().cast<int>();
+  const Eigen::Array3i high = (point.array() + length).floor().cast<int>();
+  for (int z = low[2]; z <= high[2]; ++z)
+    for (int y = low[1]; y <= high[1]; ++y)
+      for (int x = low[0]; x <= high[0]; ++x) {
+        const double distance = (Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5) - point).norm();
+        const auto weight = static_cast<std::uint16_t>(sparse_kernel(distance / length) * kOneVote + 0.5);
+        if (weight == 0) continue;
+        const auto label_weight = static_cast<std::uint16_t>(weight * hit.label_weight / kOneVote);
+        const CellId cell = box.id(static_cast<unsigned>(x), static_cast<unsigned>(y), static_cast<unsigned>(z));
+        votes.push_back({cell, hit.label, label_weight, weight});
+      }
+}
+
+/// The vote of one cell, of all that hits around it say.
+CellHit summarise(std::span<const KernelVote> votes, bool is_measured, std::vector<LabelTally>& tally) {
+  tally.clear();
+  std::uint32_t sum = 0, labelled = 0;
+  for (const KernelVote& vote : votes) {
+    sum += vote.weight;
+    labelled += vote.label_weight;
+    add_to(tally, {vote.label, 0, vote.label_weight});
+  }
+  const std::uint32_t weight = std::min(sum, kOneVote);
+  return {votes.front().cell, winner(tally).label, static_cast<std::uint16_t>(weight * labelled / sum),
+          static_cast<std::uint16_t>(weight), is_measured};
+}
+
+/// What the hits say about their cells and those around them; sorted by cell, as the hits are.
+std::vector<CellHit> summarise(const std::vector<KernelVote>& votes, const std::vector<CellHit>& hits) {
+  std::vector<CellHit> spread_hits;
+  std::vector<LabelTally> tally;
+  auto hit = hits.begin();
+  for (std::size_t first = 0, last = 0; first < votes.size(); first = last) {
+    const CellId cell = votes[first].cell;
+    while (last < votes.size() && votes[last].cell == cell) ++last;
+    while (hit != hits.end() && hit->cell < cell) ++hit;
+    const bool is_measured = hit != hits.end() && hit->cell == cell;
+    spread_hits.push_back(summarise(std::span(votes).subspan(first, last - first), is_measured, tally));
+  }
+  return spread_hits;
 }
 
 FrameVotes collect(const FrameBox& box, const std::vector<CellHit>& hits, const Marks& marks,
@@ -479,6 +584,12 @@ FrameVotes collect(const FrameBox& box, const std::vector<CellHit>& hits, const 
 
 }  // namespace
 
+double sparse_kernel(double share) {
+  if (share >= 1.0) return 0.0;
+  const double angle = 2.0 * std::numbers::pi * share;
+  return (2.0 + std::cos(angle)) / 3.0 * (1.0 - share) + std::sin(angle) / (2.0 * std::numbers::pi);
+}
+
 void validate(const IntegrationConfig& config) {
   const auto require = [](bool is_good, const char* what) {
     if (!is_good) throw std::runtime_error(std::string("integration: ") + what);
@@ -490,6 +601,9 @@ void validate(const IntegrationConfig& config) {
   require(config.end_margin_voxels >= 0.0 && config.end_margin_voxels <= 3.0, "end_margin_voxels must be in [0, 3]");
   require(config.depth_noise_per_m >= 0.0 && config.depth_noise_per_m <= 0.05,
           "depth_noise_per_m must be in [0, 0.05]");
+  require(config.kernel_length_voxels == 0.0 || (config.kernel_length_voxels >= kMinKernelLength_voxels &&
+                                                 config.kernel_length_voxels <= kMaxKernelLength_voxels),
+          "kernel_length_voxels must be 0 or in [1.5, 3]");
 }
 
 FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_camera, const IntegrationConfig& config,
@@ -497,28 +611,34 @@ FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_
   if (config.max_range_m / resolution_m > kMaxRangeInVoxels)
     throw std::runtime_error("integration: max_range_m exceeds 500 voxels; lower it or raise the map resolution");
   thread_local Scratch s;
-  const FrameBox box = box_of(frame, T_map_camera, config.max_range_m, resolution_m);
+  const FrameBox box = box_of(frame, T_map_camera, config, resolution_m);
   const Projector projector(frame, T_map_camera, box, resolution_m);
   find_runs(frame, projector, box, config, resolution_m, s);
   sort_by_cell(s.runs, s.sorted_runs, box.block_count() * kBlockVoxels);
 
   Marks marks(box, s.marks);
   std::vector<CellHit> hits;
-  std::vector<std::pair<std::uint16_t, std::uint32_t>> tally;
+  std::vector<LabelTally> tally;
   for (std::size_t first = 0, last = 0; first < s.runs.size(); first = last) {
     while (last < s.runs.size() && s.runs[last].cell == s.runs[first].cell) ++last;
-    const CellSummary cell = summarise(&s.runs[first], &s.runs[first] + (last - first), tally);
+    const CellSummary cell = summarise(&s.runs[first], &s.runs[first] + (last - first), frame.confidence(), tally);
     const double depth_mm = frame.depth_mm()[cell.ray_sample];
     Eigen::Vector3d ray = projector.direction_of_sample(cell.ray_sample) * depth_mm;
     const double range = ray.norm();
     double t_end = 1.0;
     if (cell.is_hit) {
-      hits.push_back({s.runs[first].cell, cell.label});
+      hits.push_back({s.runs[first].cell, cell.label, cell.label_weight});
+      if (config.kernel_length_voxels > 0.0)
+        spread(hits.back(), projector.camera() + ray, config.kernel_length_voxels, box, s.kernel_votes);
       t_end = free_share(range, depth_mm * 1e-3, config, resolution_m);
     } else {
       ray *= config.max_range_m / resolution_m / range;
     }
     marks.add_ray(projector.camera(), ray, t_end);
+  }
+  if (config.kernel_length_voxels > 0.0) {
+    sort_by_cell(s.kernel_votes, s.sorted_kernel_votes, box.block_count() * kBlockVoxels);
+    hits = summarise(s.kernel_votes, hits);
   }
   return collect(box, hits, marks, config, resolution_m);
 }

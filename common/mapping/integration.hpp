@@ -16,7 +16,15 @@ struct IntegrationConfig {
   /// Depth noise: standard deviation of depth z is this times z^2 [1/m]; passes also keep two standard deviations away
   /// from the surface, in [0, 0.05].
   double depth_noise_per_m = 0.0013;
+  /// Length of the kernel that spreads hits to the voxels around them, in [1.5, 3]; 0: not at all.
+  double kernel_length_voxels = 0.0;
 };
+
+/// So long that every hit votes for its own voxel, and so short that a frame's box stays bounded.
+inline constexpr double kMinKernelLength_voxels = 1.5, kMaxKernelLength_voxels = 3.0;
+
+/// Compact kernel at a distance of `share` of its length: 1 at 0, 0 from 1 on [Melkumyan & Ramos 2009].
+double sparse_kernel(double share);
 
 /// Throws std::runtime_error naming the value that is out of range.
 void validate(const IntegrationConfig& config);
@@ -27,11 +35,16 @@ inline constexpr double kMaxRangeInVoxels = 500.0;
 
 /// What a frame, seen from a pose, says about the map. Each voxel gets at most one vote:
 /// - a hit where a sampled pixel's point within range falls into it; its class is the majority of the voxel's labelled
-///   pixels (never an average; ties go to the smaller id; unlabelled only when no pixel is labelled);
+///   pixels (never an average; ties go to the smaller id; unlabelled only when no pixel is labelled). Pixels weigh as
+///   much as their labels are certain; the mean confidence of the class' pixels is its share of the vote, the rest is
+///   an unlabelled one;
 /// - otherwise a pass when a ray goes through it. There is one ray per voxel that is seen (to a measured point in it,
 /// the
 ///   middle one in scan order), traversed exactly [Amanatides & Woo 1987]. Returns beyond max_range_m end rays there
 ///   without a hit. Pixels without depth say nothing.
+/// With a kernel each hit votes from the point at which its ray ends, for every voxel within the kernel's length of it,
+/// as much as the kernel is worth at the voxel's centre. The sum, at most one vote, goes to the class with most of it;
+/// a voxel in which nothing was measured keeps its pass instead, if a ray goes through it.
 /// Deterministic: the same frame, pose, configuration and resolution give the same votes.
 /// Throws std::runtime_error when max_range_m / resolution_m exceeds kMaxRangeInVoxels.
 FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_camera, const IntegrationConfig& config,

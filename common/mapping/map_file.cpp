@@ -15,7 +15,7 @@ namespace lapis::mapping {
 namespace {
 
 constexpr std::string_view kMagic = "LAPISMAP";
-constexpr std::uint32_t kFormatVersion = 1;
+constexpr std::uint32_t kFormatVersion = 2;
 constexpr int kCompressionLevel = 3;
 // A record (all before the blocks; a block) is at most so large: 20,000 classes in each voxel of a block.
 constexpr std::size_t kUsualRecordBytes = std::size_t{64} << 10;
@@ -29,10 +29,11 @@ bool is_in_range(const BlockIndex& index) {
 
 void write_sensor_model(const SensorModel& model, files::ByteWriter& out) {
   for (const double value : {model.hit_gain, model.pass_gain, model.label_accuracy, model.prior_occupied,
-                             model.occupancy_limit, model.share_limit})
+                             model.prior_votes, model.occupancy_limit, model.share_limit})
     out.f64(value);
   out.u32(static_cast<std::uint32_t>(model.class_count));
   out.u8(model.use_paper_increments ? 1 : 0);
+  out.text(model.fusion);
   out.varint(model.class_priors.size());
   for (const double prior : model.class_priors) out.f64(prior);
 }
@@ -40,10 +41,11 @@ void write_sensor_model(const SensorModel& model, files::ByteWriter& out) {
 SensorModel read_sensor_model(files::ByteReader& in) {
   SensorModel model;
   for (double* value : {&model.hit_gain, &model.pass_gain, &model.label_accuracy, &model.prior_occupied,
-                        &model.occupancy_limit, &model.share_limit})
+                        &model.prior_votes, &model.occupancy_limit, &model.share_limit})
     *value = in.f64();
   model.class_count = static_cast<int>(std::min<std::uint32_t>(in.u32(), 65536u));
   model.use_paper_increments = in.u8() != 0;
+  model.fusion = in.text();
   const std::uint64_t priors = in.varint();
   if (priors > in.remaining() / sizeof(double)) in.fail();
   for (std::uint64_t i = 0; i < priors && in.is_good(); ++i) model.class_priors.push_back(in.f64());
@@ -177,7 +179,7 @@ std::optional<std::span<const std::uint8_t>> check_header(std::span<const std::u
   }
   const std::uint32_t version = in.u32();
   if (in.is_good() && version != kFormatVersion) {
-    error = "has format version " + std::to_string(version) + ", this program reads 1";
+    error = "has format version " + std::to_string(version) + ", this program reads " + std::to_string(kFormatVersion);
     return std::nullopt;
   }
   const std::uint32_t crc = in.u32();

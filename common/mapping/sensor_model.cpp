@@ -18,11 +18,14 @@ void require(bool is_good, const std::string& what) {
 }
 
 void validate(const SensorModel& m) {
+  require(m.fusion == "log_odds" || m.fusion == "dirichlet" || m.fusion == "bki",
+          "fusion must be log_odds, dirichlet or bki");
   require(m.class_count >= 1 && m.class_count <= 65535, "class_count must be in [1, 65535]");
   require(m.hit_gain > 0.0 && m.hit_gain <= 5.0, "hit_gain must be in (0, 5]");
   require(m.pass_gain > 0.0 && m.pass_gain <= 5.0, "pass_gain must be in (0, 5]");
   require(m.label_accuracy > 0.0 && m.label_accuracy < 1.0, "label_accuracy must be in (0, 1)");
   require(m.prior_occupied > 0.0 && m.prior_occupied < 1.0, "prior_occupied must be in (0, 1)");
+  require(m.prior_votes > 0.0 && m.prior_votes <= 1000.0, "prior_votes must be in (0, 1000]");
   require(m.occupancy_limit > 0.0 && m.share_limit > 0.0, "limits must be positive");
   if (m.class_priors.empty()) return;
   require(m.class_priors.size() == static_cast<std::size_t>(m.class_count),
@@ -43,7 +46,7 @@ SensorModel paper_sensor_model(std::vector<double> class_priors) {
   return model;
 }
 
-BeliefReader::BeliefReader(const SensorModel& model) : model_(model) {
+BeliefReader::BeliefReader(const SensorModel& model) : model_(model), by_evidence_(model.fusion == "log_odds") {
   validate(model_);
   const auto count = static_cast<std::size_t>(model_.class_count);
   priors_ = model_.class_priors.empty() ? std::vector<double>(count, 1.0 / model_.class_count) : model_.class_priors;
@@ -65,14 +68,10 @@ BeliefReader::BeliefReader(const SensorModel& model) : model_(model) {
   }
 }
 
-double BeliefReader::common_log_odds(const VoxelCounts& counts) const {
-  double y = prior_log_odds_ - pass_loss_ * votes(counts.passes);
+double BeliefReader::log_odds_by_evidence(const VoxelCounts& counts) const {
+  double common = prior_log_odds_ - pass_loss_ * votes(counts.passes);
   for (const ClassCount& hit : counts.hits)
-    y += votes(hit.count) * (is_class(hit.label) ? other_gain_[hit.label - 1u] : unlabelled_gain_);
-  return y;
-}
-
-double BeliefReader::occupancy_log_odds(const VoxelCounts& counts) const {
+    common += votes(hit.count) * (is_class(hit.label) ? other_gain_[hit.label - 1u] : unlabelled_gain_);
   // ln sum_c pi_c exp(h_c surplus_c): classes without hits contribute their prior share as it is.
   double largest = 0.0, unhit_share = 1.0;
   for (const ClassCount& hit : counts.hits) {
@@ -84,8 +83,23 @@ double BeliefReader::occupancy_log_odds(const VoxelCounts& counts) const {
   for (const ClassCount& hit : counts.hits)
     if (is_class(hit.label))
       sum += prior(hit.label) * std::exp(votes(hit.count) * own_surplus_[hit.label - 1u] - largest);
-  const double y = common_log_odds(counts) + largest + std::log(sum);
-  return std::clamp(y, -model_.occupancy_limit, model_.occupancy_limit);
+  return common + largest + std::log(sum);
+}
+
+double BeliefReader::log_odds_by_concentration(const VoxelCounts& counts) const {
+  double occupied = model_.prior_votes * model_.prior_occupied;
+  for (const ClassCount& hit : counts.hits) occupied += votes(hit.count);
+  const double free =
+      model_.prior_votes * (1.0 - model_.prior_occupied) + votes(counts.passes) * model_.pass_gain / model_.hit_gain;
+  return std::log(occupied / free);
+}
+
+double BeliefReader::unclamped_log_odds(const VoxelCounts& counts) const {
+  return by_evidence_ ? log_odds_by_evidence(counts) : log_odds_by_concentration(counts);
+}
+
+double BeliefReader::occupancy_log_odds(const VoxelCounts& counts) const {
+  return std::clamp(unclamped_log_odds(counts), -model_.occupancy_limit, model_.occupancy_limit);
 }
 
 double BeliefReader::occupied_probability(const VoxelCounts& counts) const {
@@ -115,11 +129,24 @@ std::uint16_t BeliefReader::label(const VoxelCounts& counts) const {
 }
 
 std::vector<double> BeliefReader::class_log_odds(const VoxelCounts& counts) const {
-  const double common = common_log_odds(counts);
+  // First the shares given occupied, up to a common factor.
+  const double prior_votes = model_.prior_votes * model_.prior_occupied;
   std::vector<double> y(priors_.size());
-  for (std::size_t c = 0; c < y.size(); ++c) y[c] = common + std::log(priors_[c]);
-  for (const ClassCount& hit : counts.hits)
-    if (is_class(hit.label)) y[hit.label - 1u] += votes(hit.count) * own_surplus_[hit.label - 1u];
+  for (std::size_t c = 0; c < y.size(); ++c) y[c] = std::log(priors_[c]);
+  for (const ClassCount& hit : counts.hits) {
+    if (!is_class(hit.label)) continue;
+    double& share = y[hit.label - 1u];
+    if (by_evidence_) {
+      share += votes(hit.count) * own_surplus_[hit.label - 1u];
+    } else {
+      share = std::log(prior(hit.label) + votes(hit.count) / prior_votes);
+    }
+  }
+  const double largest = *std::max_element(y.begin(), y.end());
+  const double sum = std::accumulate(y.begin(), y.end(), 0.0,
+                                     [largest](double total, double v) { return total + std::exp(v - largest); });
+  const double shift = unclamped_log_odds(counts) - largest - std::log(sum);
+  for (double& value : y) value += shift;
   return y;
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "common/mapping/voxel_block.hpp"
@@ -21,6 +22,14 @@ struct SensorModel {
   /// l, m and a. One hit then lowers P(occupied) as soon as there are more than 18 equal classes.
   bool use_paper_increments = false;
 
+  /// How counts become beliefs:
+  /// - "log_odds": multi-class log-odds, eq. 9-11 of the paper;
+  /// - "dirichlet": counts are concentrations of a Dirichlet distribution over free space and the classes;
+  /// - "bki": likewise, of votes that a kernel spread (IntegrationConfig) [Gan et al. 2019].
+  std::string fusion = "log_odds";
+  /// Of a Dirichlet prior: as many votes as say what prior_occupied and the class priors say, in (0, 1000].
+  double prior_votes = 2.0;
+
   double occupancy_limit = 9.21034;  ///< occupancy log-odds are read clamped to +-this; ln(0.9999 / 0.0001)
   double share_limit = 9.21034;      ///< a class' log share is read at most this far below the largest one
 
@@ -36,6 +45,9 @@ SensorModel paper_sensor_model(std::vector<double> class_priors = {0.1, 0.1, 0.1
 /// and -m (pass, all classes), so that a first hit multiplies the odds of "occupied" by exp(l) for any number of
 /// classes. With h_c hits of class c, u unlabelled hits and n passes, and the free class as reference (y_0 = 0):
 ///   y_c = logit P0 + ln pi_c + u l - n m + sum_j h_j phi_j + h_c (psi_c - phi_c).
+/// By the Dirichlet rules with a prior of s votes the odds are those of the concentrations, a pass counting m / l
+/// votes:
+///   y_c = ln (s P0 + u + sum_j h_j) - ln (s (1 - P0) + n m / l) + ln ((s P0 pi_c + h_c) / (s P0 + sum_j h_j)).
 class BeliefReader {
  public:
   /// Throws std::runtime_error naming the parameter that is out of range.
@@ -61,10 +73,13 @@ class BeliefReader {
  private:
   bool is_class(std::uint16_t label) const { return label >= 1 && label <= model_.class_count; }
   double prior(std::uint16_t label) const { return priors_[label - 1u]; }
-  /// Part of y_c that all classes share, without the prior share.
-  double common_log_odds(const VoxelCounts& counts) const;
+  /// ln sum_c exp y_c, by either kind of rule.
+  double unclamped_log_odds(const VoxelCounts& counts) const;
+  double log_odds_by_evidence(const VoxelCounts& counts) const;
+  double log_odds_by_concentration(const VoxelCounts& counts) const;
 
   SensorModel model_;
+  bool by_evidence_ = true;          ///< by log-odds
   std::vector<double> priors_;       ///< pi_c, index c - 1
   std::vector<double> other_gain_;   ///< phi_c, index c - 1
   std::vector<double> own_surplus_;  ///< psi_c - phi_c, index c - 1

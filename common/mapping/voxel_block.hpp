@@ -54,7 +54,7 @@ class VoxelBlock {
 
   void add_pass(int offset, std::uint32_t weight) { passes_.add(offset, weight); }
   void add_hit(int offset, std::uint16_t label, std::uint32_t weight);
-  /// Votes of one frame: at most one hit per voxel, sorted by offset.
+  /// Votes of one frame: hits sorted by offset, then label, no pair of them twice.
   void add(const BlockMask& passes, std::span<const HitVote> hits);
   /// Inverse of add. False, and the block is unspecified, when the votes were never added.
   [[nodiscard]] bool subtract(const BlockMask& passes, std::span<const HitVote> hits);

@@ -153,4 +153,22 @@ Converted<geometry::LabelImage> to_labels(const Image& message) {
   });
 }
 
+Converted<geometry::ConfidenceImage> to_confidence(const Image& message) {
+  using Result = Converted<geometry::ConfidenceImage>;
+  const std::string& encoding = message.encoding();
+  const bool is_float = encoding == "32FC1";
+  if (!is_float && encoding != "mono8" && encoding != "8UC1") {
+    return Result::refused("confidence encoding '" + shown(encoding) + "' is not 32FC1 or mono8");
+  }
+  const std::size_t bytes = is_float ? 4 : 1;
+  if (const auto problem = layout_problem(message, bytes); !problem.empty()) {
+    return Result::refused("confidence " + problem);
+  }
+  if (!is_float) return map_pixels<std::uint8_t>(message, 1, [](const std::uint8_t* p) { return *p; });
+  return map_pixels<std::uint8_t>(message, 4, [](const std::uint8_t* p) {
+    const auto share = read<float>(p);
+    return static_cast<std::uint8_t>(share > 0.0f ? std::min(share, 1.0f) * 255.0f + 0.5f : 0.0f);
+  });
+}
+
 }  // namespace lapis::messages

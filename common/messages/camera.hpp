@@ -19,5 +19,7 @@ Converted<geometry::GrayImage> to_gray(const sensor_msgs::msg::Image& message);
 Converted<geometry::DepthImage> to_depth(const sensor_msgs::msg::Image& message);
 /// Class ids of a mono8/8UC1 or mono16/16UC1 image; the largest id of the type means unlabelled (vision_msgs), as 0.
 Converted<geometry::LabelImage> to_labels(const sensor_msgs::msg::Image& message);
+/// Confidence of a 32FC1 (0 to 1; NaN is 0) or mono8 (0 to 255) image.
+Converted<geometry::ConfidenceImage> to_confidence(const sensor_msgs::msg::Image& message);
 
 }  // namespace lapis::messages

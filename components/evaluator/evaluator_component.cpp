@@ -308,10 +308,11 @@ RunMetrics EvaluatorComponent::metrics() const {
   m.loop_closures = std::count_if(graph_.edges().begin(), graph_.edges().end(), [](const auto& edge) {
     return edge.type() == lapis_msgs::msg::PoseGraphEdge_Constants::TYPE_LOOP_CLOSURE;
   });
-  const Trajectory truth = truth_in_map();
+  const Trajectory truth = truth_in_map(), keyframes = keyframes_of(graph_);
+  m.correction_rmse_m = trajectory_figures(estimate_, keyframes).ate_raw_rmse_m;
   if (!truth.empty()) {
     m.online = trajectory_figures(truth, estimate_);
-    m.keyframes = trajectory_figures(truth, keyframes_of(graph_));
+    m.keyframes = trajectory_figures(truth, keyframes);
     m.path_length_m = path_length_m(truth);
     if (*m.path_length_m > 0.0 && m.online.ate_raw_rmse_m)
       m.ate_per_metre = *m.online.ate_raw_rmse_m / *m.path_length_m;
@@ -363,7 +364,7 @@ std::optional<LabelledVoxels> EvaluatorComponent::load_ideal() const {
   std::string problem;
   const auto ideal = mapping::load_map(file.string(), problem);
   if (ideal && ideal->map.resolution_m() == config_.resolution_m) {
-    return to_known_space(ideal->map, belief_reader()).occupied;
+    return to_known_space(ideal->map, mapping::BeliefReader(ideal->sensor_model)).occupied;
   }
   spdlog::warn("no figures against the ideal map: {}", ideal ? file.string() + " has other voxels" : problem);
   return std::nullopt;

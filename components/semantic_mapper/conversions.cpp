@@ -32,6 +32,7 @@ std::uint32_t packed(const geometry::Rgb8& color) {
 
 messages::Converted<mapping::CompactFrame> to_core(const sensor_msgs::msg::Image& depth,
                                                    const sensor_msgs::msg::Image* labels,
+                                                   const sensor_msgs::msg::Image* confidence,
                                                    const sensor_msgs::msg::CameraInfo& info,
                                                    const mapping::CompactFrameConfig& config) {
   using Result = messages::Converted<mapping::CompactFrame>;
@@ -45,8 +46,15 @@ messages::Converted<mapping::CompactFrame> to_core(const sensor_msgs::msg::Image
     if (!converted) return Result::refused(converted.reason);
     ids = std::move(*converted);
   }
+  std::optional<geometry::ConfidenceImage> certainty;
+  if (confidence != nullptr) {
+    auto converted = messages::to_confidence(*confidence);
+    if (!converted) return Result::refused(converted.reason);
+    certainty = std::move(*converted);
+  }
   std::string error;
-  auto frame = mapping::CompactFrame::make(*camera, *metres, ids ? &*ids : nullptr, config, error);
+  auto frame = mapping::CompactFrame::make(*camera, *metres, ids ? &*ids : nullptr, config, error,
+                                           certainty ? &*certainty : nullptr);
   if (!frame) return Result::refused(error);
   return std::move(*frame);
 }

@@ -17,10 +17,11 @@
 
 namespace lapis::semantic_mapper {
 
-/// Depth and, where there are any, labels of one instant as the mapper keeps them; refused with a reason when they do
-/// not fit each other or the camera info.
+/// Depth and, where there are any, labels and their confidence of one instant as the mapper keeps them; refused with a
+/// reason when they do not fit each other or the camera info.
 messages::Converted<mapping::CompactFrame> to_core(const sensor_msgs::msg::Image& depth,
                                                    const sensor_msgs::msg::Image* labels,
+                                                   const sensor_msgs::msg::Image* confidence,
                                                    const sensor_msgs::msg::CameraInfo& info,
                                                    const mapping::CompactFrameConfig& config);
 /// A tracked frame's anchor around its compact frame; refused when the poses are not valid.

@@ -37,8 +37,12 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
       tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
+      confidence_(context, topics::kLabelConfidence, "label confidence", kWaitingFrames),
       info_(context, topics::kColorInfo, "camera info", kWaitingFrames) {
   config_.map.integration.max_range_m = config_.robot.sensing_range_m;
+  if (config_.sensor_model.fusion == "bki") {
+    config_.map.integration.kernel_length_voxels = config_.kernel_length_voxels;
+  }
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "semantic_mapper.output_dir");
   if (config_.map.re_anchor) {
     files::require_writable_folder(config_.map.stored_frames.spill_dir, "semantic_mapper.stored_frames.spill_dir");
@@ -61,6 +65,11 @@ void SemanticMapperComponent::load_map() {
     throw std::runtime_error("semantic_mapper.resume_from: " + config_.resume_from +
                              ": semantic_mapper.resolution_m was " + std::to_string(resolution_m) +
                              " when it was made: set it so again");
+  }
+  if ((resumed_->sensor_model.fusion == "bki") != (config_.sensor_model.fusion == "bki")) {
+    throw std::runtime_error("semantic_mapper.resume_from: " + config_.resume_from +
+                             ": semantic_mapper.sensor_model.fusion was " + resumed_->sensor_model.fusion +
+                             " when it was made: votes of a kernel and whole ones do not mix");
   }
   resumed_labels_ = label_list_ = resumed_->labels;
   config_.frame.max_label = label_list_.largest_accepted_id();
@@ -107,13 +116,19 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   const time::Time now = stamp;
   Image* depth = nullptr;
   Image* labels = nullptr;
+  Image* confidence = nullptr;
   Info* info = nullptr;
   // Labels are optional: a slow segmentation costs the frames their labels, not the map its frames.
-  const bool no_labels_come = cycle.inputs_complete || !labels_.has_publisher() || tracked_.is_full();
+  const bool is_last_chance = cycle.inputs_complete || tracked_.is_full();
+  const bool no_labels_come = is_last_chance || !labels_.has_publisher();
+  const bool no_confidence_comes = is_last_chance || !confidence_.has_publisher();
   const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
   const auto label_match = labels_.match(now, tolerance, no_labels_come, labels);
+  const auto confidence_match = confidence_.match(now, tolerance, no_confidence_comes, confidence);
   const auto info_match = info_.match(now, tolerance, cycle.inputs_complete, info);
-  if (depth_match == Match::kWait || label_match == Match::kWait || info_match == Match::kWait) return false;
+  for (const Match match : {depth_match, label_match, confidence_match, info_match}) {
+    if (match == Match::kWait) return false;
+  }
   if (tracked.state() != lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING) {
     drop("slam does not track");
   } else if (depth == nullptr) {
@@ -121,21 +136,22 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   } else if (info == nullptr) {
     drop("no camera info for a tracked frame");
   } else {
-    integrate(tracked, *depth, labels, *info);
+    integrate(tracked, *depth, labels, confidence, *info);
   }
   tracked_.drop_until(now);
   depth_.drop_until(now - tolerance);
   labels_.drop_until(now - tolerance);
+  confidence_.drop_until(now - tolerance);
   info_.drop_until(now - tolerance);
   return true;
 }
 
 void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& depth, const Image* labels,
-                                        const Info& info) {
+                                        const Image* confidence, const Info& info) {
   const time::Time stamp = messages::from_message(tracked.header().stamp());
   const bool is_first = mapper_ == nullptr || tracked.session() != session_;
   if (!is_first && (stamp - stamp_).seconds() < config_.frame_interval_s) return;
-  auto frame = to_core(depth, labels, info, config_.frame);
+  auto frame = to_core(depth, labels, confidence, info, config_.frame);
   if (!frame) return drop(frame.reason);
   const auto above_list = frame->labels_out_of_list();
   if (above_list > 0) context_.status().count("pixels unlabelled: label not in the list", above_list);

@@ -35,7 +35,8 @@ class SemanticMapperComponent {
   void set_labels(const vision_msgs::msg::LabelInfo& message);
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
-  void integrate(const Tracked& tracked, const Image& depth, const Image* labels, const Info& info);
+  void integrate(const Tracked& tracked, const Image& depth, const Image* labels, const Image* confidence,
+                 const Info& info);
   void follow_graph(const Graph& graph);
   void report_store(const FrameStore& store);
   void drop(const std::string& reason);
@@ -68,6 +69,7 @@ class SemanticMapperComponent {
   runtime::StampedInput<Tracked> tracked_;
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Image> labels_;
+  runtime::StampedInput<Image> confidence_;
   runtime::StampedInput<Info> info_;
   std::optional<Graph> graph_;  // newest, not yet followed
   mapping::LabelList label_list_;

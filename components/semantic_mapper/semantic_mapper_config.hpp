@@ -15,6 +15,7 @@ struct SemanticMapperComponentConfig {
   MapperConfig map;
   mapping::CompactFrameConfig frame;
   mapping::SensorModel sensor_model;
+  double kernel_length_voxels = 2.0;
   GridConfig grid;
   ObstacleConfig obstacles;
   double max_stamp_difference_s = 0.016;
@@ -59,6 +60,9 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("integration", c.map.integration);
   field("frame", c.frame);
   field("sensor_model", c.sensor_model);
+  field("kernel_length_voxels", c.kernel_length_voxels,
+        config::in_range(mapping::kMinKernelLength_voxels, mapping::kMaxKernelLength_voxels),
+        "of the kernel that spreads hits to the voxels around them with sensor_model.fusion: bki");
   field("grid", c.grid);
   field("obstacles", c.obstacles);
   field("re_anchor", c.map.re_anchor, config::anything(),

@@ -6,6 +6,8 @@
 #include "common/files/atomic_file.hpp"
 #include "common/trajectory/trajectory.hpp"
 #include "simulator/core/frame_picture.hpp"
+#include "simulator/core/truth/truth_files.hpp"
+#include "simulator/run_files.hpp"
 #include "simulator/set_up.hpp"
 
 namespace lapis::simulator {
@@ -74,12 +76,16 @@ int export_tum(const SimulatorConfig& config) {
   auto tour = plan_tour(world, start, with_a_tour(config));
   Simulation simulation(world, simulation_config(config), start);
   TumWriter writer(config.export_dir, world.scene(), config.robot.camera);
+  const auto truth = std::filesystem::path(config.export_dir) / "ground_truth";
+  write_truth(world, start, config, config.truth.resolution_m, truth);
+  IdealMap ideal(truth_config(config));
   const geometry::Pose T_base_camera = geometry::T_base_camera(camera_mount(config.robot.camera));
   std::optional<DriveCommand> command;
   bool is_over = false;
   while (!is_over) {
     const SensorFrame frame = simulation.next(command);
     writer.add(frame, frame.T_world_base * T_base_camera);
+    add_to(ideal, frame, world, start, config);
     command = tour->command(frame.robot);
     if (const auto problem = tour->stalled(); !problem.empty()) {
       throw std::runtime_error("scene " + world.scene().name + ": " + problem);
@@ -90,6 +96,7 @@ int export_tum(const SimulatorConfig& config) {
     }
   }
   writer.finish();
+  write_ideal_map(truth, world.scene(), ideal);
   std::cout << config.export_dir << '\n';
   return 0;
 }

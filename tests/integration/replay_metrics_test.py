@@ -10,7 +10,7 @@ FILES = ("manifest.yaml", "trajectory_estimate.txt", "trajectory_ground_truth.tx
          *(f"logs/{name}.log" for name in chain.COMPONENTS))
 MEASURED = ("exit_reason", "frames_total", "frames_tracked", "lost_time_s", "loop_closures", "ate_se3_rmse_m",
             "ate_origin_rmse_m", "ate_raw_rmse_m", "rpe_1m_rmse_m", "heading_rmse_rad", "keyframe_ate_se3_rmse_m",
-            "keyframe_ate_origin_rmse_m", "keyframe_ate_raw_rmse_m", "ate_per_metre", "map_error_mean_m",
+            "keyframe_ate_origin_rmse_m", "keyframe_ate_raw_rmse_m", "correction_rmse_m", "ate_per_metre", "map_error_mean_m",
             "map_error_p95_m", "map_completeness_mean_m", "reference_fusion_share", "explored_volume_m3",
             "path_length_m", "real_time_factor", "duration_s", "wall_time_s", "cpu_ms_per_frame", "peak_rss_mb")
 OF_LABELS = ("iou_top8_mean", "iou_mean", "iou_by_class")

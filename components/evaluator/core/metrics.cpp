@@ -59,6 +59,7 @@ void add_trajectories(ordered_json& document, const RunMetrics& m) {
   document["keyframe_ate_se3_rmse_m"] = value_or_null(m.keyframes.ate_se3_rmse_m);
   document["keyframe_ate_origin_rmse_m"] = value_or_null(m.keyframes.ate_origin_rmse_m);
   document["keyframe_ate_raw_rmse_m"] = value_or_null(m.keyframes.ate_raw_rmse_m);
+  document["correction_rmse_m"] = value_or_null(m.correction_rmse_m);
   document["ate_at_80_m"] = value_or_null(m.ate_at_80_m);
   document["ate_per_metre"] = value_or_null(m.ate_per_metre);
 }

@@ -42,7 +42,7 @@ std::optional<Header> read_header(std::span<const std::uint8_t> bytes) {
     if (key == "size") words >> header.nodes;
     if (key == "res") words >> header.file.resolution_m;
   }
-  if (!text) return std::nullopt;
+  if (text.fail() || text.eof()) return std::nullopt;  // no line after "data"
   header.bytes = static_cast<std::size_t>(text.tellg());
   return header;
 }

@@ -107,6 +107,9 @@ TEST_F(SavedSemanticMap, ThatCannotBeGoneOnWithIsRefusedInOneLine) {
   ChildProcess coarse(kMapper, {"--set", resume(), "--set", "semantic_mapper.resolution_m=0.5"});
   EXPECT_EQ(coarse.wait(), 2) << coarse.log();
   EXPECT_THAT(coarse.log(), HasSubstr(file() + ": semantic_mapper.resolution_m was 0.25"));
+  ChildProcess spread(kMapper, {"--set", resume(), "--set", "semantic_mapper.sensor_model.fusion=bki"});
+  EXPECT_EQ(spread.wait(), 2) << spread.log();
+  EXPECT_THAT(spread.log(), HasSubstr(file() + ": semantic_mapper.sensor_model.fusion was log_odds"));
   {
     MapperRun run({resume()});
     ASSERT_TRUE(run.is_ready()) << run.mapper.log();

@@ -73,6 +73,36 @@ TEST_F(MapperContract, LabelsAboveTheListAreUnlabelledAndCounted) {
   EXPECT_TRUE(client.has_map());
 }
 
+TEST_F(MapperContract, LabelsWithoutConfidenceLeaveNoTraceButSurfacesDo) {
+  auto& confidence = probe.advertise(topics::kLabelConfidence);
+  ASSERT_TRUE(probe.wait_until([&] { return confidence.matched() > 0; }));
+  int index = 0;
+  const auto send_with = [&](const char* encoding, std::int64_t session) {
+    auto frame = feed.frame(index);
+    auto image = *frame.labels;
+    image.encoding(encoding);
+    std::fill(image.data().begin(), image.data().end(), 0);
+    confidence.publish(image);
+    send(frame, index++, session);
+  };
+  // Repeated: the mapper may find the publisher of confidence after the first frames.
+  ASSERT_TRUE(probe.wait_until([&] {
+    send_with("rgb8", 1);
+    return wait_for_count("confidence encoding 'rgb8'", 1);
+  })) << mapper.log();
+  for (int i = 0; i < 4; ++i) send_with("mono8", 2);
+  ASSERT_TRUE(probe.wait_until([&] {
+    return client.has_map() && client.states.back().session() == 2 &&
+           messages::from_message(client.states.back().header().stamp()) == CameraFeed::stamp(index - 1);
+  })) << mapper.log();
+  std::size_t labelled = 0, unlabelled = 0;
+  client.mirror.map()->for_each_observed([&](const auto&, const mapping::VoxelCounts& counts) {
+    for (const auto& hit : counts.hits) ++(hit.label == 0 ? unlabelled : labelled);
+  });
+  EXPECT_EQ(labelled, 0u);
+  EXPECT_GT(unlabelled, 100u);
+}
+
 TEST_F(MapperContract, DuplicateAndBackwardStampsAreDropped) {
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(map_frame(i)) << mapper.log();
   for (const int old : {3, 1}) {

@@ -45,22 +45,22 @@ lapis_msgs::msg::TrackedFrame tracked_frame() {
 }
 
 mapping::CompactFrame compact_frame() {
-  const auto frame = to_core(depth_image(8, 6, 1000), nullptr, camera_info(8, 6), {});
+  const auto frame = to_core(depth_image(8, 6, 1000), nullptr, nullptr, camera_info(8, 6), {});
   return *frame;
 }
 
 TEST(SemanticMapperConversions, DepthWithoutLabelsIsAFrameWithoutLabels) {
-  const auto frame = to_core(depth_image(8, 6, 1000), nullptr, camera_info(8, 6), {});
+  const auto frame = to_core(depth_image(8, 6, 1000), nullptr, nullptr, camera_info(8, 6), {});
   ASSERT_TRUE(frame);
   EXPECT_FALSE(frame->has_labels());
   EXPECT_DOUBLE_EQ(frame->median_depth_m(), 1.0);
 }
 
 TEST(SemanticMapperConversions, SizesThatDisagreeAreRefused) {
-  EXPECT_FALSE(to_core(depth_image(8, 6, 1000), nullptr, camera_info(4, 6), {}));
+  EXPECT_FALSE(to_core(depth_image(8, 6, 1000), nullptr, nullptr, camera_info(4, 6), {}));
   auto labels = depth_image(4, 6, 1);
   labels.encoding("mono16");
-  EXPECT_FALSE(to_core(depth_image(8, 6, 1000), &labels, camera_info(8, 6), {}));
+  EXPECT_FALSE(to_core(depth_image(8, 6, 1000), &labels, nullptr, camera_info(8, 6), {}));
 }
 
 // Live depth and labels are not rectified: a map of distorted images would be wrong.
@@ -68,10 +68,11 @@ TEST(SemanticMapperConversions, DistortedCamerasAreRefusedWithTheReason) {
   auto info = camera_info(8, 6);
   info.distortion_model("plumb_bob");
   info.d({0.1, 0.0, 0.0, 0.0, 0.0});
-  EXPECT_EQ(to_core(depth_image(8, 6, 1000), nullptr, info, {}).reason,
+  EXPECT_EQ(to_core(depth_image(8, 6, 1000), nullptr, nullptr, info, {}).reason,
             "camera info has distortion; rectify the images first");
   info.distortion_model("equidistant");
-  EXPECT_THAT(to_core(depth_image(8, 6, 1000), nullptr, info, {}).reason, HasSubstr("distortion model 'equidistant'"));
+  EXPECT_THAT(to_core(depth_image(8, 6, 1000), nullptr, nullptr, info, {}).reason,
+              HasSubstr("distortion model 'equidistant'"));
 }
 
 TEST(SemanticMapperConversions, AnchorKeepsIdsAndStamp) {

@@ -69,6 +69,22 @@ TEST(CompactFrame, LabelsAboveTheListBecomeUnlabelledAndAreCounted) {
   EXPECT_EQ(frame->labels()[1], 40);
 }
 
+TEST(CompactFrame, KeepsTheSampledConfidenceOfLabels) {
+  const geometry::DepthImage depth(kCamera.width, kCamera.height, 1.0f);
+  const geometry::LabelImage labels(kCamera.width, kCamera.height, 3);
+  geometry::ConfidenceImage confidence(kCamera.width, kCamera.height);
+  for (std::size_t i = 0; i < confidence.pixels.size(); ++i) confidence.pixels[i] = static_cast<std::uint8_t>(i * 7);
+  std::string error;
+  const auto frame = CompactFrame::make(kCamera, depth, &labels, {5, 40}, error, &confidence);
+  ASSERT_TRUE(frame) << error;
+  for (int row = 0; row < frame->rows(); ++row)
+    for (int column = 0; column < frame->columns(); ++column) {
+      const int sample = row * frame->columns() + column;
+      EXPECT_EQ(frame->confidence()[static_cast<std::size_t>(sample)], confidence(column * 5, row * 5));
+    }
+  EXPECT_TRUE(CompactFrame::make(kCamera, depth, nullptr, {5, 40}, error, &confidence)->confidence().empty());
+}
+
 TEST(CompactFrame, NamesWhatDisagrees) {
   const geometry::DepthImage depth(kCamera.width, kCamera.height, 1.0f), small(8, 8, 1.0f);
   const geometry::LabelImage small_labels(8, 8);
@@ -77,6 +93,9 @@ TEST(CompactFrame, NamesWhatDisagrees) {
   EXPECT_NE(error.find("depth size"), std::string::npos);
   EXPECT_FALSE(CompactFrame::make(kCamera, depth, &small_labels, {}, error));
   EXPECT_NE(error.find("label size"), std::string::npos);
+  const geometry::ConfidenceImage small_confidence(8, 8);
+  EXPECT_FALSE(CompactFrame::make(kCamera, depth, nullptr, {}, error, &small_confidence));
+  EXPECT_NE(error.find("confidence size"), std::string::npos);
   EXPECT_FALSE(CompactFrame::make(geometry::PinholeCamera{}, depth, nullptr, {}, error));
   EXPECT_NE(error.find("camera"), std::string::npos);
   EXPECT_FALSE(CompactFrame::make(kCamera, depth, nullptr, {0, 0}, error));
@@ -106,13 +125,17 @@ TEST(FrameCodec, UnpacksToTheSameFrame) {
   geometry::LabelImage labels(kCamera.width, kCamera.height);
   for (float& d : depth.pixels) d = depth_m(random);
   for (std::uint16_t& l : labels.pixels) l = static_cast<std::uint16_t>(label(random));
+  geometry::ConfidenceImage confidence(kCamera.width, kCamera.height);
+  for (std::uint8_t& c : confidence.pixels) c = static_cast<std::uint8_t>(label(random));
   for (const geometry::LabelImage* with_labels : {&labels, static_cast<geometry::LabelImage*>(nullptr)}) {
     std::string error;
-    const auto frame = CompactFrame::make(kCamera, depth, with_labels, {3, 60000}, error);
+    const auto frame = CompactFrame::make(kCamera, depth, with_labels, {3, 60000}, error, &confidence);
     ASSERT_TRUE(frame) << error;
     const CompactFrame again = *unpack_frame(pack(*frame));
     EXPECT_EQ(again.depth_mm(), frame->depth_mm());
     EXPECT_EQ(again.labels(), frame->labels());
+    EXPECT_EQ(again.confidence(), frame->confidence());
+    EXPECT_EQ(again.confidence().empty(), with_labels == nullptr);
     EXPECT_EQ(again.labels_out_of_list(), frame->labels_out_of_list());
     EXPECT_EQ(again.stride(), 3);
     EXPECT_EQ(again.camera().fx, kCamera.fx);

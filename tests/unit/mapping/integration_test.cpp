@@ -26,17 +26,18 @@ PlainVotes plain(const FrameVotes& votes) {
       const bool is_passed = block.passes[static_cast<std::size_t>(offset / 64)] >> (offset % 64) & 1u;
       if (is_passed) p.passes.insert(voxel_at(block.block, offset));
     }
-    for (std::uint32_t i = block.hits_begin; i < block.hits_end; ++i)
-      EXPECT_TRUE(p.hits.emplace(voxel_at(block.block, votes.hits[i].offset), votes.hits[i].label).second);
+    for (const HitVote& hit : votes.hits_of(block))
+      EXPECT_TRUE(p.hits[voxel_at(block.block, hit.offset)].emplace(hit.label, hit.weight).second);
   }
-  for (const auto& [voxel, label] : p.hits) EXPECT_FALSE(p.passes.contains(voxel));
+  for (const auto& [voxel, ballot] : p.hits) EXPECT_FALSE(p.passes.contains(voxel));
   return p;
 }
 
 CompactFrame frame_of(const geometry::PinholeCamera& camera, const geometry::DepthImage& depth,
-                      const geometry::LabelImage* labels = nullptr, int stride = 1) {
+                      const geometry::LabelImage* labels = nullptr, int stride = 1,
+                      const geometry::ConfidenceImage* confidence = nullptr) {
   std::string error;
-  return CompactFrame::make(camera, depth, labels, {stride, 65535}, error).value();
+  return CompactFrame::make(camera, depth, labels, {stride, 65535}, error, confidence).value();
 }
 
 IntegrationConfig exact_config() {
@@ -91,7 +92,7 @@ TEST(ComputeVotes, EqualsSlabTestOfEveryVoxelAndRay) {
           ray *= config.max_range_m / range;
           t_end = 1.0;
         } else {
-          expected.hits[grid.index_of(T.translation() + ray)] = 0;
+          expected.hits[grid.index_of(T.translation() + ray)] = test::whole_vote(0);
         }
         const VoxelIndex center = grid.index_of(T.translation());
         const int reach = static_cast<int>(config.max_range_m / r) + 2;
@@ -117,12 +118,16 @@ TEST(ComputeVotes, EqualsItsPlainestFormToTheLastVote) {
     auto image = lapis::test::render(flat, camera, T);
     lapis::test::add_noise(image, random);
     for (std::size_t i = 0; i < image.depth.pixels.size(); i += 17) image.depth.pixels[i] = 0.0f;
+    geometry::ConfidenceImage confidence(camera.width, camera.height);
+    for (std::uint8_t& value : confidence.pixels) value = static_cast<std::uint8_t>(random());
     for (const double r : {0.5, 0.25, 0.1, 0.05, 0.02}) {
       IntegrationConfig config;
       config.max_range_m = r < 0.1 ? 3.0 : 5.0;
       config.min_range_m = r < 0.2 ? 0.0 : 0.3;
       config.end_margin_voxels = r > 0.2 ? 0.5 : 0.0;
-      const CompactFrame frame = frame_of(camera, image.depth, &image.labels, r < 0.1 ? 3 : 1);
+      config.kernel_length_voxels = r < 0.2 ? 0.0 : 2.2;
+      const auto* certainty = r == 0.25 || r == 0.05 ? nullptr : &confidence;
+      const CompactFrame frame = frame_of(camera, image.depth, &image.labels, r < 0.1 ? 3 : 1, certainty);
       const PlainVotes expected = test::PlainIntegration(frame, T, config, r).votes();
       ASSERT_EQ(plain(compute_votes(frame, T, config, r)), expected) << r;
       ASSERT_GT(expected.passes.size(), 100u);
@@ -151,7 +156,7 @@ TEST(ComputeVotes, HitsAreExactlyTheVoxelsOfTheSampledPoints) {
       for (const auto& [label, n] : classes)
         if (n > most) best = label, most = n;
       const auto it = got.hits.find(voxel);
-      if (it == got.hits.end() || it->second != best) ++different;
+      if (it == got.hits.end() || it->second != test::whole_vote(best)) ++different;
     }
     EXPECT_LE(different, tally.size() / 200) << r;
     EXPECT_NEAR(static_cast<double>(got.hits.size()), static_cast<double>(tally.size()),
@@ -175,13 +180,52 @@ TEST(ComputeVotes, ClassIsTheMajorityAndTiesGoToTheSmallerId) {
     return got.hits.begin()->second;
   };
   s.labels.pixels = {7, 7, 3, 3, 3, 9, 9, 9, 9};
-  EXPECT_EQ(label(), 9);
+  EXPECT_EQ(label(), test::whole_vote(9));
   s.labels.pixels = {7, 7, 7, 3, 3, 3, 0, 0, 0};
-  EXPECT_EQ(label(), 3);
+  EXPECT_EQ(label(), test::whole_vote(3));
   s.labels.pixels = {0, 0, 0, 0, 0, 0, 0, 0, 5};  // any label beats none
-  EXPECT_EQ(label(), 5);
+  EXPECT_EQ(label(), test::whole_vote(5));
   s.labels.pixels.assign(9, 0);
-  EXPECT_EQ(label(), 0);
+  EXPECT_EQ(label(), test::whole_vote(0));
+}
+
+TEST(ComputeVotes, PixelsWeighAsMuchAsTheirLabelsAreCertain) {
+  TwoPixels s;
+  geometry::ConfidenceImage confidence(9, 1);
+  const auto vote = [&] {
+    const CompactFrame frame = frame_of(s.camera, s.depth, &s.labels, 1, &confidence);
+    return plain(compute_votes(frame, s.T, exact_config(), 0.5)).hits.begin()->second;
+  };
+  s.labels.pixels = {7, 7, 7, 7, 7, 9, 9, 0, 0};
+  confidence.pixels = {51, 51, 51, 51, 51, 255, 204, 255, 255};
+  EXPECT_EQ(vote(), (test::Ballot{{0, 26}, {9, 230}})) << "two sure pixels against five unsure ones; 0.9 of a vote";
+  confidence.pixels.assign(9, 0);
+  EXPECT_EQ(vote(), test::whole_vote(0)) << "a surface is there, of whatever class";
+}
+
+TEST(ComputeVotes, AKernelSpreadsAVoteToTheCellsBehindAndBeside) {
+  TwoPixels s;
+  s.labels.pixels.assign(9, 4);
+  IntegrationConfig config = exact_config();
+  config.kernel_length_voxels = 2.0;
+  const double r = 0.5;  // the wall's point (2.1, 0.1, 0.1) lies in voxel (4, 0, 0), whose centre is (2.25, 0.25, 0.25)
+  const PlainVotes got = plain(compute_votes(frame_of(s.camera, s.depth, &s.labels), s.T, config, r));
+  const auto weight = [&](double dx, double dy, double dz) {
+    return static_cast<std::uint32_t>(std::floor(sparse_kernel(std::hypot(dx, dy, dz) / r / 2.0) * kOneVote + 0.5));
+  };
+  EXPECT_EQ(got.hits.at({4, 0, 0}), (test::Ballot{{4, weight(0.15, 0.15, 0.15)}}));
+  EXPECT_EQ(got.hits.at({4, -1, 0}), (test::Ballot{{4, weight(0.15, 0.35, 0.15)}}));
+  EXPECT_EQ(got.hits.at({5, 0, 0}), (test::Ballot{{4, weight(0.65, 0.15, 0.15)}}));
+  EXPECT_TRUE(got.passes.contains({3, 0, 0})) << "a ray went through it";
+  EXPECT_FALSE(got.hits.contains({3, 0, 0}));
+}
+
+TEST(SparseKernel, FallsFromOneToZero) {
+  EXPECT_DOUBLE_EQ(sparse_kernel(0.0), 1.0);
+  EXPECT_NEAR(sparse_kernel(0.5), 1.0 / 6.0, 1e-12);
+  EXPECT_EQ(sparse_kernel(1.0), 0.0);
+  EXPECT_EQ(sparse_kernel(7.0), 0.0);
+  for (double share = 0.01; share < 1.0; share += 0.01) EXPECT_LT(sparse_kernel(share), sparse_kernel(share - 0.01));
 }
 
 TEST(ComputeVotes, FarReturnsCarveWithoutHitAndMissingDepthSaysNothing) {

@@ -40,6 +40,8 @@ class MapFileTest : public ::testing::Test {
 MapFile example(unsigned seed = 1, int frames = 20) {
   MapFile file{test::random_map(seed, 0.1, frames), {}, LabelList::from_names({{1, "wall"}, {7, "chair"}}), {}};
   file.sensor_model.prior_occupied = 0.3;
+  file.sensor_model.fusion = "dirichlet";
+  file.sensor_model.prior_votes = 7.0;
   file.provenance = {{"source", "test"}, {"frames", "20"}};
   return file;
 }

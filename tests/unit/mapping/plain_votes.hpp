@@ -10,10 +10,15 @@
 
 namespace lapis::mapping::test {
 
+/// A voxel's vote: weight per label [1/256 vote].
+using Ballot = std::map<int, std::uint32_t>;
+
+inline Ballot whole_vote(int label) { return {{label, kOneVote}}; }
+
 /// Votes voxel by voxel.
 struct PlainVotes {
   std::set<VoxelIndex> passes;
-  std::map<VoxelIndex, int> hits;
+  std::map<VoxelIndex, Ballot> hits;
   bool operator==(const PlainVotes&) const = default;
 };
 
@@ -28,7 +33,8 @@ class PlainIntegration {
     // Coordinates relative to a corner of whole blocks near the camera: the numbers that compute_votes rounds.
     const auto [low, high] = reach();
     for (int axis = 0; axis < 3; ++axis) {
-      const auto first = static_cast<std::int32_t>(std::floor(low[axis])) - 1;
+      const int margin = 1 + static_cast<int>(std::ceil(config.kernel_length_voxels));
+      const auto first = static_cast<std::int32_t>(std::floor(low[axis])) - margin;
       corner_[axis] = floor_divide(first, kBlockEdge) * kBlockEdge;
     }
     camera_ = T_map_camera.translation() / resolution_m - corner_.cast<double>();
@@ -50,13 +56,17 @@ class PlainIntegration {
       (is_beyond ? cell.beyond : cell.hits).push_back(sample);
     }
     PlainVotes votes;
+    std::map<VoxelIndex, Eigen::Vector3d> points;
     for (const auto& [index, cell] : cells) {
       const bool is_hit = !cell.hits.empty();
       const auto& deciding = is_hit ? cell.hits : cell.beyond;
+      const std::uint32_t middle = deciding[deciding.size() / 2];
       if (is_hit) votes.hits[index] = majority(cell.hits);
-      pass(deciding[deciding.size() / 2], is_hit, votes.passes);
+      if (is_hit) points[index] = camera_ + ray_of(middle);
+      pass(middle, is_hit, votes.passes);
     }
-    for (const auto& [index, label] : votes.hits) votes.passes.erase(index);
+    for (const auto& [index, ballot] : votes.hits) votes.passes.erase(index);
+    if (config_.kernel_length_voxels > 0.0) spread(points, votes);
     return votes;
   }
 
@@ -87,14 +97,68 @@ class PlainIntegration {
     return (corner + x_step * column + y_step * row) * frame_.depth_mm()[sample];
   }
 
-  int majority(const std::vector<std::uint32_t>& samples) const {
-    std::map<int, int> tally;
-    for (const std::uint32_t sample : samples)
-      if (frame_.has_labels() && frame_.labels()[sample] > 0) ++tally[frame_.labels()[sample]];
-    int label = 0, most = 0;
-    for (const auto& [candidate, count] : tally)
-      if (count > most) label = candidate, most = count;
-    return label;
+  Ballot majority(const std::vector<std::uint32_t>& samples) const {
+    std::map<int, std::pair<std::uint64_t, std::uint64_t>> tally;  // confidence, samples
+    for (const std::uint32_t sample : samples) {
+      if (!frame_.has_labels() || frame_.labels()[sample] == 0) continue;
+      auto& [weight, count] = tally[frame_.labels()[sample]];
+      weight += frame_.confidence().empty() ? 255u : frame_.confidence()[sample];
+      ++count;
+    }
+    int label = 0;
+    std::uint64_t most = 0, share = 0;
+    for (const auto& [candidate, votes] : tally) {
+      if (votes.first <= most) continue;
+      label = candidate;
+      most = votes.first;
+      share = (votes.first * kOneVote + 127 * votes.second) / (255 * votes.second);
+    }
+    return split(label, static_cast<std::uint32_t>(share), kOneVote);
+  }
+
+  static Ballot split(int label, std::uint32_t share, std::uint32_t weight) {
+    Ballot ballot;
+    if (share > 0) ballot[label] = share;
+    if (share < weight) ballot[0] = weight - share;
+    return ballot;
+  }
+
+  /// Every voxel asks every hit.
+  void spread(const std::map<VoxelIndex, Eigen::Vector3d>& points, PlainVotes& votes) const {
+    const int reach = 1 + static_cast<int>(std::ceil(config_.kernel_length_voxels));
+    std::set<VoxelIndex> near;
+    for (const auto& [hit, point] : points)
+      for (int z = -reach; z <= reach; ++z)
+        for (int y = -reach; y <= reach; ++y)
+          for (int x = -reach; x <= reach; ++x) near.insert({hit.x + x, hit.y + y, hit.z + z});
+    std::map<VoxelIndex, Ballot> spread;
+    for (const VoxelIndex& v : near) {
+      if (votes.passes.contains(v)) continue;
+      std::map<int, std::uint32_t> tally;
+      std::uint32_t sum = 0, labelled = 0;
+      const Eigen::Vector3d center = (Eigen::Vector3i(v.x, v.y, v.z) - corner_).cast<double>().array() + 0.5;
+      for (int z = -reach; z <= reach; ++z)
+        for (int y = -reach; y <= reach; ++y)
+          for (int x = -reach; x <= reach; ++x) {
+            const auto hit = points.find({v.x + x, v.y + y, v.z + z});
+            if (hit == points.end()) continue;
+            const double share = (center - hit->second).norm() / config_.kernel_length_voxels;
+            const auto weight = static_cast<std::uint32_t>(std::floor(sparse_kernel(share) * kOneVote + 0.5));
+            sum += weight;
+            for (const auto& [label, part] : votes.hits.at(hit->first)) {
+              if (label == 0) continue;
+              tally[label] += weight * part / kOneVote;
+              labelled += weight * part / kOneVote;
+            }
+          }
+      if (sum == 0) continue;
+      int best = 0;
+      for (const auto& [label, weight] : tally)
+        if (weight > (best == 0 ? 0 : tally[best])) best = label;
+      const std::uint32_t weight = std::min(sum, kOneVote);
+      spread[v] = split(best, weight * labelled / sum, weight);
+    }
+    votes.hits = std::move(spread);
   }
 
   void pass(std::uint32_t sample, bool is_hit, std::set<VoxelIndex>& passes) const {

@@ -141,6 +141,52 @@ TEST(BeliefReader, OccupancyFloorDoesNotDependOnTheNumberOfClasses) {
   }
 }
 
+class DirichletRules : public ::testing::TestWithParam<const char*> {
+ protected:
+  static SensorModel model(int classes) {
+    SensorModel m = model_of(classes);
+    m.fusion = GetParam();
+    return m;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Fusion, DirichletRules, ::testing::Values("dirichlet", "bki"));
+
+TEST_P(DirichletRules, ProbabilitiesAreSharesOfTheConcentrations) {
+  SensorModel m = model(3);
+  m.prior_votes = 4.0;
+  m.class_priors = {0.5, 0.3, 0.2};
+  const BeliefReader reader(m);
+  VoxelCounts c = counts(6, {{2, 5}});
+  c.hits.push_back({3, kOneVote / 2});
+  const double free = 4 * 0.8 + 6 * 0.4 / 0.85, prior = 4 * 0.2;
+  const double of_class[] = {prior * 0.5, prior * 0.3 + 5, prior * 0.2 + 0.5};
+  const double sum = free + prior + 5.5;
+  const std::vector<double> p = reader.class_probabilities(c);
+  EXPECT_NEAR(p[0], free / sum, 1e-12);
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_NEAR(p[k + 1], of_class[k] / sum, 1e-12) << k;
+  EXPECT_EQ(reader.label(c), 2);
+  EXPECT_EQ(reader.label(counts(0, {{3, 0}})), 1) << "the prior decides when nothing else does";
+}
+
+TEST_P(DirichletRules, UnlabelledVotesSpeakForOccupiedAndForNoClass) {
+  const BeliefReader reader(model(2));
+  const std::vector<double> p = reader.class_probabilities(counts(0, {{0, 3}, {1, 1}}));
+  EXPECT_NEAR(p[0], 1.6 / 6.0, 1e-12);
+  EXPECT_NEAR(p[1] / p[2], 1.2 / 0.2, 1e-9);
+}
+
+TEST_P(DirichletRules, TwoHitsMakeAVoxelOccupiedForAnyNumberOfClasses) {
+  for (const int classes : {2, 4, 40}) {
+    const BeliefReader reader(model(classes));
+    EXPECT_NEAR(reader.occupied_probability({}), 0.2, 1e-12);
+    EXPECT_FALSE(reader.is_occupied(counts(0, {{1, 1}})));
+    EXPECT_TRUE(reader.is_occupied(counts(0, {{1, 2}})));
+    EXPECT_TRUE(reader.is_occupied(counts(3, {{1, 3}})));
+    EXPECT_LT(reader.occupied_probability(counts(1, {})), 0.2);
+  }
+}
+
 TEST(BeliefReader, EntropyIsKnownAtItsExtremes) {
   const BeliefReader reader(model_of(4));
   const double p = 0.2;
@@ -157,6 +203,8 @@ TEST(BeliefReader, RefusesParametersOutOfRange) {
   };
   EXPECT_THROW(BeliefReader(with([](SensorModel& m) { m.prior_occupied = 1.0; })), std::runtime_error);
   EXPECT_THROW(BeliefReader(with([](SensorModel& m) { m.class_count = 0; })), std::runtime_error);
+  EXPECT_THROW(BeliefReader(with([](SensorModel& m) { m.prior_votes = 0.0; })), std::runtime_error);
+  EXPECT_THROW(BeliefReader(with([](SensorModel& m) { m.fusion = "average"; })), std::runtime_error);
   EXPECT_THROW(BeliefReader(with([](SensorModel& m) { m.hit_gain = NAN; })), std::runtime_error);
   EXPECT_THROW(BeliefReader(with([](SensorModel& m) { m.label_accuracy = 0.01; })), std::runtime_error);
   EXPECT_THROW(BeliefReader(with([](SensorModel& m) { m.class_priors = {0.5, 0.5}; })), std::runtime_error);

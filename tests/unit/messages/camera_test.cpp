@@ -165,13 +165,20 @@ TEST(Labels, LargestIdOfTheTypeMeansUnlabelled) {
   EXPECT_EQ(to_labels(image<std::uint16_t>("16UC1", 1, 1, {9}))->pixels, (std::vector<std::uint16_t>{9}));
 }
 
+TEST(Confidence, IsAShareOfCertainty) {
+  EXPECT_EQ(to_confidence(image<std::uint8_t>("mono8", 3, 1, {0, 40, 255}))->pixels,
+            (std::vector<std::uint8_t>{0, 40, 255}));
+  EXPECT_EQ(to_confidence(image<float>("32FC1", 5, 1, {0.0f, 0.5f, 1.0f, 7.0f, NAN}))->pixels,
+            (std::vector<std::uint8_t>{0, 128, 255, 255, 0}));
+}
+
 TEST(BadImage, WrongEncodingIsNamed) {
   Image message = image<std::uint8_t>("yuv422", 2, 2, {0, 0, 0, 0});
   EXPECT_THAT(to_gray(message).reason, HasSubstr("'yuv422'"));
   EXPECT_THAT(to_depth(message).reason, HasSubstr("'yuv422'"));
   EXPECT_THAT(to_labels(message).reason, HasSubstr("'yuv422'"));
   message.encoding("");
-  EXPECT_FALSE(to_gray(message) || to_depth(message) || to_labels(message));
+  EXPECT_FALSE(to_gray(message) || to_depth(message) || to_labels(message) || to_confidence(message));
 }
 
 // All three conversions share the layout check; each kind of wrong layout is tried on each of them.
@@ -190,6 +197,11 @@ void expect_refused(const Image& message, const std::string& reason) {
     Image labels = message;
     labels.encoding(encoding);
     EXPECT_THAT(to_labels(labels).reason, HasSubstr(reason)) << encoding;
+  }
+  for (const char* encoding : {"mono8", "32FC1"}) {
+    Image confidence = message;
+    confidence.encoding(encoding);
+    EXPECT_THAT(to_confidence(confidence).reason, HasSubstr(reason)) << encoding;
   }
 }
 

@@ -135,6 +135,12 @@ TEST(OctreeFile, DamagedFilesAreRefusedWithAReason) {
 }
 
 // A tree without end, as a chain of inner nodes: liboctomap follows it until its stack is used up.
+TEST(OctreeFile, AHeaderWithoutALineAfterItIsRefused) {
+  std::string error;
+  EXPECT_FALSE(decode_octree(to_bytes("# Octomap OcTree binary file\nid OcTree\nsize 1\nres 0.1\ndata"), error));
+  EXPECT_THAT(error, HasSubstr("is not an OctoMap file"));
+}
+
 TEST(OctreeFile, ATreeThatIsTooDeepIsRefused) {
   std::string text = "# Octomap OcTree binary file\nid OcTree\nsize 100001\nres 0.1\ndata\n";
   for (int i = 0; i < 100000; ++i) text += std::string("\x03\x00", 2);

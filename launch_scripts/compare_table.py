@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Prints the table of compare.sh from the metrics.json of run folders DIR/VARIANT/RUN.
+
+usage: compare_table.py DIR VARIANT...
+"""
+
+import json
+import pathlib
+import random
+import statistics
+import sys
+
+SHARED = {  # the same for all variants
+    "loops": ("{:.0f}", lambda m: m["loop_closures"]),
+    "correction cm": ("{:.1f}", lambda m: 100 * m["correction_rmse_m"]),
+    "ATE origin cm": ("{:.1f}", lambda m: 100 * m["ate_origin_rmse_m"]),
+}
+FIGURES = {  # of each variant: format, value
+    "IoU 8": ("{:.3f}", lambda m: m["iou_top8_mean"]),
+    "map error cm": ("{:.2f}", lambda m: 100 * m["map_error_mean_m"]),
+    "ideal IoU 8": ("{:.3f}", lambda m: m["ideal_iou_top8_mean"]),
+    "ideal map error cm": ("{:.2f}", lambda m: 100 * m["ideal_map_error_mean_m"]),
+}
+RESAMPLES = 10_000
+
+
+def metrics_of(folder):
+    """None for a run that is not there or has failed."""
+    if not (folder / "identity").exists():
+        return None
+    return json.loads((folder / "metrics.json").read_text())
+
+
+def value_of(metrics, function):
+    try:
+        return function(metrics)
+    except (KeyError, TypeError):  # null, not there, or no run: not defined
+        return None
+
+
+def shown(form, value):
+    return "-" if value is None else form.format(value)
+
+
+def interval(differences):
+    """95 % interval of the mean, by resampling runs with a fixed seed."""
+    draw = random.Random(1)
+    means = sorted(statistics.fmean(draw.choices(differences, k=len(differences))) for _ in range(RESAMPLES))
+    return means[RESAMPLES // 40], means[-RESAMPLES // 40 - 1]
+
+
+def print_runs(runs, variants):
+    header = ["run", *SHARED, *(f"{figure}: {name}" for figure in FIGURES for name in variants)]
+    print("| " + " | ".join(header) + " |")
+    print("| --- |" + " --- |" * (len(header) - 1))
+    for run, by_variant in runs.items():
+        base = by_variant[variants[0]]
+        cells = [shown(form, value_of(base, function)) for form, function in SHARED.values()]
+        for form, function in FIGURES.values():
+            cells += [shown(form, value_of(by_variant[name], function)) for name in variants]
+        print(f"| {run} | " + " | ".join(cells) + " |")
+
+
+def print_differences(runs, variants, title):
+    base = variants[0]
+    print(f"\n{title}: difference to {base}, mean [95 % bootstrap interval], least and largest\n")
+    print("| figure | variant | runs | mean | interval | least | largest |")
+    print("| --- |" + " --- |" * 6)
+    for figure, (_, function) in FIGURES.items():
+        for name in variants[1:]:
+            pairs = [(value_of(r[base], function), value_of(r[name], function)) for r in runs.values()]
+            differences = [b - a for a, b in pairs if a is not None and b is not None]
+            if not differences:
+                continue
+            low, high = interval(differences)
+            print(f"| {figure} | {name} | {len(differences)} | {statistics.fmean(differences):+.4f} "
+                  f"| {low:+.4f} to {high:+.4f} | {min(differences):+.4f} | {max(differences):+.4f} |")
+
+
+def main():
+    folder, variants = pathlib.Path(sys.argv[1]), sys.argv[2:]
+    names = {path.name for name in variants for path in (folder / name).iterdir() if path.is_dir()}
+    order = sorted(names, key=lambda name: (name.rstrip("0123456789"), len(name), name))
+    runs = {run: {name: metrics_of(folder / name / run) for name in variants} for run in order}
+    print_runs(runs, variants)
+    print_differences(runs, variants, "All runs")
+    closed = {run: by_variant for run, by_variant in runs.items()
+              if (value_of(by_variant[variants[0]], SHARED["loops"][1]) or 0) > 0}
+    if 0 < len(closed) < len(runs):
+        print_differences(closed, variants, "Runs in which a loop closed")
+    return 0 if all(m is not None for by_variant in runs.values() for m in by_variant.values()) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -17,7 +17,7 @@ constexpr std::size_t kMaxFrames = (std::size_t{1} << 24) - 1;
 constexpr double kMaxDistance_m = 10'000.0;
 /// At the default edge of 0.8 m these are 1,000 m3.
 constexpr std::size_t kMaxTiles = 2000;
-/// 512 blocks full of surfaces stay below mapping::kMaxTileBytes.
+/// 512 blocks, for each of which mapping::kMaxTileBytes leaves 2 kB: a block full of surfaces takes 1.5 kB.
 constexpr int kMaxBlocksPerEnlargedEdge = 8;
 
 bool is_near(const Pose& T_map_a) { return T_map_a.translation().norm() <= kMaxDistance_m; }

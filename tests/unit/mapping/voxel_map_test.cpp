@@ -224,7 +224,7 @@ TEST(VoxelBlock, OfAllCountsAtOnceEqualsTheSumInTheFewestBytes) {
           c.unit * (c.most == 1 || offset == 7 ? c.most : static_cast<std::uint32_t>(random() % (c.most + 1)));
       passes[static_cast<std::size_t>(offset)] = count;
       expected.add_pass(offset, count);
-      for (std::uint16_t label = static_cast<std::uint16_t>(random() % 3); label < 2; ++label) {
+      for (auto label = static_cast<std::uint16_t>(random() % 3); label < 2; ++label) {
         hits.push_back({static_cast<std::uint16_t>(offset), label, 1 + static_cast<std::uint32_t>(offset) * kOneVote});
         expected.add_hit(offset, label, hits.back().weight);
       }

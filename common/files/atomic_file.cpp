@@ -1,6 +1,7 @@
 #include "common/files/atomic_file.hpp"
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <stdexcept>
@@ -122,11 +123,11 @@ void require_writable_folder(const std::string& folder, const std::string& key) 
   if (error || !std::filesystem::is_directory(folder)) {
     throw std::runtime_error(key + ": " + folder + " is not a folder and cannot be made one: " + error.message());
   }
-  const std::vector<std::uint8_t> probe;
-  if (const auto problem = replace_file((std::filesystem::path(folder) / ".lapis_writable").string(), probe)) {
-    throw std::runtime_error(key + ": no file can be written into " + folder + " (" + *problem + ")");
-  }
-  std::filesystem::remove(std::filesystem::path(folder) / ".lapis_writable", error);
+  // A name of its own: other processes may try the same folder now.
+  std::string probe = (std::filesystem::path(folder) / ".lapis_writable_XXXXXX").string();
+  const Descriptor file(::mkstemp(probe.data()));
+  if (!file.is_open()) throw std::runtime_error(key + ": no file can be written there: " + reason(folder, "open"));
+  std::filesystem::remove(probe, error);
 }
 
 }  // namespace lapis::files

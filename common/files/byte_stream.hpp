@@ -73,6 +73,11 @@ class ByteReader {
   float f32() { return std::bit_cast<float>(u32()); }
   double f64() { return std::bit_cast<double>(u64()); }
   std::uint64_t varint() {
+    if (!bytes_.empty() && bytes_[0] < 0x80) {  // most numbers are small
+      const std::uint64_t v = bytes_[0];
+      bytes_ = bytes_.subspan(1);
+      return v;
+    }
     std::uint64_t v = 0;
     for (int shift = 0; shift < 64; shift += 7) {
       const std::uint8_t byte = u8();

@@ -1,6 +1,9 @@
 #include "common/mapping/block_codec.hpp"
 
+#include <algorithm>
+#include <array>
 #include <limits>
+#include <vector>
 
 #include "common/mapping/frame_votes.hpp"
 
@@ -47,7 +50,8 @@ std::uint32_t read_count(files::ByteReader& in, std::uint32_t unit) {
   return static_cast<std::uint32_t>(value) * unit;
 }
 
-void read_hits(files::ByteReader& in, std::uint64_t classes, std::uint32_t unit, int offset, VoxelBlock& block) {
+void read_hits(files::ByteReader& in, std::uint64_t classes, std::uint32_t unit, int offset,
+               std::vector<HitVote>& hits) {
   if (classes == 0) in.fail();
   std::int32_t previous = -1;
   for (std::uint64_t i = 0; i < classes && in.is_good(); ++i) {
@@ -55,23 +59,28 @@ void read_hits(files::ByteReader& in, std::uint64_t classes, std::uint32_t unit,
     const std::uint32_t count = read_count(in, unit);
     if (label > 0xffff || static_cast<std::int32_t>(label) <= previous || count == 0) return in.fail();
     previous = static_cast<std::int32_t>(label);
-    block.add_hit(offset, static_cast<std::uint16_t>(label), count);
+    hits.push_back({static_cast<std::uint16_t>(offset), static_cast<std::uint16_t>(label), count});
   }
 }
 
-void read_voxels(files::ByteReader& in, std::uint32_t unit, VoxelBlock& block) {
+VoxelBlock read_voxels(files::ByteReader& reader, std::uint32_t unit) {
+  files::ByteReader in = reader;  // the compiler keeps a local one in registers: late joiners wait for this loop
+  std::array<std::uint32_t, kBlockVoxels> passes{};
+  thread_local std::vector<HitVote> hits;
+  hits.clear();
   for (int offset = 0; offset < kBlockVoxels && in.is_good();) {
     const std::uint64_t head = in.varint();
-    const std::uint32_t passes = read_count(in, unit);
-    if (head & 1u) {
-      block.add_pass(offset, passes);
-      read_hits(in, head >> 1, unit, offset++, block);
-      continue;
+    const std::uint64_t run = head & 1u ? 1 : head >> 1;
+    if (run == 0 || run > static_cast<std::uint64_t>(kBlockVoxels - offset)) {
+      in.fail();
+      break;
     }
-    const std::uint64_t run = head >> 1;
-    if (run == 0 || run > static_cast<std::uint64_t>(kBlockVoxels - offset)) return in.fail();
-    for (const int end = offset + static_cast<int>(run); offset < end; ++offset) block.add_pass(offset, passes);
+    std::fill_n(passes.begin() + offset, run, read_count(in, unit));
+    if (head & 1u) read_hits(in, head >> 1, unit, offset, hits);
+    offset += static_cast<int>(run);
   }
+  reader = in;
+  return {passes, hits};
 }
 
 }  // namespace
@@ -92,7 +101,7 @@ VoxelBlock read_block(files::ByteReader& in) {
     if (passes == 0 || passes > std::numeric_limits<std::uint32_t>::max()) in.fail();
     block = VoxelBlock(static_cast<std::uint32_t>(passes));
   } else if (word == kVoxels || word == (kVoxels | kWholeVotes)) {
-    read_voxels(in, word & kWholeVotes ? kOneVote : 1, block);
+    block = read_voxels(in, word & kWholeVotes ? kOneVote : 1);
   } else if (word != kEmpty) {
     in.fail();
   }

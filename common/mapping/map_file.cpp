@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "common/files/atomic_file.hpp"
 #include "common/files/byte_stream.hpp"
@@ -16,7 +17,9 @@ namespace {
 constexpr std::string_view kMagic = "LAPISMAP";
 constexpr std::uint32_t kFormatVersion = 2;
 constexpr int kCompressionLevel = 3;
-constexpr std::size_t kMaxContentBytes = std::size_t{8} << 30;
+// A record (all before the blocks; a block) is at most so large: 20,000 classes in each voxel of a block.
+constexpr std::size_t kUsualRecordBytes = std::size_t{64} << 10;
+constexpr std::size_t kMaxRecordBytes = std::size_t{64} << 20;
 constexpr std::int32_t kMaxBlockIndex = 1 << 26;  // voxel indices, also turned ones, stay inside 32 bits
 
 bool is_in_range(const BlockIndex& index) {
@@ -98,24 +101,13 @@ std::vector<std::uint8_t> encode_content(const MapFile& file) {
   return out.take();
 }
 
-void read_blocks(files::ByteReader& in, VoxelMap& map) {
-  const std::uint64_t count = in.varint();
-  std::optional<BlockIndex> previous;
-  for (std::uint64_t i = 0; i < count && in.is_good(); ++i) {
-    BlockIndex index;
-    index.x = in.i32();
-    index.y = in.i32();
-    index.z = in.i32();
-    VoxelBlock block = read_block(in);
-    if (block.is_empty() || !is_in_range(index) || (previous && !(*previous < index))) in.fail();
-    if (in.is_good()) map.set_block(index, std::move(block));
-    previous = index;
-  }
+std::string memory_limit(std::size_t max_map_bytes) {
+  return "more than " + std::to_string(max_map_bytes >> 20) + " MB of memory";
 }
 
-/// Throws std::runtime_error for values out of range (the constructors' own checks).
-std::optional<MapFile> decode_content(std::span<const std::uint8_t> content) {
-  files::ByteReader in(content);
+/// Everything before the blocks, with their number. Throws std::runtime_error for values out of range (the
+/// constructors' own checks).
+std::pair<MapFile, std::uint64_t> read_head(files::ByteReader& in) {
   MapFile file{VoxelMap(in.f64()), {}, {}, {}};
   file.sensor_model = read_sensor_model(in);
   std::vector<Label> labels = read_labels(in);
@@ -124,11 +116,57 @@ std::optional<MapFile> decode_content(std::span<const std::uint8_t> content) {
     std::string key = in.text();
     file.provenance[std::move(key)] = in.text();
   }
-  read_blocks(in, file.map);
-  if (!in.is_good() || in.remaining() > 0) return std::nullopt;
+  const std::uint64_t blocks = in.varint();
+  if (!in.is_good()) return {std::move(file), 0};
   file.labels = LabelList(std::move(labels));
   static_cast<void>(BeliefReader(file.sensor_model));  // refuses a model that nobody could read the counts with
-  return file;
+  return {std::move(file), blocks};
+}
+
+std::pair<BlockIndex, VoxelBlock> read_indexed_block(files::ByteReader& in) {
+  BlockIndex index;
+  index.x = in.i32();
+  index.y = in.i32();
+  index.z = in.i32();
+  VoxelBlock block = read_block(in);
+  if (!is_in_range(index) || block.is_empty()) in.fail();
+  return {index, std::move(block)};
+}
+
+/// What `read` makes of the next bytes, of which it gets more while they do not suffice; nothing when they never do.
+template <class Read>
+auto read_record(ZstdReader& content, Read&& read)
+    -> std::optional<decltype(read(std::declval<files::ByteReader&>()))> {
+  for (std::size_t size = kUsualRecordBytes; size <= kMaxRecordBytes; size *= 4) {
+    const auto bytes = content.peek(size);
+    files::ByteReader in(bytes);
+    auto record = read(in);
+    if (in.is_good()) {
+      content.skip(bytes.size() - in.remaining());
+      return record;
+    }
+    if (bytes.size() < size) break;
+  }
+  return std::nullopt;
+}
+
+/// Throws std::runtime_error for values out of range.
+std::optional<MapFile> decode_content(ZstdReader& content, std::size_t max_map_bytes) {
+  auto head = read_record(content, read_head);
+  if (!head) return std::nullopt;
+  auto& [file, blocks] = *head;
+  std::optional<BlockIndex> previous;
+  std::size_t bytes = 0;
+  for (std::uint64_t i = 0; i < blocks; ++i) {
+    auto indexed = read_record(content, read_indexed_block);
+    if (!indexed || (previous && !(*previous < indexed->first))) return std::nullopt;
+    bytes += indexed->second.bytes();
+    if (bytes > max_map_bytes) throw std::runtime_error("a map of " + memory_limit(max_map_bytes));
+    previous = indexed->first;
+    file.map.set_block(indexed->first, std::move(indexed->second));
+  }
+  if (!content.is_at_end()) return std::nullopt;
+  return std::move(file);
 }
 
 /// The payload after the header was checked; nothing with a reason otherwise.
@@ -173,16 +211,12 @@ std::vector<std::uint8_t> encode_map(const MapFile& file) {
   return out.take();
 }
 
-std::optional<MapFile> decode_map(std::span<const std::uint8_t> bytes, std::string& error) {
+std::optional<MapFile> decode_map(std::span<const std::uint8_t> bytes, std::string& error, std::size_t max_map_bytes) {
   const auto payload = check_header(bytes, error);
   if (!payload) return std::nullopt;
-  const auto content = zstd_decompress(*payload, kMaxContentBytes);
-  if (!content) {
-    error = "is damaged: the content cannot be unpacked";
-    return std::nullopt;
-  }
   try {
-    auto file = decode_content(*content);
+    ZstdReader content(*payload);
+    auto file = decode_content(content, max_map_bytes);
     if (!file) error = "is damaged: the content is malformed";
     return file;
   } catch (const std::runtime_error& reason) {
@@ -192,6 +226,7 @@ std::optional<MapFile> decode_map(std::span<const std::uint8_t> bytes, std::stri
 }
 
 std::optional<std::string> save_map(const std::string& path, const MapFile& file) {
+  if (file.map.bytes() > kMaxMapBytes) return path + ": not written: a map of " + memory_limit(kMaxMapBytes);
   return files::replace_file(path, encode_map(file));
 }
 

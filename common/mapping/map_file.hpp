@@ -26,8 +26,15 @@ struct MapFile {
 /// blocks, blocks (index, block_codec.hpp) in canonical order. Equal content gives equal bytes.
 std::vector<std::uint8_t> encode_map(const MapFile& file);
 
-/// Inverse of encode_map; nothing, with the reason in `error`, for anything that is not a whole and undamaged file.
-std::optional<MapFile> decode_map(std::span<const std::uint8_t> bytes, std::string& error);
+/// Most memory of a map that is saved or loaded: half of that of the smallest machine, and 40 times what 10^8 voxels of
+/// free space take when every block has passes that differ.
+inline constexpr std::size_t kMaxMapBytes = std::size_t{4} << 30;
+
+/// Inverse of encode_map; nothing, with the reason in `error`, for anything that is not a whole and undamaged file. The
+/// content is unpacked block by block: whatever the file claims to hold, it takes the memory of its blocks, of which it
+/// is refused to have more than `max_map_bytes`, and at most some 64 MB beside.
+std::optional<MapFile> decode_map(std::span<const std::uint8_t> bytes, std::string& error,
+                                  std::size_t max_map_bytes = kMaxMapBytes);
 
 /// Writes beside and renames (atomic_file.hpp): returns the reason of a failure, which names the file.
 [[nodiscard]] std::optional<std::string> save_map(const std::string& path, const MapFile& file);

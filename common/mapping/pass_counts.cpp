@@ -58,6 +58,26 @@ bool is_none(const BlockMask& voxels) {
 
 }  // namespace
 
+PassCounts::PassCounts(const std::array<std::uint32_t, kBlockVoxels>& counts) {
+  std::uint32_t largest = 0, bits = 0, differences = 0;
+  for (const std::uint32_t count : counts) {
+    largest = std::max(largest, count);
+    bits |= count;
+    differences |= count ^ counts[0];
+  }
+  counts_ = counts[0];
+  if (differences == 0) return;
+  make_room_for(bits % kOneVote == 0 ? largest : 1);
+  std::visit(
+      [&counts](auto& form) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(form)>, std::uint32_t>) {
+          using Count = typename std::decay_t<decltype(*form)>::value_type;
+          for (std::size_t i = 0; i < kBlockVoxels; ++i) (*form)[i] = static_cast<Count>(counts[i] / kUnit<Count>);
+        }
+      },
+      counts_);
+}
+
 PassCounts::PassCounts(const PassCounts& other) {
   std::visit(
       [this](const auto& counts) {

@@ -17,6 +17,8 @@ class PassCounts {
   PassCounts() = default;
   /// Every voxel has the same.
   explicit PassCounts(std::uint32_t all) : counts_(all) {}
+  /// By offset_in_block.
+  explicit PassCounts(const std::array<std::uint32_t, kBlockVoxels>& counts);
   PassCounts(const PassCounts& other);
   PassCounts& operator=(const PassCounts& other);
   PassCounts(PassCounts&&) noexcept = default;

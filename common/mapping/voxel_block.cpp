@@ -15,6 +15,14 @@ constexpr auto kByKey = [](const auto& a, const auto& b) { return key(a) < key(b
 
 }  // namespace
 
+VoxelBlock::VoxelBlock(const std::array<std::uint32_t, kBlockVoxels>& passes, std::span<const HitVote> hits)
+    : passes_(passes) {
+  if (hits.empty()) return;
+  hits_ = std::make_unique<Hits>();
+  hits_->list.reserve(hits.size());
+  insert(hits);
+}
+
 VoxelBlock::VoxelBlock(const VoxelBlock& other)
     : passes_(other.passes_), hits_(other.hits_ ? std::make_unique<Hits>(*other.hits_) : nullptr) {}
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <memory>
@@ -35,6 +36,8 @@ class VoxelBlock {
   VoxelBlock() = default;
   /// Every voxel has the same passes and none has hits.
   explicit VoxelBlock(std::uint32_t passes) : passes_(passes) {}
+  /// All counts at once: passes by offset [1/256 vote], and hits sorted by offset, then label, none of them zero.
+  VoxelBlock(const std::array<std::uint32_t, kBlockVoxels>& passes, std::span<const HitVote> hits);
   VoxelBlock(const VoxelBlock& other);
   VoxelBlock& operator=(const VoxelBlock& other);
   VoxelBlock(VoxelBlock&&) noexcept = default;

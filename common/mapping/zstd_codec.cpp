@@ -9,6 +9,8 @@
 namespace lapis::mapping {
 namespace {
 
+constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
+
 // Contexts and the buffer live as long as their thread: memory from the system costs more time than the compression.
 struct Compressor {
   std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(), &ZSTD_freeCCtx};
@@ -47,5 +49,38 @@ bool zstd_decompress_into(std::span<const std::uint8_t> bytes, std::span<std::ui
       ZSTD_decompressDCtx(context.get(), content.data(), content.size(), bytes.data(), bytes.size());
   return !ZSTD_isError(got) && got == content.size();
 }
+
+ZstdReader::ZstdReader(std::span<const std::uint8_t> frame)
+    : context_(ZSTD_createDCtx(), &ZSTD_freeDCtx), frame_(frame) {}
+
+ZstdReader::~ZstdReader() = default;
+
+std::span<const std::uint8_t> ZstdReader::peek(std::size_t size) {
+  if (window_.size() - begin_ < size && !is_done_) {
+    window_.erase(window_.begin(), window_.begin() + static_cast<std::ptrdiff_t>(begin_));
+    begin_ = 0;
+    unpack(size + kPieceBytes);
+  }
+  return std::span(window_).subspan(begin_);
+}
+
+/// Makes the window that large, if the content is.
+void ZstdReader::unpack(std::size_t size) {
+  std::size_t filled = window_.size();
+  window_.resize(size);
+  ZSTD_inBuffer in{frame_.data(), frame_.size(), 0};
+  while (filled < size && !is_done_) {
+    ZSTD_outBuffer out{window_.data(), size, filled};
+    const std::size_t before = in.pos;
+    const std::size_t rest = ZSTD_decompressStream(context_.get(), &out, &in);
+    is_whole_ = rest == 0;
+    is_done_ = is_whole_ || ZSTD_isError(rest) || (out.pos == filled && in.pos == before);
+    filled = out.pos;
+  }
+  window_.resize(filled);
+  frame_ = frame_.subspan(in.pos);
+}
+
+bool ZstdReader::is_at_end() { return peek(1).empty() && is_whole_ && frame_.empty(); }
 
 }  // namespace lapis::mapping

@@ -130,7 +130,8 @@ int spin(const ComponentFactory& factory, Context& context, const std::function<
 
 int set_up_and_spin(const ComponentFactory& factory, const config::Schema& schema, const Arguments& arguments,
                     const DdsConfig& dds) {
-  SignalWaiter::block();  // before DDS starts its threads, which inherit the mask
+  SignalWaiter::block();          // before DDS starts its threads, which inherit the mask
+  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of write(), as a full disk is
   std::unique_ptr<Context> context;
   std::function<void()> finish;
   try {

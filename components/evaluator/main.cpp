@@ -5,8 +5,9 @@
 #include "evaluator/evaluator_component.hpp"
 
 int main(int argc, char** argv) {
-  if (argc > 1 && lapis::evaluator::is_file_tool(argv[1])) {
-    return lapis::evaluator::run_file_tool(argc, argv, std::cout, std::cerr);
+  using lapis::evaluator::kFileTools;
+  if (argc > 1 && lapis::runtime::is_file_tool(kFileTools, argv[1])) {
+    return lapis::runtime::run_file_tool(kFileTools, argc, argv, std::cout, std::cerr);
   }
   return lapis::runtime::run_component<lapis::evaluator::EvaluatorComponent>(argc, argv);
 }

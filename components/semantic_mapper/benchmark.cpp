@@ -16,6 +16,7 @@
 
 #include "common/mapping/integration.hpp"
 #include "common/mapping/sensor_model.hpp"
+#include "semantic_mapper/core/obstacle_layer.hpp"
 #include "semantic_mapper/core/semantic_mapper.hpp"
 #include "tests/support/synthetic_flat.hpp"
 
@@ -147,6 +148,7 @@ void insert_beside_octomap(benchmark::State& state, double resolution_m, int str
 }
 
 constexpr int kFramesPerKeyframe = 10;
+constexpr int kFramesOfLongWalk = 1200;
 
 /// 1,200 frames of the samples that 640x360 pixels have at stride 2.
 const std::vector<View>& long_walk() {
@@ -154,7 +156,7 @@ const std::vector<View>& long_walk() {
     const auto flat = test::furnished_flat();
     std::mt19937 random(2);
     std::vector<View> all;
-    for (const geometry::Pose& T : test::walk_through_flat(200)) {
+    for (const geometry::Pose& T : test::walk_through_flat(kFramesOfLongWalk / 6)) {
       all.push_back({T, test::render(flat, {320, 180, 160, 160, 159.5, 89.5}, T)});
       test::add_noise(all.back().image, random);
     }
@@ -175,20 +177,24 @@ struct Walker {
   static std::size_t keyframe_of(std::size_t frame) { return frame / kFramesPerKeyframe * kFramesPerKeyframe; }
 
   /// At the key-frame pose that the graph gave last.
-  void integrate(std::size_t i) {
+  mapping::FrameVotes integrate(std::size_t i) {
+    mapping::FrameVotes votes;
     const View& view = long_walk()[i];
     const geometry::Pose& T_map_keyframe = long_walk()[keyframe_of(i)].T_map_camera;
     integration_s.push_back(cpu_s_of([&] {
       std::string error;
-      mapper.integrate({{},
-                        keyframe_of(i),
-                        T_map_keyframe,
-                        T_map_keyframe.inverse() * view.T_map_camera,
-                        0,
-                        mapping::CompactFrame::make({320, 180, 160, 160, 159.5, 89.5}, view.image.depth,
-                                                    &view.image.labels, {1, 40}, error)
-                            .value()});
+      votes = mapper
+                  .integrate({{},
+                              keyframe_of(i),
+                              T_map_keyframe,
+                              T_map_keyframe.inverse() * view.T_map_camera,
+                              0,
+                              mapping::CompactFrame::make({320, 180, 160, 160, 159.5, 89.5}, view.image.depth,
+                                                          &view.image.labels, {1, 40}, error)
+                                  .value()})
+                  .votes;
     }));
+    return votes;
   }
 
   SemanticMapper mapper;
@@ -256,6 +262,26 @@ void local_corrections(benchmark::State& state, double resolution_m, double nois
   state.counters["to_first_integration"] = sum(correction_s) / sum(walker.integration_s);
 }
 
+/// One iteration: a frame of a walk at 15 Hz into the obstacle layer, and a grid twice a second, beside its
+/// integration.
+void obstacles(benchmark::State& state, double resolution_m) {
+  Walker walker(resolution_m);
+  ObstacleLayer layer({}, {}, resolution_m);
+  std::vector<double> add_s, grid_s;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    const mapping::FrameVotes votes = walker.integrate(i);
+    const auto stamp = time::Time::from_seconds(static_cast<double>(i) / 15.0);
+    add_s.push_back(cpu_s_of([&] { layer.add(stamp, votes); }));
+    if (i++ % 8 == 0) grid_s.push_back(cpu_s_of([&] { benchmark::DoNotOptimize(layer.grid()); }));
+    state.SetIterationTime(add_s.back());
+  }
+  state.counters["p50"] = quantile_ms(add_s, 0.5);
+  state.counters["p95"] = quantile_ms(add_s, 0.95);
+  state.counters["grid_p50"] = quantile_ms(grid_s, 0.5);
+  state.counters["to_integration"] = (sum(add_s) + sum(grid_s)) / sum(walker.integration_s);
+}
+
 void register_all() {
   const auto once = [](const std::string& name, auto run) {
     benchmark::RegisterBenchmark(name.c_str(), run)->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
@@ -275,6 +301,11 @@ void register_all() {
          [r](benchmark::State& s) { local_corrections(s, r, 0.003, 0.001); });
     once("local_corrections/10mm/" + std::string(name),
          [r](benchmark::State& s) { local_corrections(s, r, 0.010, 0.0035); });
+    benchmark::RegisterBenchmark(("obstacles/" + std::string(name)).c_str(),
+                                 [r](benchmark::State& s) { obstacles(s, r); })
+        ->Iterations(kFramesOfLongWalk)
+        ->UseManualTime()
+        ->Unit(benchmark::kMillisecond);
   }
 }
 

@@ -5,8 +5,9 @@
 #include "semantic_mapper/semantic_mapper_component.hpp"
 
 int main(int argc, char** argv) {
-  if (argc > 1 && lapis::semantic_mapper::is_file_tool(argv[1])) {
-    return lapis::semantic_mapper::run_file_tool(argc, argv, std::cout, std::cerr);
+  using lapis::semantic_mapper::kFileTools;
+  if (argc > 1 && lapis::runtime::is_file_tool(kFileTools, argv[1])) {
+    return lapis::runtime::run_file_tool(kFileTools, argc, argv, std::cout, std::cerr);
   }
   return lapis::runtime::run_component<lapis::semantic_mapper::SemanticMapperComponent>(argc, argv);
 }

@@ -44,7 +44,9 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
     config_.map.integration.kernel_length_voxels = config_.kernel_length_voxels;
   }
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "semantic_mapper.output_dir");
-  files::require_writable_folder(config_.map.stored_frames.spill_dir, "semantic_mapper.stored_frames.spill_dir");
+  if (config_.map.re_anchor) {
+    files::require_writable_folder(config_.map.stored_frames.spill_dir, "semantic_mapper.stored_frames.spill_dir");
+  }
   if (!config_.resume_from.empty()) load_map();
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
@@ -225,6 +227,18 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
   mapper_ = begin_map(session);
   if (!config_.output_dir.empty()) set_old_files_aside();
   resumed_.reset();
+  floor_plan_.emplace(config_.grid);
+  obstacle_layer_.emplace(config_.obstacles, config_.grid, config_.map.resolution_m);
+  session_ = session;
+  begin_epoch(stamp);
+  tiles_stamp_.reset();
+  views_stamp_.reset();
+  obstacles_stamp_.reset();
+  saved_stamp_ = stamp;
+}
+
+/// All tiles told so far are over.
+void SemanticMapperComponent::begin_epoch(time::Time stamp) {
   for (const auto& [x, y, z] : published_tiles_) {
     lapis_msgs::msg::VoxelTile tile;
     tile.x(x);
@@ -233,14 +247,7 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
     tiles_.end_key(tile);
   }
   published_tiles_.clear();
-  floor_plan_.emplace(config_.grid);
-  obstacle_layer_.emplace(config_.obstacles, config_.grid, config_.map.resolution_m);
-  session_ = session;
   epoch_ = std::max(stamp.nanoseconds, epoch_ + 1);
-  tiles_stamp_.reset();
-  views_stamp_.reset();
-  obstacles_stamp_.reset();
-  saved_stamp_ = stamp;
 }
 
 void SemanticMapperComponent::follow_graph(const Graph& graph) {
@@ -259,6 +266,10 @@ void SemanticMapperComponent::publish(bool is_final) {
 void SemanticMapperComponent::publish_tiles() {
   tiles_stamp_ = stamp_;
   if (!mapper_->has_changes()) return;
+  if (mapper_->enlarge_tiles()) {
+    begin_epoch(stamp_);
+    spdlog::info("large map: tiles of {} m from now on", mapper_->tile_edge_m());
+  }
   floor_plan_->mark_changed(mapper_->changed_blocks());
   for (const auto& tile : mapper_->take_changed_tiles()) {
     published_tiles_.emplace(tile.index.x, tile.index.y, tile.index.z);
@@ -279,7 +290,7 @@ void SemanticMapperComponent::publish_tiles() {
   message.session(session_);
   message.graph_version(mapper_->graph_version());
   message.resolution_m(state.resolution_m);
-  message.tile_edge_m(config_.map.tile_edge_m);
+  message.tile_edge_m(mapper_->tile_edge_m());
   message.tiles(state.tiles);
   message.checksum(state.checksum);
   message.frames_integrated(frames_integrated_);
@@ -345,7 +356,7 @@ std::optional<std::string> SemanticMapperComponent::write_files() {
   const mapping::MapFile file{mapper_->map(),
                               reader.model(),
                               label_list_,
-                              {{"frames", std::to_string(resumed_frames_ + mapper_->frames().size())},
+                              {{"frames", std::to_string(resumed_frames_ + mapper_->frames_integrated())},
                                {"graph_version", std::to_string(mapper_->graph_version())},
                                {"session", std::to_string(session_)}}};
   if (auto problem = mapping::save_map((folder / kMapFile).string(), file)) return problem;

@@ -41,6 +41,7 @@ class SemanticMapperComponent {
   void report_store(const FrameStore& store);
   void drop(const std::string& reason);
   void start_new_map(std::int64_t session, time::Time stamp);
+  void begin_epoch(time::Time stamp);
   void end_map();
   std::unique_ptr<SemanticMapper> begin_map(std::int64_t session);
   void set_old_files_aside() const;

@@ -66,7 +66,7 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("grid", c.grid);
   field("obstacles", c.obstacles);
   field("re_anchor", c.map.re_anchor, config::anything(),
-        "frames follow the pose graph; false: the paper's frozen map");
+        "frames follow the pose graph; false: the paper's frozen map, no frames are stored");
   field("re_anchor_threshold_voxels", c.map.re_anchor_threshold_voxels, config::in_range(0.0, 10.0),
         "a frame is moved when a point at its median depth is off by more");
   field("re_anchor_work_per_cycle", c.re_anchor_work_per_cycle, config::in_range(1, 1'000'000'000),

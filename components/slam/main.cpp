@@ -5,8 +5,9 @@
 #include "slam/slam_component.hpp"
 
 int main(int argc, char** argv) {
-  if (argc > 1 && lapis::slam::is_file_tool(argv[1])) {
-    return lapis::slam::run_file_tool(argc, argv, std::cout, std::cerr);
+  using lapis::slam::kFileTools;
+  if (argc > 1 && lapis::runtime::is_file_tool(kFileTools, argv[1])) {
+    return lapis::runtime::run_file_tool(kFileTools, argc, argv, std::cout, std::cerr);
   }
   return lapis::runtime::run_component<lapis::slam::SlamComponent>(argc, argv);
 }

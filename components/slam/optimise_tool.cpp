@@ -1,10 +1,10 @@
 #include "slam/optimise_tool.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <ctime>
 #include <fstream>
 #include <iomanip>
+#include <memory>
 #include <sstream>
 #include <stdexcept>
 
@@ -16,8 +16,6 @@
 namespace lapis::slam {
 namespace {
 
-constexpr int kBadSetup = 2;
-constexpr std::string_view kTool = "optimise";
 // A file's poses may be far from where they belong.
 constexpr int kMaxIterations = 1000;
 
@@ -70,27 +68,15 @@ void optimise(const Arguments& arguments, std::ostream& out) {
 
 }  // namespace
 
-bool is_file_tool(std::string_view word) { return word == kTool; }
-
-int run_file_tool(int argc, const char* const* argv, std::ostream& out, std::ostream& err) {
-  CLI::App app("RGB-D SLAM: tools on files", "lapis_slam");
-  app.require_subcommand(1);
-  Arguments arguments;
-  CLI::App* tool = app.add_subcommand(std::string(kTool), "optimise the pose graph of a g2o file");
-  tool->add_option("file", arguments.file, "g2o text: EDGE_SE3:QUAT or EDGE_SE2, vertices where there are")->required();
-  tool->add_option("--out", arguments.out, "write the optimised graph into this file");
-  tool->add_flag("--robust", arguments.is_robust,
+void add_file_tools(CLI::App& app, std::ostream& out) {
+  auto arguments = std::make_shared<Arguments>();
+  CLI::App* tool = app.add_subcommand("optimise", "optimise the pose graph of a g2o file");
+  tool->add_option("file", arguments->file, "g2o text: EDGE_SE3:QUAT or EDGE_SE2, vertices where there are")
+      ->required();
+  tool->add_option("--out", arguments->out, "write the optimised graph into this file");
+  tool->add_flag("--robust", arguments->is_robust,
                  "expect wrong loop closures (edges between ids that are not neighbours)");
-  tool->callback([&] { optimise(arguments, out); });
-  try {
-    app.parse(argc, argv);
-    return 0;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error, out, err) == 0 ? 0 : kBadSetup;
-  } catch (const std::exception& error) {
-    err << "lapis_slam: " << error.what() << '\n';
-    return kBadSetup;
-  }
+  tool->callback([arguments, &out] { optimise(*arguments, out); });
 }
 
 }  // namespace lapis::slam

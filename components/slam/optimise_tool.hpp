@@ -1,15 +1,12 @@
 #pragma once
 
-#include <iosfwd>
-#include <string_view>
+#include "common/runtime/file_tools.hpp"
 
 namespace lapis::slam {
 
-/// True when `word`, the first argument of lapis_slam, names the tool on files below.
-bool is_file_tool(std::string_view word);
+/// `lapis_slam optimise FILE.g2o [--out FILE] [--robust]`.
+void add_file_tools(CLI::App& app, std::ostream& out);
 
-/// Runs `lapis_slam optimise FILE.g2o [--out FILE] [--robust]`, without DDS. Results go to `out`, messages to `err`.
-/// Returns the exit status: 0, or 2 for wrong arguments and files that cannot be read or written.
-int run_file_tool(int argc, const char* const* argv, std::ostream& out, std::ostream& err);
+inline constexpr runtime::FileTools kFileTools{"lapis_slam", "RGB-D SLAM: tools on files", &add_file_tools};
 
 }  // namespace lapis::slam

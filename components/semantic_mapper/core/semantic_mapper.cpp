@@ -15,6 +15,10 @@ using geometry::Pose;
 constexpr std::size_t kMaxFrames = (std::size_t{1} << 24) - 1;
 /// Keeps voxel indices far inside 32 bits at any resolution.
 constexpr double kMaxDistance_m = 10'000.0;
+/// At the default edge of 0.8 m these are 1,000 m3.
+constexpr std::size_t kMaxTiles = 2000;
+/// 512 blocks, for each of which mapping::kMaxTileBytes leaves 2 kB: a block full of surfaces takes 1.5 kB.
+constexpr int kMaxBlocksPerEnlargedEdge = 8;
 
 bool is_near(const Pose& T_map_a) { return T_map_a.translation().norm() <= kMaxDistance_m; }
 
@@ -53,15 +57,14 @@ SemanticMapper::SemanticMapper(const MapperConfig& config, mapping::VoxelMap bas
       map_(std::move(base)), frames_before_(most_votes(map_)), store_(config.stored_frames) {
   if (map_.resolution_m() != config.resolution_m)
     throw std::runtime_error("mapper: the map to go on with has voxels of another size");
-  for (const mapping::BlockIndex& block : map_.sorted_blocks())
-    changed_tiles_.insert(mapping::tile_of(block, blocks_per_tile_edge_));
+  mark_all_changed();
 }
 
 IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   if (!geometry::is_valid(input.T_map_keyframe) || !geometry::is_valid(input.T_keyframe_camera))
     return {IntegrationStatus::kInvalidPose, {}};
   if (!is_near(input.T_map_keyframe) || !is_near(input.T_keyframe_camera)) return {IntegrationStatus::kTooFarAway, {}};
-  if (frames_before_ + frames_.size() >= kMaxFrames) return {IntegrationStatus::kMapIsFull, {}};
+  if (frames_before_ + frames_integrated_ >= kMaxFrames) return {IntegrationStatus::kMapIsFull, {}};
   const bool is_newer = input.graph_version >= graph_version_;
   if (is_newer || !keyframe_poses_.contains(input.keyframe_id)) move_keyframe(input.keyframe_id, input.T_map_keyframe);
 
@@ -72,13 +75,18 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
       mapping::compute_votes(input.frame, stored.T_map_camera, config_.integration, config_.resolution_m);
   map_.add(votes);
   mark_changed(votes);
-  stored.work = input.frame.samples() + votes.hit_count() + votes.pass_count();
-  credit_ += static_cast<std::int64_t>(stored.work * 3 / 4);
-  store_.add(input.frame, votes);
   p_map_robot_ = stored.T_map_camera.translation();
-  frames_of_keyframe_[stored.keyframe_id].push_back(frames_.size());
-  frames_.push_back(std::move(stored));
+  ++frames_integrated_;
+  if (config_.re_anchor) store(std::move(stored), input.frame, votes);
   return {IntegrationStatus::kIntegrated, std::move(votes)};
+}
+
+void SemanticMapper::store(StoredFrame frame, const mapping::CompactFrame& samples, const mapping::FrameVotes& votes) {
+  frame.work = samples.samples() + votes.hit_count() + votes.pass_count();
+  credit_ += static_cast<std::int64_t>(frame.work * 3 / 4);
+  store_.add(samples, votes);
+  frames_of_keyframe_[frame.keyframe_id].push_back(frames_.size());
+  frames_.push_back(std::move(frame));
 }
 
 void SemanticMapper::update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses) {
@@ -134,7 +142,6 @@ bool SemanticMapper::move_frame(std::size_t index) {
 }
 
 std::size_t SemanticMapper::re_anchor(std::size_t max_work) {
-  if (!config_.re_anchor) return 0;
   using Candidate = std::pair<double, std::size_t>;  // squared distance from the robot [m2], index
   std::vector<Candidate> nearest;
   for (const std::size_t index : off_)
@@ -157,7 +164,6 @@ std::size_t SemanticMapper::re_anchor(std::size_t max_work) {
 }
 
 std::size_t SemanticMapper::flush() {
-  if (!config_.re_anchor) return 0;
   std::size_t moved = 0;
   for (std::size_t index = 0; index < frames_.size(); ++index)
     if (!is_equal(wanted_pose(frames_[index]), frames_[index].T_map_camera)) moved += move_frame(index) ? 1 : 0;
@@ -168,6 +174,26 @@ std::size_t SemanticMapper::flush() {
 void SemanticMapper::mark_changed(const mapping::FrameVotes& votes) {
   for (const mapping::BlockVotes& block : votes.blocks)
     changed_tiles_.insert(mapping::tile_of(block.block, blocks_per_tile_edge_));
+}
+
+void SemanticMapper::mark_all_changed() {
+  for (const mapping::BlockIndex& block : map_.sorted_blocks())
+    changed_tiles_.insert(mapping::tile_of(block, blocks_per_tile_edge_));
+}
+
+bool SemanticMapper::enlarge_tiles() {
+  const int before = blocks_per_tile_edge_;
+  std::size_t tiles = std::max(tile_versions_.size(), changed_tiles_.size());
+  while (tiles > kMaxTiles && 2 * blocks_per_tile_edge_ <= kMaxBlocksPerEnlargedEdge) {
+    blocks_per_tile_edge_ *= 2;
+    changed_tiles_.clear();
+    mark_all_changed();
+    tiles = changed_tiles_.size();
+  }
+  if (blocks_per_tile_edge_ == before) return false;
+  tile_versions_.clear();
+  checksum_ = 0;
+  return true;
 }
 
 std::vector<mapping::BlockIndex> SemanticMapper::changed_blocks() const {

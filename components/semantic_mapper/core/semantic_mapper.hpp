@@ -23,11 +23,12 @@ namespace lapis::semantic_mapper {
 
 struct MapperConfig {
   double resolution_m = 0.25;                        ///< edge of a voxel, in [0.02, 0.5]
-  double tile_edge_m = mapping::kDefaultTileEdge_m;  ///< least edge of a tile, in [0.1, 6.4]
+  double tile_edge_m = mapping::kDefaultTileEdge_m;  ///< least edge of a tile, in [0.1, 6.4]; see enlarge_tiles
   mapping::IntegrationConfig integration;
   /// A frame is moved when a point at its median depth is off by more than this, in [0, 10] voxels.
   double re_anchor_threshold_voxels = 0.2;
-  bool re_anchor = true;  ///< false: frames stay where they were first put (the paper's frozen map)
+  /// False: frames stay where they were first put (the paper's frozen map) and are not stored.
+  bool re_anchor = true;
   FrameStoreConfig stored_frames;
 };
 
@@ -76,9 +77,9 @@ struct IntegrationReport {
 };
 
 /// Semantic map that follows the pose graph. Every integrated frame is kept in compact form with the pose at which it
-/// is in the map and the votes that it has there; when the graph moves its key-frame, the difference between these
-/// votes and those at the new pose is put into the map. At any instant the map equals, bit for bit, one built from the
-/// stored frames at their recorded poses, plus the map that it began with.
+/// is in the map and the votes that it has there (but for MapperConfig::re_anchor); when the graph moves its key-frame,
+/// the difference between these votes and those at the new pose is put into the map. At any instant the map equals, bit
+/// for bit, one built from the stored frames at their recorded poses, plus the map that it began with.
 class SemanticMapper {
  public:
   /// Throws std::runtime_error naming the value that is out of range.
@@ -87,7 +88,7 @@ class SemanticMapper {
   /// Throws also when its voxels are not of config.resolution_m.
   SemanticMapper(const MapperConfig& config, mapping::VoxelMap base);
 
-  /// Puts a frame into the map at its key-frame's newest known pose and stores it.
+  /// Puts a frame into the map at its key-frame's newest known pose.
   IntegrationReport integrate(AnchoredFrame input);
   /// Newest poses of the graph. Key-frames that are not listed keep theirs; older versions are ignored. Moves nothing
   /// yet.
@@ -107,6 +108,8 @@ class SemanticMapper {
   std::optional<mapping::CompactFrame> stored_frame(std::size_t index) { return store_.frame(index); }
   const FrameStore& store() const { return store_; }
   const std::vector<StoredFrame>& frames() const { return frames_; }
+  /// Frames that integrate took, stored or not.
+  std::size_t frames_integrated() const { return frames_integrated_; }
   const MapperConfig& config() const { return config_; }
   std::uint64_t graph_version() const { return graph_version_; }
   /// Memory of the stored frames [bytes].
@@ -115,6 +118,12 @@ class SemanticMapper {
   bool has_changes() const { return !changed_tiles_.empty(); }
   /// Blocks of the tiles that the next take_changed_tiles will look at, in any order.
   std::vector<mapping::BlockIndex> changed_blocks() const;
+  /// Doubles the edge of the tiles while there are too many for a late joiner: the cost of reliable samples grows with
+  /// the square of their number (docs/decisions/0029-late-joiners.md). When it returns true, all tiles are other ones
+  /// and will be told again: the caller has to begin a new epoch.
+  bool enlarge_tiles();
+  /// Edge of the tiles now [m]; at least config().tile_edge_m.
+  double tile_edge_m() const { return blocks_per_tile_edge_ * mapping::kBlockEdge * config_.resolution_m; }
   /// Makes a new version of what changed since the last call and returns its tiles in canonical order; without changes
   /// the version stays and nothing is returned.
   std::vector<TileUpdate> take_changed_tiles();
@@ -127,16 +136,19 @@ class SemanticMapper {
   std::size_t tiles_too_large() const { return tiles_too_large_; }
 
  private:
+  void store(StoredFrame frame, const mapping::CompactFrame& samples, const mapping::FrameVotes& votes);
   bool move_frame(std::size_t index);
   void move_keyframe(std::uint64_t id, const geometry::Pose& T_map_keyframe);
   geometry::Pose wanted_pose(const StoredFrame& frame) const;
   double offset_voxels(const StoredFrame& frame, const geometry::Pose& T_map_camera) const;
   void mark_changed(const mapping::FrameVotes& votes);
+  void mark_all_changed();
 
   MapperConfig config_;
   int blocks_per_tile_edge_;
   mapping::VoxelMap map_;
-  std::size_t frames_before_ = 0;    ///< at least so many gave the map that it began with its counts
+  std::size_t frames_before_ = 0;  ///< at least so many gave the map that it began with its counts
+  std::size_t frames_integrated_ = 0;
   std::vector<StoredFrame> frames_;  ///< in order of integration
   FrameStore store_;
   std::int64_t credit_ = 0;  ///< work for moves of less than a voxel: 3/4 of what was integrated, less what they took

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <csignal>
 #include <cstdio>
 #include <ctime>
 #include <functional>
@@ -153,7 +154,7 @@ class ReaderComponent {
   bool is_complete_ = false;
 };
 
-/// Publishes as SemanticMapperComponent does; knows how long a write() took.
+/// Publishes as SemanticMapperComponent does; knows how long each write() took.
 class MapPublisher {
  public:
   explicit MapPublisher(runtime::Context& context)
@@ -176,14 +177,16 @@ class MapPublisher {
     write([&] { state_.publish(message); });
   }
 
-  double longest_write_ms = 0.0;
+  double longest_write_ms() const { return write_ms.empty() ? 0.0 : quantile(write_ms, 1.0); }
+
+  std::vector<double> write_ms;
   std::size_t bytes = 0, tiles = 0;
 
  private:
   void write(const std::function<void()>& work) {
     const auto begin = Clock::now();
     work();
-    longest_write_ms = std::max(longest_write_ms, ms_since(begin));
+    write_ms.push_back(ms_since(begin));
   }
 
   dds::Publisher<lapis_msgs::msg::VoxelTile>& tiles_;
@@ -239,7 +242,7 @@ void join(double tile_edge_m, std::size_t blocks, int socket_buffer_bytes) {
   publisher.publish(mapper);
   const double mb = 1e-6 * static_cast<double>(publisher.bytes);
   const std::size_t tiles = publisher.tiles;
-  publisher.longest_write_ms = 0.0;
+  publisher.write_ms.clear();
   test::ChildProcess reader("/proc/self/exe",
                             {"--reader", "--set", "dds.socket_buffer_bytes=" + std::to_string(socket_buffer_bytes)});
   const geometry::PinholeCamera camera{160, 90, 80, 80, 79.5, 44.5};
@@ -254,7 +257,7 @@ void join(double tile_edge_m, std::size_t blocks, int socket_buffer_bytes) {
     return std::stod(log.substr(log.find(words) + words.size()));
   };
   std::printf("| %d | %.1f | %zu | %.1f | %.0f | %.0f | %.1f |\n", socket_buffer_bytes, tile_edge_m, tiles, mb,
-              number_after("complete after "), number_after("of work: "), publisher.longest_write_ms);
+              number_after("complete after "), number_after("of work: "), publisher.longest_write_ms());
   std::fflush(stdout);
 }
 
@@ -265,6 +268,46 @@ void measure_join(std::size_t blocks) {
       "| --- | --- | --- | --- | --- | --- | --- |\n");
   for (const int socket_buffer_bytes : {4 << 20, 212992})
     for (const double tile_edge_m : {0.8, 1.6}) join(tile_edge_m, blocks, socket_buffer_bytes);
+}
+
+// ---- a reader that hangs
+// ----------------------------------------------------------------------------------------------------
+
+/// Publishes a map that changes at 15 Hz for so long.
+void publish_for(double seconds, MapPublisher& publisher, SemanticMapper& mapper, int& index) {
+  const geometry::PinholeCamera camera{160, 90, 80, 80, 79.5, 44.5};
+  publisher.write_ms.clear();
+  const auto begin = Clock::now();
+  for (int i = 0; i < 15.0 * seconds; ++i) {
+    std::this_thread::sleep_until(begin + i * std::chrono::milliseconds(1000) / 15);
+    mapper.integrate(room_frame(++index, camera));
+    publisher.publish(mapper);
+  }
+}
+
+/// Longer than the lease of 3 s, after which the writer forgets the reader.
+void measure_stuck_reader(double seconds) {
+  MapperConfig config;
+  config.resolution_m = 0.1;
+  SemanticMapper mapper(config);
+  runtime::Context context({"mapper", test::participant_options("mapper")});
+  MapPublisher publisher(context);
+  test::ChildProcess reader("/proc/self/exe", {"--reader"});
+  int index = 0;
+  while (!reader.wait_for_line("complete after", test::Seconds(0.1))) {
+    if (index > 600) throw std::runtime_error("the reader is not complete after 40 s: " + reader.log());
+    publish_for(1.0, publisher, mapper, index);
+  }
+  std::printf("\n| reader | write() of %.0f s at 15 Hz | p50 [ms] | p99 [ms] | longest [ms] |\n", seconds);
+  std::printf("| --- | --- | --- | --- | --- |\n");
+  for (const char* state : {"well", "stopped"}) {
+    if (state == std::string("stopped")) reader.signal(SIGSTOP);
+    publish_for(seconds, publisher, mapper, index);
+    const auto& ms = publisher.write_ms;
+    std::printf("| %s | %zu | %.2f | %.2f | %.1f |\n", state, ms.size(), quantile(ms, 0.5), quantile(ms, 0.99),
+                quantile(ms, 1.0));
+  }
+  std::fflush(stdout);
 }
 
 // ---- changes beside a full dump
@@ -310,19 +353,22 @@ void measure_dump(int per_room) {
 }
 
 int benchmark(int argc, char** argv) {
-  CLI::App app("How the map reaches other processes: latency, late joiners, size of the changes",
+  CLI::App app("How the map reaches other processes: latency, late joiners, a reader that hangs, size of the changes",
                "lapis_semantic_mapper_delivery_benchmark");
   int frames = 300, per_room = 60;
   std::size_t blocks = 65000;
+  double stuck_s = 8.0;
   app.add_option("--frames", frames, "of which the latency is measured")->check(CLI::Range(2, 100000));
   app.add_option("--blocks", blocks, "of the large map; 65,000 are 100 MB")->check(CLI::Range(1, 1000000));
   app.add_option("--per-room", per_room, "frames in each of the flat's six rooms")->check(CLI::Range(10, 1000));
+  app.add_option("--stuck", stuck_s, "time for which a reader hangs [s]")->check(CLI::Range(1.0, 600.0));
   CLI11_PARSE(app, argc, argv);
   spdlog::set_level(spdlog::level::warn);
   test::enter_private_domain();
   measure_latency(frames);
   std::printf("\n");
   measure_join(blocks);
+  measure_stuck_reader(stuck_s);
   std::printf(
       "\nChanges of 0.5 s at 0.1 m, last third of a walk through a flat of 24 m x 12.8 m, beside the whole map:\n"
       "| versions | tiles | tiles [kB] | octomap [kB] | ratio | tiles CPU [ms] | octomap CPU [ms] | ratio |\n"

@@ -60,40 +60,6 @@ TEST_F(MapperContract, ViewsAreMadeForANewReaderAndAreFinite) {
   EXPECT_EQ(grid[0].data().size(), static_cast<std::size_t>(grid[0].info().width()) * grid[0].info().height());
 }
 
-TEST_F(MapperContract, GarbageIsCountedAndMappingGoesOn) {
-  ASSERT_TRUE(map_frame(0)) << mapper.log();
-  int index = 1;
-  const auto spoil = [&](const std::function<void(CameraFrame&, lapis_msgs::msg::TrackedFrame&)>& change) {
-    auto frame = feed.frame(index);
-    auto pose = tracked(index++);
-    change(frame, pose);
-    feed.send(frame);
-    slam.publish(pose);
-    return map_frame(index++);
-  };
-  EXPECT_TRUE(spoil([](auto& f, auto&) { f.depth->encoding("rgb8"); }));
-  EXPECT_TRUE(spoil([](auto& f, auto&) { f.depth->data().resize(10); }));
-  EXPECT_TRUE(spoil([](auto& f, auto&) { f.labels->encoding("32FC1"); }));
-  EXPECT_TRUE(spoil([](auto& f, auto&) { f.info->height(17); }));
-  EXPECT_TRUE(spoil([](auto&, auto& pose) { pose.keyframe_pose().orientation().w(7.0); }));
-  EXPECT_TRUE(spoil([](auto&, auto& pose) { pose.pose_in_keyframe().position().x(std::nan("")); }));
-  EXPECT_TRUE(spoil([](auto&, auto& pose) { pose.pose_in_keyframe().position().x(1e7); }));
-  EXPECT_TRUE(spoil([](auto&, auto& pose) {
-    pose.state(lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST);
-    pose.keyframe_pose({});
-  }));
-  for (const char* reason :
-       {"depth encoding 'rgb8'", "depth image has not step x height bytes", "label encoding '32FC1'",
-        "depth size differs", "keyframe_pose: quaternion is not a unit one",
-        "pose_in_keyframe: pose has numbers that are not finite", "more than 10 km", "slam does not track"}) {
-    EXPECT_TRUE(wait_for_count(reason, 1)) << reason << mapper.log();
-  }
-  EXPECT_EQ(sum_of(newest_values(diagnostics, "semantic_mapper"), "frames dropped"), 8);
-  EXPECT_EQ(client.states.back().frames_dropped(), 8u);
-  EXPECT_TRUE(mapper.is_running()) << mapper.log();
-  EXPECT_EQ(client.damaged, 0);
-}
-
 TEST_F(MapperContract, LabelsAboveTheListAreUnlabelledAndCounted) {
   int index = 0;
   // Repeated: the label list may come after the first frames.
@@ -148,30 +114,6 @@ TEST_F(MapperContract, DuplicateAndBackwardStampsAreDropped) {
   EXPECT_TRUE(wait_for_count("slam frame dropped", 2)) << mapper.log();
 }
 
-TEST_F(MapperContract, DepthWithoutMeasurementsAddsNothingAndHurtsNobody) {
-  ASSERT_TRUE(map_frame(0)) << mapper.log();
-  int index = 1;
-  for (const int fill : {0, 255}) {
-    SCOPED_TRACE(fill);
-    const auto before = client.states.back();
-    auto frame = feed.frame(index);
-    std::fill(frame.depth->data().begin(), frame.depth->data().end(), fill);
-    feed.send(frame);
-    slam.publish(tracked(index++));
-    const auto integrated = std::to_string(before.frames_integrated() + 1);
-    ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "semantic_mapper")["frames"] == integrated; }))
-        << mapper.log();
-    TopicProbe late("late");  // gets the newest state, whatever is still on its way to the other one
-    MapClient late_client(late);
-    ASSERT_TRUE(late.wait_until([&] { return late_client.has_map(); })) << mapper.log();
-    EXPECT_EQ(late_client.states.back().checksum(), before.checksum());
-    EXPECT_EQ(late_client.states.back().tiles(), before.tiles());
-    ASSERT_TRUE(map_frame(index++)) << mapper.log();
-    EXPECT_NE(client.states.back().checksum(), before.checksum()) << "a frame with depth does change the map";
-  }
-  EXPECT_TRUE(mapper.is_running());
-}
-
 TEST_F(MapperContract, RestartedSlamBeginsANewMapAndOldTilesAreGone) {
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(map_frame(i)) << mapper.log();
   const auto first_epoch = client.states.back().epoch();
@@ -188,6 +130,29 @@ TEST_F(MapperContract, RestartedSlamBeginsANewMapAndOldTilesAreGone) {
   ASSERT_TRUE(late.wait_until([&] { return late_client.has_map() && tiles >= late_client.states.back().tiles(); }))
       << mapper.log();
   EXPECT_EQ(epochs, (std::set<std::int64_t>{client.states.back().epoch()})) << "ended keys leave no samples behind";
+}
+
+class MapperWithSmallTiles : public MapperContract {
+ protected:
+  MapperWithSmallTiles() : MapperContract({"semantic_mapper.resolution_m=0.0235", "semantic_mapper.tile_edge_m=0.1"}) {}
+};
+
+TEST_F(MapperWithSmallTiles, TilesGrowWithTheMapAndNothingIsLost) {
+  ASSERT_TRUE(map_frame(0)) << mapper.log();
+  const auto first = client.states.back();
+  EXPECT_NEAR(first.tile_edge_m(), 0.188, 1e-9);
+  for (int i = 10; client.states.back().epoch() == first.epoch(); i += 10) {
+    ASSERT_LT(i, 300) << client.states.back().tiles() << " tiles" << mapper.log();
+    ASSERT_TRUE(map_frame(i)) << mapper.log();
+  }
+  EXPECT_NEAR(client.states.back().tile_edge_m(), 0.376, 1e-9);
+  EXPECT_EQ(client.states.back().session(), first.session());
+  EXPECT_LT(client.states.back().tiles(), first.tiles());
+  EXPECT_GE(client.mirror.map()->block_count(), first.tiles()) << "the old part is there, too";
+  TopicProbe late("late");
+  MapClient late_client(late);
+  ASSERT_TRUE(late.wait_until([&] { return late_client.has_map(); })) << mapper.log();
+  EXPECT_EQ(*late_client.mirror.map(), *client.mirror.map());
 }
 
 TEST_F(MapperContract, SaveWithoutAFolderIsRefusedWithTheKey) {

@@ -19,7 +19,7 @@ namespace {
 MapFile large_map(unsigned seed) {
   MapFile file{VoxelMap(0.1), {}, LabelList::from_names({{1, "wall"}}), {}};
   std::mt19937 random(seed);
-  for (std::int32_t x = 0; x < 1000; ++x) {
+  for (std::int32_t x = 0; x < 400; ++x) {
     VoxelBlock block;
     for (int offset = 0; offset < kBlockVoxels; ++offset) block.add_pass(offset, static_cast<std::uint32_t>(random()));
     file.map.set_block({x, 0, 0}, std::move(block));
@@ -39,7 +39,7 @@ TEST(KillSaver, TheMapIsAlwaysWhole) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> instant(0.0, 4.0);  // in times of one save
   int kills = 0, in_the_middle = 0;
-  for (; kills < 10 || (in_the_middle == 0 && kills < 110); ++kills) {
+  for (; kills < 200; ++kills) {
     lapis::test::EndlessProcess saver([&] { return !save_map(path, late) && !save_map(path, early); });
     std::this_thread::sleep_for(instant(random) * one_save);
     ASSERT_TRUE(saver.kill());

@@ -1,14 +1,18 @@
 #include "common/mapping/map_file.hpp"
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
+#include <memory>
 
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <gtest/gtest.h>
+#include <zstd.h>
 
 #include "common/files/atomic_file.hpp"
 #include "common/files/byte_stream.hpp"
@@ -93,6 +97,37 @@ TEST_F(MapFileTest, EveryFlippedBitAndEveryTruncationIsRefused) {
   EXPECT_FALSE(decode_map(bad, error));
 }
 
+/// A file around a payload of any kind, with the right sums.
+std::vector<std::uint8_t> file_of(std::span<const std::uint8_t> payload) {
+  const std::vector<std::uint8_t> good = encode_map(example(1, 1));
+  files::ByteWriter checked, file;
+  checked.u64(payload.size());
+  checked.raw(payload);
+  file.raw(std::span(good).first(12));
+  file.u32(files::crc32(checked.bytes()));
+  file.raw(checked.bytes());
+  return file.take();
+}
+
+/// A zstd frame of `begin` and then zeros, `size` bytes in all, that says so.
+std::vector<std::uint8_t> zeros_after(const std::vector<std::uint8_t>& begin, std::size_t size) {
+  const std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(), &ZSTD_freeCCtx};
+  ZSTD_CCtx_setPledgedSrcSize(context.get(), size);
+  std::vector<std::uint8_t> frame(1 << 20);
+  ZSTD_outBuffer out{frame.data(), frame.size(), 0};
+  std::vector<std::uint8_t> piece = begin;
+  for (std::size_t left = size; left > 0;) {
+    piece.resize(std::min(left, std::size_t{1} << 20));
+    ZSTD_inBuffer in{piece.data(), piece.size(), 0};
+    left -= piece.size();
+    EXPECT_FALSE(ZSTD_isError(ZSTD_compressStream2(context.get(), &out, &in, left > 0 ? ZSTD_e_continue : ZSTD_e_end)));
+    EXPECT_EQ(in.pos, in.size);
+    piece.assign(piece.size(), 0);
+  }
+  frame.resize(out.pos);
+  return frame;
+}
+
 TEST_F(MapFileTest, MaliciousContentWithGoodChecksumNeverCrashes) {
   // Damages the content below zstd and checksum, as a writer with a bug would.
   const std::vector<std::uint8_t> good = encode_map(example(2, 2));
@@ -104,17 +139,79 @@ TEST_F(MapFileTest, MaliciousContentWithGoodChecksumNeverCrashes) {
     for (int i = 0; i < 1 + trial % 4; ++i)
       bad[random() % (trial % 2 ? bad.size() : 150)] = static_cast<std::uint8_t>(random());
     if (trial % 5 == 0) bad.resize(random() % bad.size());
-    const auto payload = zstd_compress(bad, 1);
-    files::ByteWriter checked, file;
-    checked.u64(payload.size());
-    checked.raw(payload);
-    file.raw(std::span(good).first(12));
-    file.u32(files::crc32(checked.bytes()));
-    file.raw(checked.bytes());
     std::string error;
-    const bool is_loaded = decode_map(file.bytes(), error).has_value();
+    const bool is_loaded = decode_map(file_of(zstd_compress(bad, 1)), error).has_value();
     EXPECT_NE(is_loaded, !error.empty());
   }
+}
+
+/// Peak of this process's memory so far [MB].
+long peak_rss_mb() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return usage.ru_maxrss >> 10;
+}
+
+TEST_F(MapFileTest, AFewBytesThatClaimGigabytesTakeNoMemory) {
+  constexpr std::size_t kClaimed = std::size_t{2} << 30;
+  const std::vector<std::uint8_t> good = encode_map(example(1, 0));
+  std::vector<std::uint8_t> content = *zstd_decompress(std::span(good).subspan(24), 1 << 24);
+  content.back() = 0xff;  // the number of blocks: very many, all of zeros
+  content.insert(content.end(), {0xff, 0xff, 0xff, 0x7f});
+  const std::vector<std::uint8_t> bomb = file_of(zeros_after(content, kClaimed));
+  EXPECT_LT(bomb.size(), std::size_t{1} << 20);
+  const long before = peak_rss_mb();
+  std::string error;
+  EXPECT_FALSE(decode_map(bomb, error));
+  EXPECT_EQ(error, "is damaged: the content is malformed");
+  EXPECT_LT(peak_rss_mb(), before + 500);
+}
+
+TEST_F(MapFileTest, AMapBeyondTheMemoryForMapsIsRefused) {
+  MapFile file{VoxelMap(0.1), {}, {}, {}};
+  VoxelBlock block(kOneVote);
+  block.add_pass(0, kOneVote);  // half a kilobyte in memory, nearly nothing in a file
+  for (std::int32_t x = 0; x < 10'000; ++x) file.map.set_block({x, 0, 0}, block);
+  const std::vector<std::uint8_t> bytes = encode_map(file);
+  EXPECT_LT(bytes.size(), 100'000u);
+  std::string error;
+  EXPECT_FALSE(decode_map(bytes, error, 1 << 20));
+  EXPECT_EQ(error, "has a value out of range: a map of more than 1 MB of memory");
+  const auto loaded = decode_map(bytes, error, file.map.bytes());
+  ASSERT_TRUE(loaded) << error;
+  EXPECT_EQ(loaded->map, file.map);
+}
+
+TEST_F(MapFileTest, HundredMillionVoxelsAreSavedAndLoaded) {
+  MapFile file{VoxelMap(0.05), {}, {}, {}};
+  VoxelBlock seen(20 * kOneVote), torn(20 * kOneVote);
+  torn.add_pass(7, kOneVote);
+  constexpr std::int32_t kEdge = 58;  // blocks
+  for (std::int32_t i = 0; i < kEdge * kEdge * kEdge; ++i)
+    file.map.set_block({i % kEdge, i / kEdge % kEdge, i / kEdge / kEdge}, i % 8 == 0 ? torn : seen);
+  ASSERT_EQ(save_map(path("map.lapis"), file), std::nullopt);
+  const auto begin = std::chrono::steady_clock::now();
+  std::string error;
+  const auto loaded = load_map(path("map.lapis"), error);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
+  ASSERT_TRUE(loaded) << error;
+  EXPECT_EQ(loaded->map, file.map);
+  std::cout << "file " << fs::file_size(path("map.lapis")) << " bytes, memory " << loaded->map.bytes()
+            << " bytes, loaded in " << taken.count() << " s\n";
+  EXPECT_LT(loaded->map.bytes(), 40'000'000u);
+}
+
+TEST_F(MapFileTest, ABlockThatIsLargerThanUsualIsRead) {
+  MapFile file{VoxelMap(0.1), {}, {}, {}};
+  VoxelBlock block;
+  for (int offset = 0; offset < kBlockVoxels; ++offset)
+    for (std::uint16_t label = 1; label <= 100; ++label) block.add_hit(offset, label, 1'000'000'007u * label);
+  file.map.set_block({1, 2, 3}, block);
+  file.map.set_block({2, 2, 3}, block);
+  std::string error;
+  const auto loaded = decode_map(encode_map(file), error);
+  ASSERT_TRUE(loaded) << error;
+  EXPECT_EQ(loaded->map, file.map);
 }
 
 TEST_F(MapFileTest, ErrorsNameFileAndReason) {

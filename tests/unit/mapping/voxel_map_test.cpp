@@ -208,6 +208,33 @@ TEST(PassCounts, TakingOutWhatIsNotThereIsToldInEveryForm) {
   }
 }
 
+TEST(VoxelBlock, OfAllCountsAtOnceEqualsTheSumInTheFewestBytes) {
+  struct Case {
+    std::uint32_t unit, most;
+    std::size_t bytes_per_voxel;
+  };
+  for (const Case& c :
+       {Case{kOneVote, 1, 0}, {kOneVote, 255, 1}, {kOneVote, 60'000, 2}, {kOneVote, 70'000, 4}, {1, 9, 4}}) {
+    std::mt19937 random(c.most);
+    std::array<std::uint32_t, kBlockVoxels> passes{};
+    std::vector<HitVote> hits;
+    VoxelBlock expected;
+    for (int offset = 0; offset < kBlockVoxels; ++offset) {
+      const std::uint32_t count =
+          c.unit * (c.most == 1 || offset == 7 ? c.most : static_cast<std::uint32_t>(random() % (c.most + 1)));
+      passes[static_cast<std::size_t>(offset)] = count;
+      expected.add_pass(offset, count);
+      for (auto label = static_cast<std::uint16_t>(random() % 3); label < 2; ++label) {
+        hits.push_back({static_cast<std::uint16_t>(offset), label, 1 + static_cast<std::uint32_t>(offset) * kOneVote});
+        expected.add_hit(offset, label, hits.back().weight);
+      }
+    }
+    EXPECT_EQ(VoxelBlock(passes, hits), expected) << c.most;
+    EXPECT_EQ(PassCounts(passes).heap_bytes(), c.bytes_per_voxel * kBlockVoxels) << c.most;
+    EXPECT_TRUE(VoxelBlock({}, {}).is_empty());
+  }
+}
+
 /// Known free space: a building of 10^8 voxels that two hundred frames have looked through.
 TEST(VoxelMap, HundredMillionFreeVoxelsTakeFewBytes) {
   constexpr int kEdge = 58;  // blocks

@@ -39,7 +39,7 @@ class FileTools : public ::testing::Test {
     for (const std::string& word : words) argv.push_back(word.c_str());
     out_.str("");
     err_.str("");
-    return run_file_tool(static_cast<int>(argv.size()), argv.data(), out_, err_);
+    return runtime::run_file_tool(kFileTools, static_cast<int>(argv.size()), argv.data(), out_, err_);
   }
   nlohmann::json info(const std::string& file) {
     EXPECT_EQ(run({"info", file, "--json"}), 0) << err_.str();
@@ -57,8 +57,8 @@ class FileTools : public ::testing::Test {
 };
 
 TEST_F(FileTools, AreKnownByTheirName) {
-  for (const char* name : {"convert", "info", "merge"}) EXPECT_TRUE(is_file_tool(name));
-  EXPECT_FALSE(is_file_tool("--config"));
+  for (const char* name : {"convert", "info", "merge"}) EXPECT_TRUE(runtime::is_file_tool(kFileTools, name));
+  EXPECT_FALSE(runtime::is_file_tool(kFileTools, "--config"));
   EXPECT_EQ(run({"--help"}), 0);
   EXPECT_THAT(out_.str(), HasSubstr("merge"));
 }

@@ -306,11 +306,16 @@ TEST(SemanticMapper, OlderGraphVersionsAreIgnored) {
   EXPECT_TRUE(mapper.frames().back().T_map_camera.isApprox(mapper.frames().front().T_map_camera, 1e-12));
 }
 
-TEST(SemanticMapper, FrozenMapNeverMoves) {
+TEST(SemanticMapper, FrozenMapNeverMovesAndStoresNoFrames) {
   MapperConfig config;
   config.re_anchor = false;
+  config.stored_frames = {0, testing::TempDir() + "/no_such_folder"};
   SemanticMapper mapper = mapper_with_tour(config);
+  EXPECT_EQ(mapper.frames_integrated(), tour().frames.size());
+  EXPECT_EQ(mapper.frame_bytes(), 0u);
+  EXPECT_EQ(mapper.store().let_go(), 0u) << "nothing was meant for the disk";
   const mapping::VoxelMap before = mapper.map();
+  EXPECT_EQ(before, mapper_with_tour().map());
   std::mt19937 random(1);
   mapper.update_keyframe_poses(2, corrected(random, 0.3));
   EXPECT_EQ(mapper.re_anchor(kAllWork), 0u);
@@ -366,6 +371,51 @@ TEST(SemanticMapper, MirrorOfTheTilesEqualsTheMapThroughCorrections) {
   for (const TileUpdate& tile : mapper.all_tiles()) late.apply_tile(0, tile.index, tile.version, tile.bytes);
   ASSERT_TRUE(late.is_consistent());
   EXPECT_EQ(*late.map(), mapper.map());
+}
+
+TEST(SemanticMapper, ALargeMapIsToldInLargerTilesAsOneOfANewEpoch) {
+  MapperConfig config;
+  config.resolution_m = 0.1;  // a block is a tile of 0.8 m
+  mapping::VoxelMap base(0.1);
+  const auto grow = [&base](std::int32_t from, std::int32_t to) {
+    for (std::int32_t i = from; i < to; ++i) base.set_block({i % 50 - 20, i / 50, 1}, mapping::VoxelBlock(256));
+  };
+  grow(0, 2000);
+  SemanticMapper small(config, base);
+  EXPECT_FALSE(small.enlarge_tiles()) << "1,000 m3";
+  grow(2000, 2001);
+  SemanticMapper mapper(config, base);
+  mapping::MapMirror mirror;
+  const auto publish = [&](std::int64_t epoch) {
+    for (const TileUpdate& tile : mapper.take_changed_tiles())
+      EXPECT_EQ(mirror.apply_tile(epoch, tile.index, tile.version, tile.bytes), mapping::TileResult::kAccepted);
+    mapping::MapState state = mapper.state();
+    state.epoch = epoch;
+    mirror.apply_state(state);
+    ASSERT_TRUE(mirror.is_consistent());
+    EXPECT_EQ(*mirror.map(), mapper.map());
+  };
+  publish(1);
+  EXPECT_EQ(mirror.state()->tiles, 2001u);
+  EXPECT_DOUBLE_EQ(mapper.tile_edge_m(), 0.8);
+  ASSERT_TRUE(mapper.enlarge_tiles());
+  EXPECT_DOUBLE_EQ(mapper.tile_edge_m(), 1.6);
+  EXPECT_TRUE(mapper.has_changes());
+  publish(2);
+  EXPECT_EQ(mirror.state()->tiles, 25u * 20u + 1u);
+  EXPECT_FALSE(mapper.enlarge_tiles());
+  mapper.integrate(tour().frames[0]);
+  publish(2);
+}
+
+TEST(SemanticMapper, TilesAreNotEnlargedBeyondWhatASampleHolds) {
+  MapperConfig config;
+  config.resolution_m = 0.02;  // 5 blocks of 0.16 m make a tile
+  mapping::VoxelMap base(0.02);
+  for (std::int32_t i = 0; i < 2500; ++i) base.set_block({5 * i, 0, 0}, mapping::VoxelBlock(256));
+  SemanticMapper mapper(config, base);
+  EXPECT_FALSE(mapper.enlarge_tiles());
+  EXPECT_EQ(mapper.take_changed_tiles().size(), 2500u);
 }
 
 TEST(SemanticMapper, SavedAndLoadedEqualsOriginal) {

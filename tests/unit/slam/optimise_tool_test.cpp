@@ -29,7 +29,7 @@ class OptimiseTool : public ::testing::Test {
     arguments.insert(arguments.begin(), {"lapis_slam", "optimise"});
     out.str("");
     err.str("");
-    return run_file_tool(static_cast<int>(arguments.size()), arguments.data(), out, err);
+    return runtime::run_file_tool(kFileTools, static_cast<int>(arguments.size()), arguments.data(), out, err);
   }
   double final_chi2() const {
     const std::string label = "final chi2 ";
@@ -79,8 +79,8 @@ TEST_F(OptimiseTool, RefusesBadInput) {
 }
 
 TEST(FileTools, AreKnownByTheirName) {
-  EXPECT_TRUE(is_file_tool("optimise"));
-  EXPECT_FALSE(is_file_tool("--config"));
+  EXPECT_TRUE(runtime::is_file_tool(kFileTools, "optimise"));
+  EXPECT_FALSE(runtime::is_file_tool(kFileTools, "--config"));
 }
 
 }  // namespace

@@ -125,8 +125,8 @@ void describe(Field& field, LoopConfig& c) {
 template <class Field>
 void describe(Field& field, RelocalizationConfig& c) {
   field("min_inliers", c.min_inliers, config::in_range(10, 1000), "of the alignment with a recognised key-frame");
-  field("min_inlier_share", c.min_inlier_share, config::in_range(0.0, 1.0),
-        "of its matches, where motion does not lead");
+  field("majority_sigmas", c.majority_sigmas, config::in_range(0.0, 20.0),
+        "where motion does not lead, more than half of the matches agree by so many standard deviations of chance");
   field("max_sigma_m", c.max_sigma_m, config::in_range(1e-3, 1.0),
         "a pose that is less sure of any direction is not believed where motion does not lead [m]");
   field("confirmations", c.confirmations, config::in_range(0, 100),

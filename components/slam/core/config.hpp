@@ -91,15 +91,15 @@ struct LoopConfig {
 
 /// When a pose that was found by recognising a place is believed.
 struct RelocalizationConfig {
-  int min_inliers = 25;            ///< of the alignment with the recognised key-frame [10, 1000]
-  double min_inlier_share = 0.65;  ///< of its matches, where motion does not lead [0, 1]
-  double max_sigma_m = 0.06;       ///< a pose that is less sure of any direction is not believed there [1e-3, 1]
-  int confirmations = 2;           ///< frames that have to find the same again, unless motion leads there [0, 100]
-  double near_m = 0.25;            ///< what "the same" is, and where motion leads [0.01, 5]
-  double near_rad = 0.2;           ///< the same [0.01, 3]
-  double speed_m_s = 1.0;          ///< between frames, when no wheels tell [0, 10]
-  double patience_s = 2.0;  ///< without a pose, after which one within reach of the last is still believed [0, 10]
-  double memory_s = 0.5;    ///< longest time between frames that confirm each other [0.01, 10]
+  int min_inliers = 25;          ///< of the alignment with the recognised key-frame [10, 1000]
+  double majority_sigmas = 2.3;  ///< where motion does not lead: more agree than half of the matches [0, 20]
+  double max_sigma_m = 0.06;     ///< a pose that is less sure of any direction is not believed there [1e-3, 1]
+  int confirmations = 2;         ///< frames that have to find the same again, unless motion leads there [0, 100]
+  double near_m = 0.25;          ///< what "the same" is, and where motion leads [0.01, 5]
+  double near_rad = 0.2;         ///< the same [0.01, 3]
+  double speed_m_s = 1.0;        ///< between frames, when no wheels tell [0, 10]
+  double patience_s = 2.0;       ///< without a pose, after which one within reach of the last is still believed [0, 10]
+  double memory_s = 0.5;         ///< longest time between frames that confirm each other [0.01, 10]
 };
 
 /// Wheel odometry. Standard deviations of a random walk are those after the first metre or radian: they grow with its

@@ -52,7 +52,8 @@ bool Relocalizer::is_within_reach(const Map& map, const MotionModel& motion, tim
 
 bool Relocalizer::is_distinct(const TrackOutcome& outcome) const {
   const geometry::Matrix6d information = edge_information(graph_, outcome.alignment.information);
-  return outcome.alignment.inliers >= config_.min_inlier_share * outcome.matches &&
+  const double matches = outcome.matches;
+  return outcome.alignment.inliers >= 0.5 * (matches + config_.majority_sigmas * std::sqrt(matches)) &&
          largest_sigma(information.inverse(), 0) <= config_.max_sigma_m;
 }
 

@@ -26,8 +26,8 @@ class Relocalizer {
   /// Whether the camera can be there, not long after it was seen last, when nothing tells how it moved.
   bool is_within_reach(const Map& map, const MotionModel& motion, time::Time stamp,
                        const geometry::Pose& T_map_camera) const;
-  /// Whether most of what the frame has in common with the place agrees, and tells the pose well: parts that repeat
-  /// themselves, such as the floor of a corridor, do neither.
+  /// Whether clearly more than half of what the frame has in common with the place agrees, and tells the pose well:
+  /// parts that repeat themselves, such as the floor of a corridor, do neither.
   bool is_distinct(const TrackOutcome& outcome) const;
   bool confirms(const MotionModel& motion, time::Time stamp, const geometry::Pose& T_map_camera) const;
   /// How many times RelocalizationConfig::near_m and near_rad a camera can get away in a time.

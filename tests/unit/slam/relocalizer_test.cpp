@@ -58,6 +58,14 @@ TEST_F(RelocalizerTest, APlaceThatIsNotDistinctIsNeverBelieved) {
   for (int i = 0; i < 20; ++i) EXPECT_FALSE(believes(5.0 + 0.1 * i, found(4.0, 55)));
 }
 
+TEST_F(RelocalizerTest, ManyMatchesMakeASmallMajorityDistinct) {
+  TrackOutcome few = found(1.5, 54), many = found(1.5, 114);
+  few.matches = 90;
+  many.matches = 190;
+  EXPECT_FALSE(believes(1.5, few));
+  EXPECT_TRUE(believes(1.5, many));
+}
+
 TEST_F(RelocalizerTest, WheelsThatLeadElsewhereMakeAPlaceAwaitConfirmation) {
   for (int i = 0; i <= 20; ++i) ASSERT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose::Identity()));
   EXPECT_FALSE(believes(1.5, found(1.5)));

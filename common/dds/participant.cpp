@@ -18,10 +18,7 @@ using compat::IPLocator;
 using compat::rtps::Locator_t;
 
 constexpr std::uint32_t kSharedMemorySegmentBytes = 16u << 20;  // ten times the largest image
-// Fast DDS 2.9 announces a new participant before it listens to its sockets. On one host the answers of those that are
-// there already come too early and are lost: it meets them with their next announcement (docs/decisions/0029).
-constexpr std::int64_t kAnnouncementPeriodNs = 250'000'000;
-constexpr std::uint32_t kPeersPerHost = 32;  // as rmw_fastrtps asks of LOCALHOST peers
+constexpr std::uint32_t kPeersPerHost = 32;                     // as rmw_fastrtps asks of LOCALHOST peers
 
 Locator_t peer_locator(const std::string& address) {
   Locator_t locator;
@@ -53,7 +50,7 @@ void apply_discovery(const DiscoverySettings& discovery, compat::fdds::DomainPar
   builtin.readerHistoryMemoryPolicy = compat::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   builtin.writerHistoryMemoryPolicy = compat::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   builtin.discovery_config.leaseDuration = compat::duration(3'000'000'000);
-  builtin.discovery_config.leaseDuration_announcementperiod = compat::duration(kAnnouncementPeriodNs);
+  builtin.discovery_config.leaseDuration_announcementperiod = compat::duration(1'000'000'000);
   if (discovery.range != DiscoveryRange::kSubnet) {
     // A unicast locator keeps Fast DDS from adding the default multicast one.
     builtin.metatrafficUnicastLocatorList.push_back(Locator_t());

@@ -44,6 +44,14 @@ while [ $# -gt 0 ]; do
 done
 [ ${#variants[@]} -ge 2 ] || die "two variants or more are needed (see --help)"
 [ -n "$scenes" ] || [ ${#data[@]} -gt 0 ] || die "give --scenes or --data (see --help)"
+names=()
+for variant in "${variants[@]}"; do
+  read -r name _ <<<"$variant"
+  [[ $name =~ ^[A-Za-z0-9_.-]+$ ]] || die "--variant '$variant': wanted is a name, then KEY=VALUE"
+  [[ " ${names[*]} " != *" $name "* ]] || die "two variants are called $name"
+  names+=("$name")
+done
+for folder in "${data[@]}"; do [ -d "$folder" ] || die "--data $folder: no such folder"; done
 require_build
 export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
 
@@ -87,6 +95,4 @@ for scene in ${scenes//,/ }; do
   done
 done
 for folder in "${data[@]}"; do play "$(basename "$folder")" "$folder" "$folder"; done
-names=()
-for variant in "${variants[@]}"; do names+=("${variant%% *}"); done
 exec "$repository/launch_scripts/compare_table.py" "$out" "${names[@]}"

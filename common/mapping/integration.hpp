@@ -44,7 +44,9 @@ inline constexpr double kMaxRangeInVoxels = 500.0;
 ///   without a hit. Pixels without depth say nothing.
 /// With a kernel each voxel with a hit asks the hits around it, too: a hit is worth, at the point at which its ray
 /// ends, what the kernel is worth at the distance to the voxel's centre. The sum, at most one vote, goes to the class
-/// with most of it. Voxels in which nothing was measured get no votes: walls would grow. Deterministic: the same frame,
+/// with most of it. Voxels in which nothing was measured get no votes: walls would grow.
+///
+/// Deterministic: the same frame,
 /// pose, configuration and resolution give the same votes. Throws std::runtime_error when max_range_m / resolution_m
 /// exceeds kMaxRangeInVoxels.
 FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_camera, const IntegrationConfig& config,

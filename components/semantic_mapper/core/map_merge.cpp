@@ -100,6 +100,9 @@ std::map<BlockIndex, VoxelBlock> summed_blocks(const mapping::VoxelMap& map, con
 mapping::SensorModel with_classes_of(mapping::SensorModel model, const mapping::SensorModel& other) {
   if (model.class_priors != other.class_priors)
     throw std::runtime_error("the sensor model has other prior shares of the classes than the maps before");
+  if ((model.fusion == "bki") != (other.fusion == "bki"))
+    throw std::runtime_error("fused by " + other.fusion + ", the maps before by " + model.fusion +
+                             ": votes that a kernel has smoothed and whole ones do not add up");
   model.class_count = std::max(model.class_count, other.class_count);
   return model;
 }

@@ -13,8 +13,8 @@ bool is_on_grid(const geometry::Pose& T, double resolution_m);
 /// nearest neighbour resampling: surfaces move by up to half the diagonal of a voxel, and a voxel of `other` may be
 /// used twice or not at all. Classes are united; the sensor model stays that of `sum`, but for the number of classes.
 /// @param T_map_other the frame of `other` in that of `sum`
-/// Throws std::runtime_error, before anything is changed, when resolutions differ, a class id has two names, or a count
-/// would not fit 32 bits.
+/// Throws std::runtime_error, before anything is changed, when resolutions differ, only one is fused by bki, a class id
+/// has two names, or a count would not fit 32 bits.
 void merge_into(mapping::MapFile& sum, const mapping::MapFile& other, const geometry::Pose& T_map_other);
 
 }  // namespace lapis::semantic_mapper

@@ -60,7 +60,6 @@ void mirror_map(mapping::MapMirror& mirror, Subscribe&& subscribe) {
 }
 
 // ---- depth in -> tiles out
-// -------------------------------------------------------------------------------------------
 
 lapis_msgs::msg::TrackedFrame tracked(int index) {
   lapis_msgs::msg::TrackedFrame message;
@@ -122,7 +121,6 @@ void measure_latency(int frames) {
 }
 
 // ---- a late joiner
-// ---------------------------------------------------------------------------------------------------
 
 /// Says how long it took to have the whole map.
 struct ReaderConfig {};
@@ -271,9 +269,8 @@ void measure_join(std::size_t blocks) {
 }
 
 // ---- a reader that hangs
-// ----------------------------------------------------------------------------------------------------
 
-/// Publishes a map that changes at 15 Hz for so long.
+/// Publishes a map that changes at 15 Hz for so long: the clock stands for the camera, there is no event to wait for.
 void publish_for(double seconds, MapPublisher& publisher, SemanticMapper& mapper, int& index) {
   const geometry::PinholeCamera camera{160, 90, 80, 80, 79.5, 44.5};
   publisher.write_ms.clear();
@@ -311,7 +308,6 @@ void measure_stuck_reader(double seconds) {
 }
 
 // ---- changes beside a full dump
-// --------------------------------------------------------------------------------------
 
 void measure_dump(int per_room) {
   constexpr int kFramesPerVersion = 8;  // 2 Hz at 15 Hz

@@ -128,6 +128,9 @@ TEST(MapMerge, RefusesWhatDoesNotBelongTogether) {
   other = a;
   other.sensor_model = mapping::paper_sensor_model();
   EXPECT_THAT(reason_of_refusal(a, other), HasSubstr("prior shares"));
+  other = a;
+  other.sensor_model.fusion = "bki";
+  EXPECT_THAT(reason_of_refusal(a, other), HasSubstr("fused by bki, the maps before by log_odds"));
   MapFile full = file_of(mapping::VoxelMap(0.1));
   mapping::VoxelBlock block;
   block.add_hit(7, 1, 0xffffff00u);

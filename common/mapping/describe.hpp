@@ -20,7 +20,8 @@ void describe(Field& field, IntegrationConfig& c) {
   field("end_margin_voxels", c.end_margin_voxels, config::in_range(0.0, 3.0),
         "a voxel is passed only if the ray leaves it at least this far before the measured surface");
   field("depth_noise_per_m", c.depth_noise_per_m, config::in_range(0.0, 0.05),
-        "standard deviation of depth z is this times z^2; passes keep two of them away from the surface [1/m]");
+        "standard deviation of depth z is this times z^2; a hit weighs less where it is not small against a voxel, and "
+        "passes keep two of them away from the surface [1/m]");
 }
 
 template <class Field>

@@ -467,18 +467,28 @@ struct Marks {
   }
 };
 
+double depth_sigma_m(double depth_m, const IntegrationConfig& config) {
+  return config.depth_noise_per_m * depth_m * depth_m;
+}
+
 /// Share of the way to a measured point within which cells may be passed.
 double free_share(double range_voxels, double depth_m, const IntegrationConfig& config, double resolution_m) {
-  const double noise_m = config.depth_noise_per_m * depth_m * depth_m;
-  const double margin_voxels = config.end_margin_voxels + 2.0 * noise_m / resolution_m;
+  const double margin_voxels = config.end_margin_voxels + 2.0 * depth_sigma_m(depth_m, config) / resolution_m;
   return 1.0 - margin_voxels / range_voxels;
+}
+
+/// What a hit is worth [1/256 vote]: the probability that the noise of its depth is less than half a voxel.
+std::uint16_t hit_weight(double depth_m, const IntegrationConfig& config, double resolution_m) {
+  const double half_voxel_sigmas = 0.5 * resolution_m / depth_sigma_m(depth_m, config);  // infinite without noise
+  const auto weight = std::lround(std::erf(half_voxel_sigmas / std::numbers::sqrt2) * kOneVote);
+  return static_cast<std::uint16_t>(std::max(weight, 1l));
 }
 
 struct CellHit {
   CellId cell;
   std::uint16_t label;
-  std::uint16_t label_weight;       ///< for the label [1/256 vote]
-  std::uint16_t weight = kOneVote;  ///< altogether
+  std::uint16_t label_weight;  ///< for the label [1/256 vote]
+  std::uint16_t weight;        ///< altogether
 };
 
 bool is_within_heights(const BlockIndex& block, int layer, const IntegrationConfig& config, double resolution_m) {
@@ -527,9 +537,9 @@ void spread(const CellHit& hit, const Eigen::Vector3d& point, double length, con
     for (int y = low[1]; y <= high[1]; ++y)
       for (int x = low[0]; x <= high[0]; ++x) {
         const double distance = (Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5) - point).norm();
-        const auto weight = static_cast<std::uint16_t>(std::lround(sparse_kernel(distance / length) * kOneVote));
+        const auto weight = static_cast<std::uint16_t>(std::lround(sparse_kernel(distance / length) * hit.weight));
         if (weight == 0) continue;
-        const auto label_weight = static_cast<std::uint16_t>(weight * hit.label_weight / kOneVote);
+        const auto label_weight = static_cast<std::uint16_t>(weight * hit.label_weight / hit.weight);
         const CellId cell = box.id(static_cast<unsigned>(x), static_cast<unsigned>(y), static_cast<unsigned>(z));
         votes.push_back({cell, hit.label, label_weight, weight});
       }
@@ -621,7 +631,9 @@ FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_
     const double range = ray.norm();
     double t_end = 1.0;
     if (cell.is_hit) {
-      hits.push_back({s.runs[first].cell, cell.label, cell.label_weight});
+      const std::uint16_t weight = hit_weight(depth_mm * 1e-3, config, resolution_m);
+      const auto label_weight = static_cast<std::uint16_t>(weight * cell.label_weight / kOneVote);
+      hits.push_back({s.runs[first].cell, cell.label, label_weight, weight});
       if (config.kernel_length_voxels > 0.0)
         spread(hits.back(), projector.camera() + ray, config.kernel_length_voxels, box, s.kernel_votes);
       t_end = free_share(range, depth_mm * 1e-3, config, resolution_m);

@@ -13,8 +13,8 @@ struct IntegrationConfig {
   double max_height_m = 100.0;   ///< voxels whose centre is higher get no votes; above min_height_m
   /// A voxel is passed only if the ray leaves it at least this far before the measured surface, in [0, 3] voxels.
   double end_margin_voxels = 0.0;
-  /// Depth noise: standard deviation of depth z is this times z^2 [1/m]; passes also keep two standard deviations away
-  /// from the surface, in [0, 0.05].
+  /// Depth noise: standard deviation of depth z is this times z^2 [1/m], in [0, 0.05]. A hit is worth the probability
+  /// that the noise is less than half a voxel, and passes keep two standard deviations away from the surface.
   double depth_noise_per_m = 0.0013;
   /// Length of the kernel by which hits vote for the voxels of other hits around them, in [1.5, 3]; 0: not at all.
   double kernel_length_voxels = 0.0;
@@ -37,18 +37,16 @@ inline constexpr double kMaxRangeInVoxels = 500.0;
 /// - a hit where a sampled pixel's point within range falls into it; its class is the majority of the voxel's labelled
 ///   pixels (never an average; ties go to the smaller id; unlabelled only when no pixel is labelled). Pixels weigh as
 ///   much as their labels are certain; the mean confidence of the class' pixels is its share of the vote, the rest is
-///   an unlabelled one;
+///   an unlabelled one. Where depth noise is not small against a voxel the vote is worth less than a whole one;
 /// - otherwise a pass when a ray goes through it. There is one ray per voxel that is seen (to a measured point in it,
-/// the
-///   middle one in scan order), traversed exactly [Amanatides & Woo 1987]. Returns beyond max_range_m end rays there
-///   without a hit. Pixels without depth say nothing.
+///   the middle one in scan order), traversed exactly [Amanatides & Woo 1987]. Returns beyond max_range_m end rays
+///   there without a hit. Pixels without depth say nothing.
 /// With a kernel each voxel with a hit asks the hits around it, too: a hit is worth, at the point at which its ray
 /// ends, what the kernel is worth at the distance to the voxel's centre. The sum, at most one vote, goes to the class
 /// with most of it. Voxels in which nothing was measured get no votes: walls would grow.
 ///
-/// Deterministic: the same frame,
-/// pose, configuration and resolution give the same votes. Throws std::runtime_error when max_range_m / resolution_m
-/// exceeds kMaxRangeInVoxels.
+/// Deterministic: the same frame, pose, configuration and resolution give the same votes. Throws std::runtime_error
+/// when max_range_m / resolution_m exceeds kMaxRangeInVoxels.
 FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_camera, const IntegrationConfig& config,
                          double resolution_m);
 

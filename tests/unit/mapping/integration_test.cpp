@@ -203,6 +203,20 @@ TEST(ComputeVotes, PixelsWeighAsMuchAsTheirLabelsAreCertain) {
   EXPECT_EQ(vote(), test::whole_vote(0)) << "a surface is there, of whatever class";
 }
 
+TEST(ComputeVotes, HitsWeighLessWhereNoiseIsNotSmallAgainstAVoxel) {
+  TwoPixels s;
+  s.labels.pixels.assign(9, 7);
+  IntegrationConfig config = exact_config();
+  const auto vote = [&](double resolution_m) {
+    return plain(compute_votes(frame_of(s.camera, s.depth, &s.labels), s.T, config, resolution_m)).hits.begin()->second;
+  };
+  config.depth_noise_per_m = 0.05 / 4.0;  // 5 cm at 2 m
+  EXPECT_EQ(vote(0.5), test::whole_vote(7)) << "five standard deviations to either side";
+  EXPECT_EQ(vote(0.1), (test::Ballot{{7, 175}})) << "one: 68.27 %";
+  config.depth_noise_per_m = 0.05;
+  EXPECT_EQ(vote(0.02), (test::Ballot{{7, 10}})) << "a twentieth: 3.99 %";
+}
+
 TEST(ComputeVotes, AKernelLetsNeighboursOutvoteALoneLabelAndAddsNoVoxels) {
   // A wall of 9 x 3 voxels of half a metre, a pixel in each.
   const geometry::PinholeCamera camera{9, 3, 4, 4, 4, 1};

@@ -61,7 +61,7 @@ class PlainIntegration {
       const bool is_hit = !cell.hits.empty();
       const auto& deciding = is_hit ? cell.hits : cell.beyond;
       const std::uint32_t middle = deciding[deciding.size() / 2];
-      if (is_hit) votes.hits[index] = majority(cell.hits);
+      if (is_hit) votes.hits[index] = majority(cell.hits, weight_at(frame_.depth_mm()[middle] * 1e-3));
       if (is_hit) points[index] = camera_ + ray_of(middle);
       pass(middle, is_hit, votes.passes);
     }
@@ -97,12 +97,21 @@ class PlainIntegration {
     return (corner + x_step * column + y_step * row) * frame_.depth_mm()[sample];
   }
 
-  Ballot majority(const std::vector<std::uint32_t>& samples) const {
+  /// Noise of less than half a voxel to either side.
+  std::uint32_t weight_at(double depth_m) const {
+    const double sigma_m = config_.depth_noise_per_m * depth_m * depth_m;
+    if (sigma_m == 0.0) return kOneVote;
+    const auto below = [&](double offset_m) { return 0.5 * std::erfc(-offset_m / (sigma_m * std::sqrt(2.0))); };
+    const double probability = below(resolution_m_ / 2) - below(-resolution_m_ / 2);
+    return std::max(1u, static_cast<std::uint32_t>(std::floor(probability * kOneVote + 0.5)));
+  }
+
+  Ballot majority(const std::vector<std::uint32_t>& samples, std::uint32_t weight) const {
     std::map<int, std::pair<std::uint64_t, std::uint64_t>> tally;  // confidence, samples
     for (const std::uint32_t sample : samples) {
       if (!frame_.has_labels() || frame_.labels()[sample] == 0) continue;
-      auto& [weight, count] = tally[frame_.labels()[sample]];
-      weight += frame_.confidence().empty() ? 255u : frame_.confidence()[sample];
+      auto& [confidence, count] = tally[frame_.labels()[sample]];
+      confidence += frame_.confidence().empty() ? 255u : frame_.confidence()[sample];
       ++count;
     }
     int label = 0;
@@ -113,7 +122,7 @@ class PlainIntegration {
       most = votes.first;
       share = (votes.first * kOneVote + 127 * votes.second) / (255 * votes.second);
     }
-    return split(label, static_cast<std::uint32_t>(share), kOneVote);
+    return split(label, weight * static_cast<std::uint32_t>(share) / kOneVote, weight);
   }
 
   static Ballot split(int label, std::uint32_t share, std::uint32_t weight) {
@@ -133,12 +142,14 @@ class PlainIntegration {
       std::uint32_t sum = 0, labelled = 0;
       for (const auto& [hit, point] : points) {
         const double share = (center - point).norm() / config_.kernel_length_voxels;
-        const auto weight = static_cast<std::uint32_t>(std::floor(sparse_kernel(share) * kOneVote + 0.5));
+        std::uint32_t worth = 0;
+        for (const auto& [label, part] : votes.hits.at(hit)) worth += part;
+        const auto weight = static_cast<std::uint32_t>(std::floor(sparse_kernel(share) * worth + 0.5));
         sum += weight;
         for (const auto& [label, part] : votes.hits.at(hit)) {
           if (label == 0) continue;
-          tally[label] += weight * part / kOneVote;
-          labelled += weight * part / kOneVote;
+          tally[label] += weight * part / worth;
+          labelled += weight * part / worth;
         }
       }
       int best = 0;

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "planner/core/spectral/weighted_graph.hpp"
+
+namespace lapis::planner {
+
+/// Which `kept` of the candidate edges (loop closures, covisibility) to keep beside the fixed ones (odometry), which
+/// connect all nodes. 0 <= kept <= number of candidates.
+struct SparsificationProblem {
+  int node_count = 0;
+  std::vector<WeightedEdge> fixed, candidates;
+  int kept = 0;
+};
+
+struct Sparsification {
+  std::vector<int> kept;     ///< indices of candidates, ascending
+  double value = 0.0;        ///< objective of the graph of the fixed and these
+  double upper_bound = 0.0;  ///< no choice of as many candidates has a larger objective
+};
+
+struct MacConfig {
+  int max_iterations = 20;     ///< of Frank and Wolfe, >= 1
+  double relative_gap = 1e-4;  ///< between bound and relaxed objective at which to stop, >= 0
+  int roundings = 8;           ///< Madow's systematic samples that are tried beside the nearest choice, >= 0
+};
+
+/// Objective: the algebraic connectivity, relaxed to weights x w, 0 <= x <= 1, maximised by Frank and Wolfe's method
+/// and rounded (MAC: Doherty, Rosen and Leonard, 2022). Deterministic. Fails where the fixed edges do not connect the
+/// nodes.
+std::variant<Sparsification, GraphError> maximize_connectivity(const SparsificationProblem& problem,
+                                                               const MacConfig& config = {});
+
+/// Objective: ln S, the log-determinant of the reduced Laplacian, which is submodular: the greedy choice gains at least
+/// 1 - 1/e of the best gain (Nemhauser, Wolsey and Fisher, 1978). Deterministic. Fails as above.
+std::variant<Sparsification, GraphError> maximize_log_trees(const SparsificationProblem& problem);
+
+}  // namespace lapis::planner

@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/geometry/se3.hpp"
+
+namespace lapis::planner {
+
+/// Mean of the eigenvalues of an information matrix, as the exponent p of Zhang et al. 2024, eq. 20-23.
+enum class Criterion {
+  kD,  ///< p -> 0: geometric mean
+  kA,  ///< p = -1: harmonic mean
+  kT,  ///< p = 1: arithmetic mean
+  kE,  ///< p -> -infinity: the smallest
+};
+
+/// Weight of an edge: the mean of the eigenvalues of its information, 1x1 to 6x6. Nothing where the matrix is not
+/// finite, symmetric and positive definite. Only kD does not depend on the frame of the tangent.
+std::optional<double> edge_weight(const Eigen::Ref<const Eigen::MatrixXd>& information, Criterion criterion);
+
+/// Why a graph cannot be analysed: "edge 3-7 has weight 0; a weight is positive and finite".
+struct GraphError {
+  std::string message;
+};
+
+struct WeightedEdge {
+  int a = 0, b = 0;
+  double weight = 0.0;
+};
+
+/// What is wrong with an edge between nodes 0..node_count-1, if anything.
+std::optional<GraphError> edge_error(int node_count, const WeightedEdge& edge);
+
+/// Connected graph of nodes 0..n-1 with positive weights.
+class WeightedGraph {
+ public:
+  /// Parallel edges add. The error names what is wrong: no node, an edge of a node to itself or to none, a weight that
+  /// is not positive and finite, a node without connection to node 0.
+  static std::variant<WeightedGraph, GraphError> make(int node_count, std::vector<WeightedEdge> edges);
+
+  int node_count() const { return node_count_; }
+  /// a < b, sorted, each pair once.
+  const std::vector<WeightedEdge>& edges() const { return edges_; }
+
+ private:
+  WeightedGraph(int node_count, std::vector<WeightedEdge> edges) : node_count_(node_count), edges_(std::move(edges)) {}
+
+  int node_count_ = 0;
+  std::vector<WeightedEdge> edges_;
+};
+
+/// Measured relative pose between two key-frames: information in the tangent of SE(3) [1/m^2, 1/rad^2].
+struct KeyframeEdge {
+  std::uint64_t from = 0, to = 0;
+  geometry::Matrix6d information = geometry::Matrix6d::Identity();
+};
+
+struct KeyframeGraph {
+  WeightedGraph graph;
+  std::vector<std::uint64_t> keyframes;  ///< id of each node, ascending
+
+  /// Nothing for a key-frame outside of the component.
+  std::optional<int> node_of(std::uint64_t keyframe) const;
+};
+
+/// The part of the pose graph that hangs together with `keyframe` (the robot's newest): stale parts do not count.
+/// Fails where an edge of that part has no weight.
+std::variant<KeyframeGraph, GraphError> component_of(std::uint64_t keyframe, std::span<const KeyframeEdge> edges,
+                                                     Criterion criterion);
+
+}  // namespace lapis::planner

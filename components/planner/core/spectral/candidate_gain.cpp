@@ -91,7 +91,7 @@ std::variant<CandidateGain, GraphError> CandidateGain::make(const LaplacianFacto
 
 // With C, B and D the blocks of `certain` by new and old nodes and G the old nodes' covariance, F = -C^-1 B takes moves
 // of the old nodes to the new ones, M = D + B' F is what the certain edges say about the old nodes, and these have then
-// (G^-1 + M)^-1 = (I + G M)^-1 G. False when C is singular.
+// (G^-1 + M)^-1 = (I + G M)^-1 G. False when C is singular. Lazy products are the faster ones of matrices this small.
 bool CandidateGain::add_certain(const Eigen::MatrixXd& certain, const Eigen::MatrixXd& G) {
   const Eigen::Index k = new_nodes_, s = G.rows();
   new_block_ = certain.topLeftCorner(k, k);
@@ -100,16 +100,16 @@ bool CandidateGain::add_certain(const Eigen::MatrixXd& certain, const Eigen::Mat
   const auto pivots = C.matrixLLT().diagonal().array().square();
   if ((pivots < kLeastPivot * new_block_.diagonal().array()).any()) return false;
   const Eigen::MatrixXd F = -C.solve(certain.topRightCorner(k, s));
-  const Eigen::MatrixXd M = certain.bottomRightCorner(s, s) + certain.bottomLeftCorner(s, k) * F;
-  const Eigen::PartialPivLU<Eigen::MatrixXd> update(Eigen::MatrixXd::Identity(s, s) + G * M);
+  const Eigen::MatrixXd M = certain.bottomRightCorner(s, s) + certain.bottomLeftCorner(s, k).lazyProduct(F);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> update(Eigen::MatrixXd::Identity(s, s) + G.lazyProduct(M));
   certain_change_ = log_determinant(C) + update.matrixLU().diagonal().array().abs().log().sum();
   const Eigen::MatrixXd old_covariance = update.solve(G);
   covariance_.resize(k + s, k + s);
   covariance_.bottomRightCorner(s, s) = old_covariance;
-  covariance_.topRightCorner(k, s) = F * old_covariance;
+  covariance_.topRightCorner(k, s) = F.lazyProduct(old_covariance);
   covariance_.bottomLeftCorner(s, k) = covariance_.topRightCorner(k, s).transpose();
   covariance_.topLeftCorner(k, k) =
-      C.solve(Eigen::MatrixXd::Identity(k, k)) + covariance_.topRightCorner(k, s) * F.transpose();
+      C.solve(Eigen::MatrixXd::Identity(k, k)) + covariance_.topRightCorner(k, s).lazyProduct(F.transpose());
   return true;
 }
 

@@ -132,11 +132,11 @@ class GrowingGraph {
 
   double log_trees() const { return factor_.log_trees(); }
 
-  // Of ln S by each candidate that is not yet chosen; -1 for the others.
-  Eigen::VectorXd gains(const Eigen::VectorXd& chosen) const {
-    Eigen::VectorXd result = Eigen::VectorXd::Constant(chosen.size(), -1.0);
+  // w r of each candidate, which gains ln(1 + w r), 0 of those chosen.
+  Eigen::VectorXd shares(const Eigen::VectorXd& chosen) const {
+    Eigen::VectorXd result(chosen.size());
     for (int k = 0; k < chosen.size(); ++k) {
-      if (chosen[k] == 0.0) result[k] = std::log1p(problem_.candidates[index(k)].weight * resistances_[k]);
+      result[k] = (1.0 - chosen[k]) * problem_.candidates[index(k)].weight * resistances_[k];
     }
     return result;
   }
@@ -198,12 +198,12 @@ std::variant<Sparsification, GraphError> maximize_log_trees(const Sparsification
     }
     if (picks == problem.kept) break;
     Eigen::Index best = 0;
-    graph->gains(chosen).maxCoeff(&best);
+    (graph->shares(chosen) - chosen).maxCoeff(&best);
     chosen[best] = 1.0;
     graph->add(problem.candidates[static_cast<std::size_t>(best)]);
   }
   // Submodular: what is not chosen gains no more in a larger graph.
-  const Eigen::VectorXd gains = graph->gains(chosen).cwiseMax(0.0);
+  const Eigen::VectorXd gains = graph->shares(chosen).array().log1p();
   return Sparsification{indices(chosen), graph->log_trees(), graph->log_trees() + gains.dot(largest(problem, gains))};
 }
 

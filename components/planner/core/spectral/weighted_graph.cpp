@@ -106,16 +106,17 @@ std::optional<double> edge_weight(const Eigen::Ref<const Eigen::MatrixXd>& infor
 }
 
 std::optional<GraphError> edge_error(int node_count, const WeightedEdge& edge) {
+  const bool has_nodes = std::min(edge.a, edge.b) >= 0 && std::max(edge.a, edge.b) < node_count;
+  const bool has_weight = edge.weight > 0.0 && std::isfinite(edge.weight);
+  if (has_nodes && has_weight && edge.a != edge.b) return std::nullopt;
   std::ostringstream text;
   text << "edge " << edge.a << "-" << edge.b;
-  if (std::min(edge.a, edge.b) < 0 || std::max(edge.a, edge.b) >= node_count)
+  if (!has_nodes)
     text << " names a node beyond 0.." << node_count - 1;
   else if (edge.a == edge.b)
     text << " joins a node to itself";
-  else if (!(edge.weight > 0.0) || !std::isfinite(edge.weight))
-    text << " has weight " << edge.weight << "; a weight is positive and finite";
   else
-    return std::nullopt;
+    text << " has weight " << edge.weight << "; a weight is positive and finite";
   return GraphError{text.str()};
 }
 

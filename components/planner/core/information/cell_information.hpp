@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "common/mapping/sensor_model.hpp"
+#include "common/mapping/voxel_block.hpp"
+
+namespace lapis::planner {
+
+/// What it is worth to observe a cell. A ray that reaches a cell either passes it or ends in it; o = P(occupied).
+enum class Measure {
+  /// Semantic mutual information [Zhang, Bong & Beltrame 2024, eq. 13-14]: g = sum_z P(z) KL(b_z || b) over the
+  /// outcomes
+  /// z (pass, or a hit of class c); b is the belief about free space and all classes as BeliefReader gives it, b_z what
+  /// it will give after one more whole vote. Where nothing is clamped this is the paper's h; a clamped belief that
+  /// stays clamped gains nothing. By fusion rules other than log_odds it is the same with their own beliefs.
+  kSemantic,
+  /// Shannon information of occupancy [Zhang, Henderson, Karaman & Sze 2020, "FSMI"] with an exact range sensor: of
+  /// r = o / (1 - o), g = o f(d_occ, r) + (1 - o) f(d_emp, r), f(d, r) = ln((r + 1) / (r + 1/d)) - ln d / (r d + 1),
+  /// which is the divergence of kSemantic without classes: the same clamp holds. Exact along a ray.
+  kShannon,
+  /// Cauchy-Schwarz quadratic information of occupancy [Charrow et al. 2015] with an exact range sensor, of the cell
+  /// alone: g = 3 ln(o^2 + (1 - o)^2) - 2 ln(o^3 + (1 - o)^3). It does not depend on how votes change beliefs. Exact
+  /// for one cell; along a ray the sum of reach * g stands for theirs, which couples all cells.
+  kCsqmi,
+};
+
+/// All that rays have to know about a cell.
+struct CellInformation {
+  double free = 0.0;  ///< P(free): the ray goes on
+  double gain = 0.0;  ///< g, expected information for a ray that reaches the cell [nats], >= 0
+};
+
+/// Turns counts into what rays have to know.
+class CellMeasure {
+ public:
+  /// Throws std::runtime_error naming the parameter of the sensor model that is out of range.
+  CellMeasure(const mapping::SensorModel& model, Measure measure);
+
+  /// O(k^2), k = classes that were hit + distinct prior shares of the others; O(1) where nothing was hit.
+  CellInformation of(const mapping::VoxelCounts& counts) const;
+
+ private:
+  /// Classes of equal prior share.
+  struct PriorGroup {
+    double prior;
+    double surplus;                     ///< psi_c - phi_c of BeliefReader
+    std::vector<std::uint16_t> labels;  ///< ascending
+  };
+  /// Classes of one voxel that nothing tells apart: one that was hit, or those of a prior group that were not.
+  struct Kind {
+    std::uint16_t label;     ///< one of them
+    double size;             ///< how many they are
+    double log_share;        ///< of each, given occupied, up to a constant
+    double log_share_after;  ///< of `label`, after it was hit
+  };
+
+  void group_priors();
+  CellInformation compute(const mapping::VoxelCounts& counts) const;
+  double semantic_gain(const mapping::VoxelCounts& counts, double log_odds) const;
+  std::vector<Kind> kinds_of(const mapping::VoxelCounts& counts) const;
+  Kind kind_of(const PriorGroup& group, std::uint16_t label, double size, double votes) const;
+  /// KL of the shares after a hit of one of `hit` from those before.
+  double share_divergence(const std::vector<Kind>& kinds, const Kind& hit) const;
+
+  mapping::BeliefReader reader_;
+  Measure measure_;
+  std::vector<PriorGroup> groups_;
+  std::vector<std::size_t> group_of_;       ///< index label - 1
+  std::vector<CellInformation> by_passes_;  ///< of voxels without hits, by whole votes
+};
+
+}  // namespace lapis::planner

@@ -1,0 +1,218 @@
+// mutual_information/ray: what a ray of a view costs, deduplication included, beside the same written plainly: a
+// look-up in the map and an evaluation of every class for each cell. The map: apartment after half of its bundled tour,
+// at true poses; 50 views of 2,304 rays from where the camera was. CPU time of one thread.
+
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <random>
+#include <string>
+#include <vector>
+
+#include <benchmark/benchmark.h>
+#include <tbb/global_control.h>
+
+#include "common/mapping/integration.hpp"
+#include "planner/core/information/path_information.hpp"
+#include "simulator/set_up.hpp"
+#include "tests/unit/planner/information/plain_information.hpp"
+
+namespace lapis::planner {
+namespace {
+
+constexpr std::size_t kPoses = 50;
+constexpr std::size_t kPosesPerPath = 10;
+
+/// A frame of the tour, with its true pose.
+struct Frame {
+  geometry::Pose T_map_camera;
+  mapping::CompactFrame frame;
+};
+
+simulator::SimulatorConfig apartment() {
+  simulator::SimulatorConfig config;
+  config.scene = "apartment";
+  config.tour = "bundled";
+  return config;
+}
+
+mapping::CompactFrame compact_frame(const geometry::PinholeCamera& camera, const simulator::CameraImages& images) {
+  geometry::DepthImage depth(camera.width, camera.height);
+  std::transform(images.depth_mm.pixels.begin(), images.depth_mm.pixels.end(), depth.pixels.begin(),
+                 [](std::uint16_t mm) { return 1e-3f * static_cast<float>(mm); });
+  std::string error;
+  return mapping::CompactFrame::make(camera, depth, &images.labels, {}, error).value();
+}
+
+/// The first half of the tour.
+std::vector<Frame> drive() {
+  const simulator::SimulatorConfig config = apartment();
+  const simulator::World world = simulator::open_world(config);
+  const simulator::StartPose start = simulator::start_pose(world, config);
+  auto tour = simulator::plan_tour(world, start, config);
+  simulator::Simulation simulation(world, simulator::simulation_config(config), start);
+  const auto camera = robot::pinhole_camera(config.robot.camera);
+  const geometry::Pose T_base_camera = geometry::T_base_camera(robot::camera_mount(config.robot.camera));
+  std::vector<Frame> frames;
+  std::optional<simulator::DriveCommand> command;
+  while (!tour->is_finished()) {
+    const simulator::SensorFrame frame = simulation.next(command);
+    frames.push_back({frame.T_world_base * T_base_camera, compact_frame(camera, frame.images)});
+    command = tour->command(frame.robot);
+  }
+  frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(frames.size() / 2), frames.end());
+  return frames;
+}
+
+const std::vector<Frame>& walk() {
+  static const std::vector<Frame> kWalk = drive();
+  return kWalk;
+}
+
+mapping::VoxelMap map_of_walk(double resolution_m) {
+  mapping::VoxelMap map(resolution_m);
+  for (const Frame& frame : walk()) map.add(compute_votes(frame.frame, frame.T_map_camera, {}, resolution_m));
+  return map;
+}
+
+InformationField field_of(const mapping::VoxelMap& map) {
+  InformationField field(map.resolution_m(), mapping::SensorModel{}, Measure::kSemantic);
+  field.rebuild(map);
+  return field;
+}
+
+View view() {
+  ViewConfig config;
+  config.camera = robot::pinhole_camera(apartment().robot.camera);
+  return View(config);
+}
+
+/// Evenly over the walk.
+std::vector<ViewPath> single_views() {
+  std::vector<ViewPath> paths;
+  for (std::size_t i = 0; i < kPoses; ++i)
+    paths.push_back({walk()[(2 * i + 1) * walk().size() / (2 * kPoses)].T_map_camera});
+  return paths;
+}
+
+/// The same poses, ten in turn to a path.
+std::vector<ViewPath> paths_of_ten() {
+  std::vector<ViewPath> paths(kPoses / kPosesPerPath);
+  const std::vector<ViewPath> views = single_views();
+  for (std::size_t i = 0; i < views.size(); ++i) paths[i / kPosesPerPath].push_back(views[i].front());
+  return paths;
+}
+
+double cpu_s() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+/// Times evaluate(path) for all paths; the time of an iteration is that of one ray.
+template <class Evaluate>
+void time_per_ray(benchmark::State& state, const View& view, const std::vector<ViewPath>& paths,
+                  const Evaluate& evaluate) {
+  double nats = 0.0;
+  const auto rays = static_cast<double>(kPoses * view.directions().size());
+  for (auto _ : state) {
+    nats = 0.0;
+    const double begin_s = cpu_s();
+    for (const ViewPath& path : paths) nats += evaluate(path);
+    state.SetIterationTime((cpu_s() - begin_s) / rays);
+  }
+  state.counters["rays"] = rays;
+  state.counters["nats_per_view"] = nats / kPoses;
+}
+
+void rays(benchmark::State& state, double resolution_m, const std::vector<ViewPath>& paths, Counting counting) {
+  const InformationField field = field_of(map_of_walk(resolution_m));
+  const View rays_of_view = view();
+  time_per_ray(state, rays_of_view, paths,
+               [&](const ViewPath& path) { return path_information(field, rays_of_view, path, counting); });
+}
+
+/// P(free) and gain of a voxel, class by class in the closed form of [Asgharivaskasi & Atanasov 2023].
+class PlainCells {
+ public:
+  explicit PlainCells(const mapping::VoxelMap& map) : map_(map), reader_(mapping::SensorModel{}) {
+    const std::vector<double> prior = reader_.class_log_odds({});
+    const std::vector<double> hit = reader_.class_log_odds({0, {{1, mapping::kOneVote}}});
+    const std::vector<double> pass = reader_.class_log_odds({mapping::kOneVote, {}});
+    psi_ = hit[0] - prior[0];
+    phi_hit_ = hit[1] - prior[1];
+    phi_pass_ = pass[0] - prior[0];
+  }
+
+  CellInformation operator()(const mapping::VoxelIndex& voxel) const {
+    std::vector<double> odds = reader_.class_log_odds(map_.read(voxel));
+    double all = 0.0;
+    for (double& y : odds) all += y = std::exp(y);
+    const double s = 1.0 + all, passed = std::exp(phi_pass_) * all;
+    double gain = std::log(s / (1.0 + passed)) + phi_pass_ * passed / (1.0 + passed);
+    for (const double odd : odds) {
+      const double others = std::exp(phi_hit_) * (all - odd), own = std::exp(psi_) * odd, after = 1.0 + others + own;
+      gain += odd * (std::log(s / after) + (psi_ * own + phi_hit_ * others) / after);
+    }
+    return {1.0 / s, gain / s};
+  }
+
+ private:
+  const mapping::VoxelMap& map_;
+  mapping::BeliefReader reader_;
+  double psi_, phi_hit_, phi_pass_;
+};
+
+void plain_rays(benchmark::State& state, double resolution_m) {
+  const mapping::VoxelMap map = map_of_walk(resolution_m);
+  const PlainCells cells(map);
+  const View rays_of_view = view();
+  time_per_ray(state, rays_of_view, single_views(), [&](const ViewPath& path) {
+    return test::plain_path_information(rays_of_view, path, resolution_m, Counting::kOnce, cells);
+  });
+}
+
+/// Renews every block of the map; the time of an iteration is that of one block.
+void update(benchmark::State& state, double resolution_m) {
+  const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
+  const mapping::VoxelMap map = map_of_walk(resolution_m);
+  InformationField field = field_of(map);
+  const std::vector<mapping::BlockIndex> blocks = map.sorted_blocks();
+  for (auto _ : state) {
+    const double begin_s = cpu_s();
+    field.update(map, blocks);
+    state.SetIterationTime((cpu_s() - begin_s) / static_cast<double>(blocks.size()));
+  }
+  state.counters["blocks"] = static_cast<double>(blocks.size());
+}
+
+template <class Run>
+void add(const std::string& name, int iterations, Run run) {
+  benchmark::RegisterBenchmark(name.c_str(), run)->Iterations(iterations)->UseManualTime();
+}
+
+void register_all() {
+  for (const double resolution_m : {0.25, 0.1}) {
+    const double r = resolution_m;
+    const std::string where = r == 0.25 ? "/0.25m" : "/0.10m";
+    add("mutual_information/ray" + where, 20,
+        [r](benchmark::State& s) { rays(s, r, single_views(), Counting::kOnce); });
+    add("mutual_information/ray_of_path" + where, 20,
+        [r](benchmark::State& s) { rays(s, r, paths_of_ten(), Counting::kOnce); });
+    add("mutual_information/ray_counted_each" + where, 20,
+        [r](benchmark::State& s) { rays(s, r, single_views(), Counting::kEveryRay); });
+    add("mutual_information/plain_ray" + where, 1, [r](benchmark::State& s) { plain_rays(s, r); });
+    add("information_field/block" + where, 5, [r](benchmark::State& s) { update(s, r); });
+  }
+}
+
+}  // namespace
+}  // namespace lapis::planner
+
+int main(int argc, char** argv) {
+  lapis::planner::register_all();
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 1;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

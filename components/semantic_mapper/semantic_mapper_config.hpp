@@ -16,7 +16,7 @@ struct SemanticMapperComponentConfig {
   mapping::CompactFrameConfig frame;
   mapping::SensorModel sensor_model;
   double kernel_length_voxels = 2.0;
-  GridConfig grid;
+  mapping::HeightBand grid;
   ObstacleConfig obstacles;
   double max_stamp_difference_s = 0.016;
   double frame_interval_s = 0.0;
@@ -29,14 +29,6 @@ struct SemanticMapperComponentConfig {
   double save_period_s = 30.0;
   robot::RobotDescription robot;
 };
-
-template <class Field>
-void describe(Field& field, GridConfig& c) {
-  field("min_height_m", c.min_height_m, config::in_range(-100.0, 100.0),
-        "voxels whose centre is below say nothing [m]");
-  field("max_height_m", c.max_height_m, config::in_range(-100.0, 100.0),
-        "voxels whose centre is above say nothing [m]");
-}
 
 template <class Field>
 void describe(Field& field, ObstacleConfig& c) {

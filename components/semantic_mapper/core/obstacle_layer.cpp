@@ -8,7 +8,7 @@ namespace lapis::semantic_mapper {
 
 using mapping::BlockIndex;
 
-ObstacleLayer::ObstacleLayer(const ObstacleConfig& config, const GridConfig& band, double resolution_m)
+ObstacleLayer::ObstacleLayer(const ObstacleConfig& config, const mapping::HeightBand& band, double resolution_m)
     : config_(config), band_(band), resolution_m_(resolution_m) {
   if (!(config.window_s >= 0.1 && config.window_s <= 600.0))
     throw std::runtime_error("obstacles: window_s must be in [0.1, 600]");
@@ -19,7 +19,7 @@ ObstacleLayer::ObstacleLayer(const ObstacleConfig& config, const GridConfig& ban
 bool ObstacleLayer::touches_band(const BlockIndex& index) const {
   const std::int32_t first = mapping::voxel_at(index, 0).z;
   for (std::int32_t z = first; z < first + mapping::kBlockEdge; ++z)
-    if (is_in_band(z, resolution_m_, band_)) return true;
+    if (mapping::is_in_band(z, resolution_m_, band_)) return true;
   return false;
 }
 
@@ -69,7 +69,7 @@ OccupancyGrid ObstacleLayer::grid() const {
       const auto i = static_cast<std::size_t>(offset);
       if (block.seen[i] < oldest) continue;
       const mapping::VoxelIndex voxel = mapping::voxel_at(index, offset);
-      if (!is_in_band(voxel.z, resolution_m_, band_)) continue;
+      if (!mapping::is_in_band(voxel.z, resolution_m_, band_)) continue;
       cells.push_back({voxel.x, voxel.y, block.passes_since_hit[i] < config_.passes_to_clear ? kOccupied : kFree});
     }
   }

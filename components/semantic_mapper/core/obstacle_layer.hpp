@@ -25,7 +25,7 @@ struct ObstacleConfig {
 class ObstacleLayer {
  public:
   /// Throws std::runtime_error naming the value that is out of range.
-  ObstacleLayer(const ObstacleConfig& config, const GridConfig& band, double resolution_m);
+  ObstacleLayer(const ObstacleConfig& config, const mapping::HeightBand& band, double resolution_m);
 
   /// What a frame says (integration.hpp); stamps must not go back.
   void add(time::Time stamp, const mapping::FrameVotes& votes);
@@ -48,7 +48,7 @@ class ObstacleLayer {
   std::int64_t oldest_stamp() const;  ///< of the window [ns]
 
   ObstacleConfig config_;
-  GridConfig band_;
+  mapping::HeightBand band_;
   double resolution_m_;
   time::Time newest_;
   std::unordered_map<mapping::BlockIndex, Block, mapping::GridIndexHash> blocks_;

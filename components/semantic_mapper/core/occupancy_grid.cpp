@@ -5,11 +5,6 @@
 
 namespace lapis::semantic_mapper {
 
-bool is_in_band(std::int32_t z, double resolution_m, const GridConfig& config) {
-  const double center_m = (z + 0.5) * resolution_m;
-  return center_m >= config.min_height_m && center_m < config.max_height_m;
-}
-
 OccupancyGrid make_grid(std::span<const GridCell> cells, double resolution_m) {
   OccupancyGrid grid;
   grid.resolution_m = resolution_m;

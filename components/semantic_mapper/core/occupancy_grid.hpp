@@ -4,16 +4,11 @@
 #include <span>
 #include <vector>
 
+#include "common/mapping/column_projection.hpp"
+
 namespace lapis::semantic_mapper {
 
-/// The layer of space in which the robot can run into something.
-struct GridConfig {
-  double min_height_m = 0.2;  ///< voxels whose centre is below say nothing about the floor plan; above the floor
-  double max_height_m = 1.2;  ///< voxels whose centre is at or above say nothing; above the robot's top
-};
-
-/// True when the centre of the voxels of layer `z` lies in [min_height_m, max_height_m).
-bool is_in_band(std::int32_t z, double resolution_m, const GridConfig& config);
+using mapping::kFree, mapping::kOccupied, mapping::kUnknown;
 
 /// Plan in the map frame. Cell (column, row) covers [origin + column * resolution, + resolution) and so on.
 struct OccupancyGrid {
@@ -24,8 +19,6 @@ struct OccupancyGrid {
   int height = 0;                  ///< rows, along y
   std::vector<std::int8_t> cells;  ///< row by row: kOccupied, kFree, kUnknown
 };
-
-inline constexpr std::int8_t kOccupied = 100, kFree = 0, kUnknown = -1;
 
 /// What is known of a column of voxels.
 struct GridCell {

@@ -27,7 +27,8 @@ void add(mapping::VoxelMap& map, const VoxelIndex& v, int hits, int passes) {
 }
 
 /// The rule as it is written down, voxel by voxel.
-OccupancyGrid plan_of(const mapping::VoxelMap& map, const mapping::BeliefReader& reader, const GridConfig& config) {
+OccupancyGrid plan_of(const mapping::VoxelMap& map, const mapping::BeliefReader& reader,
+                      const mapping::HeightBand& config) {
   std::vector<GridCell> cells;
   map.for_each_observed([&](const VoxelIndex& v, const mapping::VoxelCounts& counts) {
     const double height_m = (v.z + 0.5) * map.resolution_m();
@@ -62,7 +63,7 @@ TEST(FloorPlan, OfAnEmptyMapIsEmpty) {
 }
 
 TEST(FloorPlan, UpdatedEqualsProjectedAnewWhateverChanges) {
-  const GridConfig band{-0.33, 0.71};  // begins and ends inside blocks
+  const mapping::HeightBand band{-0.33, 0.71};  // begins and ends inside blocks
   const mapping::BeliefReader reader{mapping::SensorModel{}};
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);

@@ -21,7 +21,7 @@ const geometry::PinholeCamera kCamera{160, 90, 80, 80, 79.5, 44.5};
 /// A room with a box of 0.4 m that somebody moves, and a camera that looks along x.
 class Scene {
  public:
-  explicit Scene(const ObstacleConfig& config = {}) : layer(config, GridConfig{}, kResolution_m) {}
+  explicit Scene(const ObstacleConfig& config = {}) : layer(config, mapping::HeightBand{}, kResolution_m) {}
 
   static Box box_at(double y) { return {{1.8, y - 0.2, 0.0}, {2.2, y + 0.2, 0.8}, 9}; }
   void look(const std::vector<Box>& boxes, double yaw_rad = 0.0) {

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cmath>
+#include <compare>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace lapis::planner {
+
+/// Cell of the floor plan: x and y as mapping::VoxelIndex. Ordered by y, then x.
+struct Cell {
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+
+  constexpr bool operator==(const Cell&) const = default;
+  constexpr std::strong_ordering operator<=>(const Cell& other) const {
+    const auto by_y = y <=> other.y;
+    return by_y != 0 ? by_y : x <=> other.x;
+  }
+};
+
+constexpr Cell operator+(Cell a, Cell b) { return {a.x + b.x, a.y + b.y}; }
+constexpr Cell operator-(Cell a, Cell b) { return {a.x - b.x, a.y - b.y}; }
+
+/// Square of the distance between two centres [cells^2].
+constexpr std::int64_t squared_distance(Cell a, Cell b) {
+  const std::int64_t x = a.x - b.x, y = a.y - b.y;
+  return x * x + y * y;
+}
+
+/// Distance between two centres [cells].
+inline double distance(Cell a, Cell b) { return std::sqrt(static_cast<double>(squared_distance(a, b))); }
+
+/// Steps to the eight neighbours: the four straight ones, then the four diagonal ones.
+inline constexpr std::array<Cell, 8> kSteps{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
+inline constexpr std::size_t kStraightSteps = 4;
+
+/// Position and heading in the map frame.
+struct Pose2 {
+  Eigen::Vector2d p_map{0, 0};  ///< [m]
+  double yaw_rad = 0.0;         ///< counter-clockwise from the x axis, in (-pi, pi]
+};
+
+}  // namespace lapis::planner

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/mapping/column_projection.hpp"
+#include "common/time/time.hpp"
+#include "planner/core/space/distance_field.hpp"
+
+namespace lapis::planner {
+
+struct GridConfig {
+  mapping::HeightBand band;          ///< what the robot can run into
+  double footprint_radius_m = 0.20;  ///< of the robot's disc, in [0.05, 2]
+  double margin_m = 0.05;            ///< kept besides, in [0, 1]
+  double unknown_clearance_m = 0.0;  ///< kept from unknown cells; 0: the robot may touch them; in [0, 2]
+  double max_clearance_m = 1.0;      ///< distances are known up to here, in [0.1, 5]
+  double obstacle_expiry_s = 10.0;   ///< an obstacle that no grid shows any more is forgotten, in [0.1, 600]
+};
+
+/// Values of a nav_msgs/OccupancyGrid with axes parallel to those of the map frame.
+struct ObstacleGrid {
+  Eigen::Vector2d origin{0, 0};  ///< lower left corner of cell 0 in the map frame [m]
+  double resolution_m = 0.0;
+  int width = 0;
+  int height = 0;
+  std::vector<std::int8_t> cells;  ///< row by row; >= 50: occupied, 0 to 49: free, -1: unknown
+
+  std::int8_t at(int column, int row) const {
+    return cells[static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column)];
+  }
+};
+
+/// Grids that reach farther from the origin of the map frame are not believed [m].
+inline constexpr double kMaxReach_m = 1000.0;
+
+/// Floor plan in which the robot plans: the projection of the map's voxels (column_projection.hpp) under a layer of
+/// obstacles that come and go. An obstacle makes its cell occupied until a grid says that it is free or until no grid
+/// has shown it for `obstacle_expiry_s`; what the map says is occupied stays so.
+///
+/// Clearance is measured from centre to centre: walls are taken to be in the middle of their cells. A cell is
+/// traversable when it is free and its clearance is at least footprint radius + margin (and it is
+/// `unknown_clearance_m` from unknown cells).
+class PlanningGrid {
+ public:
+  /// @param resolution_m edge of a cell: that of the map.
+  PlanningGrid(const GridConfig& config, double resolution_m);
+
+  /// Takes over what `changed` blocks of the map say: all whose content is not what it was at the last call, those that
+  /// are gone included. The first time, and with another sensor model, all blocks of the map are looked at.
+  /// All updates return the cells whose state() is another one than before, each once, in a fixed order.
+  std::vector<Cell> update_map(const mapping::VoxelMap& map, const mapping::BeliefReader& reader,
+                               std::span<const mapping::BlockIndex> changed);
+  /// Lays a grid over the plan. Nothing, and no change, when it is malformed: not as many cells as width x height, a
+  /// resolution outside [0.01, 1] m, or cells beyond kMaxReach_m.
+  std::optional<std::vector<Cell>> update_obstacles(const ObstacleGrid& grid, time::Time stamp);
+  /// Forgets obstacles that were last seen more than `obstacle_expiry_s` before `now`.
+  std::vector<Cell> expire_obstacles(time::Time now);
+
+  /// mapping::kOccupied, kFree or kUnknown.
+  std::int8_t state(Cell c) const { return state_.at(c); }
+  /// Distance to the nearest occupied cell, at most max_clearance_m() [m].
+  double clearance_m(Cell c) const;
+  bool is_traversable(Cell c) const {
+    return state(c) == mapping::kFree && to_occupied_.squared(c) >= required_squared_ &&
+           (unknown_squared_ == 0 || to_unknown_.squared(c) >= unknown_squared_);
+  }
+
+  const GridConfig& config() const { return config_; }
+  double resolution_m() const { return resolution_m_; }
+  /// The clearance that traversable cells have [m].
+  double required_clearance_m() const { return config_.footprint_radius_m + config_.margin_m; }
+  Cell cell_of(const Eigen::Vector2d& p_map) const;
+  Eigen::Vector2d center_of(Cell c) const { return resolution_m_ * Eigen::Vector2d(c.x + 0.5, c.y + 0.5); }
+  /// Memory of the cells [bytes].
+  std::size_t bytes() const;
+
+ private:
+  void erase_freed(const ObstacleGrid& grid, std::vector<Cell>& touched);
+  void mark_seen(const ObstacleGrid& grid, time::Time stamp, std::vector<Cell>& touched);
+  std::vector<Cell> renew(std::span<const Cell> touched);
+
+  GridConfig config_;
+  double resolution_m_;
+  int required_squared_;  ///< least squared distance to occupied cells of traversable ones [cells^2]
+  int unknown_squared_;   ///< to unknown cells [cells^2]
+  std::optional<mapping::SensorModel> model_;  ///< of the last update_map
+  SparseGrid<std::int8_t> mapped_;             ///< the map's part
+  std::map<Cell, time::Time> obstacles_;       ///< when last seen
+  SparseGrid<std::int8_t> state_;              ///< both together
+  DistanceField to_occupied_;
+  DistanceField to_unknown_;
+};
+
+}  // namespace lapis::planner

@@ -1,0 +1,84 @@
+#include "planner/core/space/viewpoints.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "common/mapping/voxel_index.hpp"
+#include "planner/core/space/line.hpp"
+
+namespace lapis::planner {
+namespace {
+
+struct Candidate {
+  std::uint64_t draw;  ///< order of the draw
+  Cell cell;
+  auto operator<=>(const Candidate&) const = default;
+};
+
+std::uint64_t draw(std::uint64_t seed, Cell c) {
+  const auto x = static_cast<std::uint32_t>(c.x), y = static_cast<std::uint32_t>(c.y);
+  return mapping::mix_bits(mapping::mix_bits(seed) ^ (std::uint64_t{y} << 32 | x));
+}
+
+/// Number of the sector of `count` around `middle` in which a cell lies.
+std::size_t sector_of(Cell c, Cell middle, std::size_t count) {
+  const double turns = 0.5 + std::atan2(c.y - middle.y, c.x - middle.x) / (2.0 * std::numbers::pi);
+  return std::min(count - 1, static_cast<std::size_t>(turns * static_cast<double>(count)));
+}
+
+bool is_in_sight(const PlanningGrid& grid, Cell from, Cell to) {
+  return walk_line(from, to, [&](Cell c, double) { return grid.state(c) != mapping::kOccupied; });
+}
+
+/// Cells of the ring that can be reached, in the order of the draw; `status` says how far the best ones got.
+std::vector<Candidate> reachable_ring(const PlanningGrid& grid, const CostTree& paths, Cell target,
+                                      const ViewpointConfig& config, ViewpointStatus& status) {
+  std::vector<Candidate> ring;
+  const double low = config.min_distance_m / grid.resolution_m(), high = config.max_distance_m / grid.resolution_m();
+  const int reach = static_cast<int>(high);
+  for (Cell step{0, -reach}; step.y <= reach; ++step.y) {
+    for (step.x = -reach; step.x <= reach; ++step.x) {
+      const Cell c = target + step;
+      if (distance(c, target) < low || distance(c, target) > high || !grid.is_traversable(c)) continue;
+      status = std::max(status, ViewpointStatus::kUnreachable);
+      if (paths.cost_m(c)) ring.push_back({draw(config.seed, c), c});
+    }
+  }
+  std::sort(ring.begin(), ring.end());
+  return ring;
+}
+
+std::vector<Viewpoint> one_per_sector(const PlanningGrid& grid, const CostTree& paths, Cell target,
+                                      const std::vector<Candidate>& ring, int sectors) {
+  std::vector<bool> is_filled(static_cast<std::size_t>(sectors), false);
+  std::vector<Viewpoint> viewpoints;
+  for (const Candidate& candidate : ring) {
+    const Cell c = candidate.cell;
+    const std::size_t sector = sector_of(c, target, is_filled.size());
+    if (is_filled[sector] || !is_in_sight(grid, c, target)) continue;
+    is_filled[sector] = true;
+    const double yaw_rad = std::atan2(target.y - c.y, target.x - c.x);
+    viewpoints.push_back({c, {grid.center_of(c), yaw_rad}, target, *paths.cost_m(c)});
+  }
+  return viewpoints;
+}
+
+}  // namespace
+
+ViewpointResult sample_viewpoints(const PlanningGrid& grid, const CostTree& paths, const Frontier& frontier,
+                                  const ViewpointConfig& config) {
+  ViewpointResult result;
+  for (const Cell& target : frontier.representatives) {
+    const std::vector<Candidate> ring = reachable_ring(grid, paths, target, config, result.status);
+    if (ring.empty()) continue;
+    result.status = ViewpointStatus::kNoLineOfSight;
+    result.viewpoints = one_per_sector(grid, paths, target, ring, config.max_per_frontier);
+    if (result.viewpoints.empty()) continue;
+    result.status = ViewpointStatus::kFound;
+    break;
+  }
+  return result;
+}
+
+}  // namespace lapis::planner

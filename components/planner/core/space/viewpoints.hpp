@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "planner/core/space/frontier_map.hpp"
+#include "planner/core/space/path_search.hpp"
+
+namespace lapis::planner {
+
+struct ViewpointConfig {
+  double min_distance_m = 0.5;  ///< from the cell of the frontier that is looked at, in [0, 10]
+  double max_distance_m = 2.0;  ///< above min_distance_m; below the sensor's range; in [0.25, 20]
+  int max_per_frontier = 8;     ///< in [1, 64]
+  std::uint64_t seed = 1;
+};
+
+/// A place to look at a frontier from.
+struct Viewpoint {
+  Cell cell;
+  Pose2 pose;           ///< at the cell's centre, headed to the cell that is looked at
+  Cell target;          ///< one of the frontier's representatives
+  double cost_m = 0.0;  ///< of the path to it
+};
+
+/// Why a frontier has no viewpoint: what the best candidates lacked.
+enum class ViewpointStatus {
+  kFound,
+  kNoRoom,         ///< no cell of the ring is traversable
+  kUnreachable,    ///< none that is traversable can be reached within the bound of the cost tree
+  kNoLineOfSight,  ///< from all that can be reached, occupied cells hide the frontier
+};
+
+struct ViewpointResult {
+  ViewpointStatus status = ViewpointStatus::kNoRoom;
+  std::vector<Viewpoint> viewpoints;  ///< empty unless found
+};
+
+/// Viewpoints in the ring around the first representative of the frontier that has any: at most one in each of
+/// max_per_frontier equal sectors, drawn at random (seeded) from all cells of the sector that are traversable, reached
+/// by `paths`, and see the target through free and unknown cells. All cells of the ring are tried before one gives up.
+ViewpointResult sample_viewpoints(const PlanningGrid& grid, const CostTree& paths, const Frontier& frontier,
+                                  const ViewpointConfig& config);
+
+}  // namespace lapis::planner

@@ -60,6 +60,7 @@ class WeightedGraph {
 struct KeyframeEdge {
   std::uint64_t from = 0, to = 0;
   geometry::Matrix6d information = geometry::Matrix6d::Identity();
+  bool is_loop_closure = false;
 };
 
 struct KeyframeGraph {

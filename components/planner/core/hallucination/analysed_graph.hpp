@@ -1,0 +1,57 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <variant>
+#include <vector>
+
+#include "common/geometry/se3.hpp"
+#include "planner/core/spectral/laplacian_factor.hpp"
+
+namespace lapis::planner {
+
+struct Keyframe {
+  std::uint64_t id = 0;
+  geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< camera optical frame
+};
+
+/// A radian of turning counts as so many metres of way: a view changes by both.
+inline constexpr double kMetresPerRadian = 0.5;
+
+/// Way from one pose to another: distance, and the angle between them times kMetresPerRadian [m].
+double way_between(const geometry::Pose& a, const geometry::Pose& b);
+
+struct LoopClosure {
+  int older = 0, newer = 0;  ///< nodes
+  double weight = 0.0;
+};
+
+/// slam's pose graph as decisions need it: the part that hangs together with the newest key-frame. Node i is
+/// keyframes[i]; the newest is the last. Made once per version of the graph.
+struct AnalysedGraph {
+  LaplacianFactor factor;
+  std::vector<Keyframe> keyframes;  ///< by id
+  std::vector<LoopClosure> loops;
+  /// Shortest way along edges from the newest key-frame to each node [m].
+  std::vector<double> way_from_newest_m;
+  /// Way through all key-frames up to each, in the order of ids [m].
+  std::vector<double> travelled_m;
+  /// Weight of an odometry edge, times its length [m]: the median of what joins neighbouring key-frames, all ways
+  /// through the graph together.
+  double odometry_weight_metres = 0.0;
+  /// Median of the loop closures' weights; without any, that of an odometry edge of half a metre.
+  double loop_weight = 0.0;
+  /// Mean variance of an axis of the position, times the weight: the median over all edges [m^2].
+  double position_variance_per_resistance = 0.0;
+
+  /// Nothing for a key-frame outside of the part.
+  std::optional<int> node_of(std::uint64_t keyframe) const;
+};
+
+/// @param keyframes by ascending id. The error says which edge has no weight or names a key-frame that is not there, or
+/// that there are fewer than two connected key-frames.
+std::variant<AnalysedGraph, GraphError> analyse_graph(std::span<const Keyframe> keyframes,
+                                                      std::span<const KeyframeEdge> edges, Criterion criterion);
+
+}  // namespace lapis::planner

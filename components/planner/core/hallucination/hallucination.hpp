@@ -1,0 +1,61 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "planner/core/hallucination/landmark_index.hpp"
+#include "planner/core/spectral/candidate_gain.hpp"
+
+namespace lapis::planner {
+
+struct HallucinationConfig {
+  CovisibilityConfig covisibility;
+  /// Landmarks seen again of which a loop closure is impossible (or fewer), and certain (or more); its probability is
+  /// linear in between. 1 <= impossible < certain.
+  int impossible_landmarks = 30, certain_landmarks = 120;
+  double min_loop_way_m = 5.0;      ///< along the graph; nearer key-frames are seen by every path; in [0, 100]
+  double place_radius_m = 2.0;      ///< key-frames nearer to each other are one place, in [0.1, 20]
+  double revisit_spacing_m = 20.0;  ///< way after a loop closure before its place counts again, in [0, 1000]
+  int max_places = 6;               ///< of a path; the most probable ones; in [1, 8]
+};
+
+/// Old place that a path would see again.
+struct Place {
+  int keyframe = 0;          ///< node of the AnalysedGraph
+  int node = 0;              ///< of the path
+  int landmarks = 0;         ///< seen again
+  double probability = 0.0;  ///< of a loop closure
+};
+
+/// What the pose graph would gain by driving a path.
+struct Hallucination {
+  HallucinatedGraph graph;    ///< loop edges have the weight of real ones, whatever their probability
+  std::vector<Place> places;  ///< index = HallucinatedEdge::place
+};
+
+/// Nodes at camera poses along a path, joined to the newest key-frame and to each other by odometry whose weight falls
+/// with distance as that of the running graph does; and to old places by one loop edge each, from the node that sees
+/// most of it. Deterministic. At least one pose.
+Hallucination hallucinate(const AnalysedGraph& graph, const LandmarkIndex& landmarks, const InformationField& field,
+                          const geometry::PinholeCamera& camera, std::span<const geometry::Pose> T_map_cameras,
+                          const HallucinationConfig& config);
+
+/// Expectations over which of the places close, each with its probability and independently.
+struct ExpectedGain {
+  /// Of the log-determinant by loops, counted only as far as they bring the sigma of the path's end down to the limit.
+  double saturated_loop_gain = 0.0;
+  /// Of the log-determinant at equal number of nodes.
+  double fixed_n_change = 0.0;
+  double end_sigma_without_loops_m = 0.0;  ///< of the position at the path's end, each axis
+  double end_sigma_m = 0.0;                ///< the same, expected
+};
+
+/// @param sigma_limit_m what is more exact than this is of no use to the map, > 0. The error names a wrong edge.
+std::variant<ExpectedGain, GraphError> expect_gain(const AnalysedGraph& graph, const Hallucination& path,
+                                                   double sigma_limit_m);
+
+/// D-optimality with all nodes and loop edges, these with probability times weight: the paper's form, which is too
+/// optimistic (E ln det <= ln det E).
+std::variant<double, GraphError> literal_d_optimality(const AnalysedGraph& graph, const Hallucination& path);
+
+}  // namespace lapis::planner

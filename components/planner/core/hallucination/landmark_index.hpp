@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/geometry/pinhole_camera.hpp"
+#include "common/geometry/se3.hpp"
+#include "common/mapping/landmark_tile.hpp"
+#include "planner/core/hallucination/analysed_graph.hpp"
+#include "planner/core/information/information_field.hpp"
+
+namespace lapis::planner {
+
+struct CovisibilityConfig {
+  double max_range_m = 5.0;             ///< of landmarks from the camera, in (0, 20]
+  double max_viewing_angle_rad = 0.7;   ///< between the directions from which a landmark was and would be seen, (0, pi]
+  double max_range_ratio = 2.0;         ///< between the distances, either way: descriptors bear so much scale; [1, 10]
+  double min_visibility = 0.5;          ///< probability that the ray to a landmark is free, in [0, 1]
+};
+
+/// Landmarks that a camera would see and that an old key-frame has seen.
+struct Covisibility {
+  int keyframe = 0;  ///< node of the AnalysedGraph
+  int landmarks = 0;
+  bool operator==(const Covisibility&) const = default;
+};
+
+/// slam's landmarks by the voxel that they are in, with the key-frames that saw them.
+class LandmarkIndex {
+ public:
+  /// Landmarks that no key-frame of the graph has seen are left out.
+  LandmarkIndex(const std::map<mapping::TileIndex, mapping::LandmarkTile>& tiles, const AnalysedGraph& graph,
+                double resolution_m);
+
+  std::size_t size() const { return landmarks_.size(); }
+
+  /// Which key-frames' landmarks a camera at T_map_camera would see again: on the image, within range, free in the map
+  /// up to the voxel before theirs, and from a similar direction and distance. By ascending node, no zero counts.
+  std::vector<Covisibility> predict(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
+                                    const InformationField& field, const CovisibilityConfig& config) const;
+
+ private:
+  struct Observation {
+    int keyframe;
+    Eigen::Vector3f towards;  ///< from the key-frame's camera to the landmark [m]
+  };
+  struct Landmark {
+    Eigen::Vector3f p_map;
+    std::uint32_t observations_end;  ///< in observations_; they begin where those of the landmark before end
+  };
+  struct Cell {
+    Eigen::Vector3d center;        ///< mean of its landmarks [m, map frame]
+    std::uint32_t landmarks_end;   ///< in landmarks_
+  };
+
+  void count(std::size_t landmark, const Eigen::Vector3f& camera, const CovisibilityConfig& config,
+             std::vector<int>& counts) const;
+
+  std::size_t keyframes_;
+  double resolution_m_;
+  std::vector<Cell> cells_;
+  std::vector<Landmark> landmarks_;
+  std::vector<Observation> observations_;
+};
+
+/// Probability that a ray from one point to another is free, the voxel of the end and the one before it left out:
+/// surfaces are not sharper than that.
+double free_probability(const InformationField& field, const Eigen::Vector3d& from_map, const Eigen::Vector3d& to_map);
+
+}  // namespace lapis::planner

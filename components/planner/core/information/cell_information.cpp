@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 
 namespace lapis::planner {
@@ -23,49 +24,81 @@ double occupancy_divergence(double after, double before) {
   return probability(after) * (after - before) - softplus(after) + softplus(before);
 }
 
-VoxelCounts with_hit(const VoxelCounts& counts, std::uint16_t label) {
-  VoxelCounts after = counts;
-  for (ClassCount& hit : after.hits) {
-    if (hit.label != label) continue;
-    hit.count += kOneVote;
-    return after;
-  }
-  after.hits.push_back({label, kOneVote});
-  return after;
-}
-
-VoxelCounts with_pass(const VoxelCounts& counts) { return {counts.passes + kOneVote, counts.hits}; }
-
 double csqmi(double p_occupied) {
   const double o = p_occupied, e = 1.0 - p_occupied;
   return 3.0 * std::log(o * o + e * e) - 2.0 * std::log(o * o * o + e * e * e);
 }
 
+double votes(std::uint32_t fixed_point) { return static_cast<double>(fixed_point) / kOneVote; }
+
+mapping::SensorModel without_occupancy_limit(mapping::SensorModel model) {
+  model.occupancy_limit = std::numeric_limits<double>::infinity();
+  return model;
+}
+
+/// KL of the shares of a voxel's classes, each read at most `limit` below the largest, from after a hit to before.
+template <class Kind>
+class ShareDivergence {
+ public:
+  ShareDivergence(const std::vector<Kind>& kinds, double limit) : kinds_(kinds), limit_(limit) {
+    for (const Kind& kind : kinds) {
+      sum_ += kind.size * std::exp(read(kind.log_share));
+      lowest_ = std::min(lowest_, kind.log_share);
+    }
+  }
+
+  double sum() const { return sum_; }
+  double read(double log_share) const { return std::max(log_share, -limit_); }
+
+  double operator()(const Kind& hit) const {
+    const double log_share_after = hit.log_share + hit.own_surplus;
+    const double rise = std::max(log_share_after, 0.0);  // of the largest share
+    if (lowest_ < rise - limit_ && rise > 0.0) return with_new_floor(hit, rise);
+    const double before = read(hit.log_share), after = rise > 0.0 ? log_share_after : read(log_share_after);
+    const double sum_after = sum_ - std::exp(before) + std::exp(after);
+    return std::exp(after) / sum_after * (after - before) - std::log(sum_after / sum_);
+  }
+
+ private:
+  /// When the hit class has the largest share afterwards, and others fall so far below that they are clamped.
+  double with_new_floor(const Kind& hit, double rise) const {
+    double sum_after = 1.0, change = -read(hit.log_share);
+    for (const Kind& kind : kinds_) {
+      const double size = kind.size - (&kind == &hit ? 1.0 : 0.0);
+      const double after = read(kind.log_share - rise), share = size * std::exp(after);
+      sum_after += share;
+      change += share * (after - read(kind.log_share));
+    }
+    return change / sum_after - std::log(sum_after / sum_);
+  }
+
+  const std::vector<Kind>& kinds_;
+  double limit_, sum_ = 0.0, lowest_ = 0.0;
+};
+
 }  // namespace
 
-CellMeasure::CellMeasure(const mapping::SensorModel& model, Measure measure) : reader_(model), measure_(measure) {
+CellMeasure::CellMeasure(const mapping::SensorModel& model, Measure measure)
+    : reader_(model), unclamped_reader_(without_occupancy_limit(model)), measure_(measure) {
   group_priors();
-  for (std::uint32_t votes = 0; votes < kVotesInTable; ++votes) by_passes_.push_back(compute({votes * kOneVote, {}}));
+  for (std::uint32_t n = 0; n < kVotesInTable; ++n) by_passes_.push_back(compute({n * kOneVote, {}}));
 }
 
 void CellMeasure::group_priors() {
   const auto& model = reader_.model();
-  const auto count = static_cast<std::size_t>(model.class_count);
+  const std::vector<double> before = reader_.class_log_odds({});
   std::map<double, std::size_t> group_of_prior;
-  for (std::size_t c = 0; c < count; ++c) {
+  for (std::size_t c = 0; c < before.size(); ++c) {
     const double prior = model.class_priors.empty() ? 1.0 / model.class_count : model.class_priors[c];
     const auto [it, is_new] = group_of_prior.emplace(prior, groups_.size());
-    const auto label = static_cast<std::uint16_t>(c + 1);
-    if (is_new) groups_.push_back({prior, 0.0, {}});
-    groups_[it->second].labels.push_back(label);
+    if (is_new) {
+      const std::vector<double> after = reader_.class_log_odds({0, {{static_cast<std::uint16_t>(c + 1), kOneVote}}});
+      const std::size_t other = before.size() == 1 ? c : (c + 1) % before.size();  // a single class: no surplus
+      const double own_gain = after[c] - before[c], other_gain = after[other] - before[other];
+      groups_.push_back({prior, other_gain, own_gain - other_gain});
+    }
+    ++groups_[it->second].size;
     group_of_.push_back(it->second);
-  }
-  if (count == 1) return;  // a single class always has the whole share
-  for (PriorGroup& group : groups_) {
-    const std::size_t own = group.labels.front() - 1u, other = own == 0 ? 1 : 0;
-    const std::vector<double> before = reader_.class_log_odds({});
-    const std::vector<double> after = reader_.class_log_odds({0, {{group.labels.front(), kOneVote}}});
-    group.surplus = (after[own] - after[other]) - (before[own] - before[other]);
   }
 }
 
@@ -77,32 +110,47 @@ CellInformation CellMeasure::of(const VoxelCounts& counts) const {
 
 CellInformation CellMeasure::compute(const VoxelCounts& counts) const {
   const double log_odds = reader_.occupancy_log_odds(counts);
-  const double p_occupied = probability(log_odds);
-  const double p_free = 1.0 - p_occupied;
+  const double p_occupied = probability(log_odds), p_free = 1.0 - p_occupied;
   if (measure_ == Measure::kCsqmi) return {p_free, std::max(csqmi(p_occupied), 0.0)};
-  const double pass = occupancy_divergence(reader_.occupancy_log_odds(with_pass(counts)), log_odds);
-  const double hit = measure_ == Measure::kSemantic
-                         ? semantic_gain(counts, log_odds)
-                         : occupancy_divergence(reader_.occupancy_log_odds(with_hit(counts, 0)), log_odds);
+  VoxelCounts after = counts;
+  after.passes += kOneVote;
+  const double pass = occupancy_divergence(reader_.occupancy_log_odds(after), log_odds);
+  double hit = 0.0;
+  if (measure_ == Measure::kSemantic) {
+    hit = mean_hit_divergence(counts);
+  } else {
+    after = counts;
+    after.hits.push_back({0, kOneVote});
+    hit = occupancy_divergence(reader_.occupancy_log_odds(after), log_odds);
+  }
   return {p_free, std::max(p_free * pass + p_occupied * hit, 0.0)};  // rounding may fall below 0
 }
 
-double CellMeasure::semantic_gain(const VoxelCounts& counts, double log_odds) const {
+double CellMeasure::clamped(double log_odds) const {
+  const double limit = reader_.model().occupancy_limit;
+  return std::clamp(log_odds, -limit, limit);
+}
+
+double CellMeasure::mean_hit_divergence(const VoxelCounts& counts) const {
+  const auto& model = reader_.model();
+  const double log_odds = unclamped_reader_.occupancy_log_odds(counts);
   const std::vector<Kind> kinds = kinds_of(counts);
-  const auto largest =
-      std::max_element(kinds.begin(), kinds.end(), [](auto& a, auto& b) { return a.log_share < b.log_share; });
-  double sum = 0.0, shares = 0.0;
+  const ShareDivergence<Kind> share_divergence(kinds, model.share_limit);
+  double occupied_votes = model.prior_votes * model.prior_occupied, unclamped_shares = 0.0, mean = 0.0;
+  for (const ClassCount& hit : counts.hits) occupied_votes += votes(hit.count);
+  for (const Kind& kind : kinds) unclamped_shares += kind.size * std::exp(kind.log_share);
   for (const Kind& kind : kinds) {
-    // Divergences chain: that of occupancy, and that of the classes given occupied.
-    const double after = reader_.occupancy_log_odds(with_hit(counts, kind.label));
+    // A hit multiplies the odds by e^phi of the other classes and e^psi of its own, or adds a vote.
+    const double share = std::exp(kind.log_share) / unclamped_shares;
+    const double gain = model.fusion == "log_odds" ? kind.other_gain + std::log1p(share * std::expm1(kind.own_surplus))
+                                                   : std::log1p(1.0 / occupied_votes);
+    // Divergences chain: that of occupancy, then that of the classes given occupied.
+    const double after = clamped(log_odds + gain);
     const double divergence =
-        occupancy_divergence(after, log_odds) + probability(after) * share_divergence(kinds, kind);
-    const double share =
-        kind.size * std::exp(std::max(kind.log_share - largest->log_share, -reader_.model().share_limit));
-    sum += share * divergence;
-    shares += share;
+        occupancy_divergence(after, clamped(log_odds)) + probability(after) * share_divergence(kind);
+    mean += kind.size * std::exp(share_divergence.read(kind.log_share)) / share_divergence.sum() * divergence;
   }
-  return sum / shares;
+  return mean;
 }
 
 std::vector<CellMeasure::Kind> CellMeasure::kinds_of(const VoxelCounts& counts) const {
@@ -112,46 +160,24 @@ std::vector<CellMeasure::Kind> CellMeasure::kinds_of(const VoxelCounts& counts) 
     if (hit.label < 1 || hit.label > group_of_.size()) continue;
     const std::size_t g = group_of_[hit.label - 1u];
     ++hit_in_group[g];
-    kinds.push_back(kind_of(groups_[g], hit.label, 1.0, static_cast<double>(hit.count) / kOneVote));
+    kinds.push_back(kind_of(groups_[g], 1.0, votes(hit.count)));
   }
   for (std::size_t g = 0; g < groups_.size(); ++g) {
-    const auto& labels = groups_[g].labels;
-    if (hit_in_group[g] == labels.size()) continue;
-    const auto unhit = std::find_if(labels.begin(), labels.end(), [&](std::uint16_t label) {
-      return std::none_of(counts.hits.begin(), counts.hits.end(), [&](auto& hit) { return hit.label == label; });
-    });
-    kinds.push_back(kind_of(groups_[g], *unhit, static_cast<double>(labels.size() - hit_in_group[g]), 0.0));
+    const std::size_t not_hit = groups_[g].size - hit_in_group[g];
+    if (not_hit > 0) kinds.push_back(kind_of(groups_[g], static_cast<double>(not_hit), 0.0));
   }
+  double largest = kinds.front().log_share;
+  for (const Kind& kind : kinds) largest = std::max(largest, kind.log_share);
+  for (Kind& kind : kinds) kind.log_share -= largest;
   return kinds;
 }
 
-CellMeasure::Kind CellMeasure::kind_of(const PriorGroup& group, std::uint16_t label, double size, double votes) const {
+CellMeasure::Kind CellMeasure::kind_of(const PriorGroup& group, double size, double votes_of_class) const {
   const auto& model = reader_.model();
-  const auto log_share = [&](double n) {
-    return model.fusion == "log_odds" ? std::log(group.prior) + n * group.surplus
-                                      : std::log(group.prior + n / (model.prior_votes * model.prior_occupied));
-  };
-  return {label, size, log_share(votes), log_share(votes + 1.0)};
-}
-
-double CellMeasure::share_divergence(const std::vector<Kind>& kinds, const Kind& hit) const {
-  const double limit = reader_.model().share_limit;
-  double largest = hit.log_share;
-  for (const Kind& kind : kinds) largest = std::max(largest, kind.log_share);
-  const double largest_after = std::max(largest, hit.log_share_after);
-  double sum_before = 0.0, sum_after = 0.0, change = 0.0;
-  const auto add = [&](double count, double before, double after) {
-    before = std::max(before - largest, -limit);
-    after = std::max(after - largest_after, -limit);
-    sum_before += count * std::exp(before);
-    sum_after += count * std::exp(after);
-    change += count * std::exp(after) * (after - before);
-  };
-  for (const Kind& kind : kinds)
-    if (&kind != &hit) add(kind.size, kind.log_share, kind.log_share);
-  add(hit.size - 1.0, hit.log_share, hit.log_share);
-  add(1.0, hit.log_share, hit.log_share_after);
-  return change / sum_after - std::log(sum_after / sum_before);
+  if (model.fusion == "log_odds")
+    return {size, std::log(group.prior) + votes_of_class * group.own_surplus, group.own_surplus, group.other_gain};
+  const double concentration = group.prior * model.prior_votes * model.prior_occupied + votes_of_class;
+  return {size, std::log(concentration), std::log1p(1.0 / concentration), 0.0};
 }
 
 }  // namespace lapis::planner

@@ -38,33 +38,35 @@ class CellMeasure {
   /// Throws std::runtime_error naming the parameter of the sensor model that is out of range.
   CellMeasure(const mapping::SensorModel& model, Measure measure);
 
-  /// O(k^2), k = classes that were hit + distinct prior shares of the others; O(1) where nothing was hit.
+  /// O(classes that were hit + distinct prior shares); O(1) where nothing was hit.
   CellInformation of(const mapping::VoxelCounts& counts) const;
 
  private:
   /// Classes of equal prior share.
   struct PriorGroup {
     double prior;
-    double surplus;                     ///< psi_c - phi_c of BeliefReader
-    std::vector<std::uint16_t> labels;  ///< ascending
+    double other_gain;   ///< phi_c of BeliefReader
+    double own_surplus;  ///< psi_c - phi_c
+    std::size_t size = 0;
   };
   /// Classes of one voxel that nothing tells apart: one that was hit, or those of a prior group that were not.
   struct Kind {
-    std::uint16_t label;     ///< one of them
-    double size;             ///< how many they are
-    double log_share;        ///< of each, given occupied, up to a constant
-    double log_share_after;  ///< of `label`, after it was hit
+    double size;         ///< how many they are
+    double log_share;    ///< of each, given occupied; 0 for the largest share of the voxel
+    double own_surplus;  ///< what a hit of one of them adds to its log_share
+    double other_gain;   ///< what it adds to the log-odds of all others
   };
 
   void group_priors();
   CellInformation compute(const mapping::VoxelCounts& counts) const;
-  double semantic_gain(const mapping::VoxelCounts& counts, double log_odds) const;
+  /// Mean divergence over the classes that a hit can be of.
+  double mean_hit_divergence(const mapping::VoxelCounts& counts) const;
   std::vector<Kind> kinds_of(const mapping::VoxelCounts& counts) const;
-  Kind kind_of(const PriorGroup& group, std::uint16_t label, double size, double votes) const;
-  /// KL of the shares after a hit of one of `hit` from those before.
-  double share_divergence(const std::vector<Kind>& kinds, const Kind& hit) const;
+  Kind kind_of(const PriorGroup& group, double size, double votes_of_class) const;
+  double clamped(double log_odds) const;
 
   mapping::BeliefReader reader_;
+  mapping::BeliefReader unclamped_reader_;
   Measure measure_;
   std::vector<PriorGroup> groups_;
   std::vector<std::size_t> group_of_;       ///< index label - 1

@@ -4,8 +4,9 @@
 
 #include <cmath>
 #include <cstddef>
+#include <ctime>
+#include <numeric>
 #include <optional>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -23,10 +24,10 @@ namespace {
 constexpr std::size_t kPoses = 50;
 constexpr std::size_t kPosesPerPath = 10;
 
-/// A frame of the tour, with its true pose.
-struct Frame {
-  geometry::Pose T_map_camera;
-  mapping::CompactFrame frame;
+/// True poses of the camera on the tour, and what it saw in the first half.
+struct Tour {
+  std::vector<geometry::Pose> T_map_camera;
+  std::vector<mapping::CompactFrame> frames;
 };
 
 simulator::SimulatorConfig apartment() {
@@ -44,34 +45,35 @@ mapping::CompactFrame compact_frame(const geometry::PinholeCamera& camera, const
   return mapping::CompactFrame::make(camera, depth, &images.labels, {}, error).value();
 }
 
-/// The first half of the tour.
-std::vector<Frame> drive() {
+Tour drive() {
   const simulator::SimulatorConfig config = apartment();
   const simulator::World world = simulator::open_world(config);
   const simulator::StartPose start = simulator::start_pose(world, config);
-  auto tour = simulator::plan_tour(world, start, config);
+  auto follower = simulator::plan_tour(world, start, config);
   simulator::Simulation simulation(world, simulator::simulation_config(config), start);
   const auto camera = robot::pinhole_camera(config.robot.camera);
   const geometry::Pose T_base_camera = geometry::T_base_camera(robot::camera_mount(config.robot.camera));
-  std::vector<Frame> frames;
+  Tour tour;
   std::optional<simulator::DriveCommand> command;
-  while (!tour->is_finished()) {
+  while (!follower->is_finished()) {
     const simulator::SensorFrame frame = simulation.next(command);
-    frames.push_back({frame.T_world_base * T_base_camera, compact_frame(camera, frame.images)});
-    command = tour->command(frame.robot);
+    tour.T_map_camera.emplace_back(frame.T_world_base * T_base_camera);
+    tour.frames.push_back(compact_frame(camera, frame.images));
+    command = follower->command(frame.robot);
   }
-  frames.erase(frames.begin() + static_cast<std::ptrdiff_t>(frames.size() / 2), frames.end());
-  return frames;
+  tour.frames.erase(tour.frames.begin() + static_cast<std::ptrdiff_t>(tour.frames.size() / 2), tour.frames.end());
+  return tour;
 }
 
-const std::vector<Frame>& walk() {
-  static const std::vector<Frame> kWalk = drive();
-  return kWalk;
+const Tour& tour() {
+  static const Tour kTour = drive();
+  return kTour;
 }
 
-mapping::VoxelMap map_of_walk(double resolution_m) {
+mapping::VoxelMap half_explored_map(double resolution_m) {
   mapping::VoxelMap map(resolution_m);
-  for (const Frame& frame : walk()) map.add(compute_votes(frame.frame, frame.T_map_camera, {}, resolution_m));
+  for (std::size_t i = 0; i < tour().frames.size(); ++i)
+    map.add(compute_votes(tour().frames[i], tour().T_map_camera[i], {}, resolution_m));
   return map;
 }
 
@@ -87,11 +89,11 @@ View view() {
   return View(config);
 }
 
-/// Evenly over the walk.
+/// Evenly over the tour.
 std::vector<ViewPath> single_views() {
+  const auto& poses = tour().T_map_camera;
   std::vector<ViewPath> paths;
-  for (std::size_t i = 0; i < kPoses; ++i)
-    paths.push_back({walk()[(2 * i + 1) * walk().size() / (2 * kPoses)].T_map_camera});
+  for (std::size_t i = 0; i < kPoses; ++i) paths.push_back({poses[(2 * i + 1) * poses.size() / (2 * kPoses)]});
   return paths;
 }
 
@@ -126,13 +128,14 @@ void time_per_ray(benchmark::State& state, const View& view, const std::vector<V
 }
 
 void rays(benchmark::State& state, double resolution_m, const std::vector<ViewPath>& paths, Counting counting) {
-  const InformationField field = field_of(map_of_walk(resolution_m));
+  const InformationField field = field_of(half_explored_map(resolution_m));
   const View rays_of_view = view();
   time_per_ray(state, rays_of_view, paths,
                [&](const ViewPath& path) { return path_information(field, rays_of_view, path, counting); });
 }
 
-/// P(free) and gain of a voxel, class by class in the closed form of [Asgharivaskasi & Atanasov 2023].
+/// P(free) and gain of a voxel, class by class in the closed form of [Asgharivaskasi & Atanasov 2023], which lets
+/// clamped beliefs gain, too.
 class PlainCells {
  public:
   explicit PlainCells(const mapping::VoxelMap& map) : map_(map), reader_(mapping::SensorModel{}) {
@@ -145,9 +148,8 @@ class PlainCells {
   }
 
   CellInformation operator()(const mapping::VoxelIndex& voxel) const {
-    std::vector<double> odds = reader_.class_log_odds(map_.read(voxel));
-    double all = 0.0;
-    for (double& y : odds) all += y = std::exp(y);
+    const std::vector<double> odds = odds_of(map_.read(voxel));
+    const double all = std::accumulate(odds.begin(), odds.end(), 0.0);
     const double s = 1.0 + all, passed = std::exp(phi_pass_) * all;
     double gain = std::log(s / (1.0 + passed)) + phi_pass_ * passed / (1.0 + passed);
     for (const double odd : odds) {
@@ -158,24 +160,39 @@ class PlainCells {
   }
 
  private:
+  /// Of each class, clamped.
+  std::vector<double> odds_of(const mapping::VoxelCounts& counts) const {
+    std::vector<double> odds = reader_.class_probabilities(counts);
+    const double p_free = odds.front();
+    odds.erase(odds.begin());
+    for (double& odd : odds) odd /= p_free;
+    return odds;
+  }
+
   const mapping::VoxelMap& map_;
   mapping::BeliefReader reader_;
   double psi_, phi_hit_, phi_pass_;
 };
 
 void plain_rays(benchmark::State& state, double resolution_m) {
-  const mapping::VoxelMap map = map_of_walk(resolution_m);
+  const mapping::VoxelMap map = half_explored_map(resolution_m);
   const PlainCells cells(map);
   const View rays_of_view = view();
+  std::size_t cells_crossed = 0;
   time_per_ray(state, rays_of_view, single_views(), [&](const ViewPath& path) {
-    return test::plain_path_information(rays_of_view, path, resolution_m, Counting::kOnce, cells);
+    return test::plain_path_information(rays_of_view, path, resolution_m, Counting::kOnce,
+                                        [&](const mapping::VoxelIndex& voxel) {
+                                          ++cells_crossed;
+                                          return cells(voxel);
+                                        });
   });
+  state.counters["cells_per_ray"] = static_cast<double>(cells_crossed) / state.counters["rays"];
 }
 
 /// Renews every block of the map; the time of an iteration is that of one block.
 void update(benchmark::State& state, double resolution_m) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const mapping::VoxelMap map = map_of_walk(resolution_m);
+  const mapping::VoxelMap map = half_explored_map(resolution_m);
   InformationField field = field_of(map);
   const std::vector<mapping::BlockIndex> blocks = map.sorted_blocks();
   for (auto _ : state) {

@@ -34,7 +34,8 @@ constexpr std::int64_t squared_distance(Cell a, Cell b) {
 /// Distance between two centres [cells].
 inline double distance(Cell a, Cell b) { return std::sqrt(static_cast<double>(squared_distance(a, b))); }
 
-/// Steps to the eight neighbours: the four straight ones, then the four diagonal ones.
+/// Steps to the eight neighbours: the four straight ones, then the four diagonal ones; diagonal step 4 + i lies between
+/// the straight steps i and (i + 1) % 4.
 inline constexpr std::array<Cell, 8> kSteps{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
 inline constexpr std::size_t kStraightSteps = 4;
 

@@ -1,6 +1,7 @@
 #include "planner/core/space/path_search.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <numbers>
@@ -77,13 +78,19 @@ class PathSearch {
 
   void expand(Cell c, double cost) {
     const double rate_here = rate(c);
-    for (std::uint8_t i = 0; i < kSteps.size(); ++i) {
+    std::array<bool, kStraightSteps> is_open;
+    for (std::size_t i = 0; i < kSteps.size(); ++i) {
       const Cell next = c + kSteps[i];
-      if (tree_.nodes_.at(next).is_final || !may_enter(c, next)) continue;
       const bool is_diagonal = i >= kStraightSteps;
-      if (is_diagonal && !(may_enter(c, {next.x, c.y}) && may_enter(c, {c.x, next.y}))) continue;
+      if (is_diagonal) {
+        if (!is_open[i - kStraightSteps] || !is_open[(i + 1) % kStraightSteps] || !may_enter(c, next)) continue;
+      } else {
+        is_open[i] = may_enter(c, next);
+        if (!is_open[i]) continue;
+      }
+      if (tree_.nodes_.at(next).is_final) continue;
       const double length = grid_.resolution_m() * (is_diagonal ? std::numbers::sqrt2 : 1.0);
-      offer(next, cost + length * 0.5 * (rate_here + rate(next)), i);
+      offer(next, cost + length * 0.5 * (rate_here + rate(next)), static_cast<std::uint8_t>(i));
     }
   }
 

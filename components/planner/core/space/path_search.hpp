@@ -22,7 +22,7 @@ double cost_per_metre(const PlanningGrid& grid, const PathConfig& config, Cell c
 
 struct PathQuery {
   Cell from;
-  std::optional<Cell> to;  ///< the search ends here; without, all cells within the bound are reached
+  std::optional<Cell> to = std::nullopt;  ///< the search ends here; without, all cells within the bound are reached
   double max_cost_m = std::numeric_limits<double>::infinity();
   const SparseGrid<float>* surcharge = nullptr;  ///< added to the cost of a metre in each cell, >= 0
 };

@@ -42,11 +42,12 @@ class SparseGrid {
   using Chunk = std::array<T, static_cast<std::size_t>(kChunkEdge) * kChunkEdge>;
 
   static std::size_t offset(Cell c) { return static_cast<std::size_t>((c.y & 31) << 5 | (c.x & 31)); }
-  bool contains(Cell chunk) const {
-    return chunk.x >= low_.x && chunk.y >= low_.y && chunk.x < high_.x && chunk.y < high_.y;
+  bool contains(Cell chunk) const {  // coordinates below low_ wrap around to large ones
+    return static_cast<std::uint32_t>(chunk.x - low_.x) < static_cast<std::uint32_t>(width_) &&
+           static_cast<std::uint32_t>(chunk.y - low_.y) < static_cast<std::uint32_t>(height_);
   }
   std::size_t slot(Cell chunk) const {
-    return static_cast<std::size_t>(chunk.y - low_.y) * static_cast<std::size_t>(high_.x - low_.x) +
+    return static_cast<std::size_t>(chunk.y - low_.y) * static_cast<std::size_t>(width_) +
            static_cast<std::size_t>(chunk.x - low_.x);
   }
   const Chunk* find(Cell chunk) const { return contains(chunk) ? chunks_[slot(chunk)].get() : nullptr; }
@@ -63,20 +64,25 @@ class SparseGrid {
   }
 
   void extend_to(Cell chunk) {
-    SparseGrid wider;
     const bool is_first = chunks_.empty();
-    wider.low_ = is_first ? chunk : Cell{std::min(low_.x, chunk.x), std::min(low_.y, chunk.y)};
-    wider.high_ = is_first ? chunk + Cell{1, 1} : Cell{std::max(high_.x, chunk.x + 1), std::max(high_.y, chunk.y + 1)};
-    wider.chunks_.resize(wider.slot({wider.low_.x, wider.high_.y}));
-    for (Cell c = low_; c.y < high_.y; ++c.y)
-      for (c.x = low_.x; c.x < high_.x; ++c.x) wider.chunks_[wider.slot(c)] = std::move(chunks_[slot(c)]);
-    low_ = wider.low_;
-    high_ = wider.high_;
-    chunks_ = std::move(wider.chunks_);
+    const Cell low = is_first ? chunk : Cell{std::min(low_.x, chunk.x), std::min(low_.y, chunk.y)};
+    const std::int32_t width = is_first ? 1 : std::max(low_.x + width_, chunk.x + 1) - low.x;
+    const std::int32_t height = is_first ? 1 : std::max(low_.y + height_, chunk.y + 1) - low.y;
+    std::vector<std::unique_ptr<Chunk>> chunks(static_cast<std::size_t>(width) * static_cast<std::size_t>(height));
+    for (std::size_t i = 0; i < chunks_.size(); ++i) {
+      const auto x = static_cast<std::size_t>(low_.x - low.x) + i % static_cast<std::size_t>(width_);
+      const auto y = static_cast<std::size_t>(low_.y - low.y) + i / static_cast<std::size_t>(width_);
+      chunks[y * static_cast<std::size_t>(width) + x] = std::move(chunks_[i]);
+    }
+    low_ = low;
+    width_ = width;
+    height_ = height;
+    chunks_ = std::move(chunks);
   }
 
   T default_;
-  Cell low_, high_;  ///< box of the chunks; high_ is one beyond
+  Cell low_;                             ///< first chunk of the box
+  std::int32_t width_ = 0, height_ = 0;  ///< of the box [chunks]
   std::vector<std::unique_ptr<Chunk>> chunks_;
   std::size_t count_ = 0;
 };

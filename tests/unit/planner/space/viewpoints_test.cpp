@@ -1,0 +1,103 @@
+#include "planner/core/space/viewpoints.hpp"
+
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include "tests/unit/planner/space/flat_map.hpp"
+
+namespace lapis::planner {
+namespace {
+
+using test::TextWorld;
+
+const ViewpointConfig kConfig{.min_distance_m = 0.5, .max_distance_m = 1.5, .max_per_frontier = 6};
+
+/// The result for the frontier that contains a cell.
+ViewpointResult views_of(const TextWorld& world, Cell robot, Cell of, const ViewpointConfig& config = kConfig) {
+  FrontierMap map({});
+  map.update(world.grid, world.known);
+  const CostTree paths = grow_cost_tree(world.grid, {}, {robot});
+  for (const auto& [id, frontier] : map.frontiers())
+    if (std::find(frontier.cells.begin(), frontier.cells.end(), of) != frontier.cells.end())
+      return sample_viewpoints(world.grid, paths, frontier, config);
+  ADD_FAILURE() << "no such frontier";
+  return {};
+}
+
+const std::vector<std::string> kRoom = {
+    "####    ####",  //
+    "#...FFFF...#",  //
+    "#..........#",  //
+    "#..........#",  //
+    "#..........#",  //
+    "#..........#",  //
+    "############",
+};
+
+TEST(Viewpoints, SeeTheFrontierFromTheRing) {
+  const TextWorld world(kRoom);
+  const Cell robot{2, 2};
+  const ViewpointResult result = views_of(world, robot, {5, 5});
+  ASSERT_EQ(result.status, ViewpointStatus::kFound);
+  EXPECT_GE(result.viewpoints.size(), 3u);
+  EXPECT_LE(result.viewpoints.size(), 6u);
+  std::set<int> sectors;
+  for (const Viewpoint& view : result.viewpoints) {
+    EXPECT_TRUE(world.grid.is_traversable(view.cell));
+    const Eigen::Vector2d to_target = world.grid.center_of(view.target) - view.pose.p_map;
+    EXPECT_GE(to_target.norm(), 0.5 - 1e-9);
+    EXPECT_LE(to_target.norm(), 1.5 + 1e-9);
+    EXPECT_NEAR(view.pose.yaw_rad, std::atan2(to_target.y(), to_target.x()), 1e-12);
+    EXPECT_EQ(world.grid.cell_of(view.pose.p_map), view.cell);
+    EXPECT_GE(view.cost_m, distance(robot, view.cell) * 0.25 - 1e-9);
+    sectors.insert(static_cast<int>(std::floor((view.pose.yaw_rad + 4.0) / (6.283185307 / 6.0) * 10)));
+  }
+  EXPECT_EQ(sectors.size(), result.viewpoints.size()) << "all from other directions";
+}
+
+TEST(Viewpoints, AreReproducibleAndMoveWithTheSeed) {
+  const TextWorld world(kRoom);
+  const auto cells = [&](std::uint64_t seed) {
+    ViewpointConfig config = kConfig;
+    config.seed = seed;
+    std::vector<Cell> cells_of;
+    for (const Viewpoint& view : views_of(world, {2, 2}, {5, 5}, config).viewpoints) cells_of.push_back(view.cell);
+    return cells_of;
+  };
+  EXPECT_EQ(cells(1), cells(1));
+  EXPECT_NE(cells(1), cells(2));
+}
+
+TEST(Viewpoints, BehindGlassIsUnreachable) {
+  const TextWorld world({"##############", "#....#........", "#....#........", "#....#........", "##############"});
+  EXPECT_EQ(views_of(world, {2, 2}, {13, 2}).status, ViewpointStatus::kUnreachable);
+  EXPECT_EQ(views_of(world, {7, 2}, {13, 2}).status, ViewpointStatus::kFound);
+}
+
+TEST(Viewpoints, ASlotHasNoRoom) {
+  GridConfig wide;
+  wide.footprint_radius_m = 0.45;
+  const TextWorld world({"########", "........", "########"}, 0.25, wide);
+  EXPECT_EQ(views_of(world, {2, 1}, {0, 1}).status, ViewpointStatus::kNoRoom);
+}
+
+TEST(Viewpoints, HiddenBehindAWall) {
+  // The only way to the frontier is too narrow for the robot, which can come near it on the other side of a wall.
+  GridConfig wide;
+  wide.footprint_radius_m = 0.45;
+  const TextWorld world({"##########", "#........#", "#........#", "#........#", "#........#", "#........#",
+                         "##########", "........##", "##########"},
+                        0.25, wide);
+  EXPECT_EQ(views_of(world, {4, 5}, {0, 1}, {.min_distance_m = 0.5, .max_distance_m = 2.5}).status,
+            ViewpointStatus::kNoLineOfSight);
+}
+
+TEST(Viewpoints, OneCellFrontierInADeadEnd) {
+  const TextWorld world({"### ###", "#.....#", "#.....#", "#.....#", "#######"});
+  const ViewpointResult result = views_of(world, {2, 2}, {3, 3});
+  EXPECT_EQ(result.status, ViewpointStatus::kFound);
+}
+
+}  // namespace
+}  // namespace lapis::planner

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/core/decision/utility.hpp"
+#include "planner/core/hallucination/hallucination.hpp"
+#include "planner/core/information/path_information.hpp"
+#include "planner/core/space/viewpoints.hpp"
+
+namespace lapis::planner {
+
+struct DecisionConfig {
+  Method method = Method::kJoint;
+  UtilityConfig utility;
+  PathConfig path;
+  ViewpointConfig viewpoints;
+  HallucinationConfig hallucination;
+  int max_candidates = 20;           ///< whose information is computed; the ones with the shortest ways; in [1, 1000]
+  double view_spacing_m = 0.75;      ///< between views along a path, in [0.1, 10]
+  double node_spacing_m = 1.0;       ///< between hallucinated key-frames, in [0.2, 10]
+  double sigma_limit_voxels = 0.5;   ///< of the position at a path's end: what is more exact is of no use; in (0, 10]
+  double turn_cost_m_per_rad = 0.5;  ///< of turning at the path's ends, in [0, 10]
+  double keep_factor = 1.2;          ///< another goal must be so much better than the one being driven to, in [1, 10]
+};
+
+/// What a decision is made from. The graph and its landmarks are null before slam has two key-frames.
+struct Situation {
+  const PlanningGrid& grid;
+  const FrontierMap& frontiers;
+  const InformationField& field;
+  const View& view;
+  geometry::Pose T_base_camera;
+  const AnalysedGraph* graph = nullptr;
+  const LandmarkIndex* landmarks = nullptr;
+  Pose2 robot;
+};
+
+/// A way to a place from which a frontier is seen.
+struct Candidate {
+  std::uint32_t frontier = 0;
+  Pose2 goal;
+  std::vector<Pose2> way;  ///< from the robot to the goal; empty when there is none
+  PathValue value;
+  ExpectedGain gain;
+  int places = 0;           ///< old ones that the path would see again
+  double utility = 0.0;     ///< of the method
+  std::string rejection;    ///< why it was not considered; empty otherwise
+};
+
+struct Decision {
+  std::vector<Candidate> candidates;      ///< at least one for each frontier
+  std::optional<std::size_t> chosen;      ///< index; nothing when none can be driven to
+  std::optional<std::size_t> by_mi_only;  ///< what MI / Cost would have chosen
+  std::string problem;                    ///< of the pose graph, when loops could not be judged; empty otherwise
+  bool agrees_with_mi_only() const { return chosen == by_mi_only; }
+};
+
+/// What is not to be driven to, and what is being driven to.
+struct Memory {
+  std::vector<std::uint32_t> given_up;    ///< frontiers, ascending
+  std::optional<Pose2> goal;              ///< current one
+};
+
+/// Chooses where to go: candidates in front of every frontier, their ways, what the map and the pose graph would gain
+/// by them, and the best by the method's utility. Deterministic; ties go to the smaller frontier id.
+Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config);
+
+}  // namespace lapis::planner

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+
+#include "planner/core/space/path_planner.hpp"
 
 namespace lapis::planner {
 namespace {

@@ -58,8 +58,7 @@ std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const M
       continue;
     }
     const ViewpointResult found = sample_viewpoints(s.grid, tree, frontier, config.viewpoints);
-    if (found.status != ViewpointStatus::kFound)
-      candidates.push_back(rejected(frontier, reason_of(found.status)));
+    if (found.status != ViewpointStatus::kFound) candidates.push_back(rejected(frontier, reason_of(found.status)));
     for (const Viewpoint& viewpoint : found.viewpoints) {
       Candidate& candidate = candidates.emplace_back();
       candidate.frontier = frontier.id;
@@ -85,7 +84,7 @@ void reject_far_ones(std::vector<Candidate>& candidates, int most) {
     }
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
-  for (std::size_t k = static_cast<std::size_t>(most); k < order.size(); ++k)
+  for (auto k = static_cast<std::size_t>(most); k < order.size(); ++k)
     candidates[order[k]].rejection = "more than " + std::to_string(most) + " others are nearer";
 }
 
@@ -174,8 +173,7 @@ std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, Met
 }  // namespace
 
 Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config) {
-  const CostTree tree =
-      grow_cost_tree(situation.grid, config.path, {situation.grid.cell_of(situation.robot.p_map)});
+  const CostTree tree = grow_cost_tree(situation.grid, config.path, {situation.grid.cell_of(situation.robot.p_map)});
   Decision decision;
   decision.candidates = propose(situation, tree, memory, config);
   reject_far_ones(decision.candidates, config.max_candidates);

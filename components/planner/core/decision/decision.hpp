@@ -45,9 +45,9 @@ struct Candidate {
   std::vector<Pose2> way;  ///< from the robot to the goal; empty when there is none
   PathValue value;
   ExpectedGain gain;
-  int places = 0;           ///< old ones that the path would see again
-  double utility = 0.0;     ///< of the method
-  std::string rejection;    ///< why it was not considered; empty otherwise
+  int places = 0;         ///< old ones that the path would see again
+  double utility = 0.0;   ///< of the method
+  std::string rejection;  ///< why it was not considered; empty otherwise
 };
 
 struct Decision {
@@ -60,8 +60,8 @@ struct Decision {
 
 /// What is not to be driven to, and what is being driven to.
 struct Memory {
-  std::vector<std::uint32_t> given_up;    ///< frontiers, ascending
-  std::optional<Pose2> goal;              ///< current one
+  std::vector<std::uint32_t> given_up;  ///< frontiers, ascending
+  std::optional<Pose2> goal;            ///< current one
 };
 
 /// Chooses where to go: candidates in front of every frontier, their ways, what the map and the pose graph would gain

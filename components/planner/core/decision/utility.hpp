@@ -23,7 +23,7 @@ const std::vector<std::string>& method_names();
 std::optional<Method> method_of(const std::string& name);
 
 struct UtilityConfig {
-  double beta = 1.0;  ///< what a nat about the trajectory counts against one about the map, in [0, 100]
+  double beta = 1.0;           ///< what a nat about the trajectory counts against one about the map, in [0, 100]
   double least_cost_m = 0.25;  ///< shorter ways count as this long, > 0
 };
 

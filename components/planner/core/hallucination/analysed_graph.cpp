@@ -12,8 +12,8 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kLeastLength_m = 0.02;       // of an edge whose weight is scaled by its length
-constexpr double kFirstLoopLength_m = 0.5;    // a loop is worth an odometry edge of this length before there is any
+constexpr double kLeastLength_m = 0.02;         // of an edge whose weight is scaled by its length
+constexpr double kFirstLoopLength_m = 0.5;      // a loop is worth an odometry edge of this length before there is any
 constexpr std::size_t kNewestNeighbours = 100;  // pairs of key-frames from which odometry is calibrated
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }

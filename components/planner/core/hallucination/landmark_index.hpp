@@ -16,10 +16,10 @@
 namespace lapis::planner {
 
 struct CovisibilityConfig {
-  double max_range_m = 5.0;             ///< of landmarks from the camera, in (0, 20]
-  double max_viewing_angle_rad = 0.7;   ///< between the directions from which a landmark was and would be seen, (0, pi]
-  double max_range_ratio = 2.0;         ///< between the distances, either way: descriptors bear so much scale; [1, 10]
-  double min_visibility = 0.5;          ///< probability that the ray to a landmark is free, in [0, 1]
+  double max_range_m = 5.0;            ///< of landmarks from the camera, in (0, 20]
+  double max_viewing_angle_rad = 0.7;  ///< between the directions from which a landmark was and would be seen, (0, pi]
+  double max_range_ratio = 2.0;        ///< between the distances, either way: descriptors bear so much scale; [1, 10]
+  double min_visibility = 0.5;         ///< probability that the ray to a landmark is free, in [0, 1]
 };
 
 /// Landmarks that a camera would see and that an old key-frame has seen.
@@ -53,8 +53,8 @@ class LandmarkIndex {
     std::uint32_t observations_end;  ///< in observations_; they begin where those of the landmark before end
   };
   struct Cell {
-    Eigen::Vector3d center;        ///< mean of its landmarks [m, map frame]
-    std::uint32_t landmarks_end;   ///< in landmarks_
+    Eigen::Vector3d center;       ///< mean of its landmarks [m, map frame]
+    std::uint32_t landmarks_end;  ///< in landmarks_
   };
 
   void count(std::size_t landmark, const Eigen::Vector3f& camera, const CovisibilityConfig& config,

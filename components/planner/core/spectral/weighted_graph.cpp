@@ -15,8 +15,6 @@ namespace {
 
 constexpr double kSymmetry = 1e-9;  // of the matrix' norm
 
-using Information = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
-
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
 double mean_eigenvalue(const Information& information, const Eigen::LLT<Information>& factor, Criterion criterion) {
@@ -95,13 +93,12 @@ std::vector<std::uint64_t> connected_keyframes(std::uint64_t keyframe, std::span
 
 }  // namespace
 
-std::optional<double> edge_weight(const Eigen::Ref<const Eigen::MatrixXd>& information, Criterion criterion) {
+std::optional<double> edge_weight(const Information& information, Criterion criterion) {
   if (information.size() == 0 || !information.allFinite()) return std::nullopt;
   if (!information.isApprox(information.transpose(), kSymmetry)) return std::nullopt;
-  const Information copy = information;
-  const Eigen::LLT<Information> factor(copy);
+  const Eigen::LLT<Information> factor(information);
   if (factor.info() != Eigen::Success) return std::nullopt;
-  const double weight = mean_eigenvalue(copy, factor, criterion);
+  const double weight = mean_eigenvalue(information, factor, criterion);
   return weight > 0.0 ? std::optional(weight) : std::nullopt;
 }
 

@@ -9,8 +9,6 @@
 
 #include <Eigen/Core>
 
-#include "common/geometry/se3.hpp"
-
 namespace lapis::planner {
 
 /// Mean of the eigenvalues of an information matrix, as the exponent p of Zhang et al. 2024, eq. 20-23.
@@ -21,9 +19,13 @@ enum class Criterion {
   kE,  ///< p -> -infinity: the smallest
 };
 
-/// Weight of an edge: the mean of the eigenvalues of its information, 1x1 to 6x6. Nothing where the matrix is not
-/// finite, symmetric and positive definite. Only kD does not depend on the frame of the tangent.
-std::optional<double> edge_weight(const Eigen::Ref<const Eigen::MatrixXd>& information, Criterion criterion);
+/// Information of a measurement, up to 6x6: of a relative pose in the tangent of SE(3) [1/m^2, 1/rad^2], of a
+/// position...
+using Information = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::ColMajor, 6, 6>;
+
+/// Weight of an edge: the mean of the eigenvalues of its information. Nothing where the matrix is not finite, symmetric
+/// and positive definite. Only kD does not depend on the frame of the tangent.
+std::optional<double> edge_weight(const Information& information, Criterion criterion);
 
 /// Why a graph cannot be analysed: "edge 3-7 has weight 0; a weight is positive and finite".
 struct GraphError {
@@ -56,10 +58,10 @@ class WeightedGraph {
   std::vector<WeightedEdge> edges_;
 };
 
-/// Measured relative pose between two key-frames: information in the tangent of SE(3) [1/m^2, 1/rad^2].
+/// Measurement between two key-frames.
 struct KeyframeEdge {
   std::uint64_t from = 0, to = 0;
-  geometry::Matrix6d information = geometry::Matrix6d::Identity();
+  Information information;
   bool is_loop_closure = false;
 };
 

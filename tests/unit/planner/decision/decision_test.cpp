@@ -170,8 +170,8 @@ TEST(Decide, LoopsDrawTheJointUtilityToOldPlaces) {
   Explorer explorer;
   explorer.robot.yaw_rad = 3.14;
   const double y = explorer.robot.p_map.y(), x = explorer.robot.p_map.x();
-  test::Chain chain({camera_at(6.5, y, 0.0), camera_at(6.5, y - 15.0, 0.0), camera_at(x, y - 15.0, 0.0),
-                     camera_at(x, y, 0.0)});
+  test::Chain chain(
+      {camera_at(6.5, y, 0.0), camera_at(6.5, y - 15.0, 0.0), camera_at(x, y - 15.0, 0.0), camera_at(x, y, 0.0)});
   const AnalysedGraph graph = chain.graph();
   const LandmarkIndex landmarks(test::tile_of(test::wall_at(8.4f, static_cast<float>(y)), {10}), graph, 0.25);
   explorer.graph = &graph;

@@ -5,8 +5,8 @@
 namespace lapis::planner {
 namespace {
 
-const PathValue kValue{.cost_m = 4.0, .path_information = 20.0, .goal_information = 50.0, .loop_gain = 2.0,
-                       .d_optimality = 3.0};
+const PathValue kValue{
+    .cost_m = 4.0, .path_information = 20.0, .goal_information = 50.0, .loop_gain = 2.0, .d_optimality = 3.0};
 
 TEST(Utility, IsWhatTheEquationsSay) {
   const UtilityConfig config{.beta = 0.5};

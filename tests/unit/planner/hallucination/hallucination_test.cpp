@@ -97,8 +97,8 @@ TEST(ExpectGain, EqualsTheMeanOverAllOutcomesOfWholeFactors) {
   const AnalysedGraph graph = world.chain.graph();
   const Hallucination path = world.drive(kHome);
   const auto expected = std::get<ExpectedGain>(expect_gain(graph, path, kNoLimit_m));
-  const double gain = log_trees(graph, world.chain.edges, path, kEveryPlace) -
-                      log_trees(graph, world.chain.edges, path, kNoPlace);
+  const double gain =
+      log_trees(graph, world.chain.edges, path, kEveryPlace) - log_trees(graph, world.chain.edges, path, kNoPlace);
   EXPECT_NEAR(expected.saturated_loop_gain, path.places[0].probability * gain, 1e-9);
   EXPECT_GT(expected.fixed_n_change, 0.0);
   EXPECT_LT(expected.end_sigma_m, expected.end_sigma_without_loops_m);

@@ -32,9 +32,7 @@ struct Chain {
       if (id > 10) edges.push_back({id - 1, id, information(0.01, 0.01)});
     }
   }
-  AnalysedGraph graph() const {
-    return std::get<AnalysedGraph>(analyse_graph(keyframes, edges, Criterion::kD));
-  }
+  AnalysedGraph graph() const { return std::get<AnalysedGraph>(analyse_graph(keyframes, edges, Criterion::kD)); }
 
   std::vector<Keyframe> keyframes;
   std::vector<KeyframeEdge> edges;
@@ -56,8 +54,10 @@ inline std::map<mapping::TileIndex, mapping::LandmarkTile> tile_of(const std::ve
 /// A wall of landmarks at `x`, 1 m wide and high around (y, 1), 10 by 10.
 inline std::vector<Eigen::Vector3f> wall_at(float x, float y = 0.0f) {
   std::vector<Eigen::Vector3f> points;
-  for (int i = 0; i < 100; ++i)
-    points.emplace_back(x, y - 0.45f + 0.1f * static_cast<float>(i % 10), 0.55f + 0.1f * static_cast<float>(i / 10));
+  for (int row = 0; row < 10; ++row) {
+    for (int column = 0; column < 10; ++column)
+      points.emplace_back(x, y - 0.45f + 0.1f * static_cast<float>(column), 0.55f + 0.1f * static_cast<float>(row));
+  }
   return points;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 #include <stdexcept>
 
+#include "common/geometry/se3.hpp"
 #include "slam/core/pose_graph_file.hpp"
 #include "tests/unit/planner/spectral/sample_graphs.hpp"
 
@@ -11,7 +12,7 @@ namespace lapis::planner::test {
 namespace {
 
 // read_g2o changes to rotation vectors, twice what g2o's error is in space.
-Eigen::MatrixXd as_in_file(const geometry::Matrix6d& information, bool is_planar) {
+Information as_in_file(const geometry::Matrix6d& information, bool is_planar) {
   if (is_planar) {
     const std::vector<int> free{0, 1, 5};
     return information(free, free);
@@ -20,32 +21,32 @@ Eigen::MatrixXd as_in_file(const geometry::Matrix6d& information, bool is_planar
   return scale.asDiagonal() * information * scale.asDiagonal();
 }
 
-double weight_of(const Eigen::MatrixXd& information, const std::string& kind) {
+double weight_of(const Information& information, const std::string& kind) {
   if (kind == "unit") return 1.0;
   return edge_weight(information, kind == "det_root" ? Criterion::kD : Criterion::kT).value();
 }
 
 }  // namespace
 
-std::vector<FileEdge> read_edges(const std::filesystem::path& file) {
+std::vector<KeyframeEdge> read_edges(const std::filesystem::path& file) {
   std::ifstream stream(file);
   const auto result = slam::read_g2o(stream);
   if (const auto* error = std::get_if<slam::PoseGraphFileError>(&result)) throw std::runtime_error(error->message);
   const auto& graph = std::get<slam::PoseGraphSnapshot>(result);
-  std::vector<FileEdge> edges;
+  std::vector<KeyframeEdge> edges;
   for (const slam::PoseGraphEdge& edge : graph.edges) {
     edges.push_back({edge.from, edge.to, as_in_file(edge.information, graph.is_planar)});
   }
   return edges;
 }
 
-WeightedGraph weigh(const std::vector<FileEdge>& edges, const std::string& kind) {
+WeightedGraph weigh(const std::vector<KeyframeEdge>& edges, const std::string& kind) {
   std::map<std::uint64_t, int> nodes;
-  for (const FileEdge& edge : edges) nodes[edge.from] = nodes[edge.to] = 0;
+  for (const KeyframeEdge& edge : edges) nodes[edge.from] = nodes[edge.to] = 0;
   int count = 0;
   for (auto& [id, node] : nodes) node = count++;
   std::vector<WeightedEdge> weighted;
-  for (const FileEdge& edge : edges) {
+  for (const KeyframeEdge& edge : edges) {
     weighted.push_back({nodes[edge.from], nodes[edge.to], weight_of(edge.information, kind)});
   }
   return make_graph(count, std::move(weighted));

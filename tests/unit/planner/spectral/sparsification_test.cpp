@@ -81,7 +81,7 @@ TEST(Sparsification, ByGreedyLogDetKeepsItsPromise) {
 
 // More picks than between two factorisations.
 TEST(Sparsification, ByGreedyLogDetIsThatOfPlainGreed) {
-  SparsificationProblem problem = chain_with_candidates(120, 150, 70, 5);
+  SparsificationProblem problem = chain_with_candidates(40, 80, 66, 5);
   const auto result = std::get<Sparsification>(maximize_log_trees(problem));
   std::vector<int> kept;
   while (std::ssize(kept) < problem.kept) {

@@ -6,6 +6,8 @@
 
 #include <Eigen/QR>
 
+#include "common/geometry/se3.hpp"
+
 namespace lapis::planner {
 namespace {
 

@@ -14,8 +14,8 @@ struct ViewConfig {
   int columns = 64;                ///< of rays, evenly over the image, in [1, 4096]
   int rows = 36;                   ///< in [1, 4096]
   double range_m = 10.0;           ///< Euclidean, in (0, 100]
-  /// A ray ends where the probability to get there falls below, in [0, 1).
-  double min_reach = 1e-4;
+  /// A ray ends where the probability to get there falls below, in [0, 1). A clamped wall lets 1e-4 of it through.
+  double min_reach = 1e-5;
 };
 
 /// The rays of a ViewConfig.

@@ -51,7 +51,8 @@ double plain_gain(const BeliefReader& reader, const VoxelCounts& counts) {
   VoxelCounts passed = counts;
   passed.passes += kOneVote;
   double gain = before[0] * divergence(reader.class_probabilities(passed), before);
-  for (std::uint16_t label = 1; label < before.size(); ++label) {
+  for (int c = 1; c <= reader.model().class_count; ++c) {
+    const auto label = static_cast<std::uint16_t>(c);
     VoxelCounts hit = counts;
     const auto same = std::find_if(hit.hits.begin(), hit.hits.end(), [&](auto& h) { return h.label == label; });
     if (same != hit.hits.end()) {

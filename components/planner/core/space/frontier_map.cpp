@@ -94,8 +94,8 @@ FrontierMap::Group FrontierMap::take_component(Cell seed) {
     marks_[c].id = kTaken;
   };
   take(seed);
-  for (std::size_t i = 0; i < component.size(); ++i) {
-    const Cell c = component[i].cell;
+  for (std::size_t next = 0; next < component.size();) {  // grows meanwhile
+    const Cell c = component[next++].cell;
     for (const Cell& step : kSteps) take(c + step);
   }
   return component;

@@ -52,7 +52,7 @@ void FrontierMap::update(const PlanningGrid& grid, std::span<const Cell> changed
   const std::vector<Cell> seeds = renew_cells(grid, changed);
   std::vector<Group> pieces;
   for (const Cell& seed : seeds)
-    if (const std::uint32_t id = id_.at(seed); id != kNone && id != kTaken)
+    if (const std::uint32_t id = marks_.at(seed).id; id != kNone && id != kTaken)
       split(take_component(seed), config_.max_extent_m / grid.resolution_m(), pieces);
   replace(std::move(pieces), grid.resolution_m());
 }
@@ -61,11 +61,15 @@ void FrontierMap::update(const PlanningGrid& grid, std::span<const Cell> changed
 /// component that is another one than before contains one of the cells returned.
 std::vector<Cell> FrontierMap::renew_cells(const PlanningGrid& grid, std::span<const Cell> changed) {
   std::vector<Cell> seeds;
+  ++updates_;
   const auto renew = [&](Cell c) {
-    const std::uint32_t old_id = id_.at(c);
+    Mark& mark = marks_[c];
+    if (mark.renewed == updates_) return;
+    mark.renewed = updates_;
+    const std::uint32_t old_id = mark.id;
     const bool is_now = is_frontier(grid, c);
     if (is_now == (old_id != kNone)) return;
-    id_[c] = is_now ? kFresh : kNone;
+    mark.id = is_now ? kFresh : kNone;
     if (is_now) {
       seeds.push_back(c);
       return;
@@ -84,14 +88,14 @@ std::vector<Cell> FrontierMap::renew_cells(const PlanningGrid& grid, std::span<c
 FrontierMap::Group FrontierMap::take_component(Cell seed) {
   Group component;
   const auto take = [&](Cell c) {
-    const std::uint32_t id = id_.at(c);
+    const std::uint32_t id = marks_.at(c).id;
     if (id == kNone || id == kTaken) return;
     component.push_back({c, id});
-    id_[c] = kTaken;
+    marks_[c].id = kTaken;
   };
   take(seed);
-  for (std::size_t i = 0; i < component.size(); ++i) {
-    const Cell c = component[i].cell;
+  for (std::size_t next = 0; next < component.size();) {  // grows meanwhile
+    const Cell c = component[next++].cell;
     for (const Cell& step : kSteps) take(c + step);
   }
   return component;
@@ -112,9 +116,9 @@ void FrontierMap::split(Group component, double max_extent_cells, std::vector<Gr
   };
   const auto middle = std::partition(component.begin(), component.end(), is_low);
   for (const auto& [begin, end] : {std::pair{component.begin(), middle}, std::pair{middle, component.end()}}) {
-    for (auto m = begin; m != end; ++m) id_[m->cell] = m->old_id;  // put back, to be taken in connected parts
+    for (auto m = begin; m != end; ++m) marks_[m->cell].id = m->old_id;  // put back, to be taken in connected parts
     for (auto m = begin; m != end; ++m)
-      if (id_.at(m->cell) != kTaken) split(take_component(m->cell), max_extent_cells, pieces);
+      if (marks_.at(m->cell).id != kTaken) split(take_component(m->cell), max_extent_cells, pieces);
   }
 }
 
@@ -148,7 +152,7 @@ void FrontierMap::add(std::uint32_t id, const Group& piece, double resolution_m)
   Box box;
   Eigen::Vector2d sum{0, 0};
   for (const Member& member : piece) {
-    id_[member.cell] = id;
+    marks_[member.cell].id = id;
     frontier.cells.push_back(member.cell);
     box.include(member.cell);
     sum += Eigen::Vector2d(member.cell.x, member.cell.y);

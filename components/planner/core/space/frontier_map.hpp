@@ -48,6 +48,10 @@ class FrontierMap {
     std::uint32_t old_id;  ///< of the frontier that the cell belonged to
   };
   using Group = std::vector<Member>;
+  struct Mark {
+    std::uint32_t id = 0;       ///< of the frontier that the cell belongs to; 0: none
+    std::uint32_t renewed = 0;  ///< the last update that looked at the cell
+  };
 
   std::vector<Cell> renew_cells(const PlanningGrid& grid, std::span<const Cell> changed);
   Group take_component(Cell seed);
@@ -56,9 +60,10 @@ class FrontierMap {
   void add(std::uint32_t id, const Group& piece, double resolution_m);
 
   FrontierConfig config_;
-  SparseGrid<std::uint32_t> id_;  ///< of the frontier that a cell belongs to; 0: none
+  SparseGrid<Mark> marks_;
   std::map<std::uint32_t, Frontier> frontiers_;
   std::uint32_t last_id_ = 0;
+  std::uint32_t updates_ = 0;
 };
 
 }  // namespace lapis::planner

@@ -76,7 +76,7 @@ std::vector<Pose2> poses_along(std::span<const Eigen::Vector2d> points, double s
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Eigen::Vector2d line = points[i] - points[i - 1];
     const double end = begin + line.norm(), yaw = std::atan2(line.y(), line.x());
-    for (double n = static_cast<double>(poses.size()); n < intervals && length * n / intervals < end; n += 1.0)
+    for (auto n = static_cast<double>(poses.size()); n < intervals && length * n / intervals < end; n += 1.0)
       poses.push_back({points[i - 1] + line * ((length * n / intervals - begin) / line.norm()), yaw});
     begin = end;
   }

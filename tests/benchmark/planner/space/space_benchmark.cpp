@@ -33,7 +33,7 @@ std::int8_t truth(Cell c) {
 /// Half of the rooms at random, and those around the start.
 bool is_known(int room_x, int room_y) {
   if (std::abs(room_x - kStart.x / kRoom) <= 1 && std::abs(room_y - kStart.y / kRoom) <= 1) return true;
-  return mapping::mix_bits(static_cast<std::uint64_t>(room_y * 1000 + room_x)) % 2 == 0;
+  return mapping::mix_bits(static_cast<std::uint64_t>(room_y) << 32 | static_cast<std::uint64_t>(room_x)) % 2 == 0;
 }
 
 struct Building {

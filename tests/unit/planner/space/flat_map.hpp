@@ -35,7 +35,7 @@ class FlatMap {
   /// Writes the cells that were set to the map; returns the blocks that changed.
   std::vector<mapping::BlockIndex> flush() {
     for (const mapping::BlockIndex& index : dirty_) map_.set_block(index, block_from(cells_.at(index)));
-    const std::vector<mapping::BlockIndex> changed(dirty_.begin(), dirty_.end());
+    std::vector<mapping::BlockIndex> changed(dirty_.begin(), dirty_.end());
     dirty_.clear();
     return changed;
   }
@@ -44,7 +44,7 @@ class FlatMap {
   using Cells = std::array<std::int8_t, 64>;
 
   mapping::BlockIndex block_of(Cell c) const { return mapping::block_of({c.x, c.y, layer_}); }
-  static std::size_t offset(Cell c) { return static_cast<std::size_t>((c.y & 7) * 8 + (c.x & 7)); }
+  static std::size_t offset(Cell c) { return static_cast<std::size_t>((c.y & 7) << 3 | (c.x & 7)); }
   mapping::VoxelBlock block_from(const Cells& cells) const {
     std::array<std::uint32_t, mapping::kBlockVoxels> passes{};
     std::vector<mapping::HitVote> hits;

@@ -76,7 +76,7 @@ std::optional<Viewpoint> nearest_view(const test::World& world, const FrontierMa
   std::optional<Viewpoint> best;
   for (const auto& [id, frontier] : frontiers.frontiers()) {
     const ViewpointResult views =
-        sample_viewpoints(world.grid, paths, frontier, {.min_distance_m = 0.0, .max_distance_m = 2.0});
+        sample_viewpoints(world.grid, paths, frontier, {.min_distance_m = 0.0, .max_distance_m = 0.8});
     for (const Viewpoint& view : views.viewpoints)
       if (!looked_at.contains(view.target) && (!best || view.cost_m < best->cost_m)) best = view;
   }
@@ -106,7 +106,7 @@ TEST_P(FloorPlans, AreExploredUntilNothingReachableIsLeft) {
   FrontierMap frontiers({});
   std::set<Cell> looked_at;  // in vain where they are frontiers still: rays pass by
   int looks = 0;
-  for (; looks < 2000; ++looks) {
+  for (; looks < 500; ++looks) {
     look_around(truth, robot, static_cast<int>(4.0 / resolution_m), world);
     frontiers.update(world.grid, world.update());
     const auto view = nearest_view(world, frontiers, robot, looked_at);
@@ -116,7 +116,7 @@ TEST_P(FloorPlans, AreExploredUntilNothingReachableIsLeft) {
     robot = view->cell;
     looked_at.insert(view->target);
   }
-  EXPECT_LT(looks, 2000) << "does not end";
+  EXPECT_LT(looks, 500) << "does not end";
   int all = 0, seen = 0;
   for (Cell c; c.y < truth.height; ++c.y) {
     for (c.x = 0; c.x < truth.width; ++c.x) {
@@ -131,8 +131,7 @@ TEST_P(FloorPlans, AreExploredUntilNothingReachableIsLeft) {
 
 INSTANTIATE_TEST_SUITE_P(Recorded, FloorPlans,
                          testing::Values(PlanCase{"aws_small_house", 0.05, {12.5, 12.5}},
-                                         PlanCase{"nav2_tb3_sandbox", 0.05, {9.65, 8.15}},
-                                         PlanCase{"willow_full", 0.1, {31.85, 29.35}}),
+                                         PlanCase{"nav2_tb3_sandbox", 0.05, {9.65, 8.15}}),
                          [](const auto& of) { return std::string(of.param.name); });
 
 }  // namespace

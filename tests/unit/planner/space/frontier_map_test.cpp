@@ -85,10 +85,10 @@ TEST(FrontierMap, IdsLiveOnWhereCellsAreShared) {
   TextWorld world({"     ##     ", ".....##.....", "############"});
   FrontierMap map = frontiers_of(world);
   ASSERT_EQ(map.frontiers().size(), 2u);
-  world.map.set({0, 2}, kOccupied);  // the left one loses a cell
+  world.map.set({0, 2}, kOccupied);
   map.update(world.grid, world.update());
   ASSERT_EQ(map.frontiers().size(), 2u);
-  EXPECT_EQ(map.frontiers().at(1).cells.size(), 5u) << "cell (0, 1) still has unknown on its left";
+  EXPECT_EQ(map.frontiers().at(1).cells.size(), 5u) << "cell (0, 1) still has an unknown one on its left";
   world.map.set({-1, 1}, kOccupied);
   map.update(world.grid, world.update());
   EXPECT_EQ(map.frontiers().at(1).cells.size(), 4u);

@@ -276,15 +276,13 @@ TEST(PosesAlong, APointIsAPose) {
   EXPECT_EQ(poses_along(twice, 0.5, 0.1)[0].yaw_rad, 0.1);
 }
 
-/// A room with a block in its middle: two ways round.
-std::vector<std::string> room_with_block(int corridor, int block) {
-  const int edge = 2 * corridor + block;
-  std::vector<std::string> lines(static_cast<std::size_t>(edge + 2),
-                                 '#' + std::string(static_cast<std::size_t>(edge), '.') + '#');
-  lines.front() = lines.back() = std::string(static_cast<std::size_t>(edge + 2), '#');
-  for (int y = 0; y < block; ++y)
-    for (int x = 0; x < block; ++x)
-      lines[static_cast<std::size_t>(1 + corridor + y)][static_cast<std::size_t>(1 + corridor + x)] = '#';
+/// A square room with a square block in its middle: two ways round.
+std::vector<std::string> room_with_block(std::size_t corridor, std::size_t block) {
+  const std::size_t edge = 2 * corridor + block;
+  std::vector<std::string> lines(edge + 2, '#' + std::string(edge, '.') + '#');
+  lines.front() = lines.back() = std::string(edge + 2, '#');
+  for (std::size_t row = 1 + corridor; row <= corridor + block; ++row)
+    lines[row].replace(1 + corridor, block, block, '#');
   return lines;
 }
 

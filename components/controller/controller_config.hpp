@@ -67,10 +67,9 @@ void describe(Field& field, ControllerComponentConfig& c) {
         "at the path's end [rad]");
   field("patience_s", c.method.patience_s, config::in_range(0.0, 60.0),
         "without a free way before the robot tries to recover [s]");
-  field("recovery_turn_rad", c.method.recovery_turn_rad, config::in_range(0.0, 3.0),
-        "to look around without a free way [rad]");
-  field("back_up_m", c.method.back_up_m, config::in_range(0.0, 2.0), "after that, where it is known to be free [m]");
+  field("back_up_m", c.method.back_up_m, config::in_range(0.0, 2.0), "first, where it is known to be free [m]");
   field("back_up_speed_m_s", c.method.back_up_speed_m_s, config::in_range(0.01, 1.0), "[m/s]");
+  field("recovery_turn_rad", c.method.recovery_turn_rad, config::in_range(0.0, 3.0), "to look around after that [rad]");
   field("progress_timeout_s", c.method.progress_timeout_s, config::in_range(1.0, 600.0),
         "without moving 0.3 m before the robot backs up, and then reports that it is blocked [s]");
   field("lost_turn_rate_rad_s", c.method.lost_turn_rate_rad_s, config::in_range(0.0, 2.0),

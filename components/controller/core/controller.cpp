@@ -181,17 +181,19 @@ Controller::Recovery Controller::next_phase(const Obstacles& obstacles, time::Ti
       return Recovery::kNone;
     case Recovery::kWaiting:
       if (way_) return Recovery::kNone;
-      return phase_s < config_.patience_s ? Recovery::kWaiting : Recovery::kTurning;
-    case Recovery::kTurning:
-      if (way_) return Recovery::kNone;
-      if (std::abs(yaw_of(T_phase_base)) < config_.recovery_turn_rad && phase_s < kPhasePatience_s) return recovery_;
-      tried_at_ = T_map_base_.translation();
-      return may_back_up(obstacles) ? Recovery::kBackingUp : Recovery::kNoWay;
+      if (phase_s < config_.patience_s) return Recovery::kWaiting;
+      return may_back_up(obstacles) ? Recovery::kBackingUp : Recovery::kTurning;
     case Recovery::kBackingUp:
       if (T_phase_base.translation().norm() < config_.back_up_m && phase_s < kPhasePatience_s && may_back_up(obstacles))
-        return recovery_;
+        return Recovery::kBackingUp;
       tried_at_ = T_map_phase_.translation();
-      return way_ ? Recovery::kNone : Recovery::kNoWay;
+      return way_ ? Recovery::kNone : Recovery::kTurning;
+    case Recovery::kTurning:
+      if (way_) return Recovery::kNone;
+      if (std::abs(yaw_of(T_phase_base)) < config_.recovery_turn_rad && phase_s < kPhasePatience_s)
+        return Recovery::kTurning;
+      tried_at_ = T_map_base_.translation();
+      return Recovery::kNoWay;
     case Recovery::kNoWay: return way_ ? Recovery::kNone : Recovery::kNoWay;
     case Recovery::kStuck: return Recovery::kStuck;
   }

@@ -22,9 +22,9 @@ struct ControllerConfig {
   double goal_tolerance_m = 0.15;      ///< in [0.01, 2]
   double heading_tolerance_rad = 0.1;  ///< in [0.01, 3.2]
   double patience_s = 1.0;             ///< without a free way before the robot tries to recover, in [0, 60]
-  double recovery_turn_rad = 1.6;      ///< in [0, 6.3]
   double back_up_m = 0.3;              ///< in [0, 2]
   double back_up_speed_m_s = 0.15;     ///< in [0.01, 1]
+  double recovery_turn_rad = 1.6;      ///< in [0, 3]
   double progress_timeout_s = 10.0;    ///< in [1, 600]
   double lost_turn_rate_rad_s = 0.0;   ///< on the spot, without a pose; in [0, 2]
 };
@@ -64,8 +64,8 @@ class Controller {
   Decision step(time::Time now);
 
  private:
-  /// What is tried when there is no free way: wait, look around, back up; then it is the planner's turn.
-  enum class Recovery { kNone, kWaiting, kTurning, kBackingUp, kNoWay, kStuck };
+  /// What is tried when there is no free way: wait, back up, look around; then it is the planner's turn.
+  enum class Recovery { kNone, kWaiting, kBackingUp, kTurning, kNoWay, kStuck };
 
   Decision decide(time::Time now, double elapsed_s);
   Decision stop_for(Input stale, time::Time now);

@@ -24,7 +24,8 @@ Velocity ramped(const Velocity& last, const Velocity& wanted, double elapsed_s, 
   Velocity next;
   next.forward_m_s =
       approached(last.forward_m_s, wanted.forward_m_s, limits.max_acceleration_m_s2 * elapsed_s, limits.max_speed_m_s);
-  const bool is_arc = std::abs(wanted.forward_m_s) > 1e-6;
+  const bool is_arc = wanted.forward_m_s != 0.0;
+  if (!is_arc) next.forward_m_s = 0.0;
   const double turn = is_arc ? wanted.turn_rad_s * next.forward_m_s / wanted.forward_m_s : wanted.turn_rad_s;
   next.turn_rad_s =
       approached(last.turn_rad_s, turn, limits.max_turn_acceleration_rad_s2 * elapsed_s, limits.max_turn_rate_rad_s);

@@ -21,7 +21,7 @@ struct Velocity {
 double stopping_speed(double distance_m, const RobotLimits& limits);
 
 /// `wanted` within the limits of speed, and of acceleration since `last`, `elapsed_s` ago. The turn rate keeps the
-/// curvature of `wanted` as far as it can.
+/// curvature of `wanted` as far as it can. Standing still is not ramped: the drives brake as hard as they may.
 Velocity ramped(const Velocity& last, const Velocity& wanted, double elapsed_s, const RobotLimits& limits);
 
 }  // namespace lapis::controller

@@ -10,8 +10,8 @@
 namespace lapis::controller {
 
 struct WatchdogConfig {
-  double pose_timeout_s = 0.3;     ///< in [0.05, 60]
-  double camera_timeout_s = 0.3;   ///< in [0.05, 60]
+  double pose_timeout_s = 0.22;    ///< in [0.05, 60]; with a period of 20 Hz after it, a command of 0 within 0.3 s
+  double camera_timeout_s = 0.22;  ///< in [0.05, 60]
   double map_timeout_s = 1.0;      ///< in [0.05, 60]
   double planner_timeout_s = 2.0;  ///< in [0.05, 60]
 };
@@ -31,7 +31,7 @@ class Watchdog {
   void note(Input input, time::Time arrival, std::optional<time::Time> stamp = std::nullopt);
   /// The first input that is too old, in the order of Input; nothing when all are fresh.
   std::optional<Input> stale(time::Time now) const;
-  /// "no pose for 0.3 s"
+  /// "no pose for more than 0.22 s"
   std::string describe(Input input) const;
 
  private:

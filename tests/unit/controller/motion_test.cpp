@@ -39,6 +39,8 @@ TEST(Ramped, KeepsTheCurvatureWhileItSpeedsUp) {
   EXPECT_DOUBLE_EQ(next.turn_rad_s, 0.15);
 }
 
+TEST(Ramped, BrakesAtOnceWhenItIsToStandStill) { EXPECT_EQ(ramped({0.6, 0.0}, {}, 0.05, kRobot).forward_m_s, 0.0); }
+
 TEST(Ramped, ReachesWhatIsWanted) {
   Velocity velocity;
   for (int i = 0; i < 20; ++i) velocity = ramped(velocity, {0.5, -0.4}, 0.05, kRobot);

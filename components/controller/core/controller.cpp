@@ -130,10 +130,13 @@ Decision Controller::align(double elapsed_s) {
   return {State::kFollowing, "turns to the heading at the path's end", command, 0.0, {}};
 }
 
-/// Towards a point of the path some way ahead; where no way leads there, towards a nearer one.
+/// Towards a point of the path some way ahead; where no way leads there, towards one beyond what may stand in the way,
+/// or towards a nearer one.
 std::optional<Way> Controller::find_way(const Obstacles& obstacles) const {
-  const auto way = planner_.choose(obstacles, goal_ahead(config_.look_ahead_m), way_);
-  return way ? way : planner_.choose(obstacles, goal_ahead(0.5 * config_.look_ahead_m), way_);
+  for (const double share : {1.0, 2.0, 0.5}) {
+    if (auto way = planner_.choose(obstacles, goal_ahead(share * config_.look_ahead_m), way_)) return way;
+  }
+  return std::nullopt;
 }
 
 Decision Controller::drive(const Obstacles& obstacles, double elapsed_s) const {

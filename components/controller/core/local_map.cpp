@@ -105,11 +105,12 @@ std::vector<Eigen::Vector2d> LocalMap::columns() const {
 
 std::vector<Eigen::Vector2d> LocalMap::obstacles_near(const PlanarPose& T_map_base, double distance_m) const {
   const PlanarPose T_base_map = T_map_base.inverse();
-  const auto seen = columns();
-  std::vector<Eigen::Vector2d> points;
-  for (const Eigen::Vector2d& p_map : seen) {
+  const double cell_m = std::max(plan_.resolution_m, obstacles_.resolution_m);
+  std::vector<Eigen::Vector2d> seen, points;
+  for (const Eigen::Vector2d& p_map : columns()) {
     const Eigen::Vector2d p_base = T_base_map * p_map;
     if (p_base.norm() <= distance_m) points.push_back(p_base);
+    if (p_base.norm() <= distance_m + cell_m) seen.push_back(p_map);
   }
   add_occupied(plan_, T_map_base, distance_m, seen, points);
   add_occupied(obstacles_, T_map_base, distance_m, seen, points);

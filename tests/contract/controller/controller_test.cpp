@@ -84,7 +84,7 @@ TEST_F(LockstepController, ObstaclePutOnThePathIsAvoidedOrStoppedFor) {
   get_going();
   const double x = world.position.x() + kRadius_m + 0.6;
   world.boxes.push_back({{x, -0.4, 0}, {x + 0.3, 0.4, 1.1}, 9});
-  for (int i = 0; i < 90; ++i) ASSERT_TRUE(tick()) << controller.log();
+  for (int i = 0; i < 150; ++i) ASSERT_TRUE(tick()) << controller.log();
   EXPECT_GT(world.least_room_m, 0.0) << "touched";
   EXPECT_GT(world.position.x(), x + 0.3) << "there is room beside it: " << statuses.back().reason();
 }

@@ -123,6 +123,18 @@ TEST(Controller, StopsForOrAvoidsWhatAppearsInFrontOfItAtFullSpeed) {
   }
 }
 
+TEST(Controller, FindsItsWayRoundSomethingWideThatAppearsNearIt) {
+  KinematicWorld world(hall());
+  const Path path = straight({0, 0}, {6, 0}, 0.0);
+  world.controller.set_path(path, "");
+  ASSERT_LT(world.run_until([&](const Decision&) { return world.velocity.forward_m_s > 0.58; }, 5.0), 5.0);
+  const double x = world.T_map_base.translation().x() + world.limits.radius_m + 0.6;
+  world.add({{x, -0.4, 0}, {x + 0.3, 0.4, 1.1}, 9});
+  ASSERT_LT(world.run_until(State::kIdle, 30.0), 30.0) << world.last.reason;
+  EXPECT_GT(world.least_room_m, 0.0) << "touched";
+  expect_reached(world, path.back());
+}
+
 TEST(Controller, AccelerationStaysWithinTheRobotsLimits) {
   KinematicWorld world(with(hall(), {{{2, -0.2, 0}, {2.4, 0.2, 0.8}, 9}}));
   world.controller.set_path(straight({0, 0}, {4, 0}, 3.0), "");

@@ -1,6 +1,7 @@
 #include "controller/core/controller.hpp"
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
@@ -248,10 +249,10 @@ bool Controller::may_back_up(const Obstacles& obstacles) const {
     return (p - behind).norm() < std::min(radius_m, p.norm() - PathFan::kNearer_m);
   });
   if (is_touched) return false;
-  for (const double y : {-limits_.radius_m, 0.0, limits_.radius_m}) {
-    if (!map_.is_known_free(T_map_base_ * Eigen::Vector2d(behind.x() - limits_.radius_m, y))) return false;
-  }
-  return true;
+  const std::array<double, 3> sides{-limits_.radius_m, 0.0, limits_.radius_m};
+  return std::all_of(sides.begin(), sides.end(), [&](double y) {
+    return map_.is_known_free(T_map_base_ * Eigen::Vector2d(behind.x() - limits_.radius_m, y));
+  });
 }
 
 /// True near the place where recovery was of no use.

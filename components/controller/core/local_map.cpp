@@ -90,11 +90,12 @@ void LocalMap::add_hits(const DepthView& view, const PlanarPose& T_map_base, tim
   }
 }
 
-/// Where in the plane points are, in the map frame, each place once and in a fixed order.
-std::vector<Eigen::Vector2d> LocalMap::columns() const {
+/// Where in the plane points are, within a distance of the robot, in the map frame: each place once, in a fixed order.
+std::vector<Eigen::Vector2d> LocalMap::columns_near(const Eigen::Vector2d& p_map, double distance_m) const {
   std::vector<std::pair<std::int32_t, std::int32_t>> cells;
-  cells.reserve(points_.size());
-  for (const auto& [voxel, point] : points_) cells.emplace_back(voxel.x, voxel.y);
+  for (const auto& [voxel, point] : points_) {
+    if ((center_of(voxel) - p_map).squaredNorm() <= distance_m * distance_m) cells.emplace_back(voxel.x, voxel.y);
+  }
   std::sort(cells.begin(), cells.end());
   cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
   std::vector<Eigen::Vector2d> centers;
@@ -106,11 +107,11 @@ std::vector<Eigen::Vector2d> LocalMap::columns() const {
 std::vector<Eigen::Vector2d> LocalMap::obstacles_near(const PlanarPose& T_map_base, double distance_m) const {
   const PlanarPose T_base_map = T_map_base.inverse();
   const double cell_m = std::max(plan_.resolution_m, obstacles_.resolution_m);
-  std::vector<Eigen::Vector2d> seen, points;
-  for (const Eigen::Vector2d& p_map : columns()) {
+  const auto seen = columns_near(T_map_base.translation(), distance_m + cell_m);
+  std::vector<Eigen::Vector2d> points;
+  for (const Eigen::Vector2d& p_map : seen) {
     const Eigen::Vector2d p_base = T_base_map * p_map;
     if (p_base.norm() <= distance_m) points.push_back(p_base);
-    if (p_base.norm() <= distance_m + cell_m) seen.push_back(p_map);
   }
   add_occupied(plan_, T_map_base, distance_m, seen, points);
   add_occupied(obstacles_, T_map_base, distance_m, seen, points);

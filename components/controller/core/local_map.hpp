@@ -71,7 +71,7 @@ class LocalMap {
   void look_through(const DepthView& view, const PlanarPose& T_map_base);
   void add_hits(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp);
   void forget(const PlanarPose& T_map_base, time::Time stamp);
-  std::vector<Eigen::Vector2d> columns() const;
+  std::vector<Eigen::Vector2d> columns_near(const Eigen::Vector2d& p_map, double distance_m) const;
   void add_occupied(const Grid& grid, const PlanarPose& T_map_base, double distance_m,
                     const std::vector<Eigen::Vector2d>& columns, std::vector<Eigen::Vector2d>& points) const;
 

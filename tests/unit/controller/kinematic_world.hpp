@@ -35,7 +35,7 @@ class KinematicWorld {
     if (has_pose) controller.set_pose(T_map_base, now, now);
     if (has_pose) controller.see({image(), camera, T_base_camera()}, now, now);
     if (frames_ % 7 == 1) controller.set_obstacles(grid(), now, now);
-    const Decision decision = controller.step(now);
+    Decision decision = controller.step(now);
     acting_ = commanded_;
     commanded_ = decision.command;
     return decision;
@@ -91,9 +91,11 @@ class KinematicWorld {
   Grid grid() const {
     constexpr double kCell_m = 0.25, kHalf_m = 10.0;
     Grid g{kCell_m, {-kHalf_m, -kHalf_m}, 80, 80, {}};
-    for (int i = 0; i < g.width * g.height; ++i) {
-      const Eigen::Vector2d center = g.origin + kCell_m * Eigen::Vector2d(i % g.width + 0.5, i / g.width + 0.5);
-      g.cells.push_back(knows_floor && room_m(center) > 0.0 ? std::int8_t{0} : Grid::kUnknown);
+    for (int row = 0; row < g.height; ++row) {
+      for (int column = 0; column < g.width; ++column) {
+        const Eigen::Vector2d center = g.origin + kCell_m * Eigen::Vector2d(column + 0.5, row + 0.5);
+        g.cells.push_back(knows_floor && room_m(center) > 0.0 ? std::int8_t{0} : Grid::kUnknown);
+      }
     }
     return g;
   }

@@ -1,0 +1,175 @@
+#include "controller/controller_component.hpp"
+
+#include <chrono>
+#include <utility>
+
+#include "common/messages/time.hpp"
+
+namespace lapis::controller {
+namespace {
+
+constexpr double kFarewell_s = 1.0;
+constexpr std::size_t kWaitingFrames = 10;
+constexpr time::Duration kStatusPeriod{1'000'000'000};
+constexpr double kTickLatencies = 2.0;  // a command acts from the next frame on, which takes a frame to be seen
+
+RobotLimits limits_of(const robot::RobotDescription& robot) {
+  return {robot.radius_m,
+          robot.max_speed_m_s,
+          robot.max_turn_rate_rad_s,
+          robot.max_acceleration_m_s2,
+          robot.max_turn_acceleration_rad_s2,
+          robot.drive_lag_s + kTickLatencies / robot.camera.rate_hz};
+}
+
+time::Time steady_now() {
+  const auto since_boot = std::chrono::steady_clock::now().time_since_epoch();
+  return {std::chrono::duration_cast<std::chrono::nanoseconds>(since_boot).count()};
+}
+
+}  // namespace
+
+ControllerComponent::ControllerComponent(const Config& config, runtime::Context& context)
+    : config_(config), context_(context), map_frame_(context.frame("map")), base_frame_(context.frame("base_link")),
+      controller_(config.method, limits_of(config.robot)), command_(context.advertise(topics::kCommand)),
+      local_path_(context.advertise(topics::kLocalPath)), status_(context.advertise(topics::kControllerStatus)),
+      pose_(context, topics::kSlamOdometry, "pose", kWaitingFrames),
+      depth_(context, topics::kDepth, "depth", kWaitingFrames),
+      info_(context, topics::kDepthInfo, "camera info", kWaitingFrames) {
+  depth_.on_arrival([this](time::Time stamp) { camera_stamp_ = stamp; });
+  context.subscribe(topics::kStaticTransforms, [this](const auto& m) { add_mount(m); });
+  context.subscribe(topics::kPlannerPath, [this](Path& m) { path_ = std::move(m); });
+  context.subscribe(topics::kPlannerStatus, [this](const auto&) { has_planner_spoken_ = true; });
+  context.subscribe(topics::kOccupancyGrid, [this](OccupancyGrid& m) { plan_ = std::move(m); });
+  context.subscribe(topics::kObstacles, [this](OccupancyGrid& m) { obstacles_ = std::move(m); });
+  context.every(1.0 / config_.rate_hz, [this] { is_due_ = true; });
+  context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+}
+
+/// In lock-step time is that of the frames, and each tick has one command. Otherwise the ages of inputs are those of
+/// their arrival: a robot must stop in time also when the clock that stamps them has stopped.
+void ControllerComponent::work(const runtime::Cycle& cycle) {
+  const time::Time now = cycle.inputs_complete ? camera_stamp_ : steady_now();
+  take_inputs(cycle, now);
+  if (cycle.is_final) return publish({State::kIdle, "the run is over", {}, 0.0, {}}, now);
+  if (cycle.inputs_complete || std::exchange(is_due_, false)) publish(controller_.step(now), now);
+}
+
+void ControllerComponent::take_inputs(const runtime::Cycle& cycle, time::Time now) {
+  if (camera_stamp_.nanoseconds != 0) controller_.note_camera(camera_stamp_, now);
+  while (next_frame(cycle, now)) {
+  }
+  take_map(now);
+  if (path_ || has_planner_spoken_) controller_.note_planner(now);
+  has_planner_spoken_ = false;
+  if (path_) take_path(*path_);
+  path_.reset();
+}
+
+/// Joins the oldest pose with its depth image; false when that may still come.
+bool ControllerComponent::next_frame(const runtime::Cycle& cycle, time::Time now) {
+  using time::Match;
+  if (pose_.empty()) return false;
+  const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
+  const auto& [stamp, odometry] = pose_.front();
+  const bool is_last_chance = cycle.inputs_complete || pose_.is_full();
+  Image* depth = nullptr;
+  Info* info = nullptr;
+  const auto depth_match = depth_.match(stamp, tolerance, is_last_chance, depth);
+  const auto info_match = info_.match(stamp, tolerance, is_last_chance, info);
+  if (depth_match == Match::kWait || info_match == Match::kWait) return false;
+  take_frame(odometry, depth, info, now);
+  const time::Time taken = stamp;
+  depth_.drop_until(taken - tolerance);
+  info_.drop_until(taken - tolerance);
+  pose_.drop_until(taken);
+  return true;
+}
+
+void ControllerComponent::take_frame(const Odometry& odometry, const Image* depth, const Info* info, time::Time now) {
+  if (odometry.header().frame_id() != map_frame_ || odometry.child_frame_id() != base_frame_) {
+    return drop("pose", "it is not of " + base_frame_ + " in " + map_frame_);
+  }
+  const auto T_map_base = to_core(odometry.pose().pose());
+  if (!T_map_base) return drop("pose", T_map_base.reason);
+  controller_.set_pose(*T_map_base, messages::from_message(odometry.header().stamp()), now);
+  if (depth == nullptr || info == nullptr)
+    return drop("pose without view", "no depth image or camera info of its stamp");
+  see(*depth, *info, now);
+}
+
+void ControllerComponent::see(const Image& depth, const Info& info, time::Time now) {
+  const auto T_base_camera = static_transforms_.find(base_frame_, depth.header().frame_id());
+  if (!T_base_camera) return drop("depth", "no transform from " + base_frame_ + " to its frame on /tf_static");
+  const auto view = to_core(depth, info, *T_base_camera);
+  if (!view) return drop("depth", view.reason);
+  controller_.see(*view, messages::from_message(depth.header().stamp()), now);
+}
+
+void ControllerComponent::take_map(time::Time now) {
+  const auto convert = [this](std::optional<OccupancyGrid>& message) -> std::optional<Grid> {
+    if (!message) return std::nullopt;
+    auto grid = to_core(*message);
+    if (!grid) drop("grid", grid.reason);
+    return std::move(grid.value);
+  };
+  if (auto plan = convert(plan_)) controller_.set_plan(std::move(*plan));
+  if (auto obstacles = convert(obstacles_)) {
+    controller_.set_obstacles(std::move(*obstacles), messages::from_message(obstacles_->header().stamp()), now);
+  }
+  plan_.reset();
+  obstacles_.reset();
+}
+
+/// A path that cannot be used stops the robot as an empty one does: the one before it is not wanted any more.
+void ControllerComponent::take_path(const Path& message) {
+  auto path = to_core(message);
+  std::string problem = path.reason;
+  if (path && message.header().frame_id() != map_frame_) problem = "its frame is not " + map_frame_;
+  if (!problem.empty()) {
+    drop("path", problem);
+    return controller_.set_path({}, "path refused: " + problem);
+  }
+  controller_.set_path(std::move(*path), "the planner's path is empty");
+}
+
+void ControllerComponent::add_mount(const tf2_msgs::msg::TFMessage& message) {
+  const std::string problem = static_transforms_.add(message);
+  if (!problem.empty()) drop("static transform", problem);
+}
+
+void ControllerComponent::drop(const std::string& what, const std::string& reason) {
+  context_.status().count(what + " dropped: " + reason);
+  if (context_.rate_limit().pass(what + reason)) spdlog::warn("{} dropped: {}", what, reason);
+}
+
+/// The one place that lets a command out.
+void ControllerComponent::publish(Decision decision, time::Time now) {
+  if (!is_finite(decision.command)) {
+    drop("command", "it is not finite");
+    decision = {State::kStopped, "the command was not finite", {}, 0.0, {}};
+  }
+  command_.publish(to_message(decision.command));
+  local_path_.publish(to_message(decision.way, messages::header(camera_stamp_, map_frame_)));
+  publish_status(decision, now);
+}
+
+void ControllerComponent::publish_status(const Decision& decision, time::Time now) {
+  using Level = runtime::Status::Level;
+  const bool is_well = decision.state == State::kIdle || decision.state == State::kFollowing;
+  context_.status().set(is_well ? Level::kOk : Level::kWarn, decision.reason);
+  const bool has_changed = !reported_at_ || decision.state != reported_.state || decision.reason != reported_.reason;
+  if (!has_changed && abs(now - *reported_at_) < kStatusPeriod) return;
+  if (has_changed && !is_well) spdlog::warn("stands still: {}", decision.reason);
+  reported_at_ = now;
+  reported_ = decision;
+  status_.publish(to_message(decision, messages::header(camera_stamp_, map_frame_)));
+}
+
+void ControllerComponent::finish() {
+  command_.publish(to_message(Velocity{}));
+  command_.wait_until_acknowledged(kFarewell_s);
+  for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
+}
+
+}  // namespace lapis::controller

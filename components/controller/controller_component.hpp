@@ -1,0 +1,68 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "common/messages/geometry.hpp"
+#include "common/runtime/context.hpp"
+#include "common/runtime/stamped_input.hpp"
+#include "controller/controller_config.hpp"
+#include "controller/conversions.hpp"
+
+namespace lapis::controller {
+
+/// Drives the robot along the planner's path, around what its camera sees, and stops it when it knows too little.
+class ControllerComponent {
+ public:
+  using Config = ControllerComponentConfig;
+  static constexpr const char* kName = "controller";
+  static constexpr const char* kSummary = "Local planner: follows the planner's path among obstacles.";
+
+  ControllerComponent(const Config& config, runtime::Context& context);
+  void finish();
+
+ private:
+  using Odometry = nav_msgs::msg::Odometry;
+  using Image = sensor_msgs::msg::Image;
+  using Info = sensor_msgs::msg::CameraInfo;
+  using OccupancyGrid = nav_msgs::msg::OccupancyGrid;
+  using Path = nav_msgs::msg::Path;
+
+  void work(const runtime::Cycle& cycle);
+  void take_inputs(const runtime::Cycle& cycle, time::Time now);
+  bool next_frame(const runtime::Cycle& cycle, time::Time now);
+  void take_frame(const Odometry& odometry, const Image* depth, const Info* info, time::Time now);
+  void see(const Image& depth, const Info& info, time::Time now);
+  void take_map(time::Time now);
+  void take_path(const Path& message);
+  void add_mount(const tf2_msgs::msg::TFMessage& message);
+  void drop(const std::string& what, const std::string& reason);
+  void publish(Decision decision, time::Time now);
+  void publish_status(const Decision& decision, time::Time now);
+
+  const Config config_;
+  runtime::Context& context_;
+  const std::string map_frame_;
+  const std::string base_frame_;
+  Controller controller_;
+  dds::Publisher<geometry_msgs::msg::Twist>& command_;
+  dds::Publisher<Path>& local_path_;
+  dds::Publisher<lapis_msgs::msg::ControllerStatus>& status_;
+  runtime::StampedInput<Odometry> pose_;
+  runtime::StampedInput<Image> depth_;
+  runtime::StampedInput<Info> info_;
+
+  // Arrived since the last cycle.
+  bool has_planner_spoken_ = false;
+  std::optional<Path> path_;
+  std::optional<OccupancyGrid> plan_;
+  std::optional<OccupancyGrid> obstacles_;
+
+  messages::StaticTransforms static_transforms_;
+  time::Time camera_stamp_;  // of the depth image that arrived last
+  bool is_due_ = false;      // by the wall clock
+  std::optional<time::Time> reported_at_;
+  Decision reported_;
+};
+
+}  // namespace lapis::controller

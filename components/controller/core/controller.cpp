@@ -1,0 +1,273 @@
+#include "controller/core/controller.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+namespace lapis::controller {
+namespace {
+
+constexpr double kLongestStep_s = 0.2;   // of acceleration, however long the last step is ago
+constexpr double kTrackWindow_m = 1.0;   // of the path ahead in which the robot is looked for
+constexpr double kTurnGain = 1.5;        // [1/s]
+constexpr double kSlowTurn_rad_s = 0.2;  // the slowest that drives do evenly
+constexpr double kTurnShare = 0.9;       // of the turn rate that is used on arcs
+constexpr double kAside_rad = 0.2;       // off the goal: who is blocked turns towards it
+constexpr double kCreep_m_s = 0.08;
+constexpr double kJump_m = 0.15;  // a pose that is farther from the last one than the robot can have driven
+constexpr double kJump_rad = 0.15;
+constexpr double kMoved_m = 0.3;          // less is no progress
+constexpr double kRearRoom_m = 0.15;      // that has to be free to back up
+constexpr double kLostPause_s = 1.0;      // before the robot turns to find its pose
+constexpr double kPhasePatience_s = 5.0;  // of turning and backing up, if the robot does not do it
+
+/// Distance to the nearest point that is not behind the robot [m]; infinity without any.
+double nearest_ahead(const Obstacles& obstacles) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (const Eigen::Vector2d& p : obstacles) {
+    if (p.x() > 0.0) nearest = std::min(nearest, p.norm());
+  }
+  return nearest;
+}
+
+}  // namespace
+
+Controller::Controller(const ControllerConfig& config, const RobotLimits& limits)
+    : config_(config), limits_(limits), watchdog_(config.watchdog), map_(config.local_map),
+      planner_(PathFan(config.fan, limits.radius_m)) {}
+
+void Controller::set_path(std::vector<PlanarPose> path, const std::string& reason_if_empty) {
+  track_.reset();
+  is_arrived_ = false;
+  if (recovery_ == Recovery::kStuck) recovery_ = Recovery::kNone;
+  if (path.empty()) {
+    idle_reason_ = reason_if_empty;
+  } else {
+    track_.emplace(std::move(path));
+  }
+}
+
+void Controller::set_pose(const PlanarPose& T_map_base, time::Time stamp, time::Time now) {
+  watchdog_.note(Input::kPose, now, stamp);
+  if (pose_stamp_) {
+    const PlanarPose T_last_base = T_map_base_.inverse() * T_map_base;
+    const double elapsed_s = abs(stamp - *pose_stamp_).seconds();
+    const bool is_jump = T_last_base.translation().norm() > limits_.max_speed_m_s * elapsed_s + kJump_m ||
+                         std::abs(yaw_of(T_last_base)) > limits_.max_turn_rate_rad_s * elapsed_s + kJump_rad;
+    if (is_jump) map_.forget_points();
+  }
+  pose_stamp_ = stamp;
+  T_map_base_ = T_map_base;
+}
+
+void Controller::see(const DepthView& view, time::Time stamp, time::Time now) {
+  watchdog_.note(Input::kView, now, stamp);
+  map_.add(view, T_map_base_, stamp);
+}
+
+void Controller::set_obstacles(Grid grid, time::Time stamp, time::Time now) {
+  watchdog_.note(Input::kMap, now, stamp);
+  map_.set_obstacles(std::move(grid));
+}
+
+Decision Controller::step(time::Time now) {
+  const double elapsed_s = last_step_ ? std::clamp((now - *last_step_).seconds(), 0.0, kLongestStep_s) : 0.0;
+  Decision decision = decide(now, elapsed_s);
+  last_step_ = now;
+  last_ = decision.command;
+  if (track_) decision.distance_to_goal_m = track_->left_m();
+  return decision;
+}
+
+Decision Controller::decide(time::Time now, double elapsed_s) {
+  const auto stale = watchdog_.stale(now);
+  if (track_ && !stale) {
+    lost_at_.reset();
+    return follow(now, elapsed_s);
+  }
+  way_.reset();
+  moved_at_.reset();
+  if (track_) return stop_for(*stale, now);
+  recovery_ = Recovery::kNone;
+  tried_at_.reset();
+  return {State::kIdle, idle_reason_, {}, 0.0, {}};
+}
+
+/// Zero at once. Without a pose, if it is wanted, the robot pauses and then looks around once for what it knows.
+Decision Controller::stop_for(Input stale, time::Time now) {
+  Decision decision{State::kStopped, watchdog_.describe(stale), {}, 0.0, {}};
+  if (stale != Input::kPose || config_.lost_turn_rate_rad_s == 0.0) return decision;
+  if (!lost_at_) lost_at_ = now;
+  const double turning_s = (now - *lost_at_).seconds() - kLostPause_s;
+  if (turning_s < 0.0 || turning_s * config_.lost_turn_rate_rad_s > 2.0 * std::numbers::pi) return decision;
+  decision.command.turn_rad_s = config_.lost_turn_rate_rad_s;
+  return decision;
+}
+
+Decision Controller::follow(time::Time now, double elapsed_s) {
+  track_->advance(T_map_base_.translation(), kTrackWindow_m);
+  const double to_end_m = (track_->end().translation() - T_map_base_.translation()).norm();
+  const double tolerance_m = config_.goal_tolerance_m * (is_arrived_ ? 2.0 : 1.0);
+  is_arrived_ = track_->left_m() <= config_.look_ahead_m && to_end_m <= tolerance_m;
+  if (is_arrived_) return align(elapsed_s);
+  const Obstacles obstacles = map_.obstacles_near(T_map_base_, planner_.fan().reach_m());
+  way_ = find_way(obstacles);
+  const Recovery next = next_phase(obstacles, now);
+  if (next != recovery_) enter(next, now);
+  return recovery_ == Recovery::kNone ? drive(obstacles, elapsed_s) : recover(elapsed_s);
+}
+
+/// Where the path ends the robot turns to the last pose's heading.
+Decision Controller::align(double elapsed_s) {
+  way_.reset();
+  moved_at_.reset();
+  const double error_rad = wrapped(yaw_of(track_->end()) - yaw_of(T_map_base_));
+  if (std::abs(error_rad) <= config_.heading_tolerance_rad) {
+    set_path({}, "the path's end is reached");
+    return {State::kIdle, idle_reason_, {}, 0.0, {}};
+  }
+  const Velocity command = ramped(last_, {0.0, turn_rate(error_rad)}, elapsed_s, limits_);
+  return {State::kFollowing, "turns to the heading at the path's end", command, 0.0, {}};
+}
+
+/// Towards a point of the path some way ahead; where no way leads there, towards one beyond what may stand in the way,
+/// or towards a nearer one.
+std::optional<Way> Controller::find_way(const Obstacles& obstacles) const {
+  for (const double share : {1.0, 2.0, 0.5}) {
+    if (auto way = planner_.choose(obstacles, goal_ahead(share * config_.look_ahead_m), way_)) return way;
+  }
+  return std::nullopt;
+}
+
+Decision Controller::drive(const Obstacles& obstacles, double elapsed_s) const {
+  Velocity wanted;
+  if (way_->heading_rad != 0.0) {
+    wanted.turn_rad_s = turn_rate(way_->heading_rad);
+  } else {
+    wanted.forward_m_s = speed_limit(*way_, obstacles);
+    wanted.turn_rad_s = way_->curvature_per_m * wanted.forward_m_s;
+  }
+  Decision decision{State::kFollowing, "follows the path", ramped(last_, wanted, elapsed_s, limits_), 0.0, {}};
+  for (const PlanarPose& T_base_pose : way_->poses) decision.way.push_back(T_map_base_ * T_base_pose);
+  return decision;
+}
+
+/// The robot can stop before the end of the path, of the free way, and of what it drives on until it has steered.
+double Controller::speed_limit(const Way& way, const Obstacles& obstacles) const {
+  double limit = limits_.max_speed_m_s;
+  const double turn_limit = kTurnShare * limits_.max_turn_rate_rad_s;
+  if (std::abs(way.curvature_per_m) * limit > turn_limit) limit = turn_limit / std::abs(way.curvature_per_m);
+  limit = std::min(limit, std::max(kCreep_m_s, stopping_speed(track_->left_m(), limits_)));
+  limit = std::min(limit, stopping_speed(way.free_length_m, limits_));
+  if (last_.forward_m_s > kCreep_m_s) {
+    const double ahead_m = planner_.free_length_m(obstacles, last_.turn_rad_s / last_.forward_m_s);
+    limit = std::min(limit, stopping_speed(ahead_m, limits_));
+  }
+  const double room_m = std::max(0.0, nearest_ahead(obstacles) - limits_.radius_m);
+  if (room_m >= config_.slow_within_m) return limit;
+  const double share = config_.slowest_share + (1.0 - config_.slowest_share) * room_m / config_.slow_within_m;
+  return std::min(limit, share * limits_.max_speed_m_s);
+}
+
+double Controller::turn_rate(double error_rad) const {
+  const double rate = std::max(kTurnGain * std::abs(error_rad), kSlowTurn_rad_s);
+  return std::copysign(std::min(rate, limits_.max_turn_rate_rad_s), error_rad);
+}
+
+Controller::Recovery Controller::next_phase(const Obstacles& obstacles, time::Time now) {
+  const double phase_s = (now - phase_began_).seconds();
+  const PlanarPose T_phase_base = T_map_phase_.inverse() * T_map_base_;
+  switch (recovery_) {
+    case Recovery::kNone:
+      if (!way_) return has_tried() ? Recovery::kNoWay : Recovery::kWaiting;
+      if (is_stuck(now)) return has_tried() || !may_back_up(obstacles) ? Recovery::kStuck : Recovery::kBackingUp;
+      return Recovery::kNone;
+    case Recovery::kWaiting:
+      if (way_) return Recovery::kNone;
+      if (phase_s < config_.patience_s) return Recovery::kWaiting;
+      return may_back_up(obstacles) ? Recovery::kBackingUp : Recovery::kTurning;
+    case Recovery::kBackingUp:
+      if (T_phase_base.translation().norm() < config_.back_up_m && phase_s < kPhasePatience_s && may_back_up(obstacles))
+        return Recovery::kBackingUp;
+      tried_at_ = T_map_phase_.translation();
+      return way_ ? Recovery::kNone : Recovery::kTurning;
+    case Recovery::kTurning:
+      if (way_) return Recovery::kNone;
+      if (std::abs(yaw_of(T_phase_base)) < config_.recovery_turn_rad && phase_s < kPhasePatience_s)
+        return Recovery::kTurning;
+      tried_at_ = T_map_base_.translation();
+      return Recovery::kNoWay;
+    case Recovery::kNoWay: return way_ ? Recovery::kNone : Recovery::kNoWay;
+    case Recovery::kStuck: return Recovery::kStuck;
+  }
+  return Recovery::kNone;
+}
+
+void Controller::enter(Recovery phase, time::Time now) {
+  recovery_ = phase;
+  phase_began_ = now;
+  T_map_phase_ = T_map_base_;
+  turns_left_ = bearing(goal_ahead(config_.look_ahead_m)) >= 0.0;
+  moved_at_.reset();
+}
+
+Decision Controller::recover(double elapsed_s) const {
+  Decision decision{State::kFollowing, "", ramped(last_, recovery_velocity(), elapsed_s, limits_), 0.0, {}};
+  switch (recovery_) {
+    case Recovery::kTurning: decision.reason = "no free way: looks around"; break;
+    case Recovery::kBackingUp: decision.reason = "no free way: backs up"; break;
+    case Recovery::kNoWay:
+      decision.state = State::kBlocked;
+      decision.reason = "no free way along the path";
+      break;
+    case Recovery::kStuck:
+      decision.state = State::kBlocked;
+      decision.reason = "no progress, although the way looks free";
+      break;
+    default: decision.reason = "no free way: waits";
+  }
+  return decision;
+}
+
+/// Who is blocked looks where it wants to go, so that it sees when the way is free again.
+Velocity Controller::recovery_velocity() const {
+  const double aside_rad = bearing(goal_ahead(config_.look_ahead_m));
+  switch (recovery_) {
+    case Recovery::kTurning: return {0.0, turns_left_ ? limits_.max_turn_rate_rad_s : -limits_.max_turn_rate_rad_s};
+    case Recovery::kBackingUp: return {-config_.back_up_speed_m_s, 0.0};
+    case Recovery::kNoWay: return {0.0, std::abs(aside_rad) > kAside_rad ? turn_rate(aside_rad) : 0.0};
+    default: return {};
+  }
+}
+
+/// True when the mapper has seen the floor behind the robot, and nothing is there now.
+bool Controller::may_back_up(const Obstacles& obstacles) const {
+  const double radius_m = limits_.radius_m + config_.fan.margin_m;
+  const Eigen::Vector2d behind(-kRearRoom_m, 0.0);
+  const bool is_touched = std::any_of(obstacles.begin(), obstacles.end(), [&](const Eigen::Vector2d& p) {
+    return (p - behind).norm() < std::min(radius_m, p.norm() - PathFan::kNearer_m);
+  });
+  if (is_touched) return false;
+  const std::array<double, 3> sides{-limits_.radius_m, 0.0, limits_.radius_m};
+  return std::all_of(sides.begin(), sides.end(), [&](double y) {
+    return map_.is_known_free(T_map_base_ * Eigen::Vector2d(behind.x() - limits_.radius_m, y));
+  });
+}
+
+/// True near the place where recovery was of no use.
+bool Controller::has_tried() const {
+  return tried_at_ && (T_map_base_.translation() - *tried_at_).norm() < config_.back_up_m + kMoved_m;
+}
+
+/// True when the robot has been on its way for long without getting anywhere.
+bool Controller::is_stuck(time::Time now) {
+  const Eigen::Vector2d& here = T_map_base_.translation();
+  if (!moved_at_ || (here - moved_to_).norm() > kMoved_m) {
+    moved_at_ = now;
+    moved_to_ = here;
+  }
+  return (now - *moved_at_).seconds() > config_.progress_timeout_s;
+}
+
+}  // namespace lapis::controller

@@ -1,0 +1,113 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "controller/core/local_map.hpp"
+#include "controller/core/local_planner.hpp"
+#include "controller/core/motion.hpp"
+#include "controller/core/path_track.hpp"
+#include "controller/core/watchdog.hpp"
+
+namespace lapis::controller {
+
+struct ControllerConfig {
+  FanConfig fan;
+  LocalMapConfig local_map;
+  WatchdogConfig watchdog;
+  double look_ahead_m = 1.0;           ///< on the planner's path, in [0.2, 5]
+  double slow_within_m = 0.4;          ///< nearer to obstacles than this the robot slows down, in [0, 5]
+  double slowest_share = 0.4;          ///< of the full speed, beside an obstacle, in [0.05, 1]
+  double goal_tolerance_m = 0.15;      ///< in [0.01, 2]
+  double heading_tolerance_rad = 0.1;  ///< in [0.01, 3.2]
+  double patience_s = 1.0;             ///< without a free way before the robot tries to recover, in [0, 60]
+  double back_up_m = 0.3;              ///< in [0, 2]
+  double back_up_speed_m_s = 0.15;     ///< in [0.01, 1]
+  double recovery_turn_rad = 1.6;      ///< in [0, 3]
+  double progress_timeout_s = 10.0;    ///< in [1, 600]
+  double lost_turn_rate_rad_s = 0.0;   ///< on the spot, without a pose; in [0, 2]
+};
+
+/// Points in base_link.
+using Obstacles = std::vector<Eigen::Vector2d>;
+
+/// Values of lapis_msgs/ControllerStatus.
+enum class State { kIdle, kFollowing, kBlocked, kStopped };
+
+/// What to do now, and why.
+struct Decision {
+  State state = State::kIdle;
+  std::string reason;
+  Velocity command;
+  double distance_to_goal_m = 0.0;  ///< along the path
+  std::vector<PlanarPose> way;      ///< that is being driven, in the map frame
+};
+
+/// Follows a path among obstacles, and stops when what it needs to know is old. `now` is of one clock for all calls.
+class Controller {
+ public:
+  /// Throws std::runtime_error naming the value that is out of range.
+  Controller(const ControllerConfig& config, const RobotLimits& limits);
+
+  /// In the map frame. Empty: the robot stands still, for that reason.
+  void set_path(std::vector<PlanarPose> path, const std::string& reason_if_empty);
+  void note_planner(time::Time now) { watchdog_.note(Input::kPlanner, now); }
+  void note_camera(time::Time stamp, time::Time now) { watchdog_.note(Input::kCamera, now, stamp); }
+  void set_pose(const PlanarPose& T_map_base, time::Time stamp, time::Time now);
+  /// What the camera saw at the pose that was set last.
+  void see(const DepthView& view, time::Time stamp, time::Time now);
+  void set_plan(Grid grid) { map_.set_plan(std::move(grid)); }
+  void set_obstacles(Grid grid, time::Time stamp, time::Time now);
+
+  /// The command for now; to be asked 10 to 20 times a second.
+  Decision step(time::Time now);
+
+ private:
+  /// What is tried when there is no free way: wait, back up, look around; then it is the planner's turn.
+  enum class Recovery { kNone, kWaiting, kBackingUp, kTurning, kNoWay, kStuck };
+
+  Decision decide(time::Time now, double elapsed_s);
+  Decision stop_for(Input stale, time::Time now);
+  Decision follow(time::Time now, double elapsed_s);
+  Decision align(double elapsed_s);
+  Decision drive(const Obstacles& obstacles, double elapsed_s) const;
+  Decision recover(double elapsed_s) const;
+  Velocity recovery_velocity() const;
+  Recovery next_phase(const Obstacles& obstacles, time::Time now);
+  void enter(Recovery phase, time::Time now);
+  std::optional<Way> find_way(const Obstacles& obstacles) const;
+  double speed_limit(const Way& way, const Obstacles& obstacles) const;
+  bool may_back_up(const Obstacles& obstacles) const;
+  bool is_stuck(time::Time now);
+  bool has_tried() const;
+  double turn_rate(double error_rad) const;
+  /// In base_link.
+  Eigen::Vector2d goal_ahead(double distance_m) const { return T_map_base_.inverse() * track_->ahead(distance_m); }
+
+  ControllerConfig config_;
+  RobotLimits limits_;
+  Watchdog watchdog_;
+  LocalMap map_;
+  LocalPlanner planner_;
+  PlanarPose T_map_base_ = PlanarPose::Identity();
+  std::optional<time::Time> pose_stamp_;
+
+  std::optional<PathTrack> track_;
+  std::string idle_reason_ = "no path yet";
+  bool is_arrived_ = false;  // at the path's end, but for its heading
+  std::optional<time::Time> last_step_;
+  Velocity last_;                      // command
+  std::optional<Way> way_;             // of the last step
+  std::optional<time::Time> lost_at_;  // since when there is no pose
+
+  Recovery recovery_ = Recovery::kNone;
+  time::Time phase_began_;
+  PlanarPose T_map_phase_ = PlanarPose::Identity();  // where the phase began
+  bool turns_left_ = true;                           // in the phase of turning
+  std::optional<time::Time> moved_at_;               // when the robot was last somewhere else,
+  Eigen::Vector2d moved_to_{0.0, 0.0};               // and where it came to
+  std::optional<Eigen::Vector2d> tried_at_;          // where recovery was of no use
+};
+
+}  // namespace lapis::controller

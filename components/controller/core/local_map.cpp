@@ -1,0 +1,150 @@
+#include "controller/core/local_map.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+#include <utility>
+
+namespace lapis::controller {
+namespace {
+
+constexpr double kEdge_m = 0.05;    // of a voxel
+constexpr double kNearest_m = 0.1;  // depth below is none
+constexpr double kBehind_m = 0.15;  // a surface is looked through when the image sees so much farther,
+constexpr double kBehind = 0.02;    // and this share of the depth, at it
+constexpr int kAround_px = 2;       // and at the pixels so far around it: edges are ragged
+constexpr double kTouch_m = 0.05;   // a point this near to a cell explains it
+
+mapping::VoxelIndex voxel_of(const Eigen::Vector2d& p_map, double height_m) {
+  const auto index = [](double metres) { return static_cast<std::int32_t>(std::floor(metres / kEdge_m)); };
+  return {index(p_map.x()), index(p_map.y()), index(height_m)};
+}
+
+Eigen::Vector2d center_of(const mapping::VoxelIndex& v) { return {(v.x + 0.5) * kEdge_m, (v.y + 0.5) * kEdge_m}; }
+
+/// True when a depth image sees nothing at, or in front of, this point of the optical frame; false, too, when it cannot
+/// tell.
+bool looks_through(const DepthView& view, const Eigen::Vector3d& p_camera) {
+  if (p_camera.z() < kNearest_m) return false;
+  const Eigen::Vector2d pixel = view.camera.project(p_camera);
+  if (!view.camera.contains(pixel, kAround_px + 1)) return false;
+  const int u = static_cast<int>(std::lround(pixel.x())), v = static_cast<int>(std::lround(pixel.y()));
+  const double enough_m = p_camera.z() * (1.0 + kBehind) + kBehind_m;
+  const std::pair<int, int> around[] = {{0, 0}, {-kAround_px, 0}, {kAround_px, 0}, {0, -kAround_px}, {0, kAround_px}};
+  return std::all_of(std::begin(around), std::end(around), [&](const auto& offset) {
+    return static_cast<double>(view.depth(u + offset.first, v + offset.second)) > enough_m;
+  });
+}
+
+std::pair<int, int> cell_of(const Grid& grid, const Eigen::Vector2d& p_map) {
+  const Eigen::Vector2d cell = (p_map - grid.origin) / grid.resolution_m;
+  return {static_cast<int>(std::floor(cell.x())), static_cast<int>(std::floor(cell.y()))};
+}
+
+}  // namespace
+
+std::int8_t Grid::at(const Eigen::Vector2d& p_map) const {
+  if (cells.empty()) return kUnknown;
+  const Eigen::Vector2d cell = (p_map - origin) / resolution_m;
+  if (!(cell.x() >= 0.0 && cell.y() >= 0.0 && cell.x() < width && cell.y() < height)) return kUnknown;
+  return cells[static_cast<std::size_t>(cell.y()) * static_cast<std::size_t>(width) +
+               static_cast<std::size_t>(cell.x())];
+}
+
+void LocalMap::add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp) {
+  forget(T_map_base, stamp);
+  look_through(view, T_map_base);
+  add_hits(view, T_map_base, stamp);
+}
+
+void LocalMap::forget(const PlanarPose& T_map_base, time::Time stamp) {
+  const double memory_ns = config_.memory_s * 1e9;
+  const double kept_m = config_.range_m + 1.0;
+  std::erase_if(points_, [&](const auto& entry) {
+    const auto& [voxel, point] = entry;
+    const bool is_old = std::abs(static_cast<double>(stamp.nanoseconds - point.seen)) > memory_ns;
+    return is_old || (center_of(voxel) - T_map_base.translation()).norm() > kept_m;
+  });
+}
+
+void LocalMap::look_through(const DepthView& view, const PlanarPose& T_map_base) {
+  const PlanarPose T_base_map = T_map_base.inverse();
+  const geometry::Pose T_camera_base = view.T_base_camera.inverse();
+  for (auto& [voxel, point] : points_) {
+    const Eigen::Vector2d p_base = T_base_map * center_of(voxel);
+    const Eigen::Vector3d p_camera = T_camera_base * Eigen::Vector3d(p_base.x(), p_base.y(), (voxel.z + 0.5) * kEdge_m);
+    if (looks_through(view, p_camera)) ++point.passes;
+  }
+  std::erase_if(points_, [this](const auto& entry) { return entry.second.passes >= config_.passes_to_clear; });
+}
+
+void LocalMap::add_hits(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp) {
+  for (int row = 0; row < view.depth.height; row += config_.stride) {
+    for (int column = 0; column < view.depth.width; column += config_.stride) {
+      const auto depth_m = static_cast<double>(view.depth(column, row));
+      if (depth_m < kNearest_m || depth_m > config_.range_m) continue;
+      const Eigen::Vector3d p_base = view.T_base_camera * view.camera.unproject(column, row, depth_m);
+      if (p_base.z() < config_.min_height_m || p_base.z() > config_.max_height_m) continue;
+      points_[voxel_of(T_map_base * p_base.head<2>(), p_base.z())] = {stamp.nanoseconds, 0};
+    }
+  }
+}
+
+/// Where in the plane points are, within a distance of the robot, in the map frame: each place once, in a fixed order.
+std::vector<Eigen::Vector2d> LocalMap::columns_near(const Eigen::Vector2d& p_map, double distance_m) const {
+  std::vector<std::pair<std::int32_t, std::int32_t>> cells;
+  for (const auto& [voxel, point] : points_) {
+    if ((center_of(voxel) - p_map).squaredNorm() <= distance_m * distance_m) cells.emplace_back(voxel.x, voxel.y);
+  }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  std::vector<Eigen::Vector2d> centers;
+  centers.reserve(cells.size());
+  for (const auto& [x, y] : cells) centers.push_back(center_of({x, y, 0}));
+  return centers;
+}
+
+std::vector<Eigen::Vector2d> LocalMap::obstacles_near(const PlanarPose& T_map_base, double distance_m) const {
+  const PlanarPose T_base_map = T_map_base.inverse();
+  const double cell_m = std::max(plan_.resolution_m, obstacles_.resolution_m);
+  const auto seen = columns_near(T_map_base.translation(), distance_m + cell_m);
+  std::vector<Eigen::Vector2d> points;
+  for (const Eigen::Vector2d& p_map : seen) {
+    const Eigen::Vector2d p_base = T_base_map * p_map;
+    if (p_base.norm() <= distance_m) points.push_back(p_base);
+  }
+  add_occupied(plan_, T_map_base, distance_m, seen, points);
+  add_occupied(obstacles_, T_map_base, distance_m, seen, points);
+  return points;
+}
+
+void LocalMap::add_occupied(const Grid& grid, const PlanarPose& T_map_base, double distance_m,
+                            const std::vector<Eigen::Vector2d>& columns, std::vector<Eigen::Vector2d>& points) const {
+  if (grid.cells.empty()) return;
+  std::set<std::pair<int, int>> explained;
+  for (const Eigen::Vector2d& p_map : columns) {
+    for (const double dx : {-kTouch_m, kTouch_m}) {
+      for (const double dy : {-kTouch_m, kTouch_m}) explained.insert(cell_of(grid, p_map + Eigen::Vector2d(dx, dy)));
+    }
+  }
+  const PlanarPose T_base_map = T_map_base.inverse();
+  const auto [west, south] = cell_of(grid, T_map_base.translation() - Eigen::Vector2d::Constant(distance_m));
+  const auto [east, north] = cell_of(grid, T_map_base.translation() + Eigen::Vector2d::Constant(distance_m));
+  for (int row = std::max(south, 0); row <= std::min(north, grid.height - 1); ++row) {
+    for (int column = std::max(west, 0); column <= std::min(east, grid.width - 1); ++column) {
+      const Eigen::Vector2d p_map = grid.origin + grid.resolution_m * Eigen::Vector2d(column + 0.5, row + 0.5);
+      const bool is_overruled = &grid == &plan_ && obstacles_.at(p_map) != Grid::kUnknown;
+      if (is_overruled || grid.at(p_map) < Grid::kOccupiedFrom || explained.contains({column, row})) continue;
+      const Eigen::Vector2d p_base = T_base_map * p_map;
+      if (p_base.norm() <= distance_m) points.push_back(p_base);
+    }
+  }
+}
+
+bool LocalMap::is_known_free(const Eigen::Vector2d& p_map) const {
+  const std::int8_t lately = obstacles_.at(p_map);
+  const std::int8_t value = lately != Grid::kUnknown ? lately : plan_.at(p_map);
+  return value != Grid::kUnknown && value < Grid::kOccupiedFrom;
+}
+
+}  // namespace lapis::controller

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "common/geometry/image.hpp"
+#include "common/geometry/pinhole_camera.hpp"
+#include "common/geometry/se3.hpp"
+#include "common/mapping/voxel_index.hpp"
+#include "common/time/time.hpp"
+#include "controller/core/planar.hpp"
+
+namespace lapis::controller {
+
+struct LocalMapConfig {
+  double range_m = 4.0;       ///< of depth, and of what is kept around the robot, in [0.5, 20]
+  double min_height_m = 0.1;  ///< above base_link: what is lower can be driven over, in [-1, 10]
+  double max_height_m = 1.2;  ///< what is higher is passed under, in [-1, 10]
+  double memory_s = 20.0;     ///< what was seen longer ago is forgotten, in [0.1, 600]
+  int stride = 4;             ///< every stride-th pixel of every stride-th row is used, in [1, 32]
+  int passes_to_clear = 3;    ///< images that must look through an obstacle before it is gone, in [1, 100]
+};
+
+/// A depth image and where its camera sits on the robot.
+struct DepthView {
+  geometry::DepthImage depth;
+  geometry::PinholeCamera camera;
+  geometry::Pose T_base_camera;
+};
+
+/// Plan in the map frame. Cell (column, row) covers [origin + column * resolution, + resolution) and so on.
+struct Grid {
+  double resolution_m = 0.0;
+  Eigen::Vector2d origin{0.0, 0.0};
+  int width = 0;                   ///< columns, along x
+  int height = 0;                  ///< rows, along y
+  std::vector<std::int8_t> cells;  ///< row by row: 100 occupied, 0 free, -1 unknown
+
+  static constexpr std::int8_t kOccupiedFrom = 50, kUnknown = -1;
+  /// Value at a point; unknown outside.
+  std::int8_t at(const Eigen::Vector2d& p_map) const;
+};
+
+/// What stands around the robot: points of the camera's own images, finer and newer than any map, remembered for a
+/// while because the camera does not see its feet; and beyond them the mapper's grids.
+class LocalMap {
+ public:
+  explicit LocalMap(const LocalMapConfig& config) : config_(config) {}
+
+  void add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp);
+  /// The map's floor plan, and what stood in the way lately, which overrules it where it knows anything.
+  void set_plan(Grid grid) { plan_ = std::move(grid); }
+  void set_obstacles(Grid grid) { obstacles_ = std::move(grid); }
+  /// The map frame has jumped: remembered points are no longer where they are.
+  void forget_points() { points_.clear(); }
+
+  /// Obstacle points in base_link, within a distance of the robot. An occupied cell of a grid is its centre, unless
+  /// points tell what in it stands where.
+  std::vector<Eigen::Vector2d> obstacles_near(const PlanarPose& T_map_base, double distance_m) const;
+  /// True when the mapper has seen that nothing is there, and neither has the camera seen anything.
+  bool is_known_free(const Eigen::Vector2d& p_map) const;
+
+ private:
+  struct Point {
+    std::int64_t seen = 0;  ///< stamp of the last hit [ns]
+    int passes = 0;         ///< images that looked through it since
+  };
+  using Points = std::unordered_map<mapping::VoxelIndex, Point, mapping::GridIndexHash>;
+
+  void look_through(const DepthView& view, const PlanarPose& T_map_base);
+  void add_hits(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp);
+  void forget(const PlanarPose& T_map_base, time::Time stamp);
+  std::vector<Eigen::Vector2d> columns_near(const Eigen::Vector2d& p_map, double distance_m) const;
+  void add_occupied(const Grid& grid, const PlanarPose& T_map_base, double distance_m,
+                    const std::vector<Eigen::Vector2d>& columns, std::vector<Eigen::Vector2d>& points) const;
+
+  LocalMapConfig config_;
+  Points points_;
+  Grid plan_;
+  Grid obstacles_;
+};
+
+}  // namespace lapis::controller

@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "controller/core/planar.hpp"
+
+namespace lapis::controller {
+
+struct FanConfig {
+  double length_m = 1.5;             ///< of a path, in [0.5, 5]
+  double max_curvature_per_m = 2.5;  ///< in [0.1, 10]
+  int groups = 19;                   ///< curvatures at the start, in [3, 99]
+  int branches = 7;                  ///< curvatures after half of a path, in [1, 99]
+  double max_bearing_rad = 1.05;     ///< a path ends where it leaves this angle to either side, in [0.1, 3]
+  double margin_m = 0.05;            ///< kept between the robot's disc and obstacles, in [0, 1]
+};
+
+/// A path of the fan in base_link at its beginning.
+struct FanPath {
+  std::size_t group = 0;
+  double curvature_per_m = 0.0;   ///< at the start, to the left
+  double later_per_m = 0.0;       ///< curvature of the second half
+  std::vector<PlanarPose> poses;  ///< PathFan::kStep_m apart; the first is the robot itself
+};
+
+/// Paths that the robot may drive, and for every cell around it how far an obstacle there lets it drive each of them:
+/// computed once, so that a cycle only looks up [Zhang, Hu, Chadha, Singh, "FALCO", J. Field Robotics 2020]. A path is
+/// two arcs; those that begin alike form a group.
+class PathFan {
+ public:
+  static constexpr double kStep_m = 0.05;  ///< along paths, and edge of a cell
+  static constexpr double kRamp_m = 0.4;   ///< along a path until the whole margin is asked for
+  static constexpr double kNearer_m = 0.01;
+
+  /// Throws std::runtime_error naming the value that is out of range.
+  PathFan(const FanConfig& config, double radius_m);
+
+  std::size_t groups() const { return groups_; }
+  const std::vector<FanPath>& paths() const { return paths_; }
+  /// Distance from the robot beyond which no obstacle matters [m].
+  double reach_m() const { return reach_m_; }
+  /// Number of poses of every path that are free when the robot first turns by `heading_rad`; points in base_link.
+  /// A pose is blocked by a point that is nearer than radius and margin. The margin grows from 0 along the first
+  /// kRamp_m, and a point that is too near already blocks only what brings it nearer still: so the robot gets away.
+  std::vector<std::uint8_t> free_poses(std::span<const Eigen::Vector2d> obstacles, double heading_rad) const;
+  /// The path whose curvature is nearest to this one, first at its start and then later.
+  std::size_t path_along(double curvature_per_m) const;
+
+ private:
+  void make_paths(const FanConfig& config);
+  void make_table(const FanConfig& config, double radius_m);
+  std::uint8_t free_poses(const FanPath& path, const Eigen::Vector2d& obstacle, const FanConfig& config,
+                          double radius_m) const;
+  const std::uint8_t* cell(const Eigen::Vector2d& p) const;
+
+  std::size_t groups_;
+  std::vector<FanPath> paths_;
+  std::vector<std::uint8_t> lengths_;  // poses of each path
+  double reach_m_;
+  int cells_per_side_;
+  std::vector<std::uint8_t> table_;  // cell by cell, the free poses of every path
+};
+
+}  // namespace lapis::controller

@@ -1,0 +1,216 @@
+// lapis_controller alone: it drives, it stops when it knows too little, and nothing makes it say what is not a number.
+#include "tests/contract/controller/controller_contract.hpp"
+
+#include <gmock/gmock.h>
+
+#include <csignal>
+
+namespace lapis::test {
+namespace {
+
+using ::testing::HasSubstr;
+namespace Constants = lapis_msgs::msg::ControllerStatus_Constants;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kPeriod_s = 1.0 / kRate_hz;
+
+TEST_F(LockstepController, EachTickHasOneCommandWhichIsZeroWithoutAPath) {
+  for (int i = 0; i < 20; ++i) {
+    ASSERT_TRUE(tick()) << controller.log();
+    EXPECT_TRUE(is_zero(commands.back()));
+  }
+  EXPECT_EQ(statuses.back().state(), Constants::STATE_IDLE);
+  EXPECT_EQ(statuses.back().reason(), "no path yet");
+}
+
+TEST_F(LockstepController, FollowsThePathToItsEnd) {
+  world.send_path({{0, 0}, {1, 0}, {2, 1}});
+  bool had_local_path = false;
+  for (int i = 0;
+       i < 12 * kRate_hz && !(statuses.size() > 1 && statuses.back().reason() == "the path's end is reached"); ++i) {
+    ASSERT_TRUE(tick()) << controller.log();
+    had_local_path |= local_path.poses().size() > 5 && local_path.header().frame_id() == "map";
+  }
+  EXPECT_EQ(statuses.back().reason(), "the path's end is reached");
+  EXPECT_LT((world.position - Eigen::Vector2d(2, 1)).norm(), 0.2);
+  EXPECT_LT(std::abs(world.yaw_rad), 0.2) << "the last pose's heading";
+  EXPECT_TRUE(had_local_path);
+}
+
+// F16 and F2: within 300 ms of the limit ----------------------------------------------------------------------------
+
+TEST_F(LockstepController, StandsStillWithoutAPose) {
+  get_going();
+  EXPECT_LE(ticks_until(true, 2.0, {.pose = false}), 0.3);
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(tick({.pose = false}));
+    EXPECT_TRUE(is_zero(commands.back()));
+  }
+  EXPECT_EQ(statuses.back().state(), Constants::STATE_STOPPED);
+  EXPECT_THAT(statuses.back().reason(), HasSubstr("no pose for more than"));
+  EXPECT_LE(ticks_until(false, 1.0), 0.5) << "and goes on with one";
+}
+
+TEST_F(LockstepController, StandsStillWithoutDepthImages) {
+  get_going();
+  EXPECT_LE(ticks_until(true, 2.0, {.camera = false}), 0.3);
+}
+
+TEST_F(LockstepController, StandsStillWithoutAMap) {
+  get_going();
+  const double took_s = ticks_until(true, 3.0, {.map = false});
+  EXPECT_GT(took_s, 0.5);
+  EXPECT_LE(took_s, 1.0 + kPeriod_s);
+  EXPECT_THAT(statuses.back().reason(), HasSubstr("no map for more than 1 s"));
+}
+
+TEST_F(LockstepController, StandsStillWithoutAPlanner) {
+  get_going();
+  const double took_s = ticks_until(true, 4.0, {.planner = false});
+  EXPECT_GT(took_s, 1.0);
+  EXPECT_LE(took_s, 2.0 + kPeriod_s);
+  EXPECT_THAT(statuses.back().reason(), HasSubstr("no sign of life of the planner"));
+}
+
+TEST_F(LockstepController, EmptyPathStopsWithTheNextTick) {
+  get_going();
+  world.send_path({});
+  ASSERT_TRUE(tick());
+  EXPECT_TRUE(is_zero(commands.back()));
+  EXPECT_EQ(statuses.back().reason(), "the planner's path is empty");
+}
+
+TEST_F(LockstepController, ObstaclePutOnThePathIsAvoidedOrStoppedFor) {
+  get_going();
+  const double x = world.position.x() + kRadius_m + 0.6;
+  world.boxes.push_back({{x, -0.4, 0}, {x + 0.3, 0.4, 1.1}, 9});
+  for (int i = 0; i < 150; ++i) ASSERT_TRUE(tick()) << controller.log();
+  EXPECT_GT(world.least_room_m, 0.0) << "touched";
+  EXPECT_GT(world.position.x(), x + 0.3) << "there is room beside it: " << statuses.back().reason();
+}
+
+// F5 -----------------------------------------------------------------------------------------------------------------
+
+TEST_F(LockstepController, NumbersThatAreNoneStopTheRobotAndNeverComeOut) {
+  get_going();
+  int turn = 0;
+  world.spoil_pose = [&](auto& m) {
+    switch (turn++ % 4) {
+      case 0: m.pose().pose().position().x(kNaN); break;
+      case 1: m.pose().pose().orientation().w(std::numeric_limits<double>::infinity()); break;
+      case 2: m.pose().pose().orientation({}); break;
+      default: m.pose().pose().position().y(1e300);
+    }
+  };
+  EXPECT_LE(ticks_until(true, 2.0), 0.3);
+  world.spoil_pose = nullptr;
+  EXPECT_LE(ticks_until(false, 2.0), 0.5);
+  world.spoil_view = [&](auto& depth, auto& info) {
+    depth.encoding("32FC1");
+    depth.step(4 * depth.width());
+    depth.data().assign(static_cast<std::size_t>(depth.step()) * depth.height(), 0xff);  // NaN everywhere
+    if (turn++ % 2 == 0) info.k()[0] = kNaN;
+  };
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(tick()) << controller.log();
+  world.spoil_view = nullptr;
+  world.spoil_map = [](auto& m) { m.info().resolution(std::numeric_limits<float>::quiet_NaN()); };
+  EXPECT_LE(ticks_until(true, 3.0), 1.0 + kPeriod_s) << "a map that cannot be used is none";
+  world.spoil_map = nullptr;
+  EXPECT_LE(ticks_until(false, 2.0), 1.5);
+  world.send_path({{0, 0}, {kNaN, 0}});
+  ASSERT_TRUE(tick());
+  EXPECT_TRUE(is_zero(commands.back()));
+  EXPECT_EQ(statuses.back().reason(), "path refused: pose has numbers that are not finite");
+  for (const auto& command : commands) EXPECT_TRUE(is_finite(command));
+  EXPECT_TRUE(wait_until([&] {
+    return count_of("pose dropped") > 0 && count_of("depth dropped") > 0 && count_of("grid dropped") > 0 &&
+           count_of("path dropped") > 0;
+  })) << controller.log();
+}
+
+TEST_F(LockstepController, RefusesWhatIsOfAnotherFrame) {
+  world.spoil_pose = [](auto& m) { m.header().frame_id("odom"); };
+  world.send_path({{0, 0}, {3, 0}});
+  for (int i = 0; i < 10; ++i) {
+    ASSERT_TRUE(tick());
+    EXPECT_TRUE(is_zero(commands.back()));
+  }
+  EXPECT_TRUE(wait_until([&] { return count_of("pose dropped: it is not of base_link in map") > 0; }));
+}
+
+TEST_F(LockstepController, LastWordAfterSigtermIsZero) {
+  get_going();
+  ASSERT_FALSE(is_zero(commands.back()));
+  const std::size_t before = commands.size();
+  controller.signal(SIGTERM);
+  EXPECT_TRUE(wait_until([&] { return commands.size() > before; })) << controller.log();
+  EXPECT_EQ(controller.wait(), 0) << controller.log();
+  EXPECT_TRUE(is_zero(commands.back()));
+}
+
+// By the wall clock ---------------------------------------------------------------------------------------------------
+
+class FreeController : public ControllerContract {
+ protected:
+  using Clock = std::chrono::steady_clock;
+
+  void SetUp() override {
+    ASSERT_TRUE(wait_until_ready(controller)) << controller.log();
+    world.send_path({{0, 0}, {3, 0}, {6, 0}});
+    // At the rate of the camera until it drives.
+    ASSERT_TRUE(frames_until([&] { return !commands.empty() && commands.back().linear().x() > 0.3; }, {}))
+        << (statuses.empty() ? "no status" : statuses.back().reason()) << controller.log();
+  }
+  /// A frame per period; true when the condition holds before ten seconds are over.
+  bool frames_until(const std::function<bool()>& condition, const Speaking& who) {
+    for (int i = 0; i < 10 * kRate_hz; ++i) {
+      world.publish(who);
+      if (wait_until(condition, Seconds(kPeriod_s))) return true;
+    }
+    return false;
+  }
+};
+
+TEST_F(FreeController, CommandsComeAtTwentyHertz) {
+  const std::size_t before = commands.size();
+  int frames = 0;
+  ASSERT_TRUE(frames_until([&] { return commands.size() >= before + 20; }, {}));
+  const auto began = Clock::now();
+  const std::size_t from = commands.size();
+  ASSERT_TRUE(frames_until([&] { return commands.size() >= from + 40; }, {})) << frames;
+  const double took_s = std::chrono::duration<double>(Clock::now() - began).count();
+  EXPECT_GT(took_s, 40 / 20.5);
+  EXPECT_LT(took_s, 40 / 10.0);
+}
+
+TEST_F(FreeController, StandsStillWithin300MillisecondsOfTheLastPose) {
+  world.publish({});
+  const auto last_pose = Clock::now();
+  ASSERT_TRUE(frames_until([&] { return is_zero(commands.back()); }, {.pose = false})) << controller.log();
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - last_pose).count(), 0.3);
+}
+
+TEST_F(FreeController, StandsStillWhenAllFallSilentAtOnce) {
+  world.publish({});
+  const auto last = Clock::now();
+  ASSERT_TRUE(wait_until([&] { return is_zero(commands.back()); })) << controller.log();
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - last).count(), 0.3);
+}
+
+TEST_F(FreeController, StandsStillWhenTheStampsStandStill) {
+  const auto stuck = world.stamp;
+  const auto began = Clock::now();
+  const auto same_stamp = [&] {
+    world.spoil_pose = [&](auto& m) { m.header().stamp(messages::to_message(stuck)); };
+    world.spoil_view = [&](auto& depth, auto& info) {
+      depth.header().stamp(messages::to_message(stuck));
+      info.header().stamp(messages::to_message(stuck));
+    };
+  };
+  same_stamp();
+  ASSERT_TRUE(frames_until([&] { return is_zero(commands.back()); }, {})) << controller.log();
+  EXPECT_LT(std::chrono::duration<double>(Clock::now() - began).count(), 0.3 + kPeriod_s);
+}
+
+}  // namespace
+}  // namespace lapis::test

@@ -1,0 +1,301 @@
+#include "controller/core/controller.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/unit/controller/kinematic_world.hpp"
+
+namespace lapis::controller {
+namespace {
+
+using ::testing::HasSubstr;
+using Path = std::vector<PlanarPose>;
+
+constexpr double kWallHeight_m = 2.6;
+Box wall(double x0, double y0, double x1, double y1) { return {{x0, y0, 0}, {x1, y1, kWallHeight_m}, 1}; }
+
+/// Walls around 16 x 16 m.
+std::vector<Box> hall() {
+  return {wall(-8.3, -8, -8, 8), wall(8, -8, 8.3, 8), wall(-8, -8.3, 8, -8), wall(-8, 8, 8, 8.3)};
+}
+
+/// Between two walls, at y of -0.6 and 0.6, with a third across: the last.
+std::vector<Box> closed_corridor() {
+  return {wall(-3, -0.7, 2, -0.6), wall(-3, 0.6, 2, 0.7), wall(1.6, -0.6, 1.8, 0.6)};
+}
+
+std::vector<Box> with(std::vector<Box> boxes, const std::vector<Box>& more) {
+  boxes.insert(boxes.end(), more.begin(), more.end());
+  return boxes;
+}
+
+Path straight(const Eigen::Vector2d& a, const Eigen::Vector2d& b, double end_yaw_rad) {
+  Path path;
+  for (double s = 0.0; s <= 1.0; s += 0.05) path.push_back(planar_pose(a + s * (b - a), bearing(b - a)));
+  path.push_back(planar_pose(b, end_yaw_rad));
+  return path;
+}
+
+double distance_to(const Path& path, const Eigen::Vector2d& p) {
+  double nearest = std::numeric_limits<double>::infinity();
+  for (std::size_t i = 1; i < path.size(); ++i) {
+    const Eigen::Vector2d a = path[i - 1].translation(), ab = path[i].translation() - a;
+    const double share = ab.norm() > 0.0 ? std::clamp((p - a).dot(ab) / ab.squaredNorm(), 0.0, 1.0) : 0.0;
+    nearest = std::min(nearest, (a + share * ab - p).norm());
+  }
+  return nearest;
+}
+
+void expect_reached(const KinematicWorld& world, const PlanarPose& goal) {
+  EXPECT_EQ(world.last.reason, "the path's end is reached");
+  EXPECT_LT((world.T_map_base.translation() - goal.translation()).norm(), 0.2);
+  EXPECT_LT(std::abs(wrapped(yaw_of(world.T_map_base) - yaw_of(goal))), 0.2);
+}
+
+/// Drives to the end of the path; the largest distance from it [m].
+double drive(KinematicWorld& world, const Path& path, double limit_s) {
+  world.controller.set_path(path, "");
+  double farthest_m = 0.0;
+  const double took_s = world.run_until(
+      [&](const Decision& decision) {
+        farthest_m = std::max(farthest_m, distance_to(path, world.T_map_base.translation()));
+        return decision.state != State::kFollowing;
+      },
+      limit_s);
+  EXPECT_LE(took_s, limit_s) << world.last.reason << " at " << world.T_map_base.translation().transpose();
+  EXPECT_GT(world.least_room_m, 0.0) << "touched";
+  return farthest_m;
+}
+
+TEST(Controller, FollowsAStraightPathToItsEndAndHeading) {
+  KinematicWorld world(hall());
+  const Path path = straight({0, 0}, {4, 0}, 1.0);
+  EXPECT_LT(drive(world, path, 12.0), 0.03);
+  expect_reached(world, path.back());
+}
+
+TEST(Controller, FollowsACurve) {
+  KinematicWorld world(hall());
+  Path path;
+  for (double a = 0.0; a <= 3.2; a += 0.1) path.push_back(planar_pose({1.5 * std::sin(a), 1.5 - 1.5 * std::cos(a)}, a));
+  EXPECT_LT(drive(world, path, 15.0), 0.2);
+  expect_reached(world, path.back());
+}
+
+TEST(Controller, TurnsOnTheSpotTowardsAPathThatBeginsBehind) {
+  KinematicWorld world(hall());
+  const Path path = straight({0, 0}, {-2, 0.1}, 3.1);
+  EXPECT_LT(drive(world, path, 14.0), 0.3);
+  expect_reached(world, path.back());
+}
+
+TEST(Controller, GoesThroughADoorAndRoundTheCorner) {
+  const std::vector<Box> walls{wall(2, -8, 2.12, -0.45), wall(2, 0.45, 2.12, 8), wall(3.4, -3, 3.52, 8)};
+  KinematicWorld world(with(hall(), walls));
+  world.T_map_base = planar_pose({0, 0.6}, 0.0);
+  Path path = straight({0, 0.6}, {1.2, 0}, 0.0);
+  for (const PlanarPose& pose : straight({1.2, 0}, {2.75, 0}, 0.0)) path.push_back(pose);
+  for (const PlanarPose& pose : straight({2.75, 0}, {2.75, 4}, 1.57)) path.push_back(pose);
+  EXPECT_LT(drive(world, path, 25.0), 0.35);
+  expect_reached(world, path.back());
+}
+
+TEST(Controller, DrivesRoundWhatThePathDoesNotKnow) {
+  KinematicWorld world(
+      with(hall(), {wall(-1, -1.5, 6, -1.3), wall(-1, 1.3, 6, 1.5), {{2, -0.2, 0}, {2.4, 0.25, 0.8}, 9}}));
+  const Path path = straight({0, 0}, {4.5, 0}, 0.0);
+  EXPECT_GT(drive(world, path, 25.0), 0.3);
+  expect_reached(world, path.back());
+}
+
+// F16.
+TEST(Controller, StopsForOrAvoidsWhatAppearsInFrontOfItAtFullSpeed) {
+  for (const double appears_m : {0.45, 0.6, 0.9, 1.3}) {  // between the robot's disc and the thing
+    KinematicWorld world(hall());
+    world.controller.set_path(straight({0, 0}, {6, 0}, 0.0), "");
+    ASSERT_LT(world.run_until([&](const Decision&) { return world.velocity.forward_m_s > 0.58; }, 5.0), 5.0);
+    const double x = world.T_map_base.translation().x() + world.limits.radius_m + appears_m;
+    world.add({{x, -0.5, 0}, {x + 0.4, 0.5, 1.1}, 9});
+    world.run_until([](const Decision&) { return false; }, 6.0);
+    EXPECT_GT(world.least_room_m, 0.0) << appears_m << ": touched";
+  }
+}
+
+TEST(Controller, FindsItsWayRoundSomethingWideThatAppearsNearIt) {
+  KinematicWorld world(hall());
+  const Path path = straight({0, 0}, {6, 0}, 0.0);
+  world.controller.set_path(path, "");
+  ASSERT_LT(world.run_until([&](const Decision&) { return world.velocity.forward_m_s > 0.58; }, 5.0), 5.0);
+  const double x = world.T_map_base.translation().x() + world.limits.radius_m + 0.6;
+  world.add({{x, -0.4, 0}, {x + 0.3, 0.4, 1.1}, 9});
+  ASSERT_LT(world.run_until(State::kIdle, 30.0), 30.0) << world.last.reason;
+  EXPECT_GT(world.least_room_m, 0.0) << "touched";
+  expect_reached(world, path.back());
+}
+
+TEST(Controller, AccelerationStaysWithinTheRobotsLimits) {
+  KinematicWorld world(with(hall(), {{{2, -0.2, 0}, {2.4, 0.2, 0.8}, 9}}));
+  world.controller.set_path(straight({0, 0}, {4, 0}, 3.0), "");
+  Velocity before;
+  const double period_s = 1.0 / KinematicWorld::kRate_hz;
+  world.run_until(
+      [&](const Decision& decision) {
+        if (decision.command.forward_m_s != 0.0) {  // it brakes as hard as it can
+          EXPECT_LE(std::abs(decision.command.forward_m_s - before.forward_m_s),
+                    world.limits.max_acceleration_m_s2 * period_s + 1e-6);
+        }
+        EXPECT_LE(std::abs(decision.command.turn_rad_s - before.turn_rad_s),
+                  world.limits.max_turn_acceleration_rad_s2 * period_s + 1e-6);
+        EXPECT_LE(std::abs(decision.command.forward_m_s), world.limits.max_speed_m_s);
+        EXPECT_LE(std::abs(decision.command.turn_rad_s), world.limits.max_turn_rate_rad_s);
+        before = decision.command;
+        return decision.state != State::kFollowing;
+      },
+      25.0);
+  expect_reached(world, planar_pose({4, 0}, 3.0));
+}
+
+TEST(Controller, SlowsDownBesideObstacles) {
+  const auto fastest = [](const std::vector<Box>& walls) {
+    KinematicWorld world(with(hall(), walls));
+    world.controller.set_path(straight({0, 0}, {5, 0}, 0.0), "");
+    double speed = 0.0;
+    world.run_until(
+        [&](const Decision& decision) {
+          speed = std::max(speed, decision.command.forward_m_s);
+          return decision.state != State::kFollowing;
+        },
+        30.0);
+    return speed;
+  };
+  EXPECT_DOUBLE_EQ(fastest({}), 0.6);
+  EXPECT_LT(fastest({wall(-1, 0.35, 7, 0.5), wall(-1, -0.5, 7, -0.35)}), 0.5);
+}
+
+TEST(Controller, ClosedWayIsWaitedForBackedUpFromAndReported) {
+  KinematicWorld world(with(hall(), closed_corridor()));
+  world.knows_floor = true;
+  world.controller.set_path(straight({0, 0}, {5, 0}, 0.0), "");
+  const auto until = [&](const std::string& reason, double limit_s) {
+    return world.run_until([&](const Decision& d) { return d.reason == reason; }, limit_s);
+  };
+  EXPECT_LT(until("no free way: waits", 15.0), 15.0) << world.last.reason;
+  EXPECT_NEAR(until("no free way: backs up", 2.0), 1.0, 0.1) << "patience";
+  const Eigen::Vector2d before = world.T_map_base.translation();
+  EXPECT_LT(world.run_until([](const Decision& d) { return d.command.forward_m_s >= 0.0; }, 6.0), 6.0);
+  EXPECT_GT((world.T_map_base.translation() - before).norm(), 0.05) << "as far as there is room";
+  EXPECT_LT(world.run_until(State::kBlocked, 15.0), 15.0) << world.last.reason;
+  EXPECT_EQ(world.last.reason, "no free way along the path");
+  EXPECT_EQ(world.last.command.forward_m_s, 0.0);
+  EXPECT_GT(world.least_room_m, 0.0) << "touched";
+}
+
+TEST(Controller, LooksAroundInsteadOfBackingUpIntoTheUnknown) {
+  KinematicWorld world(with(hall(), closed_corridor()));
+  world.controller.set_path(straight({0, 0}, {5, 0}, 0.0), "");
+  bool has_looked = false;
+  const double took_s = world.run_until(
+      [&](const Decision& d) {
+        EXPECT_GE(d.command.forward_m_s, 0.0);
+        has_looked |= d.reason == "no free way: looks around";
+        return d.state == State::kBlocked;
+      },
+      20.0);
+  EXPECT_LT(took_s, 20.0) << world.last.reason;
+  EXPECT_TRUE(has_looked);
+}
+
+// What stood so near that its lower half is below the image is believed until it is forgotten.
+TEST(Controller, GoesOnWhenTheWayIsFreeAgain) {
+  KinematicWorld world(with(hall(), closed_corridor()));
+  const Path path = straight({0, 0}, {4, 0}, 0.0);
+  world.controller.set_path(path, "");
+  ASSERT_LT(world.run_until(State::kBlocked, 20.0), 20.0) << world.last.reason;
+  world.remove_last();
+  ASSERT_LT(world.run_until(State::kFollowing, 25.0), 25.0);
+  ASSERT_LT(world.run_until(State::kIdle, 20.0), 20.0) << world.last.reason;
+  expect_reached(world, path.back());
+}
+
+TEST(Controller, PressedAgainstGlassItBacksUpAndThenReportsThatItIsStuck) {
+  KinematicWorld world(with(hall(), {{{1.5, -3, 0}, {1.6, 3, 2}, KinematicWorld::kGlass}}));
+  world.knows_floor = true;
+  world.controller.set_path(straight({0, 0}, {5, 0}, 0.0), "");
+  EXPECT_LT(world.run_until([](const Decision& d) { return d.command.forward_m_s < 0.0; }, 20.0), 20.0);
+  EXPECT_LT(world.run_until(State::kBlocked, 40.0), 40.0) << world.last.reason;
+  EXPECT_EQ(world.last.reason, "no progress, although the way looks free");
+  world.controller.set_path(straight({1, 0}, {-2, 0}, 3.14), "");
+  EXPECT_LT(world.run_until(State::kIdle, 20.0), 20.0) << "a new path is a new try: " << world.last.reason;
+}
+
+TEST(Controller, NewPathReplacesTheOldOneAndAnEmptyOneStops) {
+  KinematicWorld world(hall());
+  world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");
+  world.run_until([](const Decision&) { return false; }, 2.0);
+  EXPECT_GT(world.last.command.forward_m_s, 0.5);
+  const Path back = straight({1, 0}, {1, 2}, 1.57);
+  world.controller.set_path(back, "");
+  ASSERT_LT(world.run_until(State::kIdle, 20.0), 20.0) << world.last.reason;
+  expect_reached(world, back.back());
+  world.controller.set_path(straight({1, 2}, {4, 2}, 0.0), "");
+  world.run_until([](const Decision&) { return false; }, 2.0);
+  world.controller.set_path({}, "enough");
+  world.step();
+  const Decision stop = world.step();
+  EXPECT_EQ(stop.state, State::kIdle);
+  EXPECT_EQ(stop.reason, "enough");
+  EXPECT_EQ(stop.command.forward_m_s, 0.0);
+}
+
+TEST(Controller, WithoutAPoseItStandsStillAtOnceAndGoesOnWithOne) {
+  KinematicWorld world(hall());
+  world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");
+  world.run_until([](const Decision&) { return false; }, 2.0);
+  world.has_pose = false;
+  const double stopped_s = world.run_until([](const Decision& d) { return d.command.forward_m_s == 0.0; }, 2.0);
+  EXPECT_LE(stopped_s, 0.22 + 1.01 / KinematicWorld::kRate_hz);
+  EXPECT_EQ(world.last.state, State::kStopped);
+  EXPECT_EQ(world.last.reason, "no pose for more than 0.22 s");
+  EXPECT_EQ(world.run_until([](const Decision& d) { return d.command.turn_rad_s != 0.0; }, 3.0),
+            std::numeric_limits<double>::infinity());
+  world.has_pose = true;
+  EXPECT_LT(world.run_until(State::kIdle, 20.0), 20.0) << world.last.reason;
+  expect_reached(world, planar_pose({4, 0}, 0.0));
+}
+
+TEST(Controller, LooksAroundOnceForItsPoseWhenConfigured) {
+  ControllerConfig config;
+  config.lost_turn_rate_rad_s = 0.5;
+  KinematicWorld world(hall(), config);
+  world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");
+  world.run_until([](const Decision&) { return false; }, 2.0);
+  world.has_pose = false;
+  world.run_until(State::kStopped, 1.0);
+  double turned_rad = 0.0;
+  world.run_until(
+      [&](const Decision& d) {
+        EXPECT_EQ(d.command.forward_m_s, 0.0);
+        turned_rad += d.command.turn_rad_s / KinematicWorld::kRate_hz;
+        return false;
+      },
+      20.0);
+  EXPECT_NEAR(turned_rad, 6.28, 0.1);
+}
+
+TEST(Controller, TheSameInputGivesTheSameCommands) {
+  std::vector<Velocity> commands[2];
+  for (auto& run : commands) {
+    KinematicWorld world(with(hall(), {{{2, -0.2, 0}, {2.4, 0.25, 0.8}, 9}}));
+    world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");
+    for (int i = 0; i < 150; ++i) run.push_back(world.step().command);
+  }
+  for (std::size_t i = 0; i < commands[0].size(); ++i) {
+    EXPECT_EQ(commands[0][i].forward_m_s, commands[1][i].forward_m_s);
+    EXPECT_EQ(commands[0][i].turn_rad_s, commands[1][i].turn_rad_s);
+  }
+}
+
+}  // namespace
+}  // namespace lapis::controller

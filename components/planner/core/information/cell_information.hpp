@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -10,11 +11,11 @@ namespace lapis::planner {
 
 /// What it is worth to observe a cell. A ray that reaches a cell either passes it or ends in it; o = P(occupied).
 enum class Measure {
-  /// Semantic mutual information [Zhang, Bong & Beltrame 2024, eq. 13-14]: g = sum_z P(z) KL(b_z || b) over the
-  /// outcomes
-  /// z (pass, or a hit of class c); b is the belief about free space and all classes as BeliefReader gives it, b_z what
-  /// it will give after one more whole vote. Where nothing is clamped this is the paper's h; a clamped belief that
-  /// stays clamped gains nothing. By fusion rules other than log_odds it is the same with their own beliefs.
+  /// Semantic mutual information [Zhang, Bong & Beltrame 2024, eq. 13-14]: g = sum_z P(z) KL(b_z || b) over what can
+  /// happen (z: a pass, or a hit of class c); b is the belief about free space and all classes as BeliefReader gives
+  /// it, b_z what it will give after one more whole vote. Where nothing is clamped the divergence is the paper's h; a
+  /// clamped belief that stays clamped gains nothing. By fusion rules other than log_odds it is the same with their
+  /// own beliefs.
   kSemantic,
   /// Shannon information of occupancy [Zhang, Henderson, Karaman & Sze 2020, "FSMI"] with an exact range sensor: of
   /// r = o / (1 - o), g = o f(d_occ, r) + (1 - o) f(d_emp, r), f(d, r) = ln((r + 1) / (r + 1/d)) - ln d / (r d + 1),
@@ -22,7 +23,8 @@ enum class Measure {
   kShannon,
   /// Cauchy-Schwarz quadratic information of occupancy [Charrow et al. 2015] with an exact range sensor, of the cell
   /// alone: g = 3 ln(o^2 + (1 - o)^2) - 2 ln(o^3 + (1 - o)^3). It does not depend on how votes change beliefs. Exact
-  /// for one cell; along a ray the sum of reach * g stands for theirs, which couples all cells.
+  /// for one cell; along a ray the sum of reach * g only stands for theirs, which couples all cells and grows faster
+  /// through unknown space (o = 0.2: 0.32 instead of 0.27 after two cells, 1.85 instead of 0.63 after eight).
   kCsqmi,
 };
 
@@ -38,7 +40,8 @@ class CellMeasure {
   /// Throws std::runtime_error naming the parameter of the sensor model that is out of range.
   CellMeasure(const mapping::SensorModel& model, Measure measure);
 
-  /// O(classes that were hit + distinct prior shares); O(1) where nothing was hit.
+  /// O(k), k = classes that were hit + distinct prior shares; O(k^2) at worst, where shares are clamped. A look-up
+  /// where nothing was hit.
   CellInformation of(const mapping::VoxelCounts& counts) const;
 
  private:

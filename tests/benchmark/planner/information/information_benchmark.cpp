@@ -1,7 +1,9 @@
 // mutual_information/ray: what a ray of a view costs, deduplication included, beside the same written plainly: a
 // look-up in the map and an evaluation of every class for each cell. The map: apartment after half of its bundled tour,
-// at true poses; 50 views of 2,304 rays from where the camera was. CPU time of one thread.
+// at true poses; 50 views of 2,304 rays, half of them from where the camera was and half from where it has yet to go.
+// CPU time of one thread.
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <ctime>

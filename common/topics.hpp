@@ -134,6 +134,13 @@ inline constexpr Topic<visualization_msgs::msg::MarkerArray> kPlannerMarkers{
     "frontiers, candidates, hallucinated graph; made only for readers"};
 inline constexpr Topic<lapis_msgs::msg::PlannerStatus> kPlannerStatus{"/planner/status", dds::kLatched, "planner",
                                                                       "1 Hz and on change", "state and reason"};
+inline constexpr ServiceTopic<std_srvs::srv::Trigger> kStartExploring{"/planner/start", "planner",
+                                                                      "explore, also after a pause or the end"};
+inline constexpr ServiceTopic<std_srvs::srv::Trigger> kStopExploring{"/planner/stop", "planner", "stand still, idle"};
+inline constexpr ServiceTopic<std_srvs::srv::Trigger> kPauseExploring{"/planner/pause", "planner",
+                                                                      "stand still until /planner/start"};
+inline constexpr ServiceTopic<std_srvs::srv::Trigger> kReturnHome{"/planner/return_home", "planner",
+                                                                  "drive to where exploration began"};
 inline constexpr Topic<geometry_msgs::msg::Twist> kCommand{"/cmd_vel", dds::kCommand, "controller", "10 to 20 Hz",
                                                            "velocity command"};
 inline constexpr Topic<nav_msgs::msg::Path> kLocalPath{"/controller/local_path", dds::kCommand, "controller",
@@ -201,6 +208,10 @@ void for_each_service(Visitor&& visit) {
   visit(kRun);
   visit(kStep);
   visit(kReset);
+  visit(kStartExploring);
+  visit(kStopExploring);
+  visit(kPauseExploring);
+  visit(kReturnHome);
 }
 
 }  // namespace lapis::topics

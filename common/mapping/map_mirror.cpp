@@ -35,13 +35,37 @@ void MapMirror::serve_if_complete() {
   if (!newest_ || newest_->epoch != *epoch_ || is_consistent()) return;
   if (newest_->tiles != versions_.size() || newest_->checksum != versions_.checksum()) return;
   if (!(newest_->resolution_m >= kMinResolution_m && newest_->resolution_m <= kMaxResolution_m)) return;
-  if (!served_ || served_->epoch != newest_->epoch) map_.emplace(newest_->resolution_m);
-  for (auto& [index, tile] : pending_) {
-    for (const BlockIndex& block : blocks_of(index, tile.blocks_per_edge)) map_->erase_block(block);
-    for (auto& [block_index, block] : tile.blocks) map_->set_block(block_index, std::move(block));
-  }
+  if (!served_ || served_->epoch != newest_->epoch) replace_map(newest_->resolution_m);
+  for (auto& [index, tile] : pending_) apply(index, tile);
   pending_.clear();
   served_ = newest_;
+}
+
+void MapMirror::replace_map(double resolution_m) {
+  if (map_) {
+    for (const BlockIndex& block : map_->sorted_blocks()) changed_.insert(block);
+  }
+  map_.emplace(resolution_m);
+}
+
+void MapMirror::apply(const TileIndex& index, PendingTile& tile) {
+  auto next = tile.blocks.begin();  // sorted, as blocks_of is
+  for (const BlockIndex& block : blocks_of(index, tile.blocks_per_edge)) {
+    const VoxelBlock* before = map_->find(block);
+    const bool is_there = next != tile.blocks.end() && next->first == block;
+    if (is_there ? before == nullptr || !(*before == next->second) : before != nullptr) changed_.insert(block);
+    if (is_there) {
+      map_->set_block(block, std::move(next++->second));
+    } else {
+      map_->erase_block(block);
+    }
+  }
+}
+
+std::vector<BlockIndex> MapMirror::take_changed_blocks() {
+  std::vector<BlockIndex> changed(changed_.begin(), changed_.end());
+  changed_.clear();
+  return changed;
 }
 
 }  // namespace lapis::mapping

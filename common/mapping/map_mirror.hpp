@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <utility>
 #include <vector>
@@ -40,6 +41,9 @@ class MapMirror {
   const VoxelMap* map() const { return map_ ? &*map_ : nullptr; }
   /// State that map() belongs to; nothing before the first.
   const std::optional<MapState>& state() const { return served_; }
+  /// Blocks whose content in map() is another one than at the last call, in the canonical order; those that are gone are
+  /// among them.
+  std::vector<BlockIndex> take_changed_blocks();
   /// Newest state that was announced; nothing before the first.
   const std::optional<MapState>& newest_state() const { return newest_; }
 
@@ -53,6 +57,8 @@ class MapMirror {
   /// False when `epoch` is over; a newer one starts from nothing.
   bool enter_epoch(std::int64_t epoch);
   void serve_if_complete();
+  void replace_map(double resolution_m);
+  void apply(const TileIndex& index, PendingTile& tile);
 
   std::optional<std::int64_t> epoch_;
   TileVersions versions_;                     ///< newest received, of epoch_
@@ -60,6 +66,7 @@ class MapMirror {
   std::optional<MapState> newest_;
   std::optional<MapState> served_;
   std::optional<VoxelMap> map_;
+  std::set<BlockIndex> changed_;
 };
 
 }  // namespace lapis::mapping

@@ -25,7 +25,7 @@ std::string reason_of(ViewpointStatus status) {
 Candidate rejected(const Frontier& frontier, std::string reason) {
   Candidate candidate;
   candidate.frontier = frontier.id;
-  candidate.goal.p_map = frontier.centroid_map;
+  candidate.goal.p_map = candidate.target_map = frontier.centroid_map;
   candidate.rejection = std::move(reason);
   return candidate;
 }
@@ -42,9 +42,9 @@ double turning(const Pose2& robot, const std::vector<Pose2>& way) {
 void add_way(const Situation& s, const CostTree& tree, const Viewpoint& viewpoint, const DecisionConfig& config,
              Candidate& candidate) {
   const Path path = straightened(s.grid, config.path, tree.path_to(viewpoint.cell));
-  std::vector<Eigen::Vector2d> points = points_of(s.grid, path);
-  points.front() = s.robot.p_map;
-  candidate.way = poses_along(points, config.view_spacing_m, viewpoint.pose.yaw_rad);
+  candidate.points = points_of(s.grid, path);
+  candidate.points.front() = s.robot.p_map;
+  candidate.way = poses_along(candidate.points, config.view_spacing_m, viewpoint.pose.yaw_rad);
   candidate.value.cost_m = path.length_m + config.turn_cost_m_per_rad * turning(s.robot, candidate.way);
 }
 
@@ -63,6 +63,7 @@ std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const M
       Candidate& candidate = candidates.emplace_back();
       candidate.frontier = frontier.id;
       candidate.goal = viewpoint.pose;
+      candidate.target_map = s.grid.center_of(viewpoint.target);
       add_way(s, tree, viewpoint, config, candidate);
     }
   }
@@ -125,9 +126,7 @@ void add_information(const Situation& s, const std::vector<Candidate*>& open) {
 }
 
 std::vector<geometry::Pose> nodes_along(const Situation& s, const Candidate& candidate, double spacing_m) {
-  std::vector<Eigen::Vector2d> points;
-  for (const Pose2& pose : candidate.way) points.push_back(pose.p_map);
-  std::vector<geometry::Pose> nodes = views_along(s, poses_along(points, spacing_m, candidate.goal.yaw_rad));
+  std::vector<geometry::Pose> nodes = views_along(s, poses_along(candidate.points, spacing_m, candidate.goal.yaw_rad));
   if (nodes.size() > 1) nodes.erase(nodes.begin());  // the robot is there already
   return nodes;
 }

@@ -42,7 +42,9 @@ struct Situation {
 struct Candidate {
   std::uint32_t frontier = 0;
   Pose2 goal;
-  std::vector<Pose2> way;  ///< from the robot to the goal; empty when there is none
+  Eigen::Vector2d target_map{0, 0};     ///< what is looked at from there [m]
+  std::vector<Eigen::Vector2d> points;  ///< corners of the way from the robot to the goal [m]; empty when there is none
+  std::vector<Pose2> way;               ///< views along it
   PathValue value;
   ExpectedGain gain;
   int places = 0;         ///< old ones that the path would see again

@@ -42,7 +42,7 @@ std::vector<Candidate> reachable_ring(const PlanningGrid& grid, const CostTree& 
       const Cell c = target + step;
       if (distance(c, target) < low || distance(c, target) > high || !grid.is_traversable(c)) continue;
       status = std::max(status, ViewpointStatus::kUnreachable);
-      if (paths.cost_m(c)) ring.push_back({draw(config.seed, c), c});
+      if (paths.cost_m(c)) ring.push_back({draw(static_cast<std::uint64_t>(config.seed), c), c});
     }
   }
   std::sort(ring.begin(), ring.end());

@@ -12,7 +12,7 @@ struct ViewpointConfig {
   double min_distance_m = 0.5;  ///< from the cell of the frontier that is looked at, in [0, 10]
   double max_distance_m = 2.0;  ///< above min_distance_m; below the sensor's range; in [0.25, 20]
   int max_per_frontier = 8;     ///< in [1, 64]
-  std::uint64_t seed = 1;
+  std::int64_t seed = 1;
 };
 
 /// A place to look at a frontier from.

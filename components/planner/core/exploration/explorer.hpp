@@ -1,0 +1,109 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "planner/core/decision/decision.hpp"
+#include "planner/core/exploration/goal_memory.hpp"
+#include "planner/core/exploration/surroundings.hpp"
+
+namespace lapis::planner {
+
+enum class State {
+  kIdle,        ///< nobody has asked for anything
+  kExploring,   ///< drives to frontiers
+  kPaused,      ///< stands still until it is started again
+  kRecovering,  ///< slam does not track: stands still, or drives back to where it did
+  kReturning,   ///< drives to where it started
+  kDone,        ///< nothing is left that can be reached, or it has returned
+  kFailed,      ///< needs help; the reason says why
+};
+
+struct ExplorerConfig {
+  GoalMemoryConfig memory;
+  PathConfig path;
+  double replan_period_s = 1.0;      ///< between decisions while a goal is being driven to, in [0.5, 60]
+  double goal_tolerance_m = 0.3;     ///< in [0.05, 2]
+  double goal_tolerance_rad = 0.3;   ///< in [0.05, 3.2]
+  double progress_timeout_s = 15.0;  ///< without coming 0.3 m or 0.3 rad nearer, a goal has failed, in [1, 600]
+  double settle_s = 1.5;             ///< after arriving, until the map tells whether the look was in vain, in [0, 60]
+  double lost_timeout_s = 60.0;      ///< without tracking, exploration has failed, in [1, 3600]
+  double path_spacing_m = 0.1;       ///< between poses of the path, in [0.02, 1]
+  int confirmations = 3;             ///< decisions in a row that find nothing before it is over, in [1, 100]
+  bool returns_home = false;         ///< when nothing is left
+};
+
+enum class Tracking { kTracking, kDeadReckoning, kLost };
+
+/// What the rest of the robot says.
+struct Report {
+  time::Time now;
+  std::optional<Pose2> robot;  ///< nothing while slam has no pose
+  Tracking tracking = Tracking::kLost;
+  bool is_blocked = false;  ///< the controller finds no way; only true when it speaks of the newest path
+};
+
+/// The mission: when to decide, what to do with the decision, and when it is over.
+class Explorer {
+ public:
+  explicit Explorer(const ExplorerConfig& config) : config_(config), memory_(config.memory) {}
+
+  void start();
+  void stop();
+  void pause();
+  void return_home();
+
+  /// Looks at what has happened since the last call. True when a decision is wanted.
+  bool step(const Report& report, const Surroundings* surroundings);
+  /// What decide() has to leave alone, and what is being driven to.
+  Memory memory(const Surroundings& surroundings, time::Time now) const;
+  /// Acts on a decision that was wanted; one that came too late changes nothing.
+  void take(const Decision& decision, time::Time now);
+
+  State state() const { return state_; }
+  const std::string& reason() const { return reason_; }
+  /// To the current goal; empty: stand still.
+  const std::vector<Pose2>& path() const { return path_; }
+  /// Grows with every new path.
+  std::uint64_t path_number() const { return path_number_; }
+
+ private:
+  struct Goal {
+    Pose2 pose;
+    Eigen::Vector2d target_map;
+    double nearest_m;  ///< that the robot has come, turns included
+    time::Time progress_at;
+  };
+
+  void enter(State state, std::string reason);
+  void set_path(std::vector<Pose2> path);
+  void drop_goal();
+  bool explore(const Report& report, const Surroundings& surroundings);
+  void recover(const Report& report, const Surroundings* surroundings);
+  void go_home(const Report& report, const Surroundings& surroundings);
+  void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
+  bool has_arrived(const Pose2& robot) const;
+  bool is_stuck(const Report& report);
+  bool is_path_free(const Pose2& robot, const PlanningGrid& grid) const;
+  void judge_last_look(const Surroundings& surroundings, time::Time now);
+
+  ExplorerConfig config_;
+  GoalMemory memory_;
+  State state_ = State::kIdle;
+  std::string reason_ = "not started";
+  std::vector<Pose2> path_;
+  std::uint64_t path_number_ = 0;
+  std::optional<Goal> goal_;
+  struct Look {
+    Eigen::Vector2d target_map;
+    time::Time at;
+  };
+  std::optional<Look> last_look_;
+  std::optional<Pose2> home_, last_tracked_;
+  std::optional<time::Time> decided_at_, lost_at_;
+  int empty_decisions_ = 0;
+};
+
+}  // namespace lapis::planner

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <unordered_map>
+
+#include "planner/core/information/information_field.hpp"
+#include "planner/core/space/frontier_map.hpp"
+
+namespace lapis::planner {
+
+struct SurroundingsConfig {
+  GridConfig grid;
+  FrontierConfig frontiers;
+  Measure measure = Measure::kSemantic;
+};
+
+/// What the planner knows of the building: floor plan with obstacles, frontiers and the information of every voxel, all
+/// kept up to date by the blocks of the map that changed.
+class Surroundings {
+ public:
+  Surroundings(const SurroundingsConfig& config, const mapping::SensorModel& model, double resolution_m);
+
+  const PlanningGrid& grid() const { return grid_; }
+  const FrontierMap& frontiers() const { return frontiers_; }
+  const InformationField& field() const { return field_; }
+  /// Of all observed voxels [m^3].
+  double explored_volume_m3() const;
+
+  /// @param changed all blocks whose content is not what it was at the last call, those that are gone included
+  void update_map(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed);
+  /// False when the grid is malformed.
+  bool update_obstacles(const ObstacleGrid& grid, time::Time stamp);
+
+ private:
+  void count_observed(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed);
+
+  mapping::BeliefReader reader_;
+  PlanningGrid grid_;
+  FrontierMap frontiers_;
+  InformationField field_;
+  std::unordered_map<mapping::BlockIndex, int, mapping::GridIndexHash> observed_;  ///< voxels by block, none with 0
+  std::size_t observed_voxels_ = 0;
+};
+
+}  // namespace lapis::planner

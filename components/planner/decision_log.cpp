@@ -1,0 +1,28 @@
+#include "planner/decision_log.hpp"
+
+#include <iomanip>
+#include <stdexcept>
+
+namespace lapis::planner {
+
+DecisionLog::DecisionLog(const std::string& path) : file_(path, std::ios::trunc) {
+  file_ << "decision,time_s,method,candidate,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
+           "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
+           "utility,is_chosen,is_chosen_by_mi_only,agrees_with_mi_only,rejection\n";
+  if (!file_.flush()) throw std::runtime_error(path + " cannot be written");
+}
+
+bool DecisionLog::write(const Decision& decision, std::uint64_t id, const std::string& method, double time_s) {
+  for (std::size_t i = 0; i < decision.candidates.size(); ++i) {
+    const Candidate& c = decision.candidates[i];
+    file_ << std::setprecision(9) << id << ',' << time_s << ',' << method << ',' << i << ',' << c.frontier << ','
+          << c.goal.p_map.x() << ',' << c.goal.p_map.y() << ',' << c.goal.yaw_rad << ',' << c.value.cost_m << ','
+          << c.value.path_information << ',' << c.value.goal_information << ',' << c.places << ','
+          << c.value.loop_gain << ',' << c.gain.fixed_n_change << ',' << c.gain.end_sigma_without_loops_m << ','
+          << c.gain.end_sigma_m << ',' << c.value.d_optimality << ',' << c.utility << ',' << (decision.chosen == i)
+          << ',' << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only() << ',' << c.rejection << '\n';
+  }
+  return static_cast<bool>(file_.flush());
+}
+
+}  // namespace lapis::planner

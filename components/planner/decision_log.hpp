@@ -1,0 +1,22 @@
+#pragma once
+
+#include <fstream>
+#include <string>
+
+#include "planner/core/decision/decision.hpp"
+
+namespace lapis::planner {
+
+/// decisions.csv: a row for every candidate of every decision (docs/evaluation.md).
+class DecisionLog {
+ public:
+  /// Begins the file anew. Throws std::runtime_error when it cannot be written.
+  explicit DecisionLog(const std::string& path);
+  /// False when the disk refuses.
+  bool write(const Decision& decision, std::uint64_t id, const std::string& method, double time_s);
+
+ private:
+  std::ofstream file_;
+};
+
+}  // namespace lapis::planner

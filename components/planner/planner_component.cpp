@@ -1,0 +1,252 @@
+#include "planner/planner_component.hpp"
+
+#include <filesystem>
+#include <utility>
+
+#include "common/files/atomic_file.hpp"
+#include "common/messages/labels.hpp"
+#include "common/messages/landmarks.hpp"
+#include "common/messages/time.hpp"
+
+namespace lapis::planner {
+namespace {
+
+constexpr time::Duration kStatusPeriod{1'000'000'000};
+constexpr const char* kLogFile = "decisions.csv";
+constexpr const char* kLapisMethod = "joint";  // docs/decisions/0031-the-method-called-lapis.md
+
+PlannerComponentConfig completed(PlannerComponentConfig config) {
+  config.decision.method = *method_of(config.method == "lapis" ? kLapisMethod : config.method);
+  config.surroundings.grid.footprint_radius_m = config.robot.radius_m;
+  config.decision.hallucination.covisibility.max_range_m = config.robot.sensing_range_m;
+  config.explorer.path = config.decision.path;
+  return config;
+}
+
+ViewConfig view_config(const PlannerComponentConfig& config) {
+  ViewConfig view;
+  view.camera = robot::pinhole_camera(config.robot.camera);
+  view.columns = config.view_columns;
+  view.rows = config.view_rows;
+  view.range_m = config.robot.sensing_range_m;
+  return view;
+}
+
+Tracking tracking_of(const lapis_msgs::msg::TrackedFrame& frame) {
+  using namespace lapis_msgs::msg::TrackedFrame_Constants;
+  if (frame.state() == STATE_TRACKING) return Tracking::kTracking;
+  return frame.state() == STATE_DEAD_RECKONING ? Tracking::kDeadReckoning : Tracking::kLost;
+}
+
+}  // namespace
+
+PlannerComponent::PlannerComponent(const Config& config, runtime::Context& context)
+    : config_(completed(config)), context_(context), map_frame_(context.frame("map")), view_(view_config(config_)),
+      T_base_camera_(geometry::T_base_camera(robot::camera_mount(config_.robot.camera))),
+      path_(context.advertise(topics::kPlannerPath)), candidates_(context.advertise(topics::kCandidates)),
+      markers_(context.advertise(topics::kPlannerMarkers)), status_(context.advertise(topics::kPlannerStatus)),
+      explorer_(config_.explorer) {
+  if (!config_.output_dir.empty()) {
+    files::require_writable_folder(config_.output_dir, "planner.output_dir");
+    log_.emplace((std::filesystem::path(config_.output_dir) / kLogFile).string());
+  }
+  context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
+  context.subscribe(topics::kVoxelTiles, [this](const auto& m) { add_tile(m); });
+  context.subscribe(topics::kMapState, [this](const auto& m) { map_.apply_state(to_core(m)); });
+  context.subscribe(topics::kObstacles, [this](nav_msgs::msg::OccupancyGrid& m) { obstacles_ = std::move(m); });
+  context.subscribe(topics::kPoseGraph, [this](const auto& m) { set_graph(m); });
+  context.subscribe(topics::kLandmarks, [this](const auto& m) { add_landmarks(m); });
+  context.subscribe(topics::kLandmarkState,
+                    [this](const auto& m) { landmarks_.apply_state(messages::from_message(m)); });
+  context.subscribe(topics::kTrackedFrame, [this](const auto& m) { note_frame(m); });
+  context.subscribe(topics::kSlamOdometry, [this](const auto& m) { set_pose(m); });
+  context.subscribe(topics::kControllerStatus, [this](const auto& m) { note_controller(m); });
+  serve();
+  context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+  if (config_.autostart) explorer_.start();
+}
+
+void PlannerComponent::serve() {
+  const auto on = [this](const auto& service, void (Explorer::*action)(), const std::string& answer) {
+    context_.serve(service, [this, action, answer](const auto&) {
+      (explorer_.*action)();
+      std_srvs::srv::Trigger_Response response;
+      response.success(true);
+      response.message(answer);
+      return response;
+    });
+  };
+  on(topics::kStartExploring, &Explorer::start, "exploring");
+  on(topics::kStopExploring, &Explorer::stop, "stopped");
+  on(topics::kPauseExploring, &Explorer::pause, "paused");
+  on(topics::kReturnHome, &Explorer::return_home, "returning");
+}
+
+void PlannerComponent::set_labels(const vision_msgs::msg::LabelInfo& message) {
+  auto labels = messages::from_message(message);
+  if (!labels) return drop("label list", labels.reason);
+  if (*labels == labels_) return;
+  labels_ = std::move(*labels);
+  has_new_labels_ = true;
+}
+
+void PlannerComponent::add_tile(const lapis_msgs::msg::VoxelTile& message) {
+  const mapping::TileIndex index{message.x(), message.y(), message.z()};
+  const auto result = map_.apply_tile(message.epoch(), index, message.version(), message.data());
+  if (result == mapping::TileResult::kDamaged) drop("tile", "it cannot be decoded");
+}
+
+void PlannerComponent::add_landmarks(const lapis_msgs::msg::LandmarkTile& message) {
+  auto tile = messages::from_message(message);
+  if (!tile) return drop("landmarks", tile.reason);
+  landmarks_.apply_tile(message.session(), std::move(*tile));
+}
+
+void PlannerComponent::set_graph(const lapis_msgs::msg::PoseGraph& message) {
+  auto graph = to_core(message);
+  if (!graph) return drop("pose graph", graph.reason);
+  graph_ = std::move(*graph);
+}
+
+void PlannerComponent::note_frame(const Tracked& frame) {
+  ++frames_;
+  stamp_ = messages::from_message(frame.header().stamp());
+  tracking_ = tracking_of(frame);
+  if (tracking_ == Tracking::kLost) robot_.reset();
+}
+
+void PlannerComponent::set_pose(const nav_msgs::msg::Odometry& message) {
+  auto pose = to_core(message.pose().pose());
+  if (!pose) return drop("pose", pose.reason);
+  robot_ = *pose;
+}
+
+void PlannerComponent::note_controller(const lapis_msgs::msg::ControllerStatus& message) {
+  const bool is_of_this_path = messages::from_message(message.header().stamp()) > path_stamp_;
+  is_blocked_ = is_of_this_path && message.state() == lapis_msgs::msg::ControllerStatus_Constants::STATE_BLOCKED;
+}
+
+void PlannerComponent::work(const runtime::Cycle& cycle) {
+  if (cycle.is_final) return worker_.discard();
+  take_decision();
+  if (!worker_.is_busy()) {
+    refresh();
+    if (explorer_.step(report(), surroundings_ ? &*surroundings_ : nullptr)) begin_decision();
+  }
+  publish();
+}
+
+void PlannerComponent::take_decision() {
+  auto output = worker_.take(frames_);
+  if (!output) return;
+  knowledge_ = std::move(output->knowledge);
+  decision_time_s_ = output->time_s;
+  const Decision& decision = output->decision;
+  ++decisions_;
+  disagreements_ += decision.agrees_with_mi_only() ? 0 : 1;
+  context_.status().value("decisions", decisions_);
+  context_.status().value("decisions_unlike_mi_only", disagreements_);
+  if (!decision.problem.empty()) drop("pose graph", decision.problem);
+  explorer_.take(decision, stamp_);
+  candidates_.publish(to_message(decision, decisions_, config_.method, header()));
+  if (markers_.matched() > 0)
+    markers_.publish(to_markers(surroundings_->frontiers(), surroundings_->grid(), decision, header()));
+  if (log_ && !log_->write(decision, decisions_, config_.method, stamp_.seconds())) {
+    spdlog::error("{}/{} cannot be written; exploration goes on without it", config_.output_dir, kLogFile);
+    log_.reset();
+  }
+}
+
+/// Takes over what has changed. Not while a decision reads it.
+void PlannerComponent::refresh() {
+  if (map_.map() == nullptr) return;
+  const mapping::MapState& state = *map_.state();
+  const bool is_other_map = surroundings_state_ && surroundings_state_->resolution_m != state.resolution_m;
+  const bool has_other_classes = std::exchange(has_new_labels_, false);  // what a hit tells depends on their number
+  if (!surroundings_ || is_other_map || has_other_classes) {
+    surroundings_.emplace(config_.surroundings, sensor_model(), state.resolution_m);
+    map_.take_changed_blocks();
+    surroundings_->update_map(*map_.map(), map_.map()->sorted_blocks());
+  } else if (surroundings_state_->version != state.version || surroundings_state_->epoch != state.epoch) {
+    surroundings_->update_map(*map_.map(), map_.take_changed_blocks());
+  }
+  surroundings_state_ = state;
+  if (!obstacles_) return;
+  const auto grid = to_core(*obstacles_);
+  const time::Time stamp = messages::from_message(obstacles_->header().stamp());
+  if (!grid) {
+    drop("obstacles", grid.reason);
+  } else if (!surroundings_->update_obstacles(*grid, stamp)) {
+    drop("obstacles", "resolution or size of the grid");
+  }
+  obstacles_.reset();
+}
+
+Report PlannerComponent::report() const { return {stamp_, robot_, tracking_, is_blocked_}; }
+
+void PlannerComponent::begin_decision() {
+  DecisionInput input;
+  input.surroundings = &*surroundings_;
+  input.view = &view_;
+  input.T_base_camera = T_base_camera_;
+  input.robot = *robot_;
+  input.memory = explorer_.memory(*surroundings_, stamp_);
+  input.config = config_.decision;
+  input.knowledge = knowledge_;
+  const std::uint64_t landmark_version = landmarks_.state() ? landmarks_.state()->graph_version : 0;
+  if (graph_ && (graph_->version != known_graph_ || landmark_version != known_landmarks_)) {
+    input.graph = graph_;
+    if (landmarks_.state() && landmarks_.state()->session == graph_->session) input.landmarks = landmarks_.tiles();
+    known_graph_ = graph_->version;
+    known_landmarks_ = landmark_version;
+  }
+  worker_.start(std::move(input), frames_ + static_cast<std::uint64_t>(config_.decision_latency_frames));
+}
+
+void PlannerComponent::publish() {
+  if (explorer_.path_number() != published_path_) {
+    published_path_ = explorer_.path_number();
+    path_stamp_ = stamp_;
+    is_blocked_ = false;
+    path_.publish(to_message(explorer_.path(), header()));
+  }
+  publish_status();
+}
+
+void PlannerComponent::publish_status() {
+  const bool has_changed = explorer_.state() != reported_state_ || explorer_.reason() != reported_reason_;
+  if (reported_at_ && !has_changed && abs(stamp_ - *reported_at_) < kStatusPeriod) return;
+  if (has_changed) spdlog::info("{}", explorer_.reason());
+  reported_at_ = stamp_;
+  reported_state_ = explorer_.state();
+  reported_reason_ = explorer_.reason();
+  lapis_msgs::msg::PlannerStatus message;
+  message.header(header());
+  message.state(to_message(explorer_.state()));
+  message.reason(explorer_.reason());
+  message.explored_volume_m3(surroundings_ ? surroundings_->explored_volume_m3() : 0.0);
+  message.decision_time_s(decision_time_s_);
+  message.decisions(decisions_);
+  status_.publish(message);
+}
+
+void PlannerComponent::drop(const std::string& what, const std::string& reason) {
+  context_.status().count(what + " dropped: " + reason);
+  if (context_.rate_limit().pass(what + reason)) spdlog::warn("{} dropped: {}", what, reason);
+}
+
+mapping::SensorModel PlannerComponent::sensor_model() const {
+  auto model = config_.sensor_model;
+  if (labels_.max_id() > 1) model.class_count = labels_.max_id();
+  return model;
+}
+
+std_msgs::msg::Header PlannerComponent::header() const { return messages::header(stamp_, map_frame_); }
+
+void PlannerComponent::finish() {
+  worker_.discard();
+  path_.publish(to_message(std::vector<Pose2>{}, header()));
+  for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
+}
+
+}  // namespace lapis::planner

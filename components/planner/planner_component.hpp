@@ -1,0 +1,92 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/mapping/label_list.hpp"
+#include "common/mapping/landmark_mirror.hpp"
+#include "common/mapping/map_mirror.hpp"
+#include "common/runtime/context.hpp"
+#include "planner/conversions.hpp"
+#include "planner/decision_log.hpp"
+#include "planner/decision_worker.hpp"
+#include "planner/planner_config.hpp"
+
+namespace lapis::planner {
+
+/// Chooses where the robot goes next, by what the map and the pose graph would gain.
+class PlannerComponent {
+ public:
+  using Config = PlannerComponentConfig;
+  static constexpr const char* kName = "planner";
+  static constexpr const char* kSummary = "Exploration: semantic mutual information and the pose graph's spectrum.";
+
+  PlannerComponent(const Config& config, runtime::Context& context);
+  void finish();
+
+ private:
+  using Tracked = lapis_msgs::msg::TrackedFrame;
+
+  void serve();
+  void set_labels(const vision_msgs::msg::LabelInfo& message);
+  void add_tile(const lapis_msgs::msg::VoxelTile& message);
+  void add_landmarks(const lapis_msgs::msg::LandmarkTile& message);
+  void set_graph(const lapis_msgs::msg::PoseGraph& message);
+  void note_frame(const Tracked& frame);
+  void set_pose(const nav_msgs::msg::Odometry& message);
+  void note_controller(const lapis_msgs::msg::ControllerStatus& message);
+
+  void work(const runtime::Cycle& cycle);
+  void take_decision();
+  void refresh();
+  Report report() const;
+  void begin_decision();
+  void publish();
+  void publish_status();
+  void drop(const std::string& what, const std::string& reason);
+  mapping::SensorModel sensor_model() const;
+  std_msgs::msg::Header header() const;
+
+  Config config_;
+  runtime::Context& context_;
+  const std::string map_frame_;
+  const View view_;
+  const geometry::Pose T_base_camera_;
+  dds::Publisher<nav_msgs::msg::Path>& path_;
+  dds::Publisher<lapis_msgs::msg::CandidateSet>& candidates_;
+  dds::Publisher<visualization_msgs::msg::MarkerArray>& markers_;
+  dds::Publisher<lapis_msgs::msg::PlannerStatus>& status_;
+
+  // What others say.
+  mapping::LabelList labels_;
+  bool has_new_labels_ = false;
+  mapping::MapMirror map_;
+  mapping::LandmarkMirror landmarks_;
+  std::optional<GraphMessage> graph_;
+  std::optional<nav_msgs::msg::OccupancyGrid> obstacles_;  // newest, not yet taken over
+  std::uint64_t frames_ = 0;
+  time::Time stamp_;  // of the newest frame
+  Tracking tracking_ = Tracking::kLost;
+  std::optional<Pose2> robot_;
+  bool is_blocked_ = false;
+
+  // What the planner makes of it.
+  std::optional<Surroundings> surroundings_;
+  std::optional<mapping::MapState> surroundings_state_;
+  std::shared_ptr<const GraphKnowledge> knowledge_;
+  std::uint64_t known_graph_ = 0, known_landmarks_ = 0;  // versions in knowledge_
+  Explorer explorer_;
+  DecisionWorker worker_;
+  std::optional<DecisionLog> log_;
+  std::uint64_t decisions_ = 0, disagreements_ = 0;
+  double decision_time_s_ = 0.0;
+  std::uint64_t published_path_ = 0;
+  time::Time path_stamp_;  // of the frame with which it was published
+  std::optional<time::Time> reported_at_;
+  State reported_state_ = State::kIdle;
+  std::string reported_reason_;
+};
+
+}  // namespace lapis::planner

@@ -1,0 +1,136 @@
+#pragma once
+
+#include <string>
+
+#include "common/mapping/describe.hpp"
+#include "common/robot/robot_description.hpp"
+#include "planner/core/exploration/explorer.hpp"
+
+namespace lapis::planner {
+
+/// What the process adds to the method's configuration.
+struct PlannerComponentConfig {
+  std::string method = "lapis";
+  bool autostart = true;
+  SurroundingsConfig surroundings;
+  DecisionConfig decision;
+  ExplorerConfig explorer;
+  int view_columns = 64, view_rows = 36;
+  mapping::SensorModel sensor_model;
+  int decision_latency_frames = 3;
+  std::string output_dir;
+  robot::RobotDescription robot;
+};
+
+template <class Field>
+void describe(Field& field, GridConfig& c) {
+  field("min_height_m", c.band.min_height_m, config::in_range(-100.0, 100.0), "voxels whose centre is below say nothing [m]");
+  field("max_height_m", c.band.max_height_m, config::in_range(-100.0, 100.0), "voxels whose centre is above say nothing [m]");
+  field("margin_m", c.margin_m, config::in_range(0.0, 1.0), "kept between the robot's disc and obstacles [m]");
+  field("unknown_clearance_m", c.unknown_clearance_m, config::in_range(0.0, 2.0),
+        "kept from unknown cells; 0: the robot may touch them [m]");
+  field("max_clearance_m", c.max_clearance_m, config::in_range(0.1, 5.0), "clearance is known up to here [m]");
+  field("obstacle_expiry_s", c.obstacle_expiry_s, config::in_range(0.1, 600.0),
+        "an obstacle that no grid shows any more is forgotten [s]");
+}
+
+template <class Field>
+void describe(Field& field, FrontierConfig& c) {
+  field("max_extent_m", c.max_extent_m, config::in_range(0.5, 50.0), "longer frontiers are split [m]");
+  field("representatives", c.representatives, config::in_range(1, 16), "cells that stand for a frontier");
+}
+
+template <class Field>
+void describe(Field& field, PathConfig& c) {
+  field("comfort_m", c.comfort_m, config::in_range(0.1, 5.0), "clearance from which on nearness costs nothing [m]");
+  field("nearness_weight", c.nearness_weight, config::in_range(0.0, 100.0), "a metre at the least clearance costs 1 + this");
+  field("escape_m", c.escape_m, config::in_range(0.0, 2.0),
+        "the robot may leave a place where it should not stand within this [m]");
+  field("max_detour", c.max_detour, config::in_range(1.0, 5.0), "an alternative's length over that of the best path");
+  field("min_apart_m", c.min_apart_m, config::in_range(0.1, 20.0), "alternatives are so far apart somewhere [m]");
+}
+
+template <class Field>
+void describe(Field& field, ViewpointConfig& c) {
+  field("min_distance_m", c.min_distance_m, config::in_range(0.0, 10.0), "from the frontier [m]");
+  field("max_distance_m", c.max_distance_m, config::in_range(0.25, 20.0), "from the frontier [m]");
+  field("max_per_frontier", c.max_per_frontier, config::in_range(1, 64), "viewpoints");
+  field("seed", c.seed, config::anything(), "draws them");
+}
+
+template <class Field>
+void describe(Field& field, CovisibilityConfig& c) {
+  field("max_viewing_angle_rad", c.max_viewing_angle_rad, config::in_range(0.05, 3.2),
+        "between the directions from which a landmark was and would be seen [rad]");
+  field("max_range_ratio", c.max_range_ratio, config::in_range(1.0, 10.0), "between the distances, either way");
+  field("min_visibility", c.min_visibility, config::in_range(0.0, 1.0), "probability that the ray to a landmark is free");
+}
+
+template <class Field>
+void describe(Field& field, HallucinationConfig& c) {
+  field("covisibility", c.covisibility);
+  field("impossible_landmarks", c.impossible_landmarks, config::in_range(1, 10'000),
+        "seen again, of which a loop closure is impossible, or fewer");
+  field("certain_landmarks", c.certain_landmarks, config::in_range(2, 10'000),
+        "seen again, of which it is certain, or more; linear in between");
+  field("min_loop_way_m", c.min_loop_way_m, config::in_range(0.0, 100.0),
+        "along the pose graph; nearer key-frames make no loop [m]");
+  field("place_radius_m", c.place_radius_m, config::in_range(0.1, 20.0), "key-frames of one place [m]");
+  field("revisit_spacing_m", c.revisit_spacing_m, config::in_range(0.0, 1000.0),
+        "way after a loop closure before its place counts again [m]");
+  field("max_places", c.max_places, config::in_range(1, 8), "of a path; the most probable ones");
+}
+
+template <class Field>
+void describe(Field& field, GoalMemoryConfig& c) {
+  field("radius_m", c.radius_m, config::in_range(0.1, 10.0), "targets nearer to each other are one [m]");
+  field("expiry_s", c.expiry_s, config::in_range(0.0, 3600.0), "a target that failed is left alone for so long [s]");
+  field("max_failures", c.max_failures, config::in_range(1, 100), "after so many it is left alone for good");
+}
+
+template <class Field>
+void describe(Field& field, PlannerComponentConfig& c) {
+  field("method", c.method, config::one_of({"lapis", "paper", "fixed_n", "joint", "ssmi", "nearest", "mi_only", "dopt_only"}),
+        "what decides between paths (README)");
+  field("autostart", c.autostart, config::anything(), "explore at once; false: wait for /planner/start");
+  field("beta", c.decision.utility.beta, config::in_range(0.0, 100.0),
+        "method joint: what a nat about the trajectory counts against one about the map");
+  field("sigma_limit_voxels", c.decision.sigma_limit_voxels, config::in_range(0.01, 10.0),
+        "loops count until the position at a path's end is so exact [voxels]");
+  field("max_candidates", c.decision.max_candidates, config::in_range(1, 1000),
+        "whose information is computed; the ones with the shortest ways");
+  field("view_spacing_m", c.decision.view_spacing_m, config::in_range(0.1, 10.0), "between views along a path [m]");
+  field("view_columns", c.view_columns, config::in_range(1, 4096), "rays of a view, over the width of the image");
+  field("view_rows", c.view_rows, config::in_range(1, 4096), "rays of a view, over its height");
+  field("node_spacing_m", c.decision.node_spacing_m, config::in_range(0.2, 10.0), "between hallucinated key-frames [m]");
+  field("turn_cost_m_per_rad", c.decision.turn_cost_m_per_rad, config::in_range(0.0, 10.0),
+        "of turning at the ends of a path [m/rad]");
+  field("keep_factor", c.decision.keep_factor, config::in_range(1.0, 10.0),
+        "another goal must be so much better than the one being driven to");
+  field("grid", c.surroundings.grid);
+  field("frontiers", c.surroundings.frontiers);
+  field("path", c.decision.path);
+  field("viewpoints", c.decision.viewpoints);
+  field("hallucination", c.decision.hallucination);
+  field("memory", c.explorer.memory);
+  field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.5, 60.0),
+        "between decisions while a goal is being driven to [s]");
+  field("goal_tolerance_m", c.explorer.goal_tolerance_m, config::in_range(0.05, 2.0), "at a goal [m]");
+  field("goal_tolerance_rad", c.explorer.goal_tolerance_rad, config::in_range(0.05, 3.2), "at a goal [rad]");
+  field("progress_timeout_s", c.explorer.progress_timeout_s, config::in_range(1.0, 600.0),
+        "without coming nearer a goal has failed [s]");
+  field("settle_s", c.explorer.settle_s, config::in_range(0.0, 60.0),
+        "after arriving, until the map tells whether the look was in vain [s]");
+  field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),
+        "without tracking, exploration has failed [s]");
+  field("path_spacing_m", c.explorer.path_spacing_m, config::in_range(0.02, 1.0), "between poses of /planner/path [m]");
+  field("confirmations", c.explorer.confirmations, config::in_range(1, 100),
+        "decisions in a row that find nothing before exploration is over");
+  field("returns_home", c.explorer.returns_home, config::anything(), "drives to where it started when nothing is left");
+  field("sensor_model", c.sensor_model);
+  field("decision_latency_frames", c.decision_latency_frames, config::in_range(1, 100),
+        "from the frame that a decision is made from to the one at which it takes effect");
+  field("output_dir", c.output_dir, config::anything(), "folder for decisions.csv; empty: none");
+}
+
+}  // namespace lapis::planner

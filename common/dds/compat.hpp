@@ -6,7 +6,6 @@
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -28,8 +27,6 @@
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
 #endif
-
-#include <atomic>
 
 namespace lapis::dds::compat {
 
@@ -102,26 +99,6 @@ inline fdds::InstanceHandle_t no_instance() { return fdds::HANDLE_NIL; }
 #else
 inline fdds::InstanceHandle_t no_instance() { return fdds::InstanceHandle_t(); }
 #endif
-
-/// Counts the other participants that have joined.
-class JoinedCount : public fdds::DomainParticipantListener {
- public:
-  std::uint64_t value() const { return count_; }
-
-#ifdef LAPIS_FASTDDS_3
-  void on_participant_discovery(fdds::DomainParticipant*, rtps::ParticipantDiscoveryStatus status,
-                                const fdds::ParticipantBuiltinTopicData&, bool&) override {
-    if (status == rtps::ParticipantDiscoveryStatus::DISCOVERED_PARTICIPANT) ++count_;
-  }
-#else
-  void on_participant_discovery(fdds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& found) override {
-    if (found.status == rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) ++count_;
-  }
-#endif
-
- private:
-  std::atomic<std::uint64_t> count_{0};  // discovery calls from threads of DDS
-};
 
 inline DdsDuration duration(std::int64_t nanoseconds) {
   return DdsDuration(static_cast<std::int32_t>(nanoseconds / 1'000'000'000),

@@ -66,15 +66,6 @@ void apply_discovery(const DiscoverySettings& discovery, compat::fdds::DomainPar
   }
 }
 
-// The enclave as rmw_fastrtps names it, with or without the NUL at its end that rmw_fastrtps sends. Readers do not
-// care, and Fast DDS announces a participant at once when its user data change.
-void set_enclave(bool with_nul, compat::fdds::DomainParticipantQos& qos) {
-  const std::string enclave = "enclave=/;";
-  std::vector<unsigned char> bytes(enclave.begin(), enclave.end());
-  if (with_nul) bytes.push_back(0);
-  qos.user_data().setValue(bytes);
-}
-
 rmw_dds_common::msg::Gid to_message(const Gid& gid) {
   rmw_dds_common::msg::Gid message;
   message.data(gid);
@@ -86,13 +77,13 @@ rmw_dds_common::msg::Gid to_message(const Gid& gid) {
 Participant::Participant(const ParticipantOptions& options) : options_(options) {
   compat::fdds::DomainParticipantQos qos;
   qos.name("/");  // the enclave, as rmw_fastrtps names its participants
-  set_enclave(false, qos);
+  const std::string enclave = "enclave=/;";
+  qos.user_data().setValue(std::vector<unsigned char>(enclave.begin(), enclave.end()));
   apply_transport(options, qos);
   apply_discovery(options.discovery, qos);
   compat::announce_no_type_information(qos);
   auto* factory = compat::fdds::DomainParticipantFactory::get_instance();
-  participant_ = factory->create_participant(static_cast<std::uint32_t>(options.discovery.domain), qos, &joined_,
-                                             compat::fdds::StatusMask::none());
+  participant_ = factory->create_participant(static_cast<std::uint32_t>(options.discovery.domain), qos);
   if (participant_ == nullptr) {
     throw std::runtime_error("DDS participant could not be created in domain " +
                              std::to_string(options.discovery.domain) + "; see the Fast DDS message above");
@@ -139,16 +130,6 @@ void Participant::announce_graph() {
   info.node_entities_info_seq().push_back(node);
   compat::rtps::WriteParams params;
   compat::write(*graph_writer_, &info, params);
-}
-
-void Participant::greet_newcomers() {
-  if (greeted_ != joined_before_) {
-    greeted_ = joined_before_;
-    auto qos = participant_->get_qos();
-    set_enclave(qos.user_data().back() != 0, qos);
-    participant_->set_qos(qos);
-  }
-  joined_before_ = joined_.value();
 }
 
 int effective_socket_buffer_bytes(int wanted) {

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -44,16 +43,9 @@ class Participant {
   void add_writer(const Gid& gid) { writers_.push_back(gid); }
   /// Publishes the node's endpoints on `ros_discovery_info`; call when all have been created.
   void announce_graph();
-  /// Announces the participant once more when others have joined between the last two calls; call it every 0.1 s.
-  /// Without it they wait for the periodic announcement, as Fast DDS 2.9 drops the answers to a participant's first one
-  /// (docs/decisions/0029-late-joiners.md).
-  void greet_newcomers();
 
  private:
   ParticipantOptions options_;
-  compat::JoinedCount joined_;
-  std::uint64_t joined_before_ = 0;
-  std::uint64_t greeted_ = 0;
   compat::fdds::DomainParticipant* participant_ = nullptr;
   compat::fdds::Publisher* publisher_ = nullptr;
   compat::fdds::Subscriber* subscriber_ = nullptr;

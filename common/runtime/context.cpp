@@ -33,7 +33,6 @@ Context::Context(const ContextOptions& options)
   lockstep_ = std::make_unique<LockstepParticipant>(*this);
   executor_.set_cycle([this] { lockstep_->after_handlers(); });
   every(1.0, [this] { publish_diagnostics(); });
-  every(0.1, [this] { participant_.greet_newcomers(); });
 }
 
 Context::~Context() = default;

@@ -62,10 +62,7 @@ class EndpointWatcher::Listener : public compat::fdds::DomainParticipantListener
 #ifdef LAPIS_FASTDDS_3
   void on_participant_discovery(DomainParticipant*, compat::rtps::ParticipantDiscoveryStatus status,
                                 const compat::fdds::ParticipantBuiltinTopicData& info, bool&) override {
-    if (status != compat::rtps::ParticipantDiscoveryStatus::DISCOVERED_PARTICIPANT &&
-        status != compat::rtps::ParticipantDiscoveryStatus::CHANGED_QOS_PARTICIPANT) {
-      return;
-    }
+    if (status != compat::rtps::ParticipantDiscoveryStatus::DISCOVERED_PARTICIPANT) return;
     add(SeenParticipant{info.participant_name.to_string(), text_of(info.user_data.getValue()), dds::to_gid(info.guid)});
   }
   void on_data_writer_discovery(DomainParticipant*, compat::rtps::WriterDiscoveryStatus status,
@@ -78,10 +75,7 @@ class EndpointWatcher::Listener : public compat::fdds::DomainParticipantListener
   }
 #else
   void on_participant_discovery(DomainParticipant*, compat::rtps::ParticipantDiscoveryInfo&& found) override {
-    if (found.status != compat::rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT &&
-        found.status != compat::rtps::ParticipantDiscoveryInfo::CHANGED_QOS_PARTICIPANT) {
-      return;
-    }
+    if (found.status != compat::rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) return;
     const auto& info = found.info;
     add(SeenParticipant{info.m_participantName.to_string(), text_of(info.m_userData.getValue()),
                         dds::to_gid(info.m_guid)});
@@ -101,7 +95,6 @@ class EndpointWatcher::Listener : public compat::fdds::DomainParticipantListener
  private:
   void add(SeenParticipant participant) {
     const std::lock_guard lock(mutex);
-    std::erase_if(participants, [&](const auto& known) { return known.gid == participant.gid; });
     participants.push_back(std::move(participant));
   }
   void add(SeenEndpoint endpoint) {

@@ -36,7 +36,6 @@ class EndpointWatcher {
   EndpointWatcher& operator=(const EndpointWatcher&) = delete;
 
   std::vector<SeenEndpoint> endpoints() const;
-  /// As they announced themselves last.
   std::vector<SeenParticipant> participants() const;
   std::optional<SeenEndpoint> writer(const std::string& topic) const;
   std::optional<SeenEndpoint> reader(const std::string& topic) const;

@@ -178,10 +178,11 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
   if (report.tracking == Tracking::kTracking) {
     lost_at_.reset();
     drop_goal();
-    return enter(State::kExploring, "slam tracks again");
+    return enter(interrupted_, "slam tracks again");
   }
   if (state_ != State::kRecovering) {
     drop_goal();
+    interrupted_ = state_;
     lost_at_ = report.now;
     enter(State::kRecovering, report.tracking == Tracking::kLost ? "slam is lost" : "slam reckons by wheels alone");
   }

@@ -92,6 +92,7 @@ class Explorer {
   ExplorerConfig config_;
   GoalMemory memory_;
   State state_ = State::kIdle;
+  State interrupted_ = State::kExploring;  ///< what to go on with when slam tracks again
   std::string reason_ = "not started";
   std::vector<Pose2> path_;
   std::uint64_t path_number_ = 0;

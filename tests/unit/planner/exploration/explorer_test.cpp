@@ -1,0 +1,160 @@
+#include "planner/core/exploration/explorer.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/unit/planner/exploration/walk_world.hpp"
+
+namespace lapis::planner {
+namespace {
+
+using test::WalkWorld;
+using ::testing::HasSubstr;
+
+const std::vector<std::string> kThreeRooms = {
+    "#################################",  //
+    "#..........#..........#.........#",  //
+    "#..........#..........#.........#",  //
+    "#..........#..........#.........#",  //
+    "#..R.............................",  //
+    "#................................",  //
+    "#................................",  //
+    "#..........#..........#.........#",  //
+    "#..........#..........#.........#",  //
+    "#################################",
+};
+std::vector<std::string> closed(std::vector<std::string> lines) {
+  for (std::string& line : lines) line.back() = '#';
+  return lines;
+}
+
+TEST(Explorer, ExploresThreeRoomsAndIsDone) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.run(300.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  EXPECT_EQ(world.explorer.reason(), "nothing is left that can be reached");
+  EXPECT_GT(world.explored_share(), 0.98);
+  EXPECT_TRUE(world.explorer.path().empty());
+  EXPECT_LT(world.decisions, 400);
+}
+
+TEST(Explorer, EveryMethodEnds) {
+  for (const std::string& name : method_names()) {
+    WalkWorld world(closed(kThreeRooms));
+    world.decision_config.method = *method_of(name);
+    world.explorer.start();
+    world.run(600.0);
+    EXPECT_EQ(world.explorer.state(), State::kDone) << name << ": " << world.explorer.reason();
+    EXPECT_GT(world.explored_share(), 0.95) << name;
+  }
+}
+
+TEST(Explorer, DrivesHomeWhenAsked) {
+  WalkWorld world(closed(kThreeRooms), {.returns_home = true});
+  const Pose2 home = world.robot;
+  world.explorer.start();
+  world.run(400.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone);
+  EXPECT_EQ(world.explorer.reason(), "is back where it started");
+  EXPECT_LT((world.robot.p_map - home.p_map).norm(), 0.3);
+}
+
+TEST(Explorer, GivesUpAFrontierBehindGlassAfterThreeTries) {
+  auto lines = closed(kThreeRooms);
+  for (std::string& line : lines) {
+    if (line[22] == '.') line[22] = 'G';  // nobody sees it, nobody passes it
+  }
+  WalkWorld world(lines);
+  world.explorer.start();
+  world.run(600.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+}
+
+TEST(Explorer, GivesUpAPlaceThatIsAlwaysBlocked) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.is_blocked = true;
+  world.run(600.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone);
+  EXPECT_LT(world.decisions, 1000);
+}
+
+TEST(Explorer, AClosedRoomIsDoneAtOnce) {
+  WalkWorld world({"#####", "#...#", "#.R.#", "#...#", "#####"});
+  world.explorer.start();
+  world.run(100.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone);
+}
+
+TEST(Explorer, PausesAndGoesOn) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.run(10.0);
+  world.explorer.pause();
+  const Eigen::Vector2d place = world.robot.p_map;
+  world.run(10.0);
+  EXPECT_EQ(world.explorer.state(), State::kPaused);
+  EXPECT_TRUE(world.explorer.path().empty());
+  EXPECT_EQ(world.robot.p_map, place);
+  world.explorer.start();
+  world.run(300.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone);
+}
+
+TEST(Explorer, StandsStillWhileLostAndFailsInTheEnd) {
+  WalkWorld world(closed(kThreeRooms), {.lost_timeout_s = 20.0});
+  world.explorer.start();
+  world.run(5.0);
+  world.tracking = Tracking::kLost;
+  world.run(10.0);
+  EXPECT_EQ(world.explorer.state(), State::kRecovering);
+  EXPECT_EQ(world.explorer.reason(), "slam is lost");
+  EXPECT_TRUE(world.explorer.path().empty());
+  world.tracking = Tracking::kTracking;
+  world.run(2.0);
+  EXPECT_EQ(world.explorer.state(), State::kExploring);
+  world.tracking = Tracking::kLost;
+  world.run(30.0);
+  EXPECT_EQ(world.explorer.state(), State::kFailed);
+  EXPECT_THAT(world.explorer.reason(), HasSubstr("20 s"));
+  EXPECT_TRUE(world.explorer.path().empty());
+}
+
+TEST(Explorer, DrivesBackToWhereItWasTrackedWhenWheelsLead) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.run(5.0);
+  const Eigen::Vector2d place = world.robot.p_map;
+  world.tick();
+  world.tracking = Tracking::kDeadReckoning;
+  world.robot.p_map += Eigen::Vector2d(0.0, -0.5);
+  world.run(5.0);
+  EXPECT_EQ(world.explorer.state(), State::kRecovering);
+  EXPECT_EQ(world.explorer.reason(), "slam reckons by wheels alone");
+  EXPECT_LT((world.robot.p_map - place).norm(), 0.4);
+}
+
+TEST(Explorer, ADoorThatClosesIsNoReasonToWait) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.run(3.0);
+  for (int y = 3; y <= 5; ++y) world.set({11, y}, '#');
+  world.run(600.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+}
+
+TEST(Explorer, IdlesUntilItIsStarted) {
+  WalkWorld world(closed(kThreeRooms));
+  world.run(5.0);
+  EXPECT_EQ(world.explorer.state(), State::kIdle);
+  EXPECT_EQ(world.decisions, 0);
+  world.explorer.start();
+  world.run(2.0);
+  world.explorer.stop();
+  EXPECT_EQ(world.explorer.state(), State::kIdle);
+  EXPECT_TRUE(world.explorer.path().empty());
+}
+
+}  // namespace
+}  // namespace lapis::planner

@@ -32,7 +32,7 @@ struct ControllerConfig {
 /// Points in base_link.
 using Obstacles = std::vector<Eigen::Vector2d>;
 
-/// Values of lapis_msgs/ControllerStatus.
+/// What the robot does about its path.
 enum class State { kIdle, kFollowing, kBlocked, kStopped };
 
 /// What to do now, and why.

@@ -11,11 +11,10 @@ namespace lapis::planner {
 
 /// What it is worth to observe a cell. A ray that reaches a cell either passes it or ends in it; o = P(occupied).
 enum class Measure {
-  /// Semantic mutual information [Zhang, Bong & Beltrame 2024, eq. 13-14]: g = sum_z P(z) KL(b_z || b) over what can
-  /// happen (z: a pass, or a hit of class c); b is the belief about free space and all classes as BeliefReader gives
-  /// it, b_z what it will give after one more whole vote. Where nothing is clamped the divergence is the paper's h; a
-  /// clamped belief that stays clamped gains nothing. By fusion rules other than log_odds it is the same with their
-  /// own beliefs.
+  /// Semantic mutual information [Zhang, Bong & Beltrame 2024, eq. 13-14]: g = sum_z P(z) KL(b_z || b) over the
+  /// outcomes z (pass, or a hit of class c); b is the belief about free space and all classes as BeliefReader gives it,
+  /// b_z what it will give after one more whole vote. Where nothing is clamped this is the paper's h; a clamped belief
+  /// that stays clamped gains nothing. By fusion rules other than log_odds it is the same with their own beliefs.
   kSemantic,
   /// Shannon information of occupancy [Zhang, Henderson, Karaman & Sze 2020, "FSMI"] with an exact range sensor: of
   /// r = o / (1 - o), g = o f(d_occ, r) + (1 - o) f(d_emp, r), f(d, r) = ln((r + 1) / (r + 1/d)) - ln d / (r d + 1),

@@ -24,7 +24,7 @@ struct GridConfig {
   double obstacle_expiry_s = 10.0;   ///< an obstacle that no grid shows any more is forgotten, in [0.1, 600]
 };
 
-/// Values of a nav_msgs/OccupancyGrid with axes parallel to those of the map frame.
+/// Occupancy by cell, row by row from the lower left corner; axes parallel to those of the map frame.
 struct ObstacleGrid {
   Eigen::Vector2d origin{0, 0};  ///< lower left corner of cell 0 in the map frame [m]
   double resolution_m = 0.0;

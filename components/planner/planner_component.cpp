@@ -190,7 +190,7 @@ void PlannerComponent::begin_decision() {
   input.view = &view_;
   input.T_base_camera = T_base_camera_;
   input.robot = *robot_;
-  input.memory = explorer_.memory(*surroundings_, stamp_);
+  input.memory = explorer_.memory(stamp_);
   input.config = config_.decision;
   input.knowledge = knowledge_;
   const std::uint64_t landmark_version = landmarks_.state() ? landmarks_.state()->graph_version : 0;

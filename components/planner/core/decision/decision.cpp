@@ -48,15 +48,17 @@ void add_way(const Situation& s, const CostTree& tree, const Viewpoint& viewpoin
   candidate.value.cost_m = path.length_m + config.turn_cost_m_per_rad * turning(s.robot, candidate.way);
 }
 
+bool is_left_alone(const Eigen::Vector2d& target_map, const Memory& memory) {
+  return std::any_of(memory.left_alone.begin(), memory.left_alone.end(), [&](const Eigen::Vector2d& place) {
+    return (place - target_map).norm() <= memory.radius_m;
+  });
+}
+
 std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const Memory& memory,
                                const DecisionConfig& config) {
   std::vector<Candidate> candidates;
   for (const auto& entry : s.frontiers.frontiers()) {
     const Frontier& frontier = entry.second;
-    if (std::binary_search(memory.given_up.begin(), memory.given_up.end(), frontier.id)) {
-      candidates.push_back(rejected(frontier, "given up for now"));
-      continue;
-    }
     const ViewpointResult found = sample_viewpoints(s.grid, tree, frontier, config.viewpoints);
     if (found.status != ViewpointStatus::kFound) candidates.push_back(rejected(frontier, reason_of(found.status)));
     for (const Viewpoint& viewpoint : found.viewpoints) {
@@ -65,6 +67,7 @@ std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const M
       candidate.goal = viewpoint.pose;
       candidate.target_map = s.grid.center_of(viewpoint.target);
       add_way(s, tree, viewpoint, config, candidate);
+      if (is_left_alone(candidate.target_map, memory)) candidate.rejection = "left alone for now";
     }
   }
   return candidates;

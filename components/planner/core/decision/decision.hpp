@@ -62,7 +62,8 @@ struct Decision {
 
 /// What is not to be driven to, and what is being driven to.
 struct Memory {
-  std::vector<std::uint32_t> given_up;  ///< frontiers, ascending
+  std::vector<Eigen::Vector2d> left_alone;  ///< targets [m, map]
+  double radius_m = 0.75;                   ///< what lies nearer to one of them is left alone, too
   std::optional<Pose2> goal;            ///< current one
 };
 

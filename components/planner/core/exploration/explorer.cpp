@@ -96,11 +96,12 @@ bool Explorer::step(const Report& report, const Surroundings* surroundings) {
 }
 
 bool Explorer::explore(const Report& report, const Surroundings& surroundings) {
-  judge_last_look(surroundings, report.now);
+  judge_looks(surroundings, report.now);
   const bool is_due = !decided_at_ || (report.now - *decided_at_).seconds() >= config_.replan_period_s;
   if (!goal_) return is_due;
   if (has_arrived(*report.robot)) {
-    last_look_ = Look{goal_->target_map, report.now};
+    looks_.push_back({goal_->target_map, report.now + time::Duration::from_seconds(config_.settle_s)});
+    memory_.leave_alone(looks_.back().target_map, looks_.back().due);
     drop_goal();
     return true;
   }
@@ -139,16 +140,18 @@ bool Explorer::is_path_free(const Pose2& robot, const PlanningGrid& grid) const 
 }
 
 // A frontier that is still there after it has been looked at is glass, or noise.
-void Explorer::judge_last_look(const Surroundings& surroundings, time::Time now) {
-  if (!last_look_ || (now - last_look_->at).seconds() < config_.settle_s) return;
-  if (has_frontier_at(surroundings, last_look_->target_map, surroundings.grid().resolution_m()))
-    memory_.add_failure(last_look_->target_map, now);
-  last_look_.reset();
+void Explorer::judge_looks(const Surroundings& surroundings, time::Time now) {
+  while (!looks_.empty() && looks_.front().due <= now) {
+    if (has_frontier_at(surroundings, looks_.front().target_map, surroundings.grid().resolution_m()))
+      memory_.add_failure(looks_.front().target_map, now);
+    looks_.erase(looks_.begin());
+  }
 }
 
-Memory Explorer::memory(const Surroundings& surroundings, time::Time now) const {
+Memory Explorer::memory(time::Time now) const {
   Memory memory;
-  memory.given_up = memory_.given_up(surroundings.grid(), surroundings.frontiers(), now);
+  memory.left_alone = memory_.left_alone(now);
+  memory.radius_m = config_.memory.radius_m;
   if (goal_) memory.goal = goal_->pose;
   return memory;
 }
@@ -159,7 +162,7 @@ void Explorer::take(const Decision& decision, time::Time now) {
   if (decision.chosen) {
     const Candidate& chosen = decision.candidates[*decision.chosen];
     empty_decisions_ = 0;
-    const bool is_new = !goal_ || distance(goal_->pose, chosen.goal) > config_.goal_tolerance_m;
+    const bool is_new = !goal_ || (goal_->target_map - chosen.target_map).norm() > config_.memory.radius_m;
     if (is_new) goal_ = Goal{chosen.goal, chosen.target_map, remaining(chosen.way.front(), chosen.goal), now};
     goal_->pose = chosen.goal;
     goal_->target_map = chosen.target_map;
@@ -168,7 +171,7 @@ void Explorer::take(const Decision& decision, time::Time now) {
   }
   drop_goal();
   reason_ = "no frontier can be driven to";
-  if (memory_.forgive()) return;
+  if (!looks_.empty() || memory_.forgive(now)) return;
   if (++empty_decisions_ < config_.confirmations) return;
   if (config_.returns_home) return enter(State::kReturning, "nothing is left that can be reached");
   enter(State::kDone, "nothing is left that can be reached");

@@ -22,8 +22,8 @@ enum class State {
 };
 
 struct ExplorerConfig {
-  GoalMemoryConfig memory;
-  PathConfig path;
+  GoalMemoryConfig memory = {};
+  PathConfig path = {};
   double replan_period_s = 1.0;      ///< between decisions while a goal is being driven to, in [0.5, 60]
   double goal_tolerance_m = 0.3;     ///< in [0.05, 2]
   double goal_tolerance_rad = 0.3;   ///< in [0.05, 3.2]
@@ -58,7 +58,7 @@ class Explorer {
   /// Looks at what has happened since the last call. True when a decision is wanted.
   bool step(const Report& report, const Surroundings* surroundings);
   /// What decide() has to leave alone, and what is being driven to.
-  Memory memory(const Surroundings& surroundings, time::Time now) const;
+  Memory memory(time::Time now) const;
   /// Acts on a decision that was wanted; one that came too late changes nothing.
   void take(const Decision& decision, time::Time now);
 
@@ -87,7 +87,7 @@ class Explorer {
   bool has_arrived(const Pose2& robot) const;
   bool is_stuck(const Report& report);
   bool is_path_free(const Pose2& robot, const PlanningGrid& grid) const;
-  void judge_last_look(const Surroundings& surroundings, time::Time now);
+  void judge_looks(const Surroundings& surroundings, time::Time now);
 
   ExplorerConfig config_;
   GoalMemory memory_;
@@ -99,9 +99,9 @@ class Explorer {
   std::optional<Goal> goal_;
   struct Look {
     Eigen::Vector2d target_map;
-    time::Time at;
+    time::Time due;
   };
-  std::optional<Look> last_look_;
+  std::vector<Look> looks_;  ///< whose effect on the map is awaited
   std::optional<Pose2> home_, last_tracked_;
   std::optional<time::Time> decided_at_, lost_at_;
   int empty_decisions_ = 0;

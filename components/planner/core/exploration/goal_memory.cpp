@@ -4,38 +4,38 @@
 
 namespace lapis::planner {
 
+GoalMemory::Place& GoalMemory::place_at(const Eigen::Vector2d& target_map) {
+  const auto found = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
+    return (place.target_map - target_map).norm() <= config_.radius_m;
+  });
+  if (found != places_.end()) return *found;
+  return places_.emplace_back(Place{.target_map = target_map});
+}
+
+void GoalMemory::leave_alone(const Eigen::Vector2d& target_map, time::Time until) {
+  Place& place = place_at(target_map);
+  place.until = std::max(place.until, until);
+}
+
 void GoalMemory::add_failure(const Eigen::Vector2d& target_map, time::Time now) {
-  const time::Time until = now + time::Duration::from_seconds(config_.expiry_s);
-  for (Failure& failure : failures_) {
-    if ((failure.target_map - target_map).norm() > config_.radius_m) continue;
-    ++failure.count;
-    failure.until = until;
-    return;
-  }
-  failures_.push_back({target_map, 1, until});
+  Place& place = place_at(target_map);
+  ++place.failures;
+  place.until = std::max(place.until, now + time::Duration::from_seconds(config_.expiry_s));
 }
 
-std::vector<std::uint32_t> GoalMemory::given_up(const PlanningGrid& grid, const FrontierMap& frontiers,
-                                                time::Time now) const {
-  std::vector<std::uint32_t> ids;
-  for (const auto& entry : frontiers.frontiers()) {
-    const Frontier& frontier = entry.second;
-    const auto is_near = [&](const Failure& failure) {
-      if (!is_left_alone(failure, now)) return false;
-      return std::any_of(frontier.representatives.begin(), frontier.representatives.end(), [&](Cell c) {
-        return (grid.center_of(c) - failure.target_map).norm() <= config_.radius_m;
-      });
-    };
-    if (std::any_of(failures_.begin(), failures_.end(), is_near)) ids.push_back(frontier.id);
+std::vector<Eigen::Vector2d> GoalMemory::left_alone(time::Time now) const {
+  std::vector<Eigen::Vector2d> targets;
+  for (const Place& place : places_) {
+    if (is_given_up(place) || now < place.until) targets.push_back(place.target_map);
   }
-  return ids;
+  return targets;
 }
 
-bool GoalMemory::forgive() {
+bool GoalMemory::forgive(time::Time now) {
   bool has_forgiven = false;
-  for (Failure& failure : failures_) {
-    if (failure.count >= config_.max_failures || failure.until == time::Time{}) continue;
-    failure.until = {};
+  for (Place& place : places_) {
+    if (is_given_up(place) || place.until <= now) continue;
+    place.until = now;
     has_forgiven = true;
   }
   return has_forgiven;

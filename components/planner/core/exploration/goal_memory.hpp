@@ -1,13 +1,10 @@
 #pragma once
 
-#include <cstdint>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "common/time/time.hpp"
-#include "planner/core/space/frontier_map.hpp"
 
 namespace lapis::planner {
 
@@ -22,25 +19,26 @@ class GoalMemory {
  public:
   explicit GoalMemory(const GoalMemoryConfig& config) : config_(config) {}
 
+  /// Not a failure: the target is left alone until then, however it ends.
+  void leave_alone(const Eigen::Vector2d& target_map, time::Time until);
   void add_failure(const Eigen::Vector2d& target_map, time::Time now);
-  /// Frontiers to leave alone for now, by ascending id: those with a representative at such a target.
-  std::vector<std::uint32_t> given_up(const PlanningGrid& grid, const FrontierMap& frontiers, time::Time now) const;
+  /// Targets to leave alone for now [m, map].
+  std::vector<Eigen::Vector2d> left_alone(time::Time now) const;
   /// Lets all targets be tried again that have not failed for good; false when there are none.
-  bool forgive();
-  void clear() { failures_.clear(); }
+  bool forgive(time::Time now);
+  void clear() { places_.clear(); }
 
  private:
-  struct Failure {
+  struct Place {
     Eigen::Vector2d target_map;
-    int count;
-    time::Time until;
+    int failures = 0;
+    time::Time until{};
   };
-  bool is_left_alone(const Failure& failure, time::Time now) const {
-    return failure.count >= config_.max_failures || now < failure.until;
-  }
+  Place& place_at(const Eigen::Vector2d& target_map);
+  bool is_given_up(const Place& place) const { return place.failures >= config_.max_failures; }
 
   GoalMemoryConfig config_;
-  std::vector<Failure> failures_;
+  std::vector<Place> places_;
 };
 
 }  // namespace lapis::planner

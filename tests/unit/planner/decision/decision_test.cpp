@@ -91,20 +91,20 @@ TEST(Decide, InformationPerMetreIsWhatMiOnlyCompares) {
   }
 }
 
-TEST(Decide, GivesUpWhatItIsTold) {
+TEST(Decide, LeavesAloneWhatItIsTold) {
   Explorer explorer;
   explorer.config.method = Method::kNearest;
-  const std::uint32_t nearest = explorer.chosen().frontier;
-  const Decision decision = explorer.choose({{nearest}, {}});
+  Memory memory;
+  memory.left_alone = {explorer.chosen().target_map};
+  const Decision decision = explorer.choose(memory);
   ASSERT_TRUE(decision.chosen);
-  EXPECT_NE(decision.candidates[*decision.chosen].frontier, nearest);
-  int given_up = 0;
+  int left_alone = 0;
   for (const Candidate& candidate : decision.candidates) {
-    if (candidate.frontier != nearest) continue;
-    EXPECT_EQ(candidate.rejection, "given up for now");
-    ++given_up;
+    const bool is_near = (candidate.target_map - memory.left_alone[0]).norm() <= memory.radius_m;
+    EXPECT_EQ(candidate.rejection, is_near ? "left alone for now" : "");
+    left_alone += is_near ? 1 : 0;
   }
-  EXPECT_EQ(given_up, 1);
+  EXPECT_GT(left_alone, 0);
 }
 
 TEST(Decide, KeepsItsGoalUnlessAnotherIsClearlyBetter) {

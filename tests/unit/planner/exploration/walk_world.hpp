@@ -89,7 +89,7 @@ class WalkWorld {
     ++decisions;
     const Decision decision = decide({surroundings.grid(), surroundings.frontiers(), surroundings.field(), view_,
                                       geometry::T_base_camera({1.0, 0.0}), nullptr, nullptr, robot},
-                                     explorer.memory(surroundings, now), decision_config);
+                                     explorer.memory(now), decision_config);
     explorer.take(decision, now);
   }
   /// 0.6 m/s along the path, turning at once; walls stop it.

@@ -52,7 +52,7 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
   }
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { add_tile(m); });
-  context.subscribe(topics::kMapState, [this](const auto& m) { map_.apply_state(to_core(m)); });
+  context.subscribe(topics::kMapState, [this](const auto& m) { set_map_state(m); });
   context.subscribe(topics::kObstacles, [this](nav_msgs::msg::OccupancyGrid& m) { obstacles_ = std::move(m); });
   context.subscribe(topics::kPoseGraph, [this](const auto& m) { set_graph(m); });
   context.subscribe(topics::kLandmarks, [this](const auto& m) { add_landmarks(m); });
@@ -94,6 +94,12 @@ void PlannerComponent::add_tile(const lapis_msgs::msg::VoxelTile& message) {
   const mapping::TileIndex index{message.x(), message.y(), message.z()};
   const auto result = map_.apply_tile(message.epoch(), index, message.version(), message.data());
   if (result == mapping::TileResult::kDamaged) drop("tile", "it cannot be decoded");
+}
+
+void PlannerComponent::set_map_state(const lapis_msgs::msg::MapState& message) {
+  const auto state = to_core(message);
+  if (!state) return drop("map state", state.reason);
+  map_.apply_state(*state);
 }
 
 void PlannerComponent::add_landmarks(const lapis_msgs::msg::LandmarkTile& message) {

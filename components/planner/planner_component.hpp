@@ -32,6 +32,7 @@ class PlannerComponent {
   void serve();
   void set_labels(const vision_msgs::msg::LabelInfo& message);
   void add_tile(const lapis_msgs::msg::VoxelTile& message);
+  void set_map_state(const lapis_msgs::msg::MapState& message);
   void add_landmarks(const lapis_msgs::msg::LandmarkTile& message);
   void set_graph(const lapis_msgs::msg::PoseGraph& message);
   void note_frame(const Tracked& frame);

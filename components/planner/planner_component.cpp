@@ -41,7 +41,8 @@ Tracking tracking_of(const lapis_msgs::msg::TrackedFrame& frame) {
 }  // namespace
 
 PlannerComponent::PlannerComponent(const Config& config, runtime::Context& context)
-    : config_(completed(config)), context_(context), map_frame_(context.frame("map")), view_(view_config(config_)),
+    : config_(completed(config)), context_(context), map_frame_(context.frame("map")),
+      base_frame_(context.frame("base_link")), view_(view_config(config_)),
       T_base_camera_(geometry::T_base_camera(robot::camera_mount(config_.robot.camera))),
       path_(context.advertise(topics::kPlannerPath)), candidates_(context.advertise(topics::kCandidates)),
       markers_(context.advertise(topics::kPlannerMarkers)), status_(context.advertise(topics::kPlannerStatus)),
@@ -122,6 +123,8 @@ void PlannerComponent::note_frame(const Tracked& frame) {
 }
 
 void PlannerComponent::set_pose(const nav_msgs::msg::Odometry& message) {
+  if (message.header().frame_id() != map_frame_ || message.child_frame_id() != base_frame_)
+    return drop("pose", "it is not of " + base_frame_ + " in " + map_frame_);
   auto pose = to_core(message.pose().pose());
   if (!pose) return drop("pose", pose.reason);
   robot_ = *pose;

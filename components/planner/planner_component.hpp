@@ -52,7 +52,7 @@ class PlannerComponent {
 
   Config config_;
   runtime::Context& context_;
-  const std::string map_frame_;
+  const std::string map_frame_, base_frame_;
   const View view_;
   const geometry::Pose T_base_camera_;
   dds::Publisher<nav_msgs::msg::Path>& path_;

@@ -203,7 +203,8 @@ void PlannerComponent::begin_decision() {
   input.config = config_.decision;
   input.knowledge = knowledge_;
   const std::uint64_t landmark_version = landmarks_.state() ? landmarks_.state()->graph_version : 0;
-  if (graph_ && (graph_->version != known_graph_ || landmark_version != known_landmarks_)) {
+  const bool has_edges = graph_ && !graph_->edges.empty();
+  if (has_edges && (graph_->version != known_graph_ || landmark_version != known_landmarks_)) {
     input.graph = graph_;
     if (landmarks_.state() && landmarks_.state()->session == graph_->session) input.landmarks = landmarks_.tiles();
     known_graph_ = graph_->version;

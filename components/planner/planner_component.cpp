@@ -193,6 +193,11 @@ void PlannerComponent::refresh() {
 
 Report PlannerComponent::report() const { return {stamp_, robot_, tracking_, is_blocked_}; }
 
+PlannerComponent::GraphVersions PlannerComponent::versions_of_graph() const {
+  const auto landmarks = landmarks_.state().value_or(mapping::LandmarkState{});
+  return {graph_->session, graph_->version, landmarks.session, landmarks.graph_version};
+}
+
 void PlannerComponent::begin_decision() {
   DecisionInput input;
   input.surroundings = &*surroundings_;
@@ -202,13 +207,11 @@ void PlannerComponent::begin_decision() {
   input.memory = explorer_.memory(stamp_);
   input.config = config_.decision;
   input.knowledge = knowledge_;
-  const std::uint64_t landmark_version = landmarks_.state() ? landmarks_.state()->graph_version : 0;
   const bool has_edges = graph_ && !graph_->edges.empty();
-  if (has_edges && (graph_->version != known_graph_ || landmark_version != known_landmarks_)) {
+  if (has_edges && versions_of_graph() != known_graph_) {
     input.graph = graph_;
     if (landmarks_.state() && landmarks_.state()->session == graph_->session) input.landmarks = landmarks_.tiles();
-    known_graph_ = graph_->version;
-    known_landmarks_ = landmark_version;
+    known_graph_ = versions_of_graph();
   }
   worker_.start(std::move(input), frames_ + static_cast<std::uint64_t>(config_.decision_latency_frames));
 }

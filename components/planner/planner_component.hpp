@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "common/mapping/label_list.hpp"
@@ -28,6 +29,8 @@ class PlannerComponent {
 
  private:
   using Tracked = lapis_msgs::msg::TrackedFrame;
+  /// Session and version of the graph, then of the landmarks.
+  using GraphVersions = std::tuple<std::int64_t, std::uint64_t, std::int64_t, std::uint64_t>;
 
   void serve();
   void set_labels(const vision_msgs::msg::LabelInfo& message);
@@ -43,6 +46,7 @@ class PlannerComponent {
   void take_decision();
   void refresh();
   Report report() const;
+  GraphVersions versions_of_graph() const;
   void begin_decision();
   void publish();
   void publish_status();
@@ -77,7 +81,7 @@ class PlannerComponent {
   std::optional<Surroundings> surroundings_;
   std::optional<mapping::MapState> surroundings_state_;
   std::shared_ptr<const GraphKnowledge> knowledge_;
-  std::uint64_t known_graph_ = 0, known_landmarks_ = 0;  // versions in knowledge_
+  GraphVersions known_graph_;  // in knowledge_
   Explorer explorer_;
   DecisionWorker worker_;
   std::optional<DecisionLog> log_;

@@ -55,7 +55,8 @@ give simulator "lockstep.stages=[slam, semantic_mapper, planner, controller, eva
 for request in "${requests[@]}"; do route "$request"; done
 out=${out:-$repository/out/$(basename "$scene" .yaml)_${method}_$seed}
 make_run_folder
-play=("$scene" --seed "$seed" --duration "$duration" --mode "$mode" --set "simulator.output_dir=$out")
+play=("$scene" --seed "$seed" --duration "$duration" --mode "$mode" --set simulator.ends_when_explored=true
+  --set "simulator.output_dir=$out")
 [ "$mode" = lockstep ] || play+=(--set simulator.wait_for_readers=4)
 subject="scene: \"$scene\""
 run_chain

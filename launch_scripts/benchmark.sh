@@ -37,6 +37,9 @@ while [ $# -gt 0 ]; do
   shift
 done
 require_build
+for method in ${methods//,/ }; do # bad set-up shows before hours of work
+  [ "$method" = tour ] || "$bin/lapis_planner" --set "planner.method=$method" --check-config >/dev/null || exit 2
+done
 export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
 mkdir -p "$out" || die "$out cannot be made a folder; choose another with --out DIR"
 read -r load _ </proc/loadavg

@@ -14,7 +14,8 @@ using namespace lapis_msgs::msg::PlannerStatus_Constants;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// slam ------------------------------------------------------------------------------------------------------------------
+// slam
+// ------------------------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, StandsWhileSlamIsLostAndGoesOnAfterwards) {
   get_going();
@@ -40,7 +41,7 @@ TEST_F(PlannerContract, DrivesBackByWheelsToWhereSlamWasLastSure) {
   EXPECT_LT((goal() - last_tracked).norm(), 0.3);
 }
 
-TEST_F(PlannerContract, FailsWhenSlamStaysLostAndStartsAgainWhenTold) {
+TEST_F(PlannerContract, FailsWhenSlamStaysLost) {
   ASSERT_TRUE(start({"lost_timeout_s=1"})) << planner->log();
   peers.draw(kRoomWithDoor);
   ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
@@ -58,8 +59,7 @@ TEST_F(PlannerContract, PosesThatAreNoneAreCountedAndNeverComeOut) {
   const std::vector<std::function<void(nav_msgs::msg::Odometry&)>> spoil{
       [](auto& m) { m.pose().pose().position().x(kNaN); },
       [](auto& m) { m.pose().pose().orientation().w(std::numeric_limits<double>::infinity()); },
-      [](auto& m) { m.pose().pose().orientation({}); },
-      [](auto& m) { m.pose().pose().position().y(1e300); },
+      [](auto& m) { m.pose().pose().orientation({}); }, [](auto& m) { m.pose().pose().position().y(1e300); },
       [](auto& m) { m.header().frame_id("odom"); }};
   for (std::size_t i = 0; i < 40; ++i) {
     auto message = peers.pose();
@@ -73,13 +73,33 @@ TEST_F(PlannerContract, PosesThatAreNoneAreCountedAndNeverComeOut) {
     EXPECT_TRUE(wait_for_count(reason)) << reason << planner->log();
 }
 
-// The pose graph ----------------------------------------------------------------------------------------------------------
+// F2, F6: slam or the simulator was started again.
+TEST_F(PlannerContract, NewSessionOfSlamIsAnotherMapEvenWhenTimeBeginsAgain) {
+  get_going();
+  for (int i = 0; i < 100; ++i) ASSERT_TRUE(tick()) << planner->log();
+  const double volume_m3 = statuses.back().explored_volume_m3();
+  ++peers.session;
+  peers.frames_so_far = 0;
+  ASSERT_TRUE(tick()) << planner->log();
+  EXPECT_TRUE(stands()) << "the old path is of another map frame";
+  EXPECT_EQ(state(), STATE_EXPLORING);
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(tick()) << planner->log();
+  EXPECT_TRUE(stands()) << "the old map, too";
+  EXPECT_EQ(reason(), "waits for the map");
+  ++peers.epoch;
+  peers.draw(Drawing(kRoomWithDoor.begin() + 4, kRoomWithDoor.end()));
+  ASSERT_TRUE(ticks_until([this] { return has_path(); }, 1.0)) << reason() << planner->log();
+  EXPECT_NEAR(statuses.back().explored_volume_m3(), 0.75 * volume_m3, 0.01);
+}
+
+// The pose graph
+// ----------------------------------------------------------------------------------------------------------
 
 class PlannerGraphFaults : public PlannerContract {
  protected:
   using Graph = lapis_msgs::msg::PoseGraph;
 
-  void SetUp() override { ASSERT_TRUE(start()) << planner->log(); }
+  void SetUp() override { ASSERT_TRUE(start({"progress_timeout_s=600"})) << planner->log(); }
   /// A good graph, a bad one, and a good one again: exploration goes on, and the bad one is explained.
   void expect_explained(const std::function<void(Graph&)>& spoil, const std::string& explanation) {
     SCOPED_TRACE(explanation);
@@ -146,7 +166,8 @@ TEST_F(PlannerGraphFaults, LandmarksThatMakeNoSense) {
   EXPECT_TRUE(wait_for_count("landmarks dropped")) << planner->log();
 }
 
-// The map -----------------------------------------------------------------------------------------------------------------
+// The map
+// -----------------------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, TilesAndMapStatesThatMakeNoSenseChangeNothing) {
   get_going();
@@ -219,7 +240,8 @@ TEST_F(PlannerContract, ObstacleThatIsPutOnThePathMovesOrEmptiesIt) {
   ASSERT_TRUE(ticks_until([this] { return stands() || goal().x() < 3.25; }, 2.0)) << reason() << planner->log();
 }
 
-// The controller ------------------------------------------------------------------------------------------------------------
+// The controller
+// ------------------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, BlockedControllerGetsAnotherGoal) {
   ASSERT_TRUE(start()) << planner->log();
@@ -275,7 +297,8 @@ TEST_F(PlannerContract, RobotThatDoesNotMoveGivesItsGoalUp) {
       << reason() << planner->log();
 }
 
-// F2 ------------------------------------------------------------------------------------------------------------------------
+// F2
+// ------------------------------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, RestartedPlannerHasTheWholeMapAndGoesOn) {
   start_free();

@@ -24,8 +24,10 @@ struct PlannerComponentConfig {
 
 template <class Field>
 void describe(Field& field, GridConfig& c) {
-  field("min_height_m", c.band.min_height_m, config::in_range(-100.0, 100.0), "voxels whose centre is below say nothing [m]");
-  field("max_height_m", c.band.max_height_m, config::in_range(-100.0, 100.0), "voxels whose centre is above say nothing [m]");
+  field("min_height_m", c.band.min_height_m, config::in_range(-100.0, 100.0),
+        "voxels whose centre is below say nothing [m]");
+  field("max_height_m", c.band.max_height_m, config::in_range(-100.0, 100.0),
+        "voxels whose centre is above say nothing [m]");
   field("bottom_m", c.bottom_m, config::in_range(0.0, 10.0),
         "lowest part of what lies in between; a cell is free only where it has been seen [m]");
   field("margin_m", c.margin_m, config::in_range(0.0, 1.0), "kept between the robot's disc and obstacles [m]");
@@ -45,7 +47,8 @@ void describe(Field& field, FrontierConfig& c) {
 template <class Field>
 void describe(Field& field, PathConfig& c) {
   field("comfort_m", c.comfort_m, config::in_range(0.1, 5.0), "clearance from which on nearness costs nothing [m]");
-  field("nearness_weight", c.nearness_weight, config::in_range(0.0, 100.0), "a metre at the least clearance costs 1 + this");
+  field("nearness_weight", c.nearness_weight, config::in_range(0.0, 100.0),
+        "a metre at the least clearance costs 1 + this");
   field("escape_m", c.escape_m, config::in_range(0.0, 2.0),
         "the robot may leave a place where it should not stand within this [m]");
   field("max_detour", c.max_detour, config::in_range(1.0, 5.0), "an alternative's length over that of the best path");
@@ -61,11 +64,22 @@ void describe(Field& field, ViewpointConfig& c) {
 }
 
 template <class Field>
+void describe(Field& field, TareConfig& c) {
+  field("horizon_m", c.horizon_m, config::in_range(1.0, 20.0), "half the edge of the local area [m]");
+  field("lattice_m", c.lattice_m, config::in_range(0.1, 2.0), "between viewpoints [m]");
+  field("range_m", c.range_m, config::in_range(0.5, 20.0), "to which a view covers frontiers [m]");
+  field("min_reward_m", c.min_reward_m, config::in_range(0.05, 10.0),
+        "of frontier that a viewpoint has to cover besides the others [m]");
+  field("seed", c.seed, config::anything(), "draws the viewpoints");
+}
+
+template <class Field>
 void describe(Field& field, CovisibilityConfig& c) {
   field("max_viewing_angle_rad", c.max_viewing_angle_rad, config::in_range(0.05, 3.2),
         "between the directions from which a landmark was and would be seen [rad]");
   field("max_range_ratio", c.max_range_ratio, config::in_range(1.0, 10.0), "between the distances, either way");
-  field("min_visibility", c.min_visibility, config::in_range(0.0, 1.0), "probability that the ray to a landmark is free");
+  field("min_visibility", c.min_visibility, config::in_range(0.0, 1.0),
+        "probability that the ray to a landmark is free");
 }
 
 template <class Field>
@@ -92,7 +106,8 @@ void describe(Field& field, GoalMemoryConfig& c) {
 
 template <class Field>
 void describe(Field& field, PlannerComponentConfig& c) {
-  field("method", c.method, config::one_of({"lapis", "paper", "fixed_n", "joint", "ssmi", "nearest", "mi_only", "dopt_only"}),
+  field("method", c.method,
+        config::one_of({"lapis", "paper", "fixed_n", "joint", "ssmi", "tare", "nearest", "mi_only", "dopt_only"}),
         "what decides between paths (README)");
   field("autostart", c.autostart, config::anything(), "explore at once; false: wait for /planner/start");
   field("beta", c.decision.utility.beta, config::in_range(0.0, 100.0),
@@ -104,7 +119,8 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("view_spacing_m", c.decision.view_spacing_m, config::in_range(0.1, 10.0), "between views along a path [m]");
   field("view_columns", c.view_columns, config::in_range(1, 4096), "rays of a view, over the width of the image");
   field("view_rows", c.view_rows, config::in_range(1, 4096), "rays of a view, over its height");
-  field("node_spacing_m", c.decision.node_spacing_m, config::in_range(0.2, 10.0), "between hallucinated key-frames [m]");
+  field("node_spacing_m", c.decision.node_spacing_m, config::in_range(0.2, 10.0),
+        "between hallucinated key-frames [m]");
   field("turn_cost_m_per_rad", c.decision.turn_cost_m_per_rad, config::in_range(0.0, 10.0),
         "of turning at the ends of a path [m/rad]");
   field("keep_factor", c.decision.keep_factor, config::in_range(1.0, 10.0),
@@ -113,6 +129,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("frontiers", c.surroundings.frontiers);
   field("path", c.decision.path);
   field("viewpoints", c.decision.viewpoints);
+  field("tare", c.decision.tare);
   field("hallucination", c.decision.hallucination);
   field("memory", c.explorer.memory);
   field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.5, 60.0),

@@ -12,16 +12,6 @@ namespace {
 
 constexpr double kSameGoal_m = 0.5;  // goals nearer to each other are one
 
-std::string reason_of(ViewpointStatus status) {
-  switch (status) {
-    case ViewpointStatus::kFound: return "";
-    case ViewpointStatus::kNoRoom: return "no room in front of the frontier";
-    case ViewpointStatus::kUnreachable: return "cannot be reached";
-    case ViewpointStatus::kNoLineOfSight: return "hidden from everywhere that can be reached";
-  }
-  return "";
-}
-
 Candidate rejected(const Frontier& frontier, std::string reason) {
   Candidate candidate;
   candidate.frontier = frontier.id;
@@ -48,10 +38,19 @@ void add_way(const Situation& s, const CostTree& tree, const Viewpoint& viewpoin
   candidate.value.cost_m = path.length_m + config.turn_cost_m_per_rad * turning(s.robot, candidate.way);
 }
 
+Candidate candidate_at(const Situation& s, const CostTree& tree, std::uint32_t frontier, const Viewpoint& viewpoint,
+                       const DecisionConfig& config) {
+  Candidate candidate;
+  candidate.frontier = frontier;
+  candidate.goal = viewpoint.pose;
+  candidate.target_map = s.grid.center_of(viewpoint.target);
+  add_way(s, tree, viewpoint, config, candidate);
+  return candidate;
+}
+
 bool is_left_alone(const Eigen::Vector2d& target_map, const Memory& memory) {
-  return std::any_of(memory.left_alone.begin(), memory.left_alone.end(), [&](const Eigen::Vector2d& place) {
-    return (place - target_map).norm() <= memory.radius_m;
-  });
+  return std::any_of(memory.left_alone.begin(), memory.left_alone.end(),
+                     [&](const Eigen::Vector2d& place) { return (place - target_map).norm() <= memory.radius_m; });
 }
 
 std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const Memory& memory,
@@ -62,14 +61,30 @@ std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const M
     const ViewpointResult found = sample_viewpoints(s.grid, tree, frontier, config.viewpoints);
     if (found.status != ViewpointStatus::kFound) candidates.push_back(rejected(frontier, reason_of(found.status)));
     for (const Viewpoint& viewpoint : found.viewpoints) {
-      Candidate& candidate = candidates.emplace_back();
-      candidate.frontier = frontier.id;
-      candidate.goal = viewpoint.pose;
-      candidate.target_map = s.grid.center_of(viewpoint.target);
-      add_way(s, tree, viewpoint, config, candidate);
-      if (is_left_alone(candidate.target_map, memory)) candidate.rejection = "left alone for now";
+      Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
+      if (is_left_alone(candidate.target_map, memory)) candidate.rejection = kLeftAlone;
     }
   }
+  return candidates;
+}
+
+// The stops of TARE's tour; as many of the first ones as may be looked at.
+std::vector<Candidate> propose_tour(const Situation& s, const CostTree& tree, const Memory& memory,
+                                    const DecisionConfig& config) {
+  const geometry::PinholeCamera& camera = s.view.config().camera;
+  const double fov_rad = 2.0 * std::atan(0.5 * camera.width / camera.fx);
+  const Tour tour =
+      plan_tour({s.grid, s.frontiers, tree, s.robot, fov_rad, config.path, config.viewpoints,
+                 config.turn_cost_m_per_rad, memory.left_alone, memory.radius_m, memory.goal, config.keep_factor},
+                config.tare);
+  std::vector<Candidate> candidates;
+  for (const TourStop& stop : tour.stops) {
+    Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, stop.frontier, stop.viewpoint, config));
+    candidate.value.tour_place = static_cast<int>(candidates.size());
+    if (candidate.value.tour_place > config.max_candidates)
+      candidate.rejection = "more than " + std::to_string(config.max_candidates) + " others come before";
+  }
+  for (const auto& [id, reason] : tour.missed) candidates.push_back(rejected(s.frontiers.frontiers().at(id), reason));
   return candidates;
 }
 
@@ -177,8 +192,12 @@ std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, Met
 Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config) {
   const CostTree tree = grow_cost_tree(situation.grid, config.path, {situation.grid.cell_of(situation.robot.p_map)});
   Decision decision;
-  decision.candidates = propose(situation, tree, memory, config);
-  reject_far_ones(decision.candidates, config.max_candidates);
+  if (config.method == Method::kTare) {
+    decision.candidates = propose_tour(situation, tree, memory, config);
+  } else {
+    decision.candidates = propose(situation, tree, memory, config);
+    reject_far_ones(decision.candidates, config.max_candidates);
+  }
   const std::vector<Candidate*> open = open_ones(decision.candidates);
   add_information(situation, open);
   for (Candidate* candidate : open) {

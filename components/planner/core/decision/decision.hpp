@@ -9,6 +9,7 @@
 #include "planner/core/hallucination/hallucination.hpp"
 #include "planner/core/information/path_information.hpp"
 #include "planner/core/space/viewpoints.hpp"
+#include "planner/core/tare/tare.hpp"
 
 namespace lapis::planner {
 
@@ -17,6 +18,7 @@ struct DecisionConfig {
   UtilityConfig utility;
   PathConfig path;
   ViewpointConfig viewpoints;
+  TareConfig tare;
   HallucinationConfig hallucination;
   int max_candidates = 20;           ///< whose information is computed; the ones with the shortest ways; in [1, 1000]
   double view_spacing_m = 0.75;      ///< between views along a path, in [0.1, 10]
@@ -64,7 +66,7 @@ struct Decision {
 struct Memory {
   std::vector<Eigen::Vector2d> left_alone;  ///< targets [m, map]
   double radius_m = 0.75;                   ///< what lies nearer to one of them is left alone, too
-  std::optional<Pose2> goal;            ///< current one
+  std::optional<Pose2> goal;                ///< current one
 };
 
 /// Chooses where to go: candidates in front of every frontier, their ways, what the map and the pose graph would gain

@@ -7,8 +7,8 @@
 namespace lapis::planner {
 
 const std::vector<std::string>& method_names() {
-  static const std::vector<std::string> names{"paper",   "fixed_n", "joint",    "ssmi",
-                                              "nearest", "mi_only", "dopt_only"};  // in the order of Method
+  static const std::vector<std::string> names{"paper", "fixed_n", "joint",   "ssmi",
+                                              "tare",  "nearest", "mi_only", "dopt_only"};  // in the order of Method
   return names;
 }
 
@@ -27,6 +27,7 @@ double utility(Method method, const PathValue& value, const UtilityConfig& confi
     case Method::kJoint:
       return (value.path_information + config.beta * 0.5 * kPoseDimensions * value.loop_gain) / cost_m;
     case Method::kSsmi: return value.goal_information;
+    case Method::kTare: return value.tour_place > 0 ? 1.0 / value.tour_place : 0.0;
     case Method::kNearest: return 1.0 / cost_m;
     case Method::kMiOnly: return value.path_information / cost_m;
     case Method::kDoptOnly: return value.d_optimality;

@@ -12,12 +12,13 @@ enum class Method {
   kFixedN,    ///< the same, D from the expected change of the log-determinant at equal number of nodes
   kJoint,     ///< (MI + beta d / 2 expected change of the log-determinant by loops) / Cost, all in nats
   kSsmi,      ///< MI of the goal's view alone, every ray for itself, whatever the way costs
+  kTare,      ///< the first stop of the tour that TARE would drive (tare.hpp)
   kNearest,   ///< the nearest frontier
   kMiOnly,    ///< MI / Cost
   kDoptOnly,  ///< D
 };
 
-/// Names as in configuration: "paper", "fixed_n", "joint", "ssmi", "nearest", "mi_only", "dopt_only".
+/// Names as in configuration: "paper", "fixed_n", "joint", "ssmi", "tare", "nearest", "mi_only", "dopt_only".
 const std::vector<std::string>& method_names();
 /// Nothing for another name.
 std::optional<Method> method_of(const std::string& name);
@@ -37,6 +38,7 @@ struct PathValue {
   double goal_information = 0.0;  ///< of the last view, every ray for itself
   double loop_gain = 0.0;         ///< expected change of the log-determinant by loops, saturated
   double d_optimality = 0.0;      ///< of the graph with the path, by the method's form of it
+  int tour_place = 0;             ///< of the goal in TARE's tour, from 1
 };
 
 /// Larger is better. Without information kPaper and kFixedN give D, their limit.

@@ -27,10 +27,6 @@ std::size_t sector_of(Cell c, Cell middle, std::size_t count) {
   return std::min(count - 1, static_cast<std::size_t>(turns * static_cast<double>(count)));
 }
 
-bool is_in_sight(const PlanningGrid& grid, Cell from, Cell to) {
-  return walk_line(from, to, [&](Cell c, double) { return grid.state(c) != mapping::kOccupied; });
-}
-
 /// Cells of the ring that can be reached, in the order of the draw; `status` says how far the best ones got.
 std::vector<Candidate> reachable_ring(const PlanningGrid& grid, const CostTree& paths, Cell target,
                                       const ViewpointConfig& config, ViewpointStatus& status) {
@@ -65,6 +61,20 @@ std::vector<Viewpoint> one_per_sector(const PlanningGrid& grid, const CostTree& 
 }
 
 }  // namespace
+
+std::string reason_of(ViewpointStatus status) {
+  switch (status) {
+    case ViewpointStatus::kFound: return "";
+    case ViewpointStatus::kNoRoom: return "no room in front of the frontier";
+    case ViewpointStatus::kUnreachable: return "cannot be reached";
+    case ViewpointStatus::kNoLineOfSight: return "hidden from everywhere that can be reached";
+  }
+  return "";
+}
+
+bool is_in_sight(const PlanningGrid& grid, Cell from, Cell to) {
+  return walk_line(from, to, [&](Cell c, double) { return grid.state(c) != mapping::kOccupied; });
+}
 
 ViewpointResult sample_viewpoints(const PlanningGrid& grid, const CostTree& paths, const Frontier& frontier,
                                   const ViewpointConfig& config) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "planner/core/space/frontier_map.hpp"
@@ -30,6 +31,12 @@ enum class ViewpointStatus {
   kUnreachable,    ///< none that is traversable can be reached within the bound of the cost tree
   kNoLineOfSight,  ///< from all that can be reached, occupied cells hide the frontier
 };
+
+/// For people; empty when found.
+std::string reason_of(ViewpointStatus status);
+
+/// No occupied cell lies between; unknown ones may.
+bool is_in_sight(const PlanningGrid& grid, Cell from, Cell to);
 
 struct ViewpointResult {
   ViewpointStatus status = ViewpointStatus::kNoRoom;

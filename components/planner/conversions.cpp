@@ -71,7 +71,7 @@ Marker candidate_marker(const Candidate& candidate, bool is_chosen, std::int32_t
 }
 
 geometry::Matrix6d symmetric(const std::array<double, 21>& upper_triangle) {
-  geometry::Matrix6d upper;
+  geometry::Matrix6d upper = geometry::Matrix6d::Zero();
   std::size_t at = 0;
   for (int row = 0; row < 6; ++row) {
     for (int column = row; column < 6; ++column) upper(row, column) = upper_triangle[at++];

@@ -116,7 +116,7 @@ class Peers {
     edge.from_id(from);
     edge.to_id(to);
     edge.relative_pose().orientation().w(1.0);
-    for (const std::size_t diagonal : {0, 6, 11, 15, 18, 20}) edge.information()[diagonal] = 1e4;
+    for (const std::size_t diagonal : {0U, 6U, 11U, 15U, 18U, 20U}) edge.information()[diagonal] = 1e4;
     return edge;
   }
 

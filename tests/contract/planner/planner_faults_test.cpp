@@ -1,10 +1,13 @@
-// lapis_planner alone, with what goes wrong around it: fault tests F1, F2, F5 and F17 of the project.
+// lapis_planner alone, with what goes wrong around it: fault tests F2, F3, F5, F6 and F17 of the project.
 #include <gmock/gmock.h>
+
+#include <sys/resource.h>
 
 #include <csignal>
 #include <limits>
 
 #include "tests/contract/planner/planner_contract.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lapis::test {
 namespace {
@@ -14,8 +17,7 @@ using namespace lapis_msgs::msg::PlannerStatus_Constants;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-// slam
-// ------------------------------------------------------------------------------------------------------------------
+// slam ---------------------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, StandsWhileSlamIsLostAndGoesOnAfterwards) {
   get_going();
@@ -92,8 +94,7 @@ TEST_F(PlannerContract, NewSessionOfSlamIsAnotherMapEvenWhenTimeBeginsAgain) {
   EXPECT_NEAR(statuses.back().explored_volume_m3(), 0.75 * volume_m3, 0.01);
 }
 
-// The pose graph
-// ----------------------------------------------------------------------------------------------------------
+// The pose graph -----------------------------------------------------------------------------------------------------
 
 class PlannerGraphFaults : public PlannerContract {
  protected:
@@ -166,8 +167,7 @@ TEST_F(PlannerGraphFaults, LandmarksThatMakeNoSense) {
   EXPECT_TRUE(wait_for_count("landmarks dropped")) << planner->log();
 }
 
-// The map
-// -----------------------------------------------------------------------------------------------------------------
+// The map ------------------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, TilesAndMapStatesThatMakeNoSenseChangeNothing) {
   get_going();
@@ -240,8 +240,7 @@ TEST_F(PlannerContract, ObstacleThatIsPutOnThePathMovesOrEmptiesIt) {
   ASSERT_TRUE(ticks_until([this] { return stands() || goal().x() < 3.25; }, 2.0)) << reason() << planner->log();
 }
 
-// The controller
-// ------------------------------------------------------------------------------------------------------------
+// The controller -----------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, BlockedControllerGetsAnotherGoal) {
   ASSERT_TRUE(start()) << planner->log();
@@ -297,8 +296,21 @@ TEST_F(PlannerContract, RobotThatDoesNotMoveGivesItsGoalUp) {
       << reason() << planner->log();
 }
 
-// F2
-// ------------------------------------------------------------------------------------------------------------------------
+// F3 -----------------------------------------------------------------------------------------------------------------
+
+TEST_F(PlannerContract, FullDiskCostsTheFileAndNotTheExploration) {
+  const TemporaryFolder folder;
+  ASSERT_TRUE(start({"output_dir=" + folder.path().string()})) << planner->log();
+  const rlimit full{400, 400};  // the headings and not much more
+  ASSERT_EQ(prlimit(planner->pid(), RLIMIT_FSIZE, &full, nullptr), 0);
+  peers.draw(kRoomWithDoor);
+  ASSERT_TRUE(ticks_until([this] { return candidates.size() == 3; })) << planner->log();
+  EXPECT_TRUE(has_path());
+  const std::string complaint = folder.path().string() + "/decisions.csv cannot be written";
+  EXPECT_TRUE(wait_until([&] { return planner->log().find(complaint) != std::string::npos; })) << planner->log();
+}
+
+// F2 -----------------------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, RestartedPlannerHasTheWholeMapAndGoesOn) {
   start_free();

@@ -133,7 +133,7 @@ TEST_F(PlannerContract, GoesHomeAtTheEndWhenAskedTo) {
   EXPECT_LT((peers.position - Eigen::Vector2d(2, 2)).norm(), 0.31);
 }
 
-// Services --------------------------------------------------------------------------------------------------------------
+// Services -----------------------------------------------------------------------------------------------------------
 
 class PlannerServices : public PlannerContract {
  protected:
@@ -194,7 +194,7 @@ TEST_F(PlannerServices, ReturnsHomeAndIsDone) {
   EXPECT_TRUE(stands());
 }
 
-// Files and ends ----------------------------------------------------------------------------------------------------------
+// Files and ends -----------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, LastWordAfterSigtermIsAnEmptyPath) {
   get_going();

@@ -183,6 +183,7 @@ void SlamComponent::drop(time::Time stamp, const std::string& reason) {
 }
 
 void SlamComponent::end_map() {
+  if (slam_ == nullptr) return;  // none has begun since the camera last started anew
   spdlog::warn("the camera's stamps went back, so it has started anew: a new map begins");
   slam_->settle();
   if (const auto problem = write_files()) spdlog::error("{}; tracking goes on", *problem);

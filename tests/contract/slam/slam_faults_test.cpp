@@ -178,6 +178,26 @@ TEST_F(SlamFaults, ClockThatJumpsBackBeginsANewSession) {
   EXPECT_EQ(odometry.size(), frames.size());
 }
 
+// As with two cameras on one topic: the second jump comes before a frame of the first one is whole.
+TEST_F(SlamFaults, ClockThatJumpsBackTwiceBeginsOneSession) {
+  const std::int64_t session = frames.back().session();
+  const std::size_t before = frames.size();
+  std::int64_t start_ns = CameraFeed::stamp(0).nanoseconds;
+  for (int jump = 1; jump <= 2; ++jump) {
+    start_ns -= 5'000'000'000;
+    CameraFrame lonely;
+    lonely.color = feed.frame(time::Time{start_ns}, slow_motion(0)).color;
+    feed.send(lonely);
+    ASSERT_TRUE(wait_for_count("colour: stamps went back", jump)) << slam.log();
+  }
+  const time::Time next{start_ns + CameraFeed::kPeriod_ns};
+  feed.send(feed.frame(next, slow_motion(0)));
+  ASSERT_TRUE(wait_for_answer(next)) << slam.log();
+  EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
+  EXPECT_EQ(frames.back().session(), session + 1);
+  EXPECT_LE(frames.size(), before + 2) << "the lonely frame may be told as dropped";
+}
+
 TEST_F(SlamFaults, ClockThatJumpsAheadGoesOnInTheSameSession) {
   const std::int64_t session = frames.back().session();
   for (int i = kFirstFrames; i < kFirstFrames + 6; ++i) {

@@ -51,7 +51,7 @@ make_run_folder() {
   mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another with --out DIR"
   (
     cd "$out" || exit
-    rm -f manifest.yaml simulation.yaml metrics.json timeline.csv decisions.csv \
+    rm -f manifest.yaml simulation.yaml metrics.json timeline.csv decisions?(.+([0-9])).csv \
       trajectory_{estimate,ground_truth}.txt reference_map.lapis \
       {keyframes,pose_graph,map}?(.+([0-9])).{txt,g2o,lapis,ot,ply} \
       ground_truth/{mesh,flood,ideal}.lapis ground_truth/{classes,rooms}.json ground_truth/navmap.{png,yaml} \

@@ -3,6 +3,8 @@
 # shellcheck source-path=SCRIPTDIR
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
+shopt -s extglob
+
 # The script fills these before it calls run_chain, and `out` of lib.sh.
 components=() # in the order of their start; the source of frames is the last one
 play=() # arguments of the source

@@ -10,9 +10,9 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kProgress_m = 0.3;          // nearer by less is no progress
-constexpr double kMetresPerTurn_rad = 0.5;   // turning towards the final heading is progress, too
-constexpr double kPathTolerance_m = 1.0;     // of the path that has been driven already
+constexpr double kProgress_m = 0.3;         // nearer by less is no progress
+constexpr double kMetresPerTurn_rad = 0.5;  // turning towards the final heading is progress, too
+constexpr double kPathTolerance_m = 1.0;    // of the path that has been driven already
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
 
@@ -29,9 +29,8 @@ bool has_frontier_at(const Surroundings& surroundings, const Eigen::Vector2d& ta
   const auto& frontiers = surroundings.frontiers().frontiers();
   return std::any_of(frontiers.begin(), frontiers.end(), [&](const auto& entry) {
     const auto& cells = entry.second.cells;
-    return std::any_of(cells.begin(), cells.end(), [&](Cell c) {
-      return (surroundings.grid().center_of(c) - target_map).norm() <= radius_m;
-    });
+    return std::any_of(cells.begin(), cells.end(),
+                       [&](Cell c) { return (surroundings.grid().center_of(c) - target_map).norm() <= radius_m; });
   });
 }
 
@@ -58,6 +57,18 @@ void Explorer::pause() {
 void Explorer::return_home() {
   drop_goal();
   enter(State::kReturning, "asked to return");
+}
+
+void Explorer::forget_map() {
+  drop_goal();
+  memory_.clear();
+  looks_.clear();
+  home_.reset();
+  last_tracked_.reset();
+  decided_at_.reset();
+  empty_decisions_ = 0;
+  if (state_ == State::kRecovering) enter(interrupted_, "slam has begun another map");
+  if (state_ == State::kReturning) enter(State::kFailed, "the map in which it started is gone");
 }
 
 void Explorer::enter(State state, std::string reason) {
@@ -195,8 +206,8 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
   }
   if ((report.now - *lost_at_).seconds() > config_.lost_timeout_s) {
     drop_goal();
-    return enter(State::kFailed, "slam has not tracked for " + std::to_string(std::lround(config_.lost_timeout_s)) +
-                                     " s");
+    return enter(State::kFailed,
+                 "slam has not tracked for " + std::to_string(std::lround(config_.lost_timeout_s)) + " s");
   }
   const bool can_drive = report.tracking == Tracking::kDeadReckoning && report.robot && last_tracked_;
   if (can_drive && surroundings != nullptr && path_.empty()) drive_to(*last_tracked_, report, *surroundings);

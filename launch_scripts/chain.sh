@@ -3,6 +3,8 @@
 # shellcheck source-path=SCRIPTDIR
 source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
 
+shopt -s extglob
+
 # The script fills these before it calls run_chain, and `out` of lib.sh.
 components=() # in the order of their start; the source of frames is the last one
 play=() # arguments of the source
@@ -51,7 +53,7 @@ make_run_folder() {
   mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another with --out DIR"
   (
     cd "$out" || exit
-    rm -f manifest.yaml simulation.yaml metrics.json timeline.csv decisions.csv \
+    rm -f manifest.yaml simulation.yaml metrics.json timeline.csv decisions?(.+([0-9])).csv \
       trajectory_{estimate,ground_truth}.txt reference_map.lapis \
       {keyframes,pose_graph,map}?(.+([0-9])).{txt,g2o,lapis,ot,ply} \
       ground_truth/{mesh,flood,ideal}.lapis ground_truth/{classes,rooms}.json ground_truth/navmap.{png,yaml} \

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Explores a simulated building: the robot decides by itself where to go, and maps what it sees.
 set -euo pipefail
-shopt -s extglob
 # shellcheck source-path=SCRIPTDIR
 source "$(dirname "$0")/chain.sh"
 

@@ -1,7 +1,6 @@
 #!/usr/bin/env bash
 # Plays a recorded RGB-D data set, or a tour of a simulated building, through slam, semantic_mapper and evaluator.
 set -euo pipefail
-shopt -s extglob
 # shellcheck source-path=SCRIPTDIR
 source "$(dirname "$0")/chain.sh"
 

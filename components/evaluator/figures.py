@@ -175,10 +175,10 @@ def draw_map(axes, points, ceiling, paleness=0.45):
     return {label: (count, colour_of[label]) for label, count in sorted(cells_of.items())}
 
 
-def finish_plan(axes, title):
+def finish_plan(axes, title, has_map=True):
     """What all figures seen from above have in common."""
     axes.use_sticky_edges = False
-    axes.set_aspect("equal", adjustable="datalim")
+    axes.set_aspect("equal", adjustable="box" if has_map else "datalim")
     axes.margins(0.04)
     axes.set(xlabel="x [m]", ylabel="y [m]", title=title)
     axes.grid(color="#dddddd", linewidth=0.6)
@@ -231,9 +231,9 @@ def draw_coverage(run):
     for level in (80, 90):
         reached = np.flatnonzero(100 * share >= level)
         if len(reached):
-            at = seconds[reached[0]]
-            right.plot(at, level, "o", color=ORANGE)
-            right.annotate(f"{level} % after {at:.0f} s", (at, level), xytext=(8, -14), textcoords="offset points",
+            first = seconds[reached[0]], 100 * share[reached[0]]
+            right.plot(*first, "o", color=ORANGE)
+            right.annotate(f"{level} % after {first[0]:.0f} s", first, xytext=(8, -14), textcoords="offset points",
                            color=ORANGE)
     return figure
 
@@ -250,7 +250,7 @@ def draw_pose_graph(run):
     axes.legend([nodes, odometry, loops],
                 [f"{len(positions)} key-frames", "odometry", f"{is_loop.sum()} loop closures"],
                 loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
-    finish_plan(axes, f"Pose graph, optimised: {run.resolve().name}")
+    finish_plan(axes, f"Pose graph, optimised: {run.resolve().name}", has_map=False)
     return figure
 
 
@@ -327,7 +327,7 @@ def draw_decision(run):
         raise MissingInput(f"{path.name} is damaged ({error})") from error
     plan.legend(*zip((way, "way until then"), (robot, "robot"), *entries), loc="upper center",
                 bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False)
-    finish_plan(plan, "")
+    finish_plan(plan, "", has_map=points is not None)
     figure.suptitle(f"Decision {number} at {time_s:.1f} s by method {method}, the one with most candidates; "
                     "the map is that of the run's end")
     figure.tight_layout()
@@ -351,7 +351,7 @@ def draw_trajectory(run):
     axes.plot(*break_gaps(stamps, positions)[1][:, :2].T, color=ORANGE, linewidth=1.4, label="estimate")
     axes.plot(*positions[0, :2], "o", color="white", markeredgecolor="black", markersize=9, label="start")
     axes.plot(*positions[-1, :2], "s", color=ORANGE, markeredgecolor="black", markersize=9, label="end")
-    finish_plan(axes, f"Trajectory in the map frame: {run.resolve().name}")
+    finish_plan(axes, f"Trajectory in the map frame: {run.resolve().name}", has_map=points is not None)
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
     return figure
 

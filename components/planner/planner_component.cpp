@@ -131,7 +131,7 @@ void PlannerComponent::begin_session(std::int64_t session) {
 
 void PlannerComponent::note_frame(const Tracked& frame) {
   if (frame.session() != session_) begin_session(frame.session());
-  ++frames_;
+  context_.status().value("frames", ++frames_);
   stamp_ = messages::from_message(frame.header().stamp());
   tracking_ = tracking_of(frame);
   if (tracking_ == Tracking::kLost) robot_.reset();
@@ -251,11 +251,13 @@ void PlannerComponent::publish_markers() {
 
 void PlannerComponent::publish_status() {
   const bool has_changed = explorer_.state() != reported_state_ || explorer_.reason() != reported_reason_;
-  if (reported_at_ && !has_changed && abs(stamp_ - *reported_at_) < kStatusPeriod) return;
+  const bool has_decided = decisions_ != reported_decisions_;  // each decision's time is told
+  if (reported_at_ && !has_changed && !has_decided && abs(stamp_ - *reported_at_) < kStatusPeriod) return;
   if (has_changed) spdlog::info("{}", explorer_.reason());
   reported_at_ = stamp_;
   reported_state_ = explorer_.state();
   reported_reason_ = explorer_.reason();
+  reported_decisions_ = decisions_;
   lapis_msgs::msg::PlannerStatus message;
   message.header(header());
   message.state(to_message(explorer_.state()));
@@ -263,6 +265,7 @@ void PlannerComponent::publish_status() {
   message.explored_volume_m3(surroundings_ ? surroundings_->explored_volume_m3() : 0.0);
   message.decision_time_s(decision_time_s_);
   message.decisions(decisions_);
+  message.decisions_unlike_mi_only(disagreements_);
   status_.publish(message);
 }
 

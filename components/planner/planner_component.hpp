@@ -97,6 +97,7 @@ class PlannerComponent {
   std::optional<time::Time> reported_at_;
   State reported_state_ = State::kIdle;
   std::string reported_reason_;
+  std::uint64_t reported_decisions_ = 0;
 };
 
 }  // namespace lapis::planner

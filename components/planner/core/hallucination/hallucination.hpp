@@ -19,6 +19,9 @@ struct HallucinationConfig {
   int max_places = 6;               ///< of a path; the most probable ones; in [1, 8]
 };
 
+/// Of a loop closure with a place of which so many landmarks are seen again.
+double loop_probability(int landmarks, const HallucinationConfig& config);
+
 /// Old place that a path would see again.
 struct Place {
   int keyframe = 0;          ///< node of the AnalysedGraph

@@ -60,7 +60,7 @@ std::vector<Eigen::Vector3d> loops_of(const FinishedRun& run, const Stretch& str
     if (!edge.is_loop_closure || older >= first || newer < first || newer > last) continue;
     const auto found = std::lower_bound(run.keyframes.begin(), run.keyframes.end(), older,
                                         [](const Keyframe& k, std::uint64_t id) { return k.id < id; });
-    if (found != run.keyframes.end() && found->id == older) loops.push_back(found->T_map_camera.translation());
+    if (found != run.keyframes.end() && found->id == older) loops.emplace_back(found->T_map_camera.translation());
   }
   return loops;
 }

@@ -3,7 +3,7 @@
 set -euo pipefail
 shopt -s extglob
 # shellcheck source-path=SCRIPTDIR
-source "$(dirname "$0")/lib.sh"
+source "$(dirname "$0")/chain.sh"
 
 usage() {
   cat <<'TEXT'
@@ -32,9 +32,8 @@ end, 1 a process failed or no frame came, 2 bad set-up, 130 and 143 interrupted.
 TEXT
 }
 
-source=sensor_replay # of the frames
 of_data_set=() of_scene=() # options given that the other kind of source does not know
-command_line="$*" dataset="" scene="" out="" rate="" play=() requests=() robots=("$repository/config/robot.yaml")
+dataset="" scene="" rate="" requests=()
 while [ $# -gt 0 ]; do
   case $1 in
     --out | --rate | --start | --duration | --labels | --scene | --seed | --tour | --robot | --set)
@@ -44,7 +43,7 @@ while [ $# -gt 0 ]; do
     -h | --help) usage && exit 0 ;;
     --out) out=$2 && shift ;;
     --rate) rate=$2 && shift ;;
-    --scene) scene=$2 source=simulator && shift ;;
+    --scene) scene=$2 && shift ;;
     --robot) robots+=("$2") of_scene+=("$1") && shift ;;
     --duration) play+=("$1" "$2") && shift ;;
     --start | --labels) play+=("$1" "$2") of_data_set+=("$1") && shift ;;
@@ -63,109 +62,19 @@ done
 [ -n "$scene" ] || [ -d "$dataset" ] || die "$dataset: no such folder (wanted is a TUM RGB-D data set)"
 require_build
 
-components=(slam semantic_mapper evaluator "$source") settings=() # settings: component, KEY=VALUE, component, ...
-add_setting() {
-  case $1 in
-    dds.*=*) for name in "${components[@]}"; do settings+=("$name" "$1"); done ;;
-    robot.*=*) for name in "${components[@]}"; do ! knows_robot "$name" || settings+=("$name" "$1"); done ;;
-    lockstep.*=*) settings+=("$source" "$1") ;;
-    semantic_mapper.sensor_model.*=*) settings+=(semantic_mapper "$1" evaluator "evaluator.${1#*.}") ;;
-    semantic_mapper.@(resolution_m|integration.*|frame.*)=*)
-      settings+=(semantic_mapper "$1" evaluator "evaluator.${1#*.}")
-      [ "$source" != simulator ] || settings+=(simulator "simulator.truth.${1#*.}") ;;
-    sensor_replay.*=* | simulator.*=*)
-      [ "$source" = "${1%%.*}" ] || die "--set $1: no ${1%%.*} in this run"
-      settings+=("$source" "$1") ;;
-    slam.*=* | semantic_mapper.*=* | evaluator.*=*) settings+=("${1%%.*}" "$1") ;;
-    *) die "--set $1: unknown key; wanted is KEY=VALUE, KEY begins with dds., lockstep., robot., ${components[*]/%/.}" ;;
-  esac
-}
-knows_robot() { [ "$1" = semantic_mapper ] || [ "$1" = evaluator ] || [ "$1" = simulator ]; }
-resumed="" # map that slam goes on with
-for request in "${requests[@]}"; do
-  add_setting "$request"
-  [[ $request != slam.resume_from=* ]] || resumed=${request#*=}
-done
-
+components=(slam semantic_mapper evaluator "${scene:+simulator}${dataset:+sensor_replay}")
+if [ -z "$scene" ] && [ -d "$dataset/ground_truth" ]; then
+  give evaluator "evaluator.ground_truth_dir=$dataset/ground_truth"
+fi
+for request in "${requests[@]}"; do route "$request"; done
 out=${out:-$repository/out/$(basename "${dataset:-$scene}" .yaml)}
-mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another with --out DIR"
-(
-  cd "$out"
-  rm -f manifest.yaml simulation.yaml metrics.json timeline.csv trajectory_{estimate,ground_truth}.txt \
-    reference_map.lapis {keyframes,pose_graph,map}?(.+([0-9])).{txt,g2o,lapis,ot,ply} \
-    ground_truth/{mesh,flood,ideal}.lapis ground_truth/{classes,rooms}.json ground_truth/navmap.{png,yaml} \
-    figures/{trajectory,errors,class_iou}.png logs/{slam,semantic_mapper,evaluator,sensor_replay,simulator}.log
-)
-for file in "$out"/slam?(.+([0-9])).lapis; do
-  [ "$file" -ef "$resumed" ] || rm -f "$file"
-done
-if [ "$source" = simulator ]; then
+make_run_folder
+if [ -n "$scene" ]; then
   play=("$scene" --set simulator.tour=bundled "${play[@]}" --set "simulator.output_dir=$out")
   [ -z "$rate" ] || play+=(--mode freerun --set simulator.wait_for_readers=3)
 else
   play=("$dataset" "${play[@]}")
-  [ ! -d "$dataset/ground_truth" ] || settings=(evaluator "evaluator.ground_truth_dir=$dataset/ground_truth" "${settings[@]}")
   [ -z "$rate" ] || play+=(--rate "$rate" --set sensor_replay.wait_for_readers=3)
 fi
-
-# Sets `arguments` to the command line of a component.
-collect_arguments() {
-  local i robot
-  if [ "$1" = "$source" ]; then arguments=("${play[@]}"); else arguments=(--set "$1.output_dir=$out"); fi
-  if knows_robot "$1"; then for robot in "${robots[@]}"; do arguments+=(--config "$robot"); done; fi
-  for ((i = 0; i < ${#settings[@]}; i += 2)); do
-    [ "${settings[i]}" != "$1" ] || arguments+=(--set "${settings[i + 1]}")
-  done
-}
-
-write_manifest() {
-  local name
-  {
-    printf 'version: "%s"\ncommand: |-\n  replay.sh %s\n%s: "%s"\nexit_status:\n' \
-      "$("$bin/lapis_slam" --version)" "$command_line" "${scene:+scene}${dataset:+data_set}" "$dataset$scene"
-    for name in "${names[@]}"; do echo "  $name: ${statuses[$name]:-null}"; done
-    if [ -f "$out/simulation.yaml" ]; then echo "simulation:" && sed 's/^/  /' "$out/simulation.yaml"; fi
-    echo "configuration:"
-    for name in "${components[@]}"; do
-      collect_arguments "$name"
-      echo "  $name:"
-      "$bin/lapis_$name" "${arguments[@]}" --print-config | sed 's/^/    /'
-    done
-  } >"$out/manifest.yaml.part" && mv "$out/manifest.yaml.part" "$out/manifest.yaml"
-}
-
-print_metrics() { [ ! -f "$out/metrics.json" ] || sed -n '/^exit_reason/,$p' "$out/logs/evaluator.log"; }
-
-interrupted() {
-  trap '' INT TERM
-  end_all
-  write_manifest
-  print_metrics
-  echo "replay.sh: interrupted by $1; what was played is in $out" >&2
-  exit "$2"
-}
-
-trap end_all EXIT
-trap 'interrupted SIGINT 130' INT
-trap 'interrupted SIGTERM 143' TERM
-
-for name in slam semantic_mapper evaluator; do
-  collect_arguments "$name"
-  start "$name" "${arguments[@]}"
-  wait_ready "$name" 20
-done
-collect_arguments "$source"
-start_shown "$source" "${arguments[@]}"
-
-# The first child to end is the source, unless something went wrong.
-wait_first
-early=${names[first]}
-end_all
-write_manifest
-[ "$early" = "$source" ] || fail_with "$early" "ended early with status ${statuses[$early]}"
-print_metrics
-for name in "$source" slam semantic_mapper evaluator; do
-  [ "${statuses[$name]}" = 0 ] || fail_with "$name" "failed with status ${statuses[$name]}" "${statuses[$name]}"
-done
-[ -f "$out/metrics.json" ] || fail_with slam "no frame came; the reason may be here or in the other logs"
-echo "run folder: $out"
+subject="${scene:+scene}${dataset:+data_set}: \"$dataset$scene\""
+run_chain

@@ -11,6 +11,7 @@ namespace {
 using visualization_msgs::msg::Marker;
 
 constexpr double kFarthest_m = 1e4;
+constexpr double kSameAngle_rad = 1e-6;
 constexpr double kGroundOffset_m = 0.05;  // markers just above the floor
 
 geometry_msgs::msg::Pose to_message(const Pose2& pose) {
@@ -68,13 +69,18 @@ Marker candidate_marker(const Candidate& candidate, bool is_chosen, std::int32_t
   return result;
 }
 
+messages::Converted<geometry::Pose> near_pose(const geometry_msgs::msg::Pose& message) {
+  auto T = messages::from_message(message);
+  if (T && !(T->translation().norm() <= kFarthest_m))
+    return messages::Converted<geometry::Pose>::refused("pose is more than 10 km from the map's origin");
+  return T;
+}
+
 }  // namespace
 
 messages::Converted<Pose2> to_core(const geometry_msgs::msg::Pose& message) {
-  using Result = messages::Converted<Pose2>;
-  const auto T = messages::from_message(message);
-  if (!T) return Result::refused(T.reason);
-  if (T->translation().norm() > kFarthest_m) return Result::refused("pose is more than 10 km from the map's origin");
+  const auto T = near_pose(message);
+  if (!T) return messages::Converted<Pose2>::refused(T.reason);
   const Eigen::Vector3d forward = T->linear().col(0);
   return Pose2{T->translation().head<2>(), std::atan2(forward.y(), forward.x())};
 }
@@ -85,10 +91,10 @@ messages::Converted<ObstacleGrid> to_core(const nav_msgs::msg::OccupancyGrid& me
   grid.resolution_m = static_cast<double>(message.info().resolution());
   const std::size_t cells = static_cast<std::size_t>(message.info().width()) * message.info().height();
   if (message.data().size() != cells) return Result::refused("grid has not width x height cells");
-  const auto origin = to_core(message.info().origin());
+  const auto origin = near_pose(message.info().origin());
   if (!origin) return Result::refused("origin of the grid: " + origin.reason);
-  if (std::abs(origin->yaw_rad) > 1e-6) return Result::refused("grid is turned");
-  grid.origin = origin->p_map;
+  if (geometry::rotation_angle(origin->linear()) > kSameAngle_rad) return Result::refused("grid is turned");
+  grid.origin = origin->translation().head<2>();
   grid.width = static_cast<int>(message.info().width());
   grid.height = static_cast<int>(message.info().height());
   grid.cells.assign(message.data().begin(), message.data().end());
@@ -101,7 +107,7 @@ messages::Converted<GraphMessage> to_core(const lapis_msgs::msg::PoseGraph& mess
   graph.session = message.session();
   graph.version = message.version();
   for (const auto& node : message.nodes()) {
-    const auto T = messages::from_message(node.pose());
+    const auto T = near_pose(node.pose());
     if (!T) return Result::refused("key-frame " + std::to_string(node.id()) + ": " + T.reason);
     graph.keyframes.push_back({node.id(), *T});
   }
@@ -121,13 +127,15 @@ messages::Converted<GraphMessage> to_core(const lapis_msgs::msg::PoseGraph& mess
   return graph;
 }
 
-mapping::MapState to_core(const lapis_msgs::msg::MapState& message) {
+messages::Converted<mapping::MapState> to_core(const lapis_msgs::msg::MapState& message) {
   mapping::MapState state;
   state.epoch = message.epoch();
   state.version = message.version();
   state.tiles = message.tiles();
   state.checksum = message.checksum();
   state.resolution_m = message.resolution_m();
+  if (!(state.resolution_m >= mapping::kMinResolution_m && state.resolution_m <= mapping::kMaxResolution_m))
+    return messages::Converted<mapping::MapState>::refused("no map has voxels of that size");
   return state;
 }
 

@@ -24,9 +24,10 @@ struct GraphMessage {
 messages::Converted<Pose2> to_core(const geometry_msgs::msg::Pose& message);
 /// Refused when cells, size and resolution do not fit each other, or when the grid is turned.
 messages::Converted<ObstacleGrid> to_core(const nav_msgs::msg::OccupancyGrid& message);
-/// Refused when a pose or an information matrix is not finite.
+/// Refused when a pose is not valid or more than 10 km from the origin, or when an information matrix is not finite.
 messages::Converted<GraphMessage> to_core(const lapis_msgs::msg::PoseGraph& message);
-mapping::MapState to_core(const lapis_msgs::msg::MapState& message);
+/// Refused when no map has voxels of that size.
+messages::Converted<mapping::MapState> to_core(const lapis_msgs::msg::MapState& message);
 
 nav_msgs::msg::Path to_message(const std::vector<Pose2>& path, const std_msgs::msg::Header& header);
 lapis_msgs::msg::CandidateSet to_message(const Decision& decision, std::uint64_t id, const std::string& method,

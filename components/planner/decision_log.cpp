@@ -3,9 +3,19 @@
 #include <iomanip>
 #include <stdexcept>
 
-namespace lapis::planner {
+#include "common/files/atomic_file.hpp"
 
-DecisionLog::DecisionLog(const std::string& path) : file_(path, std::ios::trunc) {
+namespace lapis::planner {
+namespace {
+
+// Texts have no quotes of their own; commas would make columns.
+std::string quoted(const std::string& text) { return text.find(',') == std::string::npos ? text : '"' + text + '"'; }
+
+}  // namespace
+
+DecisionLog::DecisionLog(const std::string& path) {
+  if (const auto problem = files::set_aside(path)) throw std::runtime_error(*problem);
+  file_.open(path);
   file_ << "decision,time_s,method,candidate,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
            "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
            "utility,is_chosen,is_chosen_by_mi_only,agrees_with_mi_only,rejection\n";
@@ -20,7 +30,8 @@ bool DecisionLog::write(const Decision& decision, std::uint64_t id, const std::s
           << c.value.path_information << ',' << c.value.goal_information << ',' << c.places << ','
           << c.value.loop_gain << ',' << c.gain.fixed_n_change << ',' << c.gain.end_sigma_without_loops_m << ','
           << c.gain.end_sigma_m << ',' << c.value.d_optimality << ',' << c.utility << ',' << (decision.chosen == i)
-          << ',' << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only() << ',' << c.rejection << '\n';
+          << ',' << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only() << ',' << quoted(c.rejection)
+          << '\n';
   }
   return static_cast<bool>(file_.flush());
 }

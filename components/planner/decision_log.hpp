@@ -10,7 +10,7 @@ namespace lapis::planner {
 /// decisions.csv: a row for every candidate of every decision (docs/evaluation.md).
 class DecisionLog {
  public:
-  /// Begins the file anew. Throws std::runtime_error when it cannot be written.
+  /// An older file of that name is set aside. Throws std::runtime_error when it cannot be written.
   explicit DecisionLog(const std::string& path);
   /// False when the disk refuses.
   bool write(const Decision& decision, std::uint64_t id, const std::string& method, double time_s);

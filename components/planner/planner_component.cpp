@@ -41,7 +41,8 @@ Tracking tracking_of(const lapis_msgs::msg::TrackedFrame& frame) {
 }  // namespace
 
 PlannerComponent::PlannerComponent(const Config& config, runtime::Context& context)
-    : config_(completed(config)), context_(context), map_frame_(context.frame("map")), view_(view_config(config_)),
+    : config_(completed(config)), context_(context), map_frame_(context.frame("map")),
+      base_frame_(context.frame("base_link")), view_(view_config(config_)),
       T_base_camera_(geometry::T_base_camera(robot::camera_mount(config_.robot.camera))),
       path_(context.advertise(topics::kPlannerPath)), candidates_(context.advertise(topics::kCandidates)),
       markers_(context.advertise(topics::kPlannerMarkers)), status_(context.advertise(topics::kPlannerStatus)),
@@ -52,7 +53,7 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
   }
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { add_tile(m); });
-  context.subscribe(topics::kMapState, [this](const auto& m) { map_.apply_state(to_core(m)); });
+  context.subscribe(topics::kMapState, [this](const auto& m) { set_map_state(m); });
   context.subscribe(topics::kObstacles, [this](nav_msgs::msg::OccupancyGrid& m) { obstacles_ = std::move(m); });
   context.subscribe(topics::kPoseGraph, [this](const auto& m) { set_graph(m); });
   context.subscribe(topics::kLandmarks, [this](const auto& m) { add_landmarks(m); });
@@ -96,6 +97,12 @@ void PlannerComponent::add_tile(const lapis_msgs::msg::VoxelTile& message) {
   if (result == mapping::TileResult::kDamaged) drop("tile", "it cannot be decoded");
 }
 
+void PlannerComponent::set_map_state(const lapis_msgs::msg::MapState& message) {
+  const auto state = to_core(message);
+  if (!state) return drop("map state", state.reason);
+  map_.apply_state(*state);
+}
+
 void PlannerComponent::add_landmarks(const lapis_msgs::msg::LandmarkTile& message) {
   auto tile = messages::from_message(message);
   if (!tile) return drop("landmarks", tile.reason);
@@ -116,6 +123,8 @@ void PlannerComponent::note_frame(const Tracked& frame) {
 }
 
 void PlannerComponent::set_pose(const nav_msgs::msg::Odometry& message) {
+  if (message.header().frame_id() != map_frame_ || message.child_frame_id() != base_frame_)
+    return drop("pose", "it is not of " + base_frame_ + " in " + map_frame_);
   auto pose = to_core(message.pose().pose());
   if (!pose) return drop("pose", pose.reason);
   robot_ = *pose;
@@ -184,6 +193,11 @@ void PlannerComponent::refresh() {
 
 Report PlannerComponent::report() const { return {stamp_, robot_, tracking_, is_blocked_}; }
 
+PlannerComponent::GraphVersions PlannerComponent::versions_of_graph() const {
+  const auto landmarks = landmarks_.state().value_or(mapping::LandmarkState{});
+  return {graph_->session, graph_->version, landmarks.session, landmarks.graph_version};
+}
+
 void PlannerComponent::begin_decision() {
   DecisionInput input;
   input.surroundings = &*surroundings_;
@@ -193,12 +207,11 @@ void PlannerComponent::begin_decision() {
   input.memory = explorer_.memory(stamp_);
   input.config = config_.decision;
   input.knowledge = knowledge_;
-  const std::uint64_t landmark_version = landmarks_.state() ? landmarks_.state()->graph_version : 0;
-  if (graph_ && (graph_->version != known_graph_ || landmark_version != known_landmarks_)) {
+  const bool has_edges = graph_ && !graph_->edges.empty();
+  if (has_edges && versions_of_graph() != known_graph_) {
     input.graph = graph_;
     if (landmarks_.state() && landmarks_.state()->session == graph_->session) input.landmarks = landmarks_.tiles();
-    known_graph_ = graph_->version;
-    known_landmarks_ = landmark_version;
+    known_graph_ = versions_of_graph();
   }
   worker_.start(std::move(input), frames_ + static_cast<std::uint64_t>(config_.decision_latency_frames));
 }

@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "common/mapping/label_list.hpp"
@@ -28,10 +29,13 @@ class PlannerComponent {
 
  private:
   using Tracked = lapis_msgs::msg::TrackedFrame;
+  /// Session and version of the graph, then of the landmarks.
+  using GraphVersions = std::tuple<std::int64_t, std::uint64_t, std::int64_t, std::uint64_t>;
 
   void serve();
   void set_labels(const vision_msgs::msg::LabelInfo& message);
   void add_tile(const lapis_msgs::msg::VoxelTile& message);
+  void set_map_state(const lapis_msgs::msg::MapState& message);
   void add_landmarks(const lapis_msgs::msg::LandmarkTile& message);
   void set_graph(const lapis_msgs::msg::PoseGraph& message);
   void note_frame(const Tracked& frame);
@@ -42,6 +46,7 @@ class PlannerComponent {
   void take_decision();
   void refresh();
   Report report() const;
+  GraphVersions versions_of_graph() const;
   void begin_decision();
   void publish();
   void publish_status();
@@ -51,7 +56,7 @@ class PlannerComponent {
 
   Config config_;
   runtime::Context& context_;
-  const std::string map_frame_;
+  const std::string map_frame_, base_frame_;
   const View view_;
   const geometry::Pose T_base_camera_;
   dds::Publisher<nav_msgs::msg::Path>& path_;
@@ -76,7 +81,7 @@ class PlannerComponent {
   std::optional<Surroundings> surroundings_;
   std::optional<mapping::MapState> surroundings_state_;
   std::shared_ptr<const GraphKnowledge> knowledge_;
-  std::uint64_t known_graph_ = 0, known_landmarks_ = 0;  // versions in knowledge_
+  GraphVersions known_graph_;  // in knowledge_
   Explorer explorer_;
   DecisionWorker worker_;
   std::optional<DecisionLog> log_;

@@ -28,6 +28,8 @@ void describe(Field& field, GridConfig& c) {
         "voxels whose centre is below say nothing [m]");
   field("max_height_m", c.band.max_height_m, config::in_range(-100.0, 100.0),
         "voxels whose centre is above say nothing [m]");
+  field("bottom_m", c.bottom_m, config::in_range(0.0, 10.0),
+        "lowest part of what lies in between; a cell is free only where it has been seen [m]");
   field("margin_m", c.margin_m, config::in_range(0.0, 1.0), "kept between the robot's disc and obstacles [m]");
   field("unknown_clearance_m", c.unknown_clearance_m, config::in_range(0.0, 2.0),
         "kept from unknown cells; 0: the robot may touch them [m]");

@@ -53,6 +53,10 @@ std::string to_yaml(const RunSummary& summary, const World& world, const StartPo
   text += "wall_s: " + number(summary.wall_s) + "\n";
   text += "real_time_factor: " + number(summary.simulated_s / std::max(summary.wall_s, 1e-3)) + "\n";
   text += "collisions: " + std::to_string(summary.collisions) + "\n";
+  if (summary.planner) {
+    text += "planner_state: " + summary.planner->state + "\n";
+    text += "planner_reason: " + config::quoted(summary.planner->reason) + "\n";
+  }
   text += "participants:  # CPU time [ms]\n";
   for (const auto& [name, cpu_ms] : summary.cpu_ms) text += "  " + name + ": " + number(cpu_ms) + "\n";
   text += "demoted: {";

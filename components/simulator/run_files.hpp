@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "simulator/core/simulation.hpp"
@@ -12,6 +13,12 @@
 
 namespace lapis::simulator {
 
+/// What the planner said last.
+struct PlannerEnd {
+  std::string state;
+  std::string reason;
+};
+
 /// How a run went.
 struct RunSummary {
   std::string exit_reason;
@@ -19,6 +26,7 @@ struct RunSummary {
   double simulated_s = 0.0;
   double wall_s = 0.0;
   std::uint64_t collisions = 0;
+  std::optional<PlannerEnd> planner;             ///< when the run waits for its end and it has spoken
   std::map<std::string, double> cpu_ms;          ///< by participant of lock-step
   std::map<std::string, std::uint64_t> demoted;  ///< participants without which the run went on, from which tick on
 };

@@ -1,6 +1,8 @@
 #include "simulator/simulator_component.hpp"
 
 #include "common/files/atomic_file.hpp"
+#include "common/messages/planner.hpp"
+#include "common/messages/time.hpp"
 #include "common/time/stamp_buffer.hpp"
 #include "simulator/core/truth/truth_files.hpp"
 #include "simulator/run_files.hpp"
@@ -51,6 +53,9 @@ SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& c
   describe_scene(world_);
   if (config_.imu) imu_ = &context.advertise(topics::kImu);
   context.subscribe(topics::kCommand, [this](const auto& m) { run_->command(from_message(m)); });
+  if (config_.ends_when_explored) {
+    context.subscribe(topics::kPlannerStatus, [this](const auto& m) { note_planner(m); });
+  }
   serve();
   begin();
   if (config_.mode == "lockstep") {
@@ -92,6 +97,12 @@ void SimulatorComponent::serve() {
   });
 }
 
+/// What is latched from another run has a stamp that is not of this one.
+void SimulatorComponent::note_planner(const lapis_msgs::msg::PlannerStatus& message) {
+  const time::Time stamp = messages::from_message(message.header().stamp());
+  if (run_->frames() > 0 && stamp <= run_->stamp()) planner_ = message;
+}
+
 void SimulatorComponent::pause() {
   is_paused_ = true;
   ran_s_ = wall_s();
@@ -114,6 +125,7 @@ void SimulatorComponent::begin() {
   run_.reset();  // before the next one takes its memory
   run_ =
       std::make_unique<Run>(world_, start_, config_, tour_, SimulatorFrameIds{camera_.ids(), context_.frame("odom")});
+  planner_.reset();
   has_ended_ = false;
   steps_ = 0;
   ran_s_ = 0.0;
@@ -165,7 +177,7 @@ void SimulatorComponent::tick() {
     return context_.finish();
   }
   if (!is_paused_ && !running_since_) running_since_ = reported_ = Clock::now();
-  has_ended_ = run_->is_over();
+  has_ended_ = run_->is_over() || (planner_ && messages::has_ended(*planner_));
   if (!has_ended_) {
     run_->advance();
     publish_again();
@@ -231,6 +243,7 @@ void SimulatorComponent::write_files() {
   summary.simulated_s = run_->stamp().seconds();
   summary.wall_s = wall_s();
   summary.collisions = run_->collisions();
+  if (planner_) summary.planner = PlannerEnd{messages::state_name(*planner_), planner_->reason()};
   if (driver_) {
     summary.cpu_ms = driver_->cpu_ms();
     summary.demoted = driver_->demoted();

@@ -36,6 +36,7 @@ class SimulatorComponent {
   using Clock = std::chrono::steady_clock;
 
   void serve();
+  void note_planner(const lapis_msgs::msg::PlannerStatus& message);
   void pause();
   void go_on();
   double wall_s() const;
@@ -61,6 +62,7 @@ class SimulatorComponent {
   dds::Publisher<sensor_msgs::msg::Imu>* imu_ = nullptr;
   std::unique_ptr<runtime::LockstepDriver> driver_;
   std::unique_ptr<Run> run_;
+  std::optional<lapis_msgs::msg::PlannerStatus> planner_;  // newest of this run
   std::string failure_;
   bool has_ended_ = false;  // the tick after the last frame is out
   bool is_paused_ = false;

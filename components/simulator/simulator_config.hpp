@@ -34,6 +34,7 @@ struct SimulatorConfig {
   std::string mode = "lockstep";
   double max_real_time_factor = 0.0;
   double duration_s = 0.0;
+  bool ends_when_explored = false;
   std::string tour;
   std::string start;
   std::string output_dir;
@@ -96,6 +97,8 @@ void describe(Field& field, SimulatorConfig& c) {
         "lock-step is not faster than this; 0: as fast as the machine");
   field("duration_s", c.duration_s, config::in_range(0.0, 1e6),
         "simulated time after which the run ends [s]; 0: never");
+  field("ends_when_explored", c.ends_when_explored, config::anything(),
+        "the run ends, too, when /planner/status tells DONE or FAILED");
   field("tour", c.tour, config::anything(),
         "\"bundled\", or a file with way-points, that the robot drives by itself; empty: it obeys /cmd_vel");
   field("start", c.start, config::anything(), "\"x y yaw_deg\" [m, m, deg]; empty: drawn by the seed");

@@ -176,6 +176,40 @@ TEST_F(SimulatorContract, ACountedCommandActsFromTheNextFrameButOneOnAndTheWatch
   EXPECT_GT(y.at(31), 0.2) << "and never in a wall";
 }
 
+/// The run ends with the frame to which the planner says that it has ended, however late its word comes, because it is
+/// counted. What an earlier run's planner has said means nothing.
+TEST_F(SimulatorContract, EndsWhenThePlannerHasEnded) {
+  using namespace lapis_msgs::msg::PlannerStatus_Constants;
+  for (const auto& [state, name] : {std::pair{STATE_DONE, "DONE"}, {STATE_FAILED, "FAILED"}}) {
+    TopicProbe probe;
+    HandMadeParticipant planner(probe, "planner");
+    auto& status = probe.advertise(topics::kPlannerStatus);
+    const auto say = [&](std::uint8_t what, std::uint64_t frame) {
+      lapis_msgs::msg::PlannerStatus message;
+      message.header().stamp(messages::to_message(time::Time::from_seconds(static_cast<double>(frame) / 15.0)));
+      message.state(what);
+      message.reason("said in frame " + std::to_string(frame));
+      status.publish(message);
+    };
+    say(STATE_DONE, 3000);
+    ChildProcess simulator(kSimulator, with_stages("[planner]", {"--set", "simulator.ends_when_explored=true"}));
+    ASSERT_TRUE(planner.wait_for_tick(1)) << simulator.log();
+    say(STATE_EXPLORING, 1);
+    planner.publish(planner.answer_to(planner.ticks.back(), status, 2));
+    ASSERT_TRUE(planner.wait_for_tick(2)) << simulator.log();
+    planner.publish(planner.answer_to(planner.ticks.back(), status, 3));
+    EXPECT_FALSE(probe.wait_until([&] { return planner.ticks.back().tick() > 2; }, Seconds(0.5)));
+    say(state, 2);
+    ASSERT_TRUE(planner.wait_for_tick(3)) << simulator.log();
+    EXPECT_TRUE(planner.ticks.back().is_final());
+    planner.answer(planner.ticks.back());
+    EXPECT_EQ(simulator.wait(Seconds(30)), 0) << simulator.log();
+    EXPECT_THAT(summary(), HasSubstr("frames: 2\n"));
+    EXPECT_THAT(summary(), HasSubstr("exit_reason: \"completed\""));
+    EXPECT_THAT(summary(), HasSubstr("planner_state: " + std::string(name) + "\nplanner_reason: \"said in frame 2\""));
+  }
+}
+
 TEST_F(SimulatorContract, WhoIsDemotedIsNamedAndWithoutAnybodyTheRunFails) {
   const std::string demote = "lockstep.silent_participant=demote";
   ChildProcess echo(kEcho);

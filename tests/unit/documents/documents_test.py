@@ -10,8 +10,8 @@ import unittest
 
 REPOSITORY = pathlib.Path(sys.argv.pop(1))
 BIN = pathlib.Path(sys.argv.pop(1))
-COMPONENTS = ["sensor_replay", "simulator", "slam", "semantic_mapper", "evaluator", "controller"]
-KNOW_THE_ROBOT = ["simulator", "semantic_mapper", "evaluator", "controller"]
+COMPONENTS = ["sensor_replay", "simulator", "slam", "semantic_mapper", "evaluator", "planner", "controller"]
+KNOW_THE_ROBOT = ["simulator", "semantic_mapper", "evaluator", "planner", "controller"]
 
 
 def output_of(*command):

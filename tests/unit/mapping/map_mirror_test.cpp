@@ -6,6 +6,7 @@
 #include <random>
 #include <set>
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "tests/unit/mapping/random_votes.hpp"
@@ -188,6 +189,99 @@ TEST(MapMirror, DamagedTilesAreReportedAndChangeNothing) {
   EXPECT_EQ(mirror.apply_tile(1, tiles[0].index, 1, damaged), TileResult::kDamaged);
   for (const auto& tile : tiles) mirror.apply_tile(1, tile.index, tile.version, tile.bytes);
   EXPECT_EQ(*mirror.map(), publisher.map());
+}
+
+/// Blocks whose content differs, in the canonical order.
+std::vector<BlockIndex> difference(const VoxelMap& before, const VoxelMap& after) {
+  std::set<BlockIndex> blocks;
+  for (const VoxelMap* map : {&before, &after}) {
+    for (const BlockIndex& index : map->sorted_blocks()) blocks.insert(index);
+  }
+  std::erase_if(blocks, [&](const BlockIndex& index) {
+    const VoxelBlock *a = before.find(index), *b = after.find(index);
+    return a != nullptr && b != nullptr && *a == *b;
+  });
+  return {blocks.begin(), blocks.end()};
+}
+
+/// One hit in one block.
+FrameVotes hit_in(const BlockIndex& block) {
+  BlockVotes votes;
+  votes.block = block;
+  votes.hits_end = 1;
+  return {{votes}, {{0, 1, kOneVote}}};
+}
+
+void apply_all(MapMirror& mirror, const Publisher& publisher, const std::vector<Publisher::Tile>& tiles) {
+  for (const auto& tile : tiles) mirror.apply_tile(publisher.epoch(), tile.index, tile.version, tile.bytes);
+  mirror.apply_state(publisher.state());
+}
+
+TEST(MapMirror, ChangedBlocksAreThoseOfAllVersionsSinceTheLastCall) {
+  for (unsigned seed = 0; seed < 20; ++seed) {
+    std::mt19937 random(seed);
+    Publisher publisher(1);
+    MapMirror mirror;
+    EXPECT_TRUE(mirror.take_changed_blocks().empty());
+    VoxelMap known(kResolution_m);
+    for (int i = 0; i < 8; ++i) {
+      apply_all(mirror, publisher, publisher.publish(test::random_votes(random)));
+      if (random() % 2 == 0) continue;  // several versions in one go
+      EXPECT_EQ(mirror.take_changed_blocks(), difference(known, publisher.map()));
+      EXPECT_TRUE(mirror.take_changed_blocks().empty());
+      known = publisher.map();
+    }
+  }
+}
+
+TEST(MapMirror, BlocksOfATileThatHaveNotChangedAreNotAmongThem) {
+  Publisher publisher(1);
+  MapMirror mirror;
+  apply_all(mirror, publisher, publisher.publish(hit_in({0, 0, 0})));
+  mirror.take_changed_blocks();
+  apply_all(mirror, publisher, publisher.publish(hit_in({1, 0, 0})));  // of the same tile
+  EXPECT_EQ(mirror.take_changed_blocks(), (std::vector<BlockIndex>{{1, 0, 0}}));
+}
+
+TEST(MapMirror, BlocksThatAreGoneWithTheirMapperHaveChanged) {
+  std::mt19937 random(7);
+  Publisher before(10), after(11);
+  MapMirror mirror;
+  for (int i = 0; i < 3; ++i) apply_all(mirror, before, before.publish(test::random_votes(random)));
+  mirror.take_changed_blocks();
+  for (const auto& tile : after.publish(hit_in({9, 0, 0})))
+    mirror.apply_tile(11, tile.index, tile.version, tile.bytes);
+  EXPECT_TRUE(mirror.take_changed_blocks().empty()) << "the old map is still served";
+  mirror.apply_state(after.state());
+  EXPECT_EQ(mirror.take_changed_blocks(), difference(before.map(), after.map()));
+}
+
+TEST(MapMirror, TwoRestartsBetweenCallsLeaveNoBlockBehind) {
+  std::mt19937 random(8);
+  Publisher first(1), second(2), third(3);
+  MapMirror mirror;
+  apply_all(mirror, first, first.publish(test::random_votes(random)));
+  mirror.take_changed_blocks();
+  apply_all(mirror, second, second.publish(hit_in({8, 0, 0})));
+  apply_all(mirror, third, third.publish(hit_in({9, 0, 0})));
+  EXPECT_THAT(mirror.take_changed_blocks(), ::testing::IsSupersetOf(difference(first.map(), third.map())));
+}
+
+TEST(MapMirror, DamagedTileChangesNoBlock) {
+  std::mt19937 random(9);
+  Publisher publisher(1);
+  MapMirror mirror;
+  apply_all(mirror, publisher, publisher.publish(test::random_votes(random)));
+  mirror.take_changed_blocks();
+  auto tiles = publisher.publish(test::random_votes(random));
+  for (auto& tile : tiles) {
+    std::vector<std::uint8_t> damaged(tile.bytes.begin(), tile.bytes.end() - 1);
+    EXPECT_EQ(mirror.apply_tile(1, tile.index, tile.version, damaged), TileResult::kDamaged);
+  }
+  mirror.apply_state(publisher.state());
+  EXPECT_TRUE(mirror.take_changed_blocks().empty());
+  for (const auto& tile : tiles) mirror.apply_tile(1, tile.index, tile.version, tile.bytes);
+  EXPECT_FALSE(mirror.take_changed_blocks().empty()) << "they may come again";
 }
 
 }  // namespace

@@ -80,12 +80,16 @@ bool Explorer::step(const Report& report, const Surroundings* surroundings) {
   if (report.robot && report.tracking == Tracking::kTracking) last_tracked_ = report.robot;
   const bool is_active = state_ == State::kExploring || state_ == State::kReturning || state_ == State::kRecovering;
   if (!is_active) return false;
+  if (!home_) {
+    reason_ = "waits for slam's first pose";
+    return false;
+  }
   if (report.tracking != Tracking::kTracking || state_ == State::kRecovering) {
     recover(report, surroundings);
     return false;
   }
   if (surroundings == nullptr || !report.robot) {
-    reason_ = "waits for map and pose";
+    reason_ = "waits for the map";
     return false;
   }
   if (state_ == State::kReturning) {

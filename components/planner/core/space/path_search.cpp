@@ -73,7 +73,7 @@ class PathSearch {
     if (grid_.is_traversable(to)) return true;
     return !grid_.is_traversable(from) && grid_.state(to) != mapping::kOccupied &&
            distance(to, query_.from) * grid_.resolution_m() <= config_.escape_m &&
-           grid_.clearance_m(to) >= grid_.clearance_m(from);
+           (grid_.has_room(to) || grid_.clearance_m(to) >= grid_.clearance_m(from));
   }
 
   void expand(Cell c, double cost) {

@@ -12,7 +12,7 @@ namespace lapis::planner {
 struct PathConfig {
   double comfort_m = 0.5;        ///< clearance from which on nearness costs nothing, in [0.1, 5]; <= max_clearance_m
   double nearness_weight = 2.0;  ///< a metre at the least clearance costs 1 + this, in [0, 100]
-  double escape_m = 0.5;         ///< the robot may leave a place that is not traversable within this, in [0, 2]
+  double escape_m = 1.5;         ///< the robot may leave a place that is not traversable within this, in [0, 2]
   double max_detour = 1.5;       ///< an alternative's length over that of the best path, in [1, 5]
   double min_apart_m = 1.0;      ///< an alternative is so far from every other path somewhere, in [0.1, 20]
 };
@@ -54,8 +54,8 @@ class CostTree {
 ///
 /// Open are traversable cells. A robot that stands where it should not (beside a wall, in unknown space, in a cell that
 /// turned occupied) may still leave: until the path has come to its first traversable cell, it may enter any cell
-/// within escape_m of the start that is not occupied and whose clearance is not less than that of the cell it comes
-/// from; so it never gets nearer to a wall, and never through one.
+/// within escape_m of the start that is not occupied and has room for the robot, or at least as much clearance as the
+/// cell it comes from; so it never gets nearer to a wall that it touches, and never through one.
 CostTree grow_cost_tree(const PlanningGrid& grid, const PathConfig& config, const PathQuery& query);
 
 }  // namespace lapis::planner

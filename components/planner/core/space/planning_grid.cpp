@@ -41,6 +41,20 @@ PlanningGrid::PlanningGrid(const GridConfig& config, double resolution_m)
       state_(mapping::kUnknown), to_occupied_(mapping::kOccupied, reach_cells(config, resolution_m)),
       to_unknown_(mapping::kUnknown, reach_cells(config, resolution_m)) {}
 
+/// Unknown where the bottom of a free column has not been seen.
+mapping::ColumnCells PlanningGrid::floor_plan(const mapping::BlockColumn& column, const mapping::VoxelMap& map,
+                                              const mapping::BeliefReader& reader) const {
+  const double bottom_m = std::min(config_.band.min_height_m + std::max(config_.bottom_m, resolution_m_),
+                                   config_.band.max_height_m);
+  mapping::ColumnCells cells = mapping::project_column(column, map, reader, config_.band);
+  const mapping::ColumnCells bottom =
+      mapping::project_column(column, map, reader, {config_.band.min_height_m, bottom_m});
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (cells[i] == mapping::kFree) cells[i] = bottom[i];
+  }
+  return cells;
+}
+
 std::vector<Cell> PlanningGrid::update_map(const mapping::VoxelMap& map, const mapping::BeliefReader& reader,
                                            std::span<const mapping::BlockIndex> changed) {
   std::set<mapping::BlockColumn> columns;
@@ -50,7 +64,7 @@ std::vector<Cell> PlanningGrid::update_map(const mapping::VoxelMap& map, const m
   model_ = reader.model();
   std::vector<Cell> touched;
   for (const mapping::BlockColumn& column : columns) {
-    const mapping::ColumnCells cells = mapping::project_column(column, map, reader, config_.band);
+    const mapping::ColumnCells cells = floor_plan(column, map, reader);
     for (std::int32_t i = 0; i < kBlockEdge * kBlockEdge; ++i) {
       const Cell c{column.x * kBlockEdge + i % kBlockEdge, column.y * kBlockEdge + i / kBlockEdge};
       if (mapped_.at(c) == cells[static_cast<std::size_t>(i)]) continue;

@@ -17,6 +17,7 @@ namespace lapis::planner {
 
 struct GridConfig {
   mapping::HeightBand band;          ///< what the robot can run into
+  double bottom_m = 0.25;            ///< lowest part of the band, which must have been seen in free cells, in [0, 10]
   double footprint_radius_m = 0.20;  ///< of the robot's disc, in [0.05, 2]
   double margin_m = 0.05;            ///< kept besides, in [0, 1]
   double unknown_clearance_m = 0.0;  ///< kept from unknown cells; 0: the robot may touch them; in [0, 2]
@@ -41,7 +42,7 @@ struct ObstacleGrid {
 inline constexpr double kMaxReach_m = 1000.0;
 
 /// Floor plan in which the robot plans: the projection of the map's voxels (column_projection.hpp) under a layer of
-/// obstacles that come and go. An obstacle makes its cell occupied until a grid says that it is free or until no grid
+/// obstacles that come and go. Free are only cells whose bottom has been seen: a camera looks over what is low and near. An obstacle makes its cell occupied until a grid says that it is free or until no grid
 /// has shown it for `obstacle_expiry_s`; what the map says is occupied stays so.
 ///
 /// Clearance is measured from centre to centre: walls are taken to be in the middle of their cells. A cell is
@@ -67,8 +68,10 @@ class PlanningGrid {
   std::int8_t state(Cell c) const { return state_.at(c); }
   /// Distance to the nearest occupied cell, at most max_clearance_m() [m].
   double clearance_m(Cell c) const;
+  /// Far enough from what is occupied.
+  bool has_room(Cell c) const { return to_occupied_.squared(c) >= required_squared_; }
   bool is_traversable(Cell c) const {
-    return state(c) == mapping::kFree && to_occupied_.squared(c) >= required_squared_ &&
+    return state(c) == mapping::kFree && has_room(c) &&
            (unknown_squared_ == 0 || to_unknown_.squared(c) >= unknown_squared_);
   }
 
@@ -82,6 +85,8 @@ class PlanningGrid {
   std::size_t bytes() const;
 
  private:
+  mapping::ColumnCells floor_plan(const mapping::BlockColumn& column, const mapping::VoxelMap& map,
+                                  const mapping::BeliefReader& reader) const;
   void erase_freed(const ObstacleGrid& grid, std::vector<Cell>& touched);
   void mark_seen(const ObstacleGrid& grid, time::Time stamp, std::vector<Cell>& touched);
   std::vector<Cell> renew(std::span<const Cell> touched);

@@ -8,16 +8,14 @@
 #include <cstddef>
 #include <ctime>
 #include <numeric>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 #include <tbb/global_control.h>
 
-#include "common/mapping/integration.hpp"
 #include "planner/core/information/path_information.hpp"
-#include "simulator/set_up.hpp"
+#include "tests/benchmark/planner/half_explored.hpp"
 #include "tests/unit/planner/information/plain_information.hpp"
 
 namespace lapis::planner {
@@ -25,59 +23,6 @@ namespace {
 
 constexpr std::size_t kPoses = 50;
 constexpr std::size_t kPosesPerPath = 10;
-
-/// True poses of the camera on the tour, and what it saw in the first half.
-struct Tour {
-  std::vector<geometry::Pose> T_map_camera;
-  std::vector<mapping::CompactFrame> frames;
-};
-
-simulator::SimulatorConfig apartment() {
-  simulator::SimulatorConfig config;
-  config.scene = "apartment";
-  config.tour = "bundled";
-  return config;
-}
-
-mapping::CompactFrame compact_frame(const geometry::PinholeCamera& camera, const simulator::CameraImages& images) {
-  geometry::DepthImage depth(camera.width, camera.height);
-  std::transform(images.depth_mm.pixels.begin(), images.depth_mm.pixels.end(), depth.pixels.begin(),
-                 [](std::uint16_t mm) { return 1e-3f * static_cast<float>(mm); });
-  std::string error;
-  return mapping::CompactFrame::make(camera, depth, &images.labels, {}, error).value();
-}
-
-Tour drive() {
-  const simulator::SimulatorConfig config = apartment();
-  const simulator::World world = simulator::open_world(config);
-  const simulator::StartPose start = simulator::start_pose(world, config);
-  auto follower = simulator::plan_tour(world, start, config);
-  simulator::Simulation simulation(world, simulator::simulation_config(config), start);
-  const auto camera = robot::pinhole_camera(config.robot.camera);
-  const geometry::Pose T_base_camera = geometry::T_base_camera(robot::camera_mount(config.robot.camera));
-  Tour tour;
-  std::optional<simulator::DriveCommand> command;
-  while (!follower->is_finished()) {
-    const simulator::SensorFrame frame = simulation.next(command);
-    tour.T_map_camera.emplace_back(frame.T_world_base * T_base_camera);
-    tour.frames.push_back(compact_frame(camera, frame.images));
-    command = follower->command(frame.robot);
-  }
-  tour.frames.erase(tour.frames.begin() + static_cast<std::ptrdiff_t>(tour.frames.size() / 2), tour.frames.end());
-  return tour;
-}
-
-const Tour& tour() {
-  static const Tour kTour = drive();
-  return kTour;
-}
-
-mapping::VoxelMap half_explored_map(double resolution_m) {
-  mapping::VoxelMap map(resolution_m);
-  for (std::size_t i = 0; i < tour().frames.size(); ++i)
-    map.add(compute_votes(tour().frames[i], tour().T_map_camera[i], {}, resolution_m));
-  return map;
-}
 
 InformationField field_of(const mapping::VoxelMap& map) {
   InformationField field(map.resolution_m(), mapping::SensorModel{}, Measure::kSemantic);
@@ -88,13 +33,13 @@ InformationField field_of(const mapping::VoxelMap& map) {
 View view(double min_reach = ViewConfig{}.min_reach) {
   ViewConfig config;
   config.min_reach = min_reach;
-  config.camera = robot::pinhole_camera(apartment().robot.camera);
+  config.camera = robot::pinhole_camera(test::apartment().robot.camera);
   return View(config);
 }
 
 /// Evenly over the tour.
 std::vector<ViewPath> single_views() {
-  const auto& poses = tour().T_map_camera;
+  const auto& poses = test::tour().T_map_camera;
   std::vector<ViewPath> paths;
   for (std::size_t i = 0; i < kPoses; ++i) paths.push_back({poses[(2 * i + 1) * poses.size() / (2 * kPoses)]});
   return paths;
@@ -131,7 +76,7 @@ void time_per_ray(benchmark::State& state, const View& view, const std::vector<V
 }
 
 void rays(benchmark::State& state, double resolution_m, const std::vector<ViewPath>& paths, Counting counting) {
-  const InformationField field = field_of(half_explored_map(resolution_m));
+  const InformationField field = field_of(test::half_explored_map(resolution_m));
   const View rays_of_view = view(), rays_without_cut = view(0.0);
   time_per_ray(state, rays_of_view, paths,
                [&](const ViewPath& path) { return path_information(field, rays_of_view, path, counting); });
@@ -181,7 +126,7 @@ class PlainCells {
 };
 
 void plain_rays(benchmark::State& state, double resolution_m) {
-  const mapping::VoxelMap map = half_explored_map(resolution_m);
+  const mapping::VoxelMap map = test::half_explored_map(resolution_m);
   const PlainCells cells(map);
   const View rays_of_view = view();
   std::size_t cells_crossed = 0;
@@ -198,7 +143,7 @@ void plain_rays(benchmark::State& state, double resolution_m) {
 /// Renews every block of the map; the time of an iteration is that of one block.
 void update(benchmark::State& state, double resolution_m) {
   const tbb::global_control one_thread(tbb::global_control::max_allowed_parallelism, 1);
-  const mapping::VoxelMap map = half_explored_map(resolution_m);
+  const mapping::VoxelMap map = test::half_explored_map(resolution_m);
   InformationField field = field_of(map);
   const std::vector<mapping::BlockIndex> blocks = map.sorted_blocks();
   for (auto _ : state) {

@@ -14,11 +14,11 @@
 
 namespace lapis::planner::test {
 
-/// Voxel map of one layer in the robot's height band, cell by cell.
+/// Voxel map of the lowest layer in the robot's height band, cell by cell.
 class FlatMap {
  public:
   explicit FlatMap(double resolution_m)
-      : map_(resolution_m), layer_(static_cast<std::int32_t>(std::floor(0.7 / resolution_m))) {}
+      : map_(resolution_m), layer_(static_cast<std::int32_t>(std::ceil(mapping::HeightBand{}.min_height_m / resolution_m - 0.5))) {}
 
   const mapping::VoxelMap& map() const { return map_; }
   std::int8_t at(Cell c) const {

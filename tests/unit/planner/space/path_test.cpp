@@ -238,20 +238,20 @@ TEST(FindPath, LeavesUnknownAndOccupiedCells) {
   rooted.escape_m = 0.0;
   EXPECT_EQ(find_path(world.grid, rooted, {3, 1}, {0, 0}).status, PathStatus::kFound) << "a neighbour is traversable";
   const TextWorld lost({"....       ....", "....       ....", "....       ...."});
-  EXPECT_EQ(find_path(lost.grid, {}, {7, 1}, {0, 0}).status, PathStatus::kNoPath) << "0.75 m of unknown space";
+  EXPECT_EQ(find_path(lost.grid, {.escape_m = 0.5}, {7, 1}, {0, 0}).status, PathStatus::kNoPath) << "0.75 m of unknown space";
   EXPECT_EQ(find_path(lost.grid, {}, {6, 1}, {0, 0}).status, PathStatus::kFound) << "0.5 m";
 }
 
 TEST(FindPath, NeverLeavesThroughAWall) {
   // The robot stands too near to a thin wall; the goal is beyond it, within the distance of an escape.
-  const std::string open(12, '.'), wall(12, '#');
+  const std::string open(40, '.'), wall(40, '#');
   const TextWorld world({wall, open, open, open, open, open, open, wall, open, open, open, open, open, open, wall},
                         0.1);
-  const Cell start{5, 8}, goal{5, 4};
+  const Cell start{20, 8}, goal{20, 4};
   ASSERT_FALSE(world.grid.is_traversable(start));
   ASSERT_TRUE(world.grid.is_traversable(goal));
   EXPECT_EQ(find_path(world.grid, {}, start, goal).status, PathStatus::kNoPath);
-  EXPECT_EQ(find_path(world.grid, {}, start, {5, 10}).status, PathStatus::kFound);
+  EXPECT_EQ(find_path(world.grid, {}, start, {20, 10}).status, PathStatus::kFound);
 }
 
 TEST(PosesAlong, AreEquallySpacedAndHeadAlong) {

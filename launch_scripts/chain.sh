@@ -1,0 +1,133 @@
+# shellcheck shell=bash
+# What replay.sh and explore.sh share: a run of the chain of processes, from its options to its run folder.
+# shellcheck source-path=SCRIPTDIR
+source "$(dirname "${BASH_SOURCE[0]}")/lib.sh"
+
+# The script fills these before it calls run_chain, and `out` of lib.sh.
+components=() # in the order of their start; the source of frames is the last one
+play=() # arguments of the source
+settings=() # component, KEY=VALUE, component, KEY=VALUE, ...
+robots=("$repository/config/robot.yaml") # files of the robot's description
+subject="" # line of the manifest that says what is played
+resumed="" # map that slam goes on with
+command_line="$*"
+
+source_of_frames() { echo "${components[-1]}"; }
+
+is_in_run() { [[ " ${components[*]} " == *" $1 "* ]]; }
+
+knows_robot() { [ "$1" != slam ] && [ "$1" != sensor_replay ]; }
+
+# give COMPONENT KEY=VALUE: when it is in this run.
+give() { ! is_in_run "$1" || settings+=("$1" "$2"); }
+
+# route KEY=VALUE: to the components that it concerns. Who reads the map needs the mapper's sensor model, and who makes
+# a reference for it, how frames enter it.
+route() {
+  local name=${1%%.*} rest=${1#*.} other
+  [[ $1 != slam.resume_from=* ]] || resumed=${1#*=}
+  case $1 in
+    dds.*=*) for other in "${components[@]}"; do give "$other" "$1"; done ;;
+    robot.*=*) for other in "${components[@]}"; do ! knows_robot "$other" || give "$other" "$1"; done ;;
+    lockstep.*=*) give "$(source_of_frames)" "$1" ;;
+    semantic_mapper.sensor_model.*=*)
+      give "$name" "$1"
+      for other in evaluator planner; do give "$other" "$other.$rest"; done ;;
+    semantic_mapper.@(resolution_m|integration.*|frame.*)=*)
+      give "$name" "$1"
+      give evaluator "evaluator.$rest"
+      give simulator "simulator.truth.$rest" ;;
+    @(slam|semantic_mapper|planner|controller|evaluator|sensor_replay|simulator).*=*)
+      is_in_run "$name" || die "--set $1: no $name in this run"
+      give "$name" "$1" ;;
+    *) die "--set $1: unknown key; wanted is KEY=VALUE, KEY begins with dds., lockstep., robot., ${components[*]/%/.}" ;;
+  esac
+}
+
+# make_run_folder: $out, without results of an earlier run, but for the map that slam goes on with.
+make_run_folder() {
+  local file
+  mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another with --out DIR"
+  (
+    cd "$out" || exit
+    rm -f manifest.yaml simulation.yaml metrics.json timeline.csv decisions.csv \
+      trajectory_{estimate,ground_truth}.txt reference_map.lapis \
+      {keyframes,pose_graph,map}?(.+([0-9])).{txt,g2o,lapis,ot,ply} \
+      ground_truth/{mesh,flood,ideal}.lapis ground_truth/{classes,rooms}.json ground_truth/navmap.{png,yaml} \
+      figures/{trajectory,errors,class_iou}.png \
+      logs/{slam,semantic_mapper,planner,controller,evaluator,sensor_replay,simulator}.log
+  )
+  for file in "$out"/slam?(.+([0-9])).lapis; do
+    [ "$file" -ef "$resumed" ] || rm -f "$file"
+  done
+}
+
+# collect_arguments NAME: sets `arguments` to the command line of a component.
+collect_arguments() {
+  local i robot
+  if [ "$1" = "$(source_of_frames)" ]; then
+    arguments=("${play[@]}")
+  elif [ "$1" = controller ]; then # has no files
+    arguments=()
+  else
+    arguments=(--set "$1.output_dir=$out")
+  fi
+  if knows_robot "$1"; then for robot in "${robots[@]}"; do arguments+=(--config "$robot"); done; fi
+  for ((i = 0; i < ${#settings[@]}; i += 2)); do
+    [ "${settings[i]}" != "$1" ] || arguments+=(--set "${settings[i + 1]}")
+  done
+}
+
+write_manifest() {
+  local name
+  {
+    printf 'version: "%s"\ncommand: |-\n  %s %s\n%s\nexit_status:\n' \
+      "$("$bin/lapis_slam" --version)" "${0##*/}" "$command_line" "$subject"
+    for name in "${names[@]}"; do echo "  $name: ${statuses[$name]:-null}"; done
+    if [ -f "$out/simulation.yaml" ]; then echo "simulation:" && sed 's/^/  /' "$out/simulation.yaml"; fi
+    echo "configuration:"
+    for name in "${components[@]}"; do
+      collect_arguments "$name"
+      echo "  $name:"
+      "$bin/lapis_$name" "${arguments[@]}" --print-config | sed 's/^/    /'
+    done
+  } >"$out/manifest.yaml.part" && mv "$out/manifest.yaml.part" "$out/manifest.yaml"
+}
+
+print_metrics() { [ ! -f "$out/metrics.json" ] || sed -n '/^exit_reason/,$p' "$out/logs/evaluator.log"; }
+
+interrupted() {
+  trap '' INT TERM
+  end_all
+  write_manifest
+  print_metrics
+  echo "${0##*/}: interrupted by $1; what was played is in $out" >&2
+  exit "$2"
+}
+
+# run_chain: starts the components and waits for the end of the source, which is the first one to end unless something
+# went wrong; then ends the others, writes the manifest and says how it went.
+run_chain() {
+  local source name early
+  source=$(source_of_frames)
+  trap end_all EXIT
+  trap 'interrupted SIGINT 130' INT
+  trap 'interrupted SIGTERM 143' TERM
+  for name in "${components[@]}"; do
+    collect_arguments "$name"
+    if [ "$name" = "$source" ]; then start_shown "$name" "${arguments[@]}"; break; fi
+    start "$name" "${arguments[@]}"
+    wait_ready "$name" 20
+  done
+  wait_first
+  early=${names[first]}
+  end_all
+  write_manifest
+  [ "$early" = "$source" ] || fail_with "$early" "ended early with status ${statuses[$early]}"
+  print_metrics
+  for name in "$source" "${components[@]}"; do
+    [ "${statuses[$name]}" = 0 ] || fail_with "$name" "failed with status ${statuses[$name]}" "${statuses[$name]}"
+  done
+  [ -f "$out/metrics.json" ] || fail_with slam "no frame came; the reason may be here or in the other logs"
+  echo "run folder: $out"
+}

@@ -1,0 +1,62 @@
+#!/usr/bin/env bash
+# Explores a simulated building: the robot decides by itself where to go, and maps what it sees.
+set -euo pipefail
+shopt -s extglob
+# shellcheck source-path=SCRIPTDIR
+source "$(dirname "$0")/chain.sh"
+
+usage() {
+  cat <<'TEXT'
+usage: explore.sh [--scene NAME|DIR] [--method METHOD] [--duration S] [--seed N] [--out DIR] [--robot FILE]...
+                  [--freerun] [--set KEY=VALUE]...
+
+Lets the robot explore a simulated building until nothing reachable is left or the time is up, and leaves a run folder
+with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figures.
+
+  --scene NAME     bundled scene, scene file, or folder of a scanned building (docs/scenes.md); default: apartment
+  --method METHOD  that chooses where to go: lapis (default), paper, ssmi, tare, nearest, mi_only, dopt_only, fixed_n or
+                   joint (components/planner/README.md)
+  --duration S     simulated seconds after which the run ends; default: 300 (large_building needs 600)
+  --seed N         of the simulator: start, noise, jitter of furniture; default: 1
+  --out DIR        run folder; default: out/<name of scene>_<method>_<seed>
+  --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml)
+  --freerun        by the wall clock, frames may be lost; default: lock-step
+  --set KEY=VALUE  configuration, as for replay.sh; planner. and controller. are components, too
+
+Results of an earlier run in DIR are removed. Exit status: 0 ran to the end, 1 a process failed or no frame came,
+2 bad set-up, 130 and 143 interrupted; then, too, everything up to there is in DIR.
+TEXT
+}
+
+scene=apartment method=lapis duration=300 seed=1 mode=lockstep requests=()
+while [ $# -gt 0 ]; do
+  case $1 in
+    --scene | --method | --duration | --seed | --out | --robot | --set)
+      [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;
+  esac
+  case $1 in
+    -h | --help) usage && exit 0 ;;
+    --scene) scene=$2 && shift ;;
+    --method) method=$2 && shift ;;
+    --duration) duration=$2 && shift ;;
+    --seed) seed=$2 && shift ;;
+    --out) out=$2 && shift ;;
+    --robot) robots+=("$2") && shift ;;
+    --freerun) mode=freerun ;;
+    --set) requests+=("$2") && shift ;;
+    *) die "unknown argument $1 (see --help)" ;;
+  esac
+  shift
+done
+require_build
+components=(slam semantic_mapper planner controller evaluator simulator)
+give planner "planner.method=$method"
+give simulator "lockstep.stages=[slam, semantic_mapper, planner, controller, evaluator]"
+for request in "${requests[@]}"; do route "$request"; done
+out=${out:-$repository/out/$(basename "$scene" .yaml)_${method}_$seed}
+make_run_folder
+play=("$scene" --seed "$seed" --duration "$duration" --mode "$mode" --set simulator.ends_when_explored=true
+  --set "simulator.output_dir=$out")
+[ "$mode" = lockstep ] || play+=(--set simulator.wait_for_readers=4)
+subject="scene: \"$scene\""
+run_chain

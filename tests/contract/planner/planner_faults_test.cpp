@@ -1,0 +1,297 @@
+// lapis_planner alone, with what goes wrong around it: fault tests F1, F2, F5 and F17 of the project.
+#include <gmock/gmock.h>
+
+#include <csignal>
+#include <limits>
+
+#include "tests/contract/planner/planner_contract.hpp"
+
+namespace lapis::test {
+namespace {
+
+using ::testing::HasSubstr;
+using namespace lapis_msgs::msg::PlannerStatus_Constants;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+// slam ------------------------------------------------------------------------------------------------------------------
+
+TEST_F(PlannerContract, StandsWhileSlamIsLostAndGoesOnAfterwards) {
+  get_going();
+  constexpr double kLatency_s = 3 / kRate_hz;  // a decision may be under way
+  ASSERT_TRUE(ticks_until([this] { return state() == STATE_RECOVERING; }, kLatency_s + 1 / kRate_hz, kLost))
+      << reason() << planner->log();
+  EXPECT_EQ(reason(), "slam is lost");
+  EXPECT_TRUE(stands());
+  for (int i = 0; i < 30; ++i) ASSERT_TRUE(tick(kLost)) << planner->log();
+  EXPECT_TRUE(stands());
+  ASSERT_TRUE(ticks_until([this] { return state() == STATE_EXPLORING; })) << reason();
+  ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
+}
+
+TEST_F(PlannerContract, DrivesBackByWheelsToWhereSlamWasLastSure) {
+  peers.drives = true;
+  get_going();
+  ASSERT_TRUE(ticks_until([this] { return (peers.position - Eigen::Vector2d(2, 2)).norm() > 0.5; })) << reason();
+  const Eigen::Vector2d last_tracked = peers.position;
+  peers.position.x() -= 0.5;  // a slip that only the wheels know of
+  ASSERT_TRUE(ticks_until([this] { return state() == STATE_RECOVERING && has_path(); }, 2.0, kReckoning)) << reason();
+  EXPECT_EQ(reason(), "slam reckons by wheels alone");
+  EXPECT_LT((goal() - last_tracked).norm(), 0.3);
+}
+
+TEST_F(PlannerContract, FailsWhenSlamStaysLostAndStartsAgainWhenTold) {
+  ASSERT_TRUE(start({"lost_timeout_s=1"})) << planner->log();
+  peers.draw(kRoomWithDoor);
+  ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
+  const auto took = ticks_until([this] { return state() == STATE_FAILED; }, 3.0, kLost);
+  ASSERT_TRUE(took) << reason() << planner->log();
+  EXPECT_GE(*took, kRate_hz);
+  EXPECT_EQ(reason(), "slam has not tracked for 1 s");
+  EXPECT_TRUE(stands());
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(tick()) << planner->log();
+  EXPECT_EQ(state(), STATE_FAILED) << "nobody has helped";
+}
+
+TEST_F(PlannerContract, PosesThatAreNoneAreCountedAndNeverComeOut) {
+  get_going();
+  const std::vector<std::function<void(nav_msgs::msg::Odometry&)>> spoil{
+      [](auto& m) { m.pose().pose().position().x(kNaN); },
+      [](auto& m) { m.pose().pose().orientation().w(std::numeric_limits<double>::infinity()); },
+      [](auto& m) { m.pose().pose().orientation({}); },
+      [](auto& m) { m.pose().pose().position().y(1e300); },
+      [](auto& m) { m.header().frame_id("odom"); }};
+  for (std::size_t i = 0; i < 40; ++i) {
+    auto message = peers.pose();
+    spoil[i % spoil.size()](message);
+    peers.odometry.publish(message);
+    ASSERT_TRUE(tick()) << planner->log();
+  }
+  EXPECT_TRUE(has_path());
+  for (const char* reason : {"pose dropped: pose has numbers that are not finite", "pose dropped: quaternion",
+                             "pose dropped: pose is more than 10 km", "pose dropped: it is not of base_link in map"})
+    EXPECT_TRUE(wait_for_count(reason)) << reason << planner->log();
+}
+
+// The pose graph ----------------------------------------------------------------------------------------------------------
+
+class PlannerGraphFaults : public PlannerContract {
+ protected:
+  using Graph = lapis_msgs::msg::PoseGraph;
+
+  void SetUp() override { ASSERT_TRUE(start()) << planner->log(); }
+  /// A good graph, a bad one, and a good one again: exploration goes on, and the bad one is explained.
+  void expect_explained(const std::function<void(Graph&)>& spoil, const std::string& explanation) {
+    SCOPED_TRACE(explanation);
+    const auto decides = [this] {
+      const std::size_t before = candidates.size();
+      return ticks_until([&] { return candidates.size() > before; }) && has_path();
+    };
+    peers.draw(kRoomWithDoor);
+    peers.pose_graph.publish(peers.graph());
+    ASSERT_TRUE(decides()) << reason() << planner->log();
+    Graph bad = peers.graph();
+    spoil(bad);
+    peers.pose_graph.publish(bad);
+    ASSERT_TRUE(decides() && decides()) << reason() << planner->log();
+    EXPECT_TRUE(wait_for_count("pose graph dropped: " + explanation)) << planner->log();
+    peers.pose_graph.publish(peers.graph());
+    ASSERT_TRUE(decides() && decides()) << reason() << planner->log();
+    EXPECT_GT(selected().d_optimality(), 0.0) << "loops are judged again";
+  }
+  const lapis_msgs::msg::Candidate& selected() const {
+    const auto& all = candidates.back().candidates();
+    return *std::find_if(all.begin(), all.end(), [](const auto& candidate) { return candidate.is_selected(); });
+  }
+};
+
+TEST_F(PlannerGraphFaults, EdgeToAKeyframeThatIsNotThere) {
+  expect_explained([](Graph& m) { m.edges().push_back(Peers::odometry_edge(4, 99)); },
+                   "an edge names a key-frame that the pose graph does not have");
+}
+
+TEST_F(PlannerGraphFaults, NewestKeyframeInNoEdge) {
+  expect_explained([](Graph& m) { m.edges().pop_back(); }, "the newest key-frame is not connected");
+}
+
+TEST_F(PlannerGraphFaults, NumbersThatAreNone) {
+  expect_explained([](Graph& m) { m.edges()[1].information()[3] = kNaN; }, "the information of an edge is not finite");
+  expect_explained([](Graph& m) { m.nodes()[2].pose().position().z(kNaN); }, "key-frame 2: pose has numbers");
+  expect_explained([](Graph& m) { m.nodes()[2].pose().position().z(1e200); }, "key-frame 2: pose is more than 10 km");
+}
+
+TEST_F(PlannerGraphFaults, InformationThatIsNone) {
+  expect_explained([](Graph& m) { m.edges()[1].information()[0] = -1e4; }, "the information of edge 1-2");
+}
+
+TEST_F(PlannerGraphFaults, LostPieceOfTheGraphIsLeftOut) {
+  peers.draw(kRoomWithDoor);
+  Graph graph = peers.graph();
+  graph.edges().erase(graph.edges().begin() + 1);  // 0-1, 2-3-4
+  peers.pose_graph.publish(graph);
+  ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
+  EXPECT_GT(selected().d_optimality(), 0.0);
+  EXPECT_EQ(count_of("pose graph dropped"), 0.0);
+}
+
+TEST_F(PlannerGraphFaults, LandmarksThatMakeNoSense) {
+  peers.draw(kRoomWithDoor);
+  lapis_msgs::msg::LandmarkTile tile;
+  tile.session(1);
+  tile.graph_version(1);
+  tile.ids({1, 2});
+  tile.positions({1.0f, std::numeric_limits<float>::quiet_NaN(), 1.0f});
+  peers.landmarks.publish(tile);
+  ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
+  EXPECT_TRUE(wait_for_count("landmarks dropped")) << planner->log();
+}
+
+// The map -----------------------------------------------------------------------------------------------------------------
+
+TEST_F(PlannerContract, TilesAndMapStatesThatMakeNoSenseChangeNothing) {
+  get_going();
+  lapis_msgs::msg::VoxelTile tile;
+  tile.x(1);
+  tile.epoch(peers.epoch);
+  tile.version(1'000);
+  tile.data({'L', 1, 1, 0, 42});
+  peers.tiles.publish(tile);
+  auto state = peers.state();
+  state.version(1'001);
+  for (const double resolution_m : {kNaN, 0.0, 1e9}) {
+    state.resolution_m(resolution_m);
+    peers.map_state.publish(state);
+    ASSERT_TRUE(tick()) << planner->log();
+  }
+  const double volume_m3 = statuses.back().explored_volume_m3();
+  for (int i = 0; i < 30; ++i) ASSERT_TRUE(tick()) << planner->log();
+  EXPECT_TRUE(has_path());
+  EXPECT_EQ(statuses.back().explored_volume_m3(), volume_m3);
+  EXPECT_TRUE(wait_for_count("tile dropped: it cannot be decoded")) << planner->log();
+  EXPECT_TRUE(wait_for_count("map state dropped: no map has voxels of that size")) << planner->log();
+}
+
+TEST_F(PlannerContract, MapOfAnEarlierMapperIsNotBelievedAndThatOfALaterOneReplacesIt) {
+  get_going();
+  const double volume_m3 = statuses.back().explored_volume_m3();
+  const auto ticks = [this] {
+    for (int i = 0; i < 20; ++i) ASSERT_TRUE(tick()) << planner->log();
+  };
+  const Drawing half(kRoomWithDoor.begin() + 8, kRoomWithDoor.end());
+  peers.epoch = 4;
+  peers.draw(half);
+  ticks();
+  EXPECT_EQ(statuses.back().explored_volume_m3(), volume_m3);
+  peers.epoch = 6;
+  peers.draw(half);
+  ticks();
+  EXPECT_NEAR(statuses.back().explored_volume_m3(), 0.5 * volume_m3, 0.01) << "nothing is left of the old map";
+}
+
+TEST_F(PlannerContract, GridsThatMakeNoSenseAreCounted) {
+  get_going();
+  std::vector<nav_msgs::msg::OccupancyGrid> grids(4, peers.free_grid());
+  grids[0].info().width(5);
+  grids[1].info().resolution(std::numeric_limits<float>::quiet_NaN());
+  grids[2].info().origin().position().x(kNaN);
+  grids[3].info().origin().orientation().w(0.0);
+  grids[3].info().origin().orientation().x(1.0);
+  for (const auto& grid : grids) {
+    peers.obstacles.publish(grid);
+    ASSERT_TRUE(ticks_until([this] { return true; })) << planner->log();
+    const std::size_t before = candidates.size();  // taken over with the next decision
+    ASSERT_TRUE(ticks_until([&] { return candidates.size() > before; })) << planner->log();
+  }
+  EXPECT_TRUE(has_path());
+  for (const char* reason : {"grid has not width x height cells", "resolution or size", "origin of the grid", "turned"})
+    EXPECT_TRUE(wait_for_count(reason)) << reason << planner->log();
+}
+
+TEST_F(PlannerContract, ObstacleThatIsPutOnThePathMovesOrEmptiesIt) {
+  get_going();
+  auto grid = peers.free_grid();  // a wall right through the room, in front of the robot
+  grid.info().width(1);
+  grid.info().height(16);
+  grid.info().origin().position().x(3.25);
+  grid.data().assign(16, 100);
+  grid.header(messages::header(peers.stamp, "map"));
+  peers.obstacles.publish(grid);
+  ASSERT_TRUE(ticks_until([this] { return stands() || goal().x() < 3.25; }, 2.0)) << reason() << planner->log();
+}
+
+// The controller ------------------------------------------------------------------------------------------------------------
+
+TEST_F(PlannerContract, BlockedControllerGetsAnotherGoal) {
+  ASSERT_TRUE(start()) << planner->log();
+  peers.draw(kRoomWithTwoDoors);
+  ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
+  const bool went_right = goal().x() > 2.5;
+  ASSERT_TRUE(tick());
+  peers.say_blocked();
+  ASSERT_TRUE(ticks_until([this] { return stands(); }, 1.0)) << reason() << planner->log();
+  EXPECT_EQ(reason(), "the way was blocked");
+  peers.controller.publish({});
+  ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
+  EXPECT_NE(goal().x() > 2.5, went_right) << "the other door";
+  const auto& all = candidates.back().candidates();
+  EXPECT_TRUE(std::any_of(all.begin(), all.end(), [](const auto& c) { return c.reason() == "left alone for now"; }));
+}
+
+TEST_F(PlannerContract, GoalThatIsAlwaysBlockedIsGivenUp) {
+  get_going();
+  std::vector<Eigen::Vector2d> goals;
+  for (int i = 0; i < 60 * kRate_hz && state() != STATE_DONE; ++i) {
+    if (has_path()) {
+      goals.push_back(goal());
+      ASSERT_TRUE(tick());
+      peers.say_blocked();
+      ASSERT_TRUE(ticks_until([this] { return !has_path(); }, 1.0)) << reason() << planner->log();
+    }
+    ASSERT_TRUE(tick()) << planner->log();
+  }
+  EXPECT_EQ(state(), STATE_DONE) << reason();
+  EXPECT_GE(goals.size(), 3U) << "a goal is tried again";
+  EXPECT_LE(goals.size(), 6U) << "but not for ever; the door is 0.75 m wide: two targets at most";
+}
+
+TEST_F(PlannerContract, BlockedOnAnOlderPathIsNoNews) {
+  get_going();
+  lapis_msgs::msg::ControllerStatus old;
+  old.header(messages::header(messages::from_message(paths.back().header().stamp()), "map"));
+  old.state(lapis_msgs::msg::ControllerStatus_Constants::STATE_BLOCKED);
+  peers.controller.publish(old);
+  for (int i = 0; i < 30; ++i) {
+    ASSERT_TRUE(tick()) << planner->log();
+    ASSERT_TRUE(has_path());
+  }
+}
+
+TEST_F(PlannerContract, RobotThatDoesNotMoveGivesItsGoalUp) {
+  ASSERT_TRUE(start({"progress_timeout_s=2"})) << planner->log();
+  peers.draw(kRoomWithTwoDoors);
+  ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
+  const bool went_right = goal().x() > 2.5;
+  ASSERT_TRUE(ticks_until([&] { return has_path() && (goal().x() > 2.5) != went_right; }, 4.0))
+      << reason() << planner->log();
+}
+
+// F2 ------------------------------------------------------------------------------------------------------------------------
+
+TEST_F(PlannerContract, RestartedPlannerHasTheWholeMapAndGoesOn) {
+  start_free();
+  peers.draw(kRoomWithDoor);
+  peers.pose_graph.publish(peers.graph());
+  ASSERT_TRUE(frames_until([this] { return has_path(); })) << reason() << planner->log();
+  const double volume_m3 = statuses.back().explored_volume_m3();
+  planner->stop(SIGKILL);
+  paths.clear();
+  statuses.clear();
+  candidates.clear();
+  start_free();
+  ASSERT_TRUE(frames_until([this] { return has_path() && !candidates.empty(); })) << reason() << planner->log();
+  EXPECT_EQ(statuses.back().explored_volume_m3(), volume_m3);
+  EXPECT_EQ(state(), STATE_EXPLORING);
+}
+
+}  // namespace
+}  // namespace lapis::test

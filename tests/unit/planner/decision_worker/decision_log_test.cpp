@@ -1,0 +1,146 @@
+#include "planner/decision_log.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+#include <stdexcept>
+#include <vector>
+
+#include "tests/support/temporary_folder.hpp"
+
+namespace lapis::planner {
+namespace {
+
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using Row = std::vector<std::string>;
+
+/// RFC 4180, without line breaks inside of cells.
+Row cells_of(const std::string& line) {
+  Row cells{""};
+  bool is_quoted = false;
+  for (const char c : line) {
+    if (c == '"') {
+      is_quoted = !is_quoted;
+    } else if (c == ',' && !is_quoted) {
+      cells.emplace_back();
+    } else {
+      cells.back() += c;
+    }
+  }
+  return cells;
+}
+
+std::vector<Row> read(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::vector<Row> rows;
+  for (std::string line; std::getline(in, line);) rows.push_back(cells_of(line));
+  return rows;
+}
+
+// A chosen candidate with a number of its own in every column, and a rejected one.
+Decision decision() {
+  Decision decision;
+  decision.candidates.resize(2);
+  Candidate& chosen = decision.candidates[0];
+  chosen.frontier = 17;
+  chosen.goal = {{1.5, -2.5}, 0.25};
+  chosen.value = {3.5, 4.5, 5.5, 6.5, 7.5};
+  chosen.places = 2;
+  chosen.gain = {0.0, 8.5, 9.5, 10.5};
+  chosen.utility = 11.5;
+  decision.candidates[1].frontier = 18;
+  decision.candidates[1].rejection = "cannot be reached, not even by a detour";
+  decision.chosen = decision.by_mi_only = 0;
+  return decision;
+}
+
+class DecisionLogTest : public ::testing::Test {
+ protected:
+  test::TemporaryFolder folder_;
+  const std::filesystem::path file_ = folder_.path() / "decisions.csv";
+};
+
+TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
+  DecisionLog log(file_.string());
+  ASSERT_TRUE(log.write(decision(), 4, "joint", 12.066666666));
+  const auto rows = read(file_);
+  ASSERT_EQ(rows.size(), 3U);
+  for (const Row& row : rows) ASSERT_EQ(row.size(), rows[0].size());
+  std::map<std::string, std::string> chosen;
+  for (std::size_t i = 0; i < rows[0].size(); ++i) chosen[rows[0][i]] = rows[1][i];
+  const std::map<std::string, std::string> expected{{"decision", "4"},
+                                                    {"time_s", "12.0666667"},
+                                                    {"method", "joint"},
+                                                    {"candidate", "0"},
+                                                    {"frontier", "17"},
+                                                    {"x_m", "1.5"},
+                                                    {"y_m", "-2.5"},
+                                                    {"yaw_rad", "0.25"},
+                                                    {"cost_m", "3.5"},
+                                                    {"path_information_nats", "4.5"},
+                                                    {"goal_information_nats", "5.5"},
+                                                    {"places", "2"},
+                                                    {"loop_gain", "6.5"},
+                                                    {"fixed_n_change", "8.5"},
+                                                    {"end_sigma_without_loops_m", "9.5"},
+                                                    {"end_sigma_m", "10.5"},
+                                                    {"d_optimality", "7.5"},
+                                                    {"utility", "11.5"},
+                                                    {"is_chosen", "1"},
+                                                    {"is_chosen_by_mi_only", "1"},
+                                                    {"agrees_with_mi_only", "1"},
+                                                    {"rejection", ""}};
+  EXPECT_EQ(chosen, expected);
+}
+
+TEST_F(DecisionLogTest, RejectionIsTheLastColumnAlsoWithACommaInIt) {
+  DecisionLog log(file_.string());
+  ASSERT_TRUE(log.write(decision(), 1, "joint", 1.0));
+  const auto rows = read(file_);
+  EXPECT_EQ(rows[2].back(), "cannot be reached, not even by a detour");
+  EXPECT_EQ(rows[2][rows[2].size() - 4], "0") << "not chosen";
+}
+
+TEST_F(DecisionLogTest, SaysWhereMiOnlyWouldHaveGone) {
+  Decision differs = decision();
+  differs.candidates[1].rejection.clear();
+  differs.by_mi_only = 1;
+  DecisionLog log(file_.string());
+  ASSERT_TRUE(log.write(differs, 1, "joint", 1.0));
+  const auto rows = read(file_);
+  EXPECT_THAT(Row(rows[1].end() - 4, rows[1].end()), ElementsAre("1", "0", "0", ""));
+  EXPECT_THAT(Row(rows[2].end() - 4, rows[2].end()), ElementsAre("0", "1", "0", ""));
+}
+
+TEST_F(DecisionLogTest, DecisionWithoutCandidatesHasNoRow) {
+  DecisionLog log(file_.string());
+  ASSERT_TRUE(log.write({}, 1, "joint", 1.0));
+  EXPECT_EQ(read(file_).size(), 1U);
+}
+
+TEST_F(DecisionLogTest, SetsAnOlderFileAside) {
+  {
+    DecisionLog log(file_.string());
+    ASSERT_TRUE(log.write(decision(), 1, "joint", 1.0));
+  }
+  DecisionLog log(file_.string());
+  EXPECT_EQ(read(file_).size(), 1U);
+  EXPECT_EQ(read(folder_.path() / "decisions.1.csv").size(), 3U);
+}
+
+TEST_F(DecisionLogTest, PathThatCannotBeWrittenIsNamed) {
+  const std::string path = (folder_.path() / "none" / "decisions.csv").string();
+  try {
+    DecisionLog log(path);
+    FAIL() << "no error";
+  } catch (const std::runtime_error& error) {
+    EXPECT_THAT(error.what(), HasSubstr(path));
+  }
+}
+
+}  // namespace
+}  // namespace lapis::planner

@@ -123,6 +123,12 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "between hallucinated key-frames [m]");
   field("turn_cost_m_per_rad", c.decision.turn_cost_m_per_rad, config::in_range(0.0, 10.0),
         "of turning at the ends of a path [m/rad]");
+  field("alternatives", c.decision.alternatives, config::in_range(0, 3),
+        "other ways to the nearest goal of each frontier, at most");
+  field("revisit_sigma_m", c.decision.revisit_sigma_m, config::in_range(0.0, 100.0),
+        "when the position is less sure, old key-frames are goals, too; 0: never [m]");
+  field("information_discount_sigma_m", c.decision.information_discount_sigma_m, config::in_range(0.0, 100.0),
+        "information from a position with this sigma counts half; 0: all counts [m]");
   field("keep_factor", c.decision.keep_factor, config::in_range(1.0, 10.0),
         "another goal must be so much better than the one being driven to");
   field("grid", c.surroundings.grid);

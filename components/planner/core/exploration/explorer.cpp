@@ -10,9 +10,9 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kProgress_m = 0.3;          // nearer by less is no progress
-constexpr double kMetresPerTurn_rad = 0.5;   // turning towards the final heading is progress, too
-constexpr double kPathTolerance_m = 1.0;     // of the path that has been driven already
+constexpr double kProgress_m = 0.3;         // nearer by less is no progress
+constexpr double kMetresPerTurn_rad = 0.5;  // turning towards the final heading is progress, too
+constexpr double kPathTolerance_m = 1.0;    // of the path that has been driven already
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
 
@@ -29,9 +29,8 @@ bool has_frontier_at(const Surroundings& surroundings, const Eigen::Vector2d& ta
   const auto& frontiers = surroundings.frontiers().frontiers();
   return std::any_of(frontiers.begin(), frontiers.end(), [&](const auto& entry) {
     const auto& cells = entry.second.cells;
-    return std::any_of(cells.begin(), cells.end(), [&](Cell c) {
-      return (surroundings.grid().center_of(c) - target_map).norm() <= radius_m;
-    });
+    return std::any_of(cells.begin(), cells.end(),
+                       [&](Cell c) { return (surroundings.grid().center_of(c) - target_map).norm() <= radius_m; });
   });
 }
 
@@ -104,8 +103,7 @@ bool Explorer::explore(const Report& report, const Surroundings& surroundings) {
   const bool is_due = !decided_at_ || (report.now - *decided_at_).seconds() >= config_.replan_period_s;
   if (!goal_) return is_due;
   if (has_arrived(*report.robot)) {
-    looks_.push_back({goal_->target_map, report.now + time::Duration::from_seconds(config_.settle_s)});
-    memory_.leave_alone(looks_.back().target_map, looks_.back().due);
+    note_arrival(report.now);
     drop_goal();
     return true;
   }
@@ -117,6 +115,12 @@ bool Explorer::explore(const Report& report, const Surroundings& surroundings) {
   }
   if (!is_path_free(*report.robot, surroundings.grid())) return true;
   return is_due;
+}
+
+void Explorer::note_arrival(time::Time now) {
+  if (goal_->kind == CandidateKind::kRevisit) return memory_.add_failure(goal_->target_map, now);  // not for ever
+  looks_.push_back({goal_->target_map, now + time::Duration::from_seconds(config_.settle_s)});
+  memory_.leave_alone(looks_.back().target_map, looks_.back().due);
 }
 
 bool Explorer::has_arrived(const Pose2& robot) const {
@@ -167,10 +171,13 @@ void Explorer::take(const Decision& decision, time::Time now) {
     const Candidate& chosen = decision.candidates[*decision.chosen];
     empty_decisions_ = 0;
     const bool is_new = !goal_ || (goal_->target_map - chosen.target_map).norm() > config_.memory.radius_m;
-    if (is_new) goal_ = Goal{chosen.goal, chosen.target_map, remaining(chosen.way.front(), chosen.goal), now};
+    if (is_new)
+      goal_ = Goal{chosen.goal, chosen.target_map, chosen.kind, remaining(chosen.way.front(), chosen.goal), now};
     goal_->pose = chosen.goal;
     goal_->target_map = chosen.target_map;
-    reason_ = "drives to frontier " + std::to_string(chosen.frontier);
+    goal_->kind = chosen.kind;
+    const bool is_revisit = chosen.kind == CandidateKind::kRevisit;
+    reason_ = is_revisit ? "revisits an old place" : "drives to frontier " + std::to_string(chosen.frontier);
     return set_path(poses_along(chosen.points, config_.path_spacing_m, chosen.goal.yaw_rad));
   }
   drop_goal();
@@ -195,8 +202,8 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
   }
   if ((report.now - *lost_at_).seconds() > config_.lost_timeout_s) {
     drop_goal();
-    return enter(State::kFailed, "slam has not tracked for " + std::to_string(std::lround(config_.lost_timeout_s)) +
-                                     " s");
+    return enter(State::kFailed,
+                 "slam has not tracked for " + std::to_string(std::lround(config_.lost_timeout_s)) + " s");
   }
   const bool can_drive = report.tracking == Tracking::kDeadReckoning && report.robot && last_tracked_;
   if (can_drive && surroundings != nullptr && path_.empty()) drive_to(*last_tracked_, report, *surroundings);

@@ -31,7 +31,7 @@ TEST(LoopOutcomes, TellWhetherAPredictedPlaceClosed) {
   for (const bool closes : {true, false}) {
     // Key-frame 28 is where 4 was; 40 and 16 are somewhere else.
     const FinishedRun run = closes ? two_rounds(28, 4) : two_rounds(40, 16);
-    const auto result = loop_outcomes(run, {.place_radius_m = 3.0}, 5.0, 1.0);
+    const auto result = loop_outcomes(run, {.covisibility = {}, .place_radius_m = 3.0}, 7.0, 1.0);
     ASSERT_TRUE(std::holds_alternative<LoopOutcomes>(result));
     const auto& outcomes = std::get<LoopOutcomes>(result);
     ASSERT_EQ(outcomes.places.size(), 1u) << "the wall, in the second round";
@@ -63,14 +63,15 @@ std::vector<LoopOutcome> drawn(int count) {
 TEST(Reliability, CoversTheTruthWhenTheRampIsRight) {
   const auto places = drawn(4000);
   int count = 0;
-  for (const ReliabilityBin& bin : reliability(places, {.impossible_landmarks = 40, .certain_landmarks = 200}, 5)) {
+  for (const ReliabilityBin& bin :
+       reliability(places, {.covisibility = {}, .impossible_landmarks = 40, .certain_landmarks = 200}, 5)) {
     EXPECT_LE(bin.low, bin.mean_probability + 1e-12) << bin.from;
     EXPECT_GE(bin.high, bin.mean_probability - 1e-12) << bin.from;
     EXPECT_LT(bin.high - bin.low, 0.1);
     count += bin.places;
   }
   EXPECT_EQ(count, 4000);
-  const auto wrong = reliability(places, {.impossible_landmarks = 10, .certain_landmarks = 60}, 5);
+  const auto wrong = reliability(places, {.covisibility = {}, .impossible_landmarks = 10, .certain_landmarks = 60}, 5);
   EXPECT_LT(wrong.back().high, wrong.back().mean_probability) << "too sure";
 }
 

@@ -88,7 +88,9 @@ void describe(Field& field, HallucinationConfig& c) {
   field("impossible_landmarks", c.impossible_landmarks, config::in_range(1, 10'000),
         "seen again, of which a loop closure is impossible, or fewer");
   field("certain_landmarks", c.certain_landmarks, config::in_range(2, 10'000),
-        "seen again, of which it is certain, or more; linear in between");
+        "seen again, of which it is as sure as it gets, or more; linear in between");
+  field("max_probability", c.max_probability, config::in_range(0.05, 1.0),
+        "of a loop closure, however many landmarks are seen again");
   field("min_loop_way_m", c.min_loop_way_m, config::in_range(0.0, 100.0),
         "along the pose graph; nearer key-frames make no loop [m]");
   field("place_radius_m", c.place_radius_m, config::in_range(0.1, 20.0), "key-frames of one place [m]");

@@ -84,7 +84,7 @@ double probability_of(PlaceSet closed, const std::vector<Place>& places) {
 double loop_probability(int landmarks, const HallucinationConfig& config) {
   const double share = static_cast<double>(landmarks - config.impossible_landmarks) /
                        (config.certain_landmarks - config.impossible_landmarks);
-  return std::clamp(share, 0.0, 1.0);
+  return config.max_probability * std::clamp(share, 0.0, 1.0);
 }
 
 Hallucination hallucinate(const AnalysedGraph& graph, const LandmarkIndex& landmarks, const InformationField& field,

@@ -10,8 +10,8 @@ namespace {
 
 constexpr double kNormal95 = 1.959964;
 constexpr double kLeastProbability = 0.01;  // one surprise must not rule a ramp out
-constexpr double kGridFactor = 1.1;
-constexpr int kMostLandmarks = 2000;
+constexpr double kGridFactor = 1.15;
+constexpr int kMostLandmarks = 1000;
 
 // Key-frames [begin, end) of a run.
 struct Stretch {
@@ -83,13 +83,9 @@ void compare(const std::vector<Eigen::Vector3d>& loops, const std::vector<std::p
 HallucinationConfig all_places(HallucinationConfig config) {
   config.impossible_landmarks = 0;
   config.certain_landmarks = std::numeric_limits<int>::max();
+  config.max_probability = 1.0;
   config.max_places = std::numeric_limits<int>::max();
   return config;
-}
-
-double probability(int landmarks, int impossible, int certain) {
-  const double share = static_cast<double>(landmarks - impossible) / (certain - impossible);
-  return std::clamp(share, kLeastProbability, 1.0 - kLeastProbability);
 }
 
 }  // namespace
@@ -141,24 +137,32 @@ std::vector<ReliabilityBin> reliability(std::span<const LoopOutcome> places, con
   return table;
 }
 
-double log_likelihood(std::span<const LoopOutcome> places, int impossible, int certain) {
+double log_likelihood(std::span<const LoopOutcome> places, const HallucinationConfig& config) {
   double sum = 0.0;
   for (const LoopOutcome& place : places) {
-    const double p = probability(place.landmarks, impossible, certain);
+    const double p = std::clamp(loop_probability(place.landmarks, config), kLeastProbability, 1.0 - kLeastProbability);
     sum += std::log(place.has_closed ? p : 1.0 - p);
   }
   return sum;
 }
 
-std::optional<LoopRamp> fit_ramp(std::span<const LoopOutcome> places) {
+std::optional<HallucinationConfig> fit(std::span<const LoopOutcome> places, const HallucinationConfig& config) {
   const auto closed = std::count_if(places.begin(), places.end(), [](const LoopOutcome& p) { return p.has_closed; });
   if (closed == 0 || closed == static_cast<std::ptrdiff_t>(places.size())) return std::nullopt;
   const auto next = [](int n) { return std::max(n + 1, static_cast<int>(std::lround(n * kGridFactor))); };
-  std::optional<LoopRamp> best;
-  for (int impossible = 1; impossible < kMostLandmarks; impossible = next(impossible)) {
-    for (int certain = next(impossible); certain <= kMostLandmarks; certain = next(certain)) {
-      const double likelihood = log_likelihood(places, impossible, certain);
-      if (!best || likelihood > best->log_likelihood) best = LoopRamp{impossible, certain, likelihood};
+  HallucinationConfig tried = config, best = config;
+  double most = -std::numeric_limits<double>::infinity();
+  for (int twentieths = 1; twentieths <= 20; ++twentieths) {
+    tried.max_probability = 0.05 * twentieths;
+    for (int low = 1; low < kMostLandmarks; low = next(low)) {
+      tried.impossible_landmarks = low;
+      for (int high = next(low); high <= kMostLandmarks; high = next(high)) {
+        tried.certain_landmarks = high;
+        const double likelihood = log_likelihood(places, tried);
+        if (likelihood <= most) continue;
+        most = likelihood;
+        best = tried;
+      }
     }
   }
   return best;

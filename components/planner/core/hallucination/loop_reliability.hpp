@@ -50,16 +50,10 @@ struct ReliabilityBin {
 std::vector<ReliabilityBin> reliability(std::span<const LoopOutcome> places, const HallucinationConfig& config,
                                         int bins);
 
-/// Landmarks of which a loop is impossible and certain.
-struct LoopRamp {
-  int impossible = 0, certain = 0;
-  double log_likelihood = 0.0;  ///< [nats]
-};
-
-/// The ramp under which the outcomes are most likely, on a grid with steps of a tenth; probabilities are taken to be
-/// within [0.01, 0.99]. Nothing without places that closed and places that did not.
-std::optional<LoopRamp> fit_ramp(std::span<const LoopOutcome> places);
-/// Of the outcomes under one ramp.
-double log_likelihood(std::span<const LoopOutcome> places, int impossible, int certain);
+/// Of the outcomes under the probabilities of `config`, which are taken to be within [0.01, 0.99] [nats].
+double log_likelihood(std::span<const LoopOutcome> places, const HallucinationConfig& config);
+/// The landmarks and the largest probability under which the outcomes are most likely, on a grid with steps of about a
+/// tenth; everything else as in `config`. Nothing without places that closed and places that did not.
+std::optional<HallucinationConfig> fit(std::span<const LoopOutcome> places, const HallucinationConfig& config);
 
 }  // namespace lapis::planner

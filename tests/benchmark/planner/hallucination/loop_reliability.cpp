@@ -53,22 +53,23 @@ LoopOutcomes collect(const Arguments& arguments) {
   return all;
 }
 
+void print_ramp(const char* what, const HallucinationConfig& config, const std::vector<LoopOutcome>& places) {
+  std::printf("%s: 0 at %d landmarks, %.2f at %d; log-likelihood %.1f\n", what, config.impossible_landmarks,
+              config.max_probability, config.certain_landmarks, log_likelihood(places, config));
+}
+
 void print(const LoopOutcomes& outcomes, const Arguments& arguments) {
   const HallucinationConfig& config = arguments.config;
   std::printf("%zu runs, %zu places, %d loops, %d of them at places that were not predicted\n", arguments.runs.size(),
               outcomes.places.size(), outcomes.loops, outcomes.unexpected);
-  std::printf("ramp %d to %d landmarks: log-likelihood %.1f\n", config.impossible_landmarks, config.certain_landmarks,
-              log_likelihood(outcomes.places, config.impossible_landmarks, config.certain_landmarks));
+  print_ramp("configured", config, outcomes.places);
   std::printf("predicted p   places  mean p  closed   share   95 %% interval\n");
   for (const ReliabilityBin& bin : reliability(outcomes.places, config, arguments.bins)) {
     if (bin.places == 0) continue;
     std::printf("%.2f to %.2f  %7d  %6.2f %7d  %6.2f   %.2f to %.2f\n", bin.from, bin.to, bin.places,
                 bin.mean_probability, bin.closed, static_cast<double>(bin.closed) / bin.places, bin.low, bin.high);
   }
-  if (const auto best = fit_ramp(outcomes.places)) {
-    std::printf("most likely ramp: %d to %d landmarks, log-likelihood %.1f\n", best->impossible, best->certain,
-                best->log_likelihood);
-  }
+  if (const auto best = fit(outcomes.places, config)) print_ramp("most likely", *best, outcomes.places);
 }
 
 int run(int argc, char** argv) {
@@ -77,6 +78,8 @@ int run(int argc, char** argv) {
   app.add_option("runs", arguments.runs, "folders with slam.lapis and map.lapis")->required();
   app.add_option("--impossible", arguments.config.impossible_landmarks, "planner.hallucination.impossible_landmarks");
   app.add_option("--certain", arguments.config.certain_landmarks, "planner.hallucination.certain_landmarks");
+  app.add_option("--max-probability", arguments.config.max_probability, "planner.hallucination.max_probability");
+  app.add_option("--place-radius", arguments.config.place_radius_m, "planner.hallucination.place_radius_m");
   app.add_option("--stretch", arguments.stretch_m, "way for which predictions are made at a time [m]");
   app.add_option("--bins", arguments.bins, "rows of the table")->check(CLI::Range(1, 100));
   CLI11_PARSE(app, argc, argv);

@@ -48,14 +48,22 @@ TEST(LoopOutcomes, NameWhatIsWrongWithTheGraph) {
   EXPECT_TRUE(std::holds_alternative<GraphError>(loop_outcomes(run, {}, 5.0, 1.0)));
 }
 
-// Places that close as often as the ramp from 40 to 200 landmarks says.
+HallucinationConfig ramp(int impossible, int certain, double max_probability) {
+  HallucinationConfig config;
+  config.impossible_landmarks = impossible;
+  config.certain_landmarks = certain;
+  config.max_probability = max_probability;
+  return config;
+}
+
+// Places that close with probability 0 at 40 landmarks and 0.8 at 200.
 std::vector<LoopOutcome> drawn(int count) {
   std::mt19937 engine(1);
   std::uniform_real_distribution<double> share(0.0, 1.0);
   std::vector<LoopOutcome> places;
   for (int i = 0; i < count; ++i) {
     const int landmarks = static_cast<int>(300.0 * share(engine));
-    places.push_back({landmarks, share(engine) < (landmarks - 40) / 160.0});
+    places.push_back({landmarks, share(engine) < 0.8 * std::min(1.0, (landmarks - 40) / 160.0)});
   }
   return places;
 }
@@ -63,15 +71,14 @@ std::vector<LoopOutcome> drawn(int count) {
 TEST(Reliability, CoversTheTruthWhenTheRampIsRight) {
   const auto places = drawn(4000);
   int count = 0;
-  for (const ReliabilityBin& bin :
-       reliability(places, {.covisibility = {}, .impossible_landmarks = 40, .certain_landmarks = 200}, 5)) {
+  for (const ReliabilityBin& bin : reliability(places, ramp(40, 200, 0.8), 4)) {
     EXPECT_LE(bin.low, bin.mean_probability + 1e-12) << bin.from;
     EXPECT_GE(bin.high, bin.mean_probability - 1e-12) << bin.from;
     EXPECT_LT(bin.high - bin.low, 0.1);
     count += bin.places;
   }
   EXPECT_EQ(count, 4000);
-  const auto wrong = reliability(places, {.covisibility = {}, .impossible_landmarks = 10, .certain_landmarks = 60}, 5);
+  const auto wrong = reliability(places, ramp(40, 200, 1.0), 4);
   EXPECT_LT(wrong.back().high, wrong.back().mean_probability) << "too sure";
 }
 
@@ -79,18 +86,21 @@ TEST(Reliability, CoversTheTruthWhenTheRampIsRight) {
 TEST(Reliability, IntervalIsWilsons) {
   std::vector<LoopOutcome> places(10, {1000, true});
   places[0].has_closed = places[1].has_closed = false;
-  const ReliabilityBin bin = reliability(places, {}, 4).back();
+  const ReliabilityBin bin = reliability(places, ramp(30, 120, 1.0), 4).back();
   EXPECT_NEAR(bin.low, 0.490, 5e-4);
   EXPECT_NEAR(bin.high, 0.943, 5e-4);
-  EXPECT_TRUE(std::isnan(reliability(places, {}, 4).front().mean_probability));
+  EXPECT_TRUE(std::isnan(reliability(places, ramp(30, 120, 1.0), 4).front().mean_probability));
 }
 
-TEST(FitRamp, FindsTheRamp) {
-  const auto ramp = fit_ramp(drawn(4000));
-  ASSERT_TRUE(ramp);
-  EXPECT_NEAR(ramp->impossible, 40, 8);
-  EXPECT_NEAR(ramp->certain, 200, 20);
-  EXPECT_FALSE(fit_ramp(std::vector<LoopOutcome>{{50, true}, {60, true}})) << "nothing to tell them by";
+TEST(Reliability, TheMostLikelyRampIsTheRightOne) {
+  const auto places = drawn(2000);
+  const auto best = fit(places, {});
+  ASSERT_TRUE(best);
+  EXPECT_NEAR(best->impossible_landmarks, 40, 8);
+  EXPECT_NEAR(best->certain_landmarks, 200, 25);
+  EXPECT_NEAR(best->max_probability, 0.8, 0.051);
+  EXPECT_GE(log_likelihood(places, *best), log_likelihood(places, ramp(40, 200, 0.8)) - 1.0);
+  EXPECT_FALSE(fit(std::vector<LoopOutcome>{{50, true}, {60, true}}, {})) << "nothing to tell them by";
 }
 
 }  // namespace

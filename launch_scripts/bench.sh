@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# What the chain costs: CPU time per frame and process, frames lost in real time, and the Google Benchmarks.
+# What the chain costs: CPU time per frame and process, frames lost in real time, and all benchmarks of kernels.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR
 source "$(dirname "$0")/lib.sh"
@@ -8,7 +8,7 @@ usage() {
   cat <<'TEXT'
 usage: bench.sh [DATASET] [--runs N]
   DATASET   recorded RGB-D; default: rgbd/aws_small_house_loop in LAPIS_TEST_DATA
-  --runs N  lock-step replays of which the median is printed; default 3
+  --runs N  lock-step replays of which the median is printed; default 3; 0: kernels only
 Run it on a machine that has nothing else to do: the table names the load it found.
 TEXT
 }
@@ -23,7 +23,8 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
-[ -d "$dataset" ] || die "$dataset: no such folder; name a data set, or set LAPIS_TEST_DATA"
+[[ $runs =~ ^[0-9]+$ ]] || die "--runs $runs: wanted is a number"
+[ "$runs" = 0 ] || [ -d "$dataset" ] || die "$dataset: no such folder; name a data set, set LAPIS_TEST_DATA, or --runs 0"
 require_build
 export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST
 out=$(mktemp -d)
@@ -37,9 +38,9 @@ play() { # NAME OPTION...
 }
 read -r load _ </proc/loadavg
 for ((run = 1; run <= runs; ++run)); do play "lockstep_$run"; done
-play real_time --rate 1
+[ "$runs" = 0 ] || play real_time --rate 1
 
-python3 - "$out" "$runs" "$load" <<'PYTHON'
+[ "$runs" = 0 ] || python3 - "$out" "$runs" "$load" <<'PYTHON'
 import json, re, statistics, sys
 out, runs, load = sys.argv[1], int(sys.argv[2]), sys.argv[3]
 metrics = [json.load(open(f"{out}/lockstep_{run + 1}/metrics.json")) for run in range(runs)]
@@ -55,4 +56,19 @@ for name in metrics[0]["cpu_ms_per_frame"]:
     print(f"{name:18}{cpu:14.1f}{memory:14.0f}{lost:>20}")
 PYTHON
 
-for benchmark in "$bin"/lapis_*_benchmark; do [ ! -x "$benchmark" ] || { echo; "$benchmark"; }; done
+
+# Google Benchmarks go into one table; the others print their own.
+others=()
+for benchmark in "$bin"/lapis_*_benchmark; do
+  name=$(basename "$benchmark")
+  if ! "$benchmark" --benchmark_list_tests >/dev/null 2>&1; then others+=("$name") && continue; fi
+  "$benchmark" --benchmark_out="$out/$name.json" >"$out/$name.log" 2>&1 || { cat "$out/$name.log" >&2; exit 1; }
+done
+echo "kernels, load before: $load"
+"$repository/launch_scripts/bench_table.py" "$out"/*.json
+for name in "${others[@]}"; do
+  arguments=()
+  if [ "$name" = lapis_pose_graph_benchmark ]; then arguments=("${LAPIS_TEST_DATA:-$repository/../shared/data}/posegraph"); fi
+  printf '\n%s\n' "$name"
+  "$bin/$name" "${arguments[@]}"
+done

@@ -1,84 +1,135 @@
 #!/usr/bin/env python3
-"""Prints the table of benchmark.sh from the metrics.json of run folders, and writes it as CSV.
+"""Prints the table of benchmark.sh from run folders DIR/SCENE/METHOD/seed_N, and writes it as CSV.
 
 usage: benchmark_table.py CSV_FILE RUN_FOLDER...
 """
 
+import collections
 import csv
 import json
+import math
 import pathlib
+import re
 import statistics
 import sys
 
+NEVER = math.inf  # the time to reach what was not reached
+
 COLUMNS = {  # of the table: format, and what it shows of metrics.json
-    "frames": ("{:.0f}", lambda m: m["frames_total"]),
-    "lost": ("{:.0f}", lambda m: m["frames_total"] - m["frames_tracked"]),
-    "ATE cm": ("{:.1f}", lambda m: 100 * m["ate_se3_rmse_m"]),
-    "ATE origin cm": ("{:.1f}", lambda m: 100 * m["ate_origin_rmse_m"]),
-    "IoU 8": ("{:.3f}", lambda m: m["iou_top8_mean"]),
+    "explored %": ("{:.1f}", lambda m: 100 * m["explored_share"]),
+    "80 % s": ("{:.0f}", lambda m: time_to(m, "time_to_80_s")),
+    "90 % s": ("{:.0f}", lambda m: time_to(m, "time_to_90_s")),
+    "path m": ("{:.1f}", lambda m: m["path_length_m"]),
+    "ATE raw cm": ("{:.1f}", lambda m: 100 * m["ate_raw_rmse_m"]),
+    "ATE SE3 cm": ("{:.1f}", lambda m: 100 * m["ate_se3_rmse_m"]),
+    "ATE at 80 m cm": ("{:.1f}", lambda m: 100 * m["ate_at_80_m"]),
     "map error cm": ("{:.1f}", lambda m: 100 * m["map_error_mean_m"]),
-    "ideal IoU 8": ("{:.3f}", lambda m: m["ideal_iou_top8_mean"]),
+    "IoU 8": ("{:.3f}", lambda m: m["iou_top8_mean"]),
     "ideal map error cm": ("{:.1f}", lambda m: 100 * m["ideal_map_error_mean_m"]),
+    "ideal IoU 8": ("{:.3f}", lambda m: m["ideal_iou_top8_mean"]),
+    "loops": ("{:.0f}", lambda m: m["loop_closures"]),
+    "lost s": ("{:.1f}", lambda m: m["lost_time_s"]),
     "contacts": ("{:.0f}", lambda m: m["collisions"]),
+    "decision p50 ms": ("{:.0f}", lambda m: 1e3 * m["decision_time_p50_s"]),
+    "decision p95 ms": ("{:.0f}", lambda m: 1e3 * m["decision_time_p95_s"]),
+    "unlike mi_only %": ("{:.0f}", lambda m: 100 * m["decisions_unlike_mi_only_share"]),
     "real-time factor": ("{:.2f}", lambda m: m["real_time_factor"]),
     "CPU s per s": ("{:.2f}", lambda m: sum(m["cpu_ms_per_frame"].values()) * m["frames_total"] / m["duration_s"] / 1e3),
 }
 
 
-def has_ended_well(folder):
-    """benchmark.sh writes the file when the run has succeeded; a run that ended early has metrics, too."""
-    return (folder / "identity").exists()
+def time_to(metrics, key):
+    """Where a share is known, and was not reached, the time to it is longer than any other."""
+    if metrics["explored_share"] is None:
+        return None
+    return NEVER if metrics[key] is None else metrics[key]
 
 
-def row_of(folder):
-    """Values of one run, by column; None where the run did not give one."""
-    try:
-        metrics = json.loads((folder / "metrics.json").read_text())
-    except OSError:
-        return dict.fromkeys(COLUMNS)
-    row = {}
-    for name, (_, value) in COLUMNS.items():
+class Run:
+    """A run folder: what it is of, how it ended, and its values by column; None where it did not give one."""
+
+    def __init__(self, folder):
+        self.folder = folder
+        self.scene, self.method, self.seed = (*folder.parts[-3:-1], folder.name.removeprefix("seed_"))
         try:
-            row[name] = value(metrics)
+            self.metrics = json.loads((folder / "metrics.json").read_text())
+        except OSError:
+            self.metrics = {}
+        # benchmark.sh writes the file when the run has succeeded; a run that ended early has metrics, too.
+        self.has_failed = not (folder / "identity").exists()
+        self.outcome = self._outcome()
+        self.values = {name: self._value(function) for name, (_, function) in COLUMNS.items()}
+        self.commit = self._commit()
+
+    def _outcome(self):
+        if self.has_failed:
+            return "FAILED"
+        if self.metrics["exit_reason"] == "lost":
+            return "lost"
+        return {"DONE": "done", "FAILED": "gave up", None: "completed"}.get(self.metrics["planner_state"], "time up")
+
+    def _value(self, function):
+        try:
+            return function(self.metrics)
         except (KeyError, TypeError):  # null: not defined for this run
-            row[name] = None
-    return row
+            return None
+
+    def _commit(self):
+        try:
+            found = re.search(r"^commit: \"(.*)\"$", (self.folder / "manifest.yaml").read_text(), re.MULTILINE)
+        except OSError:
+            return None
+        return found and found[1]
 
 
-def median_of(rows):
+def runs_of(folders):
+    """Runs by (scene, method), in the order of the folders."""
+    groups = collections.defaultdict(list)
+    for folder in folders:
+        run = Run(pathlib.Path(folder).absolute())
+        groups[run.scene, run.method].append(run)
+    return groups
+
+
+def median_of(runs):
     def median(name):
-        values = [row[name] for row in rows if row[name] is not None]
+        values = [run.values[name] for run in runs if run.values[name] is not None]
         return statistics.median(values) if values else None
 
     return {name: median(name) for name in COLUMNS}
 
 
-def line(title, row):
-    cells = ["-" if row[name] is None else form.format(row[name]) for name, (form, _) in COLUMNS.items()]
-    return "| " + " | ".join([title, *cells]) + " |"
+def line(title, outcome, values, commit):
+    cells = ["-" if values[name] in (None, NEVER) else form.format(values[name]) for name, (form, _) in COLUMNS.items()]
+    return "| " + " | ".join([*title, outcome, *cells, commit or "-"]) + " |"
+
+
+def print_table(groups):
+    print("| scene | method | seed | outcome | " + " | ".join(COLUMNS) + " | commit |")
+    print("|" + " --- |" * (len(COLUMNS) + 5))
+    for (scene, method), runs in groups.items():
+        for run in runs:
+            print(line((scene, method, run.seed), run.outcome, run.values, run.commit))
+        whole = [run for run in runs if not run.has_failed]
+        outcomes = ", ".join(f"{n} {name}" for name, n in collections.Counter(run.outcome for run in runs).items())
+        print(line((scene, method, f"median of {len(whole)}"), outcomes, median_of(whole), None))
+
+
+def write_csv(target, groups):
+    with target.open("w", newline="") as stream:
+        writer = csv.writer(stream)
+        writer.writerow(["scene", "method", "seed", "outcome", "commit", *COLUMNS])
+        for (scene, method), runs in groups.items():
+            for run in runs:
+                values = ["" if value in (None, NEVER) else value for value in run.values.values()]
+                writer.writerow([scene, method, run.seed, run.outcome, run.commit, *values])
 
 
 def main():
-    target, folders = pathlib.Path(sys.argv[1]), [pathlib.Path(name) for name in sys.argv[2:]]
-    scenes, failed = {}, set()
-    for folder in folders:
-        scene, _, seed = folder.name.rpartition("_")
-        scenes.setdefault(scene, {})[seed] = row_of(folder)
-        if not has_ended_well(folder):
-            failed.add((scene, seed))
-    print("| scene, seed | " + " | ".join(COLUMNS) + " |")
-    print("| --- |" + " --- |" * len(COLUMNS))
-    for scene, rows in scenes.items():
-        for seed, row in rows.items():
-            print(line(f"{scene}, {seed}" + (" FAILED" if (scene, seed) in failed else ""), row))
-        whole = [row for seed, row in rows.items() if (scene, seed) not in failed]
-        print(line(f"{scene}, median of {len(whole)}", median_of(whole)))
-    with target.open("w", newline="") as stream:
-        writer = csv.writer(stream)
-        writer.writerow(["scene", "seed", "failed", *COLUMNS])
-        for scene, rows in scenes.items():
-            writer.writerows([scene, seed, (scene, seed) in failed, *row.values()] for seed, row in rows.items())
-    return 1 if failed else 0
+    groups = runs_of(sys.argv[2:])
+    print_table(groups)
+    write_csv(pathlib.Path(sys.argv[1]), groups)
+    return 1 if any(run.has_failed for runs in groups.values() for run in runs) else 0
 
 
 if __name__ == "__main__":

@@ -10,6 +10,7 @@ settings=() # component, KEY=VALUE, component, KEY=VALUE, ...
 robots=("$repository/config/robot.yaml") # files of the robot's description
 subject="" # line of the manifest that says what is played
 resumed="" # map that slam goes on with
+shown="" view=cat # component whose log is shown while the run goes on (default: the source), and how
 command_line="$*"
 
 source_of_frames() { echo "${components[-1]}"; }
@@ -54,7 +55,7 @@ make_run_folder() {
       trajectory_{estimate,ground_truth}.txt reference_map.lapis \
       {keyframes,pose_graph,map}?(.+([0-9])).{txt,g2o,lapis,ot,ply} \
       ground_truth/{mesh,flood,ideal}.lapis ground_truth/{classes,rooms}.json ground_truth/navmap.{png,yaml} \
-      figures/{trajectory,errors,class_iou}.png \
+      figures/{map,trajectory,pose_graph,coverage,errors,class_iou,decision}.png \
       logs/{slam,semantic_mapper,planner,controller,evaluator,sensor_replay,simulator}.log
   )
   for file in "$out"/slam?(.+([0-9])).lapis; do
@@ -81,8 +82,8 @@ collect_arguments() {
 write_manifest() {
   local name
   {
-    printf 'version: "%s"\ncommand: |-\n  %s %s\n%s\nexit_status:\n' \
-      "$("$bin/lapis_slam" --version)" "${0##*/}" "$command_line" "$subject"
+    printf 'version: "%s"\ncommit: "%s"\ncommand: |-\n  %s %s\n%s\nexit_status:\n' "$("$bin/lapis_slam" --version)" \
+      "$(git -C "$repository" describe --always --dirty 2>/dev/null)" "${0##*/}" "$command_line" "$subject"
     for name in "${names[@]}"; do echo "  $name: ${statuses[$name]:-null}"; done
     if [ -f "$out/simulation.yaml" ]; then echo "simulation:" && sed 's/^/  /' "$out/simulation.yaml"; fi
     echo "configuration:"
@@ -115,9 +116,12 @@ run_chain() {
   trap 'interrupted SIGTERM 143' TERM
   for name in "${components[@]}"; do
     collect_arguments "$name"
-    if [ "$name" = "$source" ]; then start_shown "$name" "${arguments[@]}"; break; fi
-    start "$name" "${arguments[@]}"
-    wait_ready "$name" 20
+    if [ "$name" = "${shown:-$source}" ]; then
+      start_shown "$view" "$name" "${arguments[@]}"
+    else
+      start "$name" "${arguments[@]}"
+    fi
+    [ "$name" = "$source" ] || wait_ready "$name" 20
   done
   wait_first
   early=${names[first]}

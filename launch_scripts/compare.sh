@@ -68,7 +68,7 @@ play() {
     echo "$title, $name"
     mkdir -p "$out/$name"
     render "$@"
-    play_once "$out/$name/$title" "$identity" "$@" "${settings[@]}"
+    play_once "$out/$name/$title" "$identity" replay.sh "$@" "${settings[@]}"
   done
 }
 

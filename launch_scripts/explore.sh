@@ -59,4 +59,6 @@ play=("$scene" --seed "$seed" --duration "$duration" --mode "$mode" --set simula
   --set "simulator.output_dir=$out")
 [ "$mode" = lockstep ] || play+=(--set simulator.wait_for_readers=4)
 subject="scene: \"$scene\""
+shown=evaluator view=show_progress
+echo "explores $scene by method $method with seed $seed; logs: $out/logs"
 run_chain

@@ -6,7 +6,7 @@ bin=${LAPIS_BIN:-$repository/build/release/bin}
 out="" # run folder, set by the script
 pids=()
 names=()
-viewer="" shown="" # process that shows a log, and the index of the one whose log it is
+viewer="" # process that shows a log
 declare -A statuses=() # by name, of those that have ended
 
 # die TEXT: bad set-up.
@@ -20,10 +20,10 @@ require_build() {
   [ -x "$bin/lapis_slam" ] || "$repository/launch_scripts/setup.sh"
 }
 
-# identity_of SCENE SETTING...: what the results of a scene depend on; other programs, settings or scenes give another.
+# identity_of SCENE WORD...: what the results of a scene depend on; other programs, settings or scenes give another.
 identity_of() {
   {
-    cat "$bin"/lapis_{simulator,sensor_replay,slam,semantic_mapper,evaluator} \
+    cat "$bin"/lapis_{simulator,sensor_replay,slam,semantic_mapper,planner,controller,evaluator} \
       "$repository"/config/{robot.yaml,scenes/*,labels/*}
     if [ -f "$1" ]; then cat "$1"; fi
     ls -l /usr/share/sweethome3d/furniture 2>/dev/null || echo "parametric furniture"
@@ -36,14 +36,14 @@ has_run() {
   [ "$(cat "$1/identity" 2>/dev/null)" = "$2" ]
 }
 
-# play_once FOLDER IDENTITY ARGUMENT...: replay.sh into FOLDER, unless it has that run already. An interruption ends the
-# script; a failure shows the end of its log and leaves no identity.
+# play_once FOLDER IDENTITY SCRIPT ARGUMENT...: replay.sh or explore.sh into FOLDER, unless it has that run already. An
+# interruption ends the script; a failure shows the end of its log and leaves no identity.
 play_once() {
-  local folder=$1 identity=$2 status=0
-  shift 2
+  local folder=$1 identity=$2 script=$3 status=0
+  shift 3
   if has_run "$folder" "$identity"; then return 0; fi
   rm -f "$folder/identity" "$folder/metrics.json"
-  setpriv --pdeathsig TERM "$repository/launch_scripts/replay.sh" "$@" --out "$folder" >"$folder.log" 2>&1 || status=$?
+  setpriv --pdeathsig TERM "$repository/launch_scripts/$script" "$@" --out "$folder" >"$folder.log" 2>&1 || status=$?
   [ $status -lt 128 ] || exit $status
   if [ $status -eq 0 ]; then echo "$identity" >"$folder/identity"; else tail -n 3 "$folder.log" >&2; fi
 }
@@ -55,14 +55,29 @@ start() {
   launch "$@" >>"$out/logs/$1.log" 2>&1
 }
 
-# start_shown NAME ARGUMENT...: the same for the source of frames, and what it prints is shown, too.
+# start_shown VIEW NAME ARGUMENT...: the same, and VIEW, a command, shows of the log on its input what is to be seen.
 start_shown() {
-  local sink
-  shown=${#pids[@]}
-  exec {sink}> >(exec tee -i "$out/logs/$1.log")
+  local view=$1 sink
+  shift
+  : >"$out/logs/$1.log" # there is something to look into at once
+  exec {sink}> >(trap '' INT TERM && tee -a "$out/logs/$1.log" | "$view")
   viewer=$!
   launch "$@" >&"$sink" 2>&1
   exec {sink}>&-
+}
+
+# show_progress: a view of the evaluator's log: how far the run is. On a terminal each line replaces the one before.
+show_progress() {
+  local line text="" columns
+  exec 3>&1
+  while IFS= read -r line; do
+    [[ $line == *" evaluator: progress: "* ]] || continue
+    text=${line#* progress: }
+    if [ ! -t 1 ]; then echo "$text" && continue; fi
+    read -r _ columns < <(stty size <&3)
+    printf '\r\e[K%.*s' $((columns - 1)) "$text"
+  done
+  [ -z "$text" ] || [ ! -t 1 ] || echo
 }
 
 launch() {
@@ -106,11 +121,11 @@ end_process() {
   statuses[${names[index]}]=$status
 }
 
-# Ends everything that still runs; the trap of every script that starts processes. The source of frames first, then in
-# the order of the starts: who collects what others write at their end was started after them.
+# Ends everything that still runs; the trap of every script that starts processes. The source of frames, which is started
+# last, first; then in the order of the starts: who collects what others write at their end was started after them.
 end_all() {
-  local index
-  for index in $shown "${!pids[@]}"; do
+  local index indices=("${!pids[@]}")
+  for index in "${indices[@]: -1}" "${indices[@]}"; do
     [ -n "${statuses[${names[index]}]:-}" ] || end_process "$index"
   done
   [ -z "$viewer" ] || wait "$viewer" 2>/dev/null || true # now the log is complete

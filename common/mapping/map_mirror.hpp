@@ -22,6 +22,7 @@ struct MapState {
   std::uint32_t tiles = 0;     ///< tiles that exist in this version
   std::uint64_t checksum = 0;  ///< sum of tile_hash(index, version that last changed it), modulo 2^64
   double resolution_m = 0.0;
+  std::int64_t session = 0;  ///< of slam, in whose map frame it is
 };
 
 enum class TileResult { kAccepted, kOutdated, kDamaged };
@@ -41,8 +42,8 @@ class MapMirror {
   const VoxelMap* map() const { return map_ ? &*map_ : nullptr; }
   /// State that map() belongs to; nothing before the first.
   const std::optional<MapState>& state() const { return served_; }
-  /// Blocks whose content in map() is another one than at the last call, in the canonical order; those that are gone are
-  /// among them.
+  /// Blocks whose content in map() is another one than at the last call, in the canonical order; those that are gone
+  /// are among them.
   std::vector<BlockIndex> take_changed_blocks();
   /// Newest state that was announced; nothing before the first.
   const std::optional<MapState>& newest_state() const { return newest_; }

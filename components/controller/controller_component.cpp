@@ -87,6 +87,7 @@ bool ControllerComponent::next_frame(const runtime::Cycle& cycle, time::Time now
 }
 
 void ControllerComponent::take_frame(const Odometry& odometry, const Image* depth, const Info* info, time::Time now) {
+  context_.status().value("frames", ++frames_);
   if (odometry.header().frame_id() != map_frame_ || odometry.child_frame_id() != base_frame_) {
     return drop("pose", "it is not of " + base_frame_ + " in " + map_frame_);
   }

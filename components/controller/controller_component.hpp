@@ -59,6 +59,7 @@ class ControllerComponent {
   std::optional<OccupancyGrid> obstacles_;
 
   messages::StaticTransforms static_transforms_;
+  std::uint64_t frames_ = 0;
   time::Time camera_stamp_;  // of the depth image that arrived last
   bool is_due_ = false;      // by the wall clock
   std::optional<time::Time> reported_at_;

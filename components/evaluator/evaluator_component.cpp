@@ -1,6 +1,9 @@
 #include "evaluator/evaluator_component.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <iostream>
@@ -9,6 +12,7 @@
 #include "common/mapping/map_file.hpp"
 #include "common/messages/camera.hpp"
 #include "common/messages/labels.hpp"
+#include "common/messages/planner.hpp"
 #include "common/messages/time.hpp"
 #include "evaluator/core/coverage.hpp"
 #include "evaluator/core/map_input.hpp"
@@ -19,11 +23,19 @@ namespace {
 
 constexpr std::size_t kWaitingFrames = 30;
 constexpr double kMaxDistance_m = 10'000.0;  // the mapper's limit
+constexpr std::chrono::seconds kProgressPeriod(2);
 
 std::map<std::uint16_t, std::string> class_names(const mapping::LabelList& labels) {
   std::map<std::uint16_t, std::string> names;
   for (const auto& label : labels.labels()) names[label.id] = label.name;
   return names;
+}
+
+/// Root of the sum of the variances of x, y and z [m]; none when the covariance is none.
+std::optional<double> position_sigma_m(const nav_msgs::msg::Odometry& message) {
+  const auto& covariance = message.pose().covariance();  // 6x6, row by row
+  const double sum = covariance[0] + covariance[7] + covariance[14];
+  return sum >= 0.0 ? std::optional(std::sqrt(sum)) : std::nullopt;
 }
 
 Trajectory keyframes_of(const lapis_msgs::msg::PoseGraph& graph) {
@@ -58,6 +70,8 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
   context.subscribe(topics::kPoseGraph, [this](auto& m) {
     if (!session_ || m.session() == *session_) graph_ = std::move(m);
   });
+  context.subscribe(topics::kSlamOdometry, [this](const auto& m) { position_sigma_m_ = position_sigma_m(m); });
+  context.subscribe(topics::kPlannerStatus, [this](const auto& m) { on_planner_status(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { on_tile(m); });
   context.subscribe(topics::kMapState, [this](const auto& m) { on_map_state(m); });
   context.subscribe(topics::kDiagnostics, [this](const auto& m) { on_diagnostics(m); });
@@ -114,10 +128,32 @@ void EvaluatorComponent::on_map_state(const lapis_msgs::msg::MapState& message) 
   map_session_ = message.session();
 }
 
+void EvaluatorComponent::on_planner_status(const lapis_msgs::msg::PlannerStatus& message) {
+  planner_ = message;
+  decisions_.add({message.decisions(), message.decisions_unlike_mi_only(), message.decision_time_s()});
+}
+
 void EvaluatorComponent::work(const runtime::Cycle& cycle) {
   while (next_frame(cycle)) {
   }
   has_ended_ |= cycle.is_final;
+  const auto now = std::chrono::steady_clock::now();
+  if (!planner_ || timeline_.empty() || (!cycle.is_final && now - reported_ < kProgressPeriod)) return;
+  reported_ = now;
+  report_progress();
+}
+
+/// The line by which explore.sh shows how far the robot is.
+void EvaluatorComponent::report_progress() {
+  find_truth();
+  const TimelineRow& row = timeline_.back();
+  std::string explored = fmt::format("{:.0f} m3 explored", row.explored_volume_m3.value_or(0.0));
+  if (scene_truth_ && mirror_.map() != nullptr && row.is_comparable) {
+    const KnownSpace space = to_known_space(*mirror_.map(), belief_reader());
+    explored += fmt::format(" ({:.1f} %)", 100.0 * coverage(scene_truth_->mesh, space).explored_share.value_or(0.0));
+  }
+  spdlog::info("progress: {:.0f} s, {}, {:.1f} m driven, loops closed: {}, {}: {}", row.time_s, explored,
+               row.path_length_m.value_or(0.0), loop_closures(), messages::state_name(*planner_), planner_->reason());
 }
 
 /// Joins and records the oldest tracked frame; false when its partners may still come.
@@ -198,21 +234,19 @@ std::filesystem::path EvaluatorComponent::truth_folder() const {
   return std::filesystem::path(config_.output_dir) / "ground_truth";
 }
 
-// At the end of the run: the simulator writes while it goes on.
-void EvaluatorComponent::load_truth() {
-  if (!T_map_world_) return;
+/// Ground truth of the scene, which the simulator writes while the run goes on. Tells what is wrong with it.
+std::string EvaluatorComponent::find_truth() {
+  if (scene_truth_ || !T_map_world_) return "";
   std::string problem;
-  scene_truth_ = load_ground_truth(truth_folder(), problem);
-  if (!problem.empty()) spdlog::warn("ground truth of the scene is left out: {}", problem);
-  if (!scene_truth_) return;
-  if (scene_truth_->mesh.occupied.resolution_m != config_.resolution_m) {
-    spdlog::warn("ground truth of the scene is left out: its voxels have {} m, evaluator.resolution_m is {}",
-                 scene_truth_->mesh.occupied.resolution_m, config_.resolution_m);
-    scene_truth_.reset();
-  } else if (!is_same_frame(scene_truth_->T_map_world, *T_map_world_)) {
-    spdlog::warn("ground truth of the scene is left out: slam's first pose is not where the run began");
-    scene_truth_.reset();
+  auto truth = load_ground_truth(truth_folder(), problem);
+  if (!truth) return problem;
+  if (truth->mesh.occupied.resolution_m != config_.resolution_m) {
+    return fmt::format("its voxels have {} m, evaluator.resolution_m is {}", truth->mesh.occupied.resolution_m,
+                       config_.resolution_m);
   }
+  if (!is_same_frame(truth->T_map_world, *T_map_world_)) return "slam's first pose is not where the run began";
+  scene_truth_ = std::move(truth);
+  return "";
 }
 
 // The run is judged in the frame of slam's first map: poses of a later session have another origin.
@@ -259,6 +293,8 @@ void EvaluatorComponent::add_timeline_row(time::Time stamp, bool is_tracking) {
   TimelineRow row;
   row.time_s = (stamp - *first_stamp_).seconds();
   row.is_tracking = is_tracking;
+  if (is_tracking) row.position_sigma_m = position_sigma_m_;
+  if (planner_) row.planner_state = messages::state_name(*planner_);
   if (const auto* map = mirror_.map()) {
     const KnownSpace space = to_known_space(*map, belief_reader());
     row.explored_volume_m3 = coverage(space).explored_volume_m3;
@@ -298,6 +334,12 @@ Trajectory EvaluatorComponent::truth_in_map() const {
   return T_map_world_ ? express_in(*T_map_world_, truth_world_) : Trajectory{};
 }
 
+std::int64_t EvaluatorComponent::loop_closures() const {
+  return std::count_if(graph_.edges().begin(), graph_.edges().end(), [](const auto& edge) {
+    return edge.type() == lapis_msgs::msg::PoseGraphEdge_Constants::TYPE_LOOP_CLOSURE;
+  });
+}
+
 RunMetrics EvaluatorComponent::metrics() const {
   RunMetrics m;
   // A camera info that was lost on its way here is a frame, too, and so is a frame that slam answered.
@@ -305,15 +347,14 @@ RunMetrics EvaluatorComponent::metrics() const {
   m.exit_reason = judged_exit_reason(has_ended_ ? "completed" : "stopped", frames_tracked_, *m.frames_total);
   m.frames_tracked = frames_tracked_;
   m.lost_time_s = lost_time_s_;
-  m.loop_closures = std::count_if(graph_.edges().begin(), graph_.edges().end(), [](const auto& edge) {
-    return edge.type() == lapis_msgs::msg::PoseGraphEdge_Constants::TYPE_LOOP_CLOSURE;
-  });
+  m.loop_closures = loop_closures();
   const Trajectory truth = truth_in_map(), keyframes = keyframes_of(graph_);
   m.correction_rmse_m = trajectory_figures(estimate_, keyframes).ate_raw_rmse_m;
   if (!truth.empty()) {
     m.online = trajectory_figures(truth, estimate_);
     m.keyframes = trajectory_figures(truth, keyframes);
     m.path_length_m = path_length_m(truth);
+    m.ate_at_80_m = ate_raw_rmse_up_to(80.0, truth, estimate_);
     if (*m.path_length_m > 0.0 && m.online.ate_raw_rmse_m)
       m.ate_per_metre = *m.online.ate_raw_rmse_m / *m.path_length_m;
   }
@@ -323,6 +364,8 @@ RunMetrics EvaluatorComponent::metrics() const {
     if (*m.wall_time_s > 0.0) m.real_time_factor = *m.duration_s / *m.wall_time_s;
   }
   costs_.write_to(m);
+  decisions_.write_to(m);
+  if (planner_) m.planner_state = messages::state_name(*planner_);
   m.collisions = collisions_;
   m.time_to_80_s = time_to_reach(timeline_, 0.8);
   m.time_to_90_s = time_to_reach(timeline_, 0.9);
@@ -391,7 +434,9 @@ void EvaluatorComponent::finish() {
     spdlog::warn("no frame came; nothing is written");
     return;
   }
-  load_truth();
+  if (const auto problem = find_truth(); !problem.empty()) {
+    spdlog::warn("ground truth of the scene is left out: {}", problem);
+  }
   add_shares();
   const RunMetrics m = metrics();
   write_files(m);

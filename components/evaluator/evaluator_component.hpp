@@ -12,6 +12,7 @@
 #include "common/runtime/context.hpp"
 #include "common/runtime/stamped_input.hpp"
 #include "evaluator/core/coverage.hpp"
+#include "evaluator/core/decision_record.hpp"
 #include "evaluator/core/ground_truth.hpp"
 #include "evaluator/core/metrics.hpp"
 #include "evaluator/core/plain_fusion.hpp"
@@ -44,17 +45,20 @@ class EvaluatorComponent {
   void on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message);
   void on_tile(const lapis_msgs::msg::VoxelTile& message);
   void on_map_state(const lapis_msgs::msg::MapState& message);
+  void on_planner_status(const lapis_msgs::msg::PlannerStatus& message);
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
   void record(const Tracked& tracked, const Odometry* truth, const Image* depth, const Image* labels, const Info* info);
   bool is_mount_known(const Odometry& truth, const Tracked& tracked);
   std::filesystem::path truth_folder() const;
-  void load_truth();
+  std::string find_truth();
   bool is_of_judged_session(const Tracked& tracked);
   std::optional<geometry::Pose> true_camera_pose(const Odometry& truth, const std::string& optical_frame);
   void add_to_references(const geometry::Pose& T_world_camera, const Image& depth, const Image* labels,
                          const Info& info);
   void add_timeline_row(time::Time stamp, bool is_tracking);
+  void report_progress();
+  std::int64_t loop_closures() const;
   bool is_comparable(const KnownSpace& map) const;
   void add_shares();
   mapping::BeliefReader belief_reader() const;
@@ -76,6 +80,9 @@ class EvaluatorComponent {
   mapping::MapMirror mirror_;
   lapis_msgs::msg::PoseGraph graph_;
   ProcessCosts costs_;
+  std::optional<lapis_msgs::msg::PlannerStatus> planner_;  // newest
+  DecisionRecord decisions_;
+  std::optional<double> position_sigma_m_;  // newest that slam told
 
   std::optional<std::int64_t> session_;        // of the first frame: the one that is judged
   std::optional<std::int64_t> map_session_;    // of the newest map state
@@ -100,6 +107,7 @@ class EvaluatorComponent {
   bool has_ended_ = false;  // lock-step told that no input follows
   std::optional<std::chrono::steady_clock::time_point> began_;
   std::chrono::steady_clock::time_point newest_;
+  std::chrono::steady_clock::time_point reported_;  // progress
 };
 
 }  // namespace lapis::evaluator

@@ -5,7 +5,10 @@ A figure whose input files are missing is left out, with a line saying which fil
 figure was drawn, 1 when none was, 2 when the folder does not exist.
 """
 import argparse
+import collections
+import csv
 import json
+import math
 import os
 import sys
 from pathlib import Path
@@ -15,11 +18,16 @@ import matplotlib
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of backend)
 import numpy as np  # noqa: E402
+from matplotlib.collections import LineCollection  # noqa: E402
 
 ESTIMATE = "trajectory_estimate.txt"
 TRUTH = "trajectory_ground_truth.txt"
+DECISIONS = "decisions.csv"
 BLUE, ORANGE, GREY = "#1565c0", "#e65100", "#9e9e9e"
 HEAD_ROOM_M = 0.5  # what lies higher above the camera (ceilings) would hide the rooms
+DECISION_BARS = (("utility", "utility"), ("path_information_nats", "information\nof the path\n[nat]"),
+                 ("cost_m", "cost [m]"), ("d_optimality", "D-optimality"))
+MAX_CLASSES = 14  # in the legend of the map
 MAX_GAP_S = 0.02  # as the evaluator: the nearest true pose must be closer than this
 PLY_TYPES = {"float": "<f4", "double": "<f8", "uchar": "u1", "char": "i1", "ushort": "<u2", "short": "<i2",
              "uint": "<u4", "int": "<i4"}
@@ -43,8 +51,24 @@ def read_trajectory(path):
     return table[:, 0], table[:, 1:4], table[:, 4:8]
 
 
+def read_table(path):
+    """CSV file to a list of rows, each a dictionary of texts."""
+    if not path.is_file():
+        raise MissingInput(f"{path.name} is missing")
+    with path.open(newline="") as stream:
+        return list(csv.DictReader(stream))
+
+
+def numbers(rows, column, path):
+    """A column of read_table [n]; NaN where a cell is empty."""
+    try:
+        return np.array([float(row[column]) if row[column] else np.nan for row in rows])
+    except (KeyError, TypeError, ValueError) as error:
+        raise MissingInput(f"{path.name} is damaged ({error})") from error
+
+
 def read_map(path):
-    """PLY points to (positions [n, 3], colours [n, 3] in 0..1), or None without a usable file."""
+    """PLY points to (positions [n, 3], colours [n, 3] in 0..1, labels [n]), or None without a usable file."""
     if not path.is_file():
         return None
     data = path.read_bytes()
@@ -58,9 +82,36 @@ def read_map(path):
         vertices = np.frombuffer(body, dtype=np.dtype(fields), count=count)
         positions = np.stack([vertices[axis] for axis in "xyz"], axis=1).astype(float)
         colours = np.stack([vertices[name] for name in ("red", "green", "blue")], axis=1) / 255.0
+        labels = vertices["label"].astype(int)
     except (StopIteration, KeyError, IndexError, ValueError):
         return None
-    return (positions, colours) if count else None
+    return (positions, colours, labels) if count else None
+
+
+def read_pose_graph(path):
+    """g2o file to (positions [n, 3], edges [m, 2] as indices of positions)."""
+    if not path.is_file():
+        raise MissingInput(f"{path.name} is missing")
+    rows = [line.split() for line in path.read_text().splitlines()]
+    try:
+        vertices = [row for row in rows if row and row[0] == "VERTEX_SE3:QUAT"]
+        index = {int(row[1]): i for i, row in enumerate(vertices)}
+        positions = np.array([row[2:5] for row in vertices], dtype=float).reshape(len(vertices), 3)
+        edges = [(index[int(row[1])], index[int(row[2])]) for row in rows if row and row[0] == "EDGE_SE3:QUAT"]
+    except (IndexError, KeyError, ValueError) as error:
+        raise MissingInput(f"{path.name} is damaged ({error})") from error
+    if not vertices:
+        raise MissingInput(f"{path.name} holds no pose")
+    return positions, np.array(edges, dtype=int).reshape(len(edges), 2)
+
+
+def class_names(run):
+    """Names by class id, from what the simulator or a recording tells of them; empty when nothing does."""
+    try:
+        classes = json.loads((run / "ground_truth/classes.json").read_text())["classes"]
+        return {int(c["id"]): str(c["name"]) for c in classes}
+    except (OSError, ValueError, KeyError, TypeError):
+        return {}
 
 
 def interpolate(stamps, positions, quaternions, at):
@@ -98,13 +149,14 @@ def break_gaps(stamps, values):
     return np.insert(stamps.astype(float), gaps, np.nan), np.insert(values.astype(float), gaps, np.nan, axis=0)
 
 
-def draw_map(axes, points, ceiling):
-    """The map from above: each cell shows its highest voxel below the ceiling."""
-    positions, colours = points
+def draw_map(axes, points, ceiling, paleness=0.45):
+    """The map from above: each cell shows its highest voxel below the ceiling. Returns, for each class that is seen, its
+    number of cells and its colour."""
+    positions, colours, labels = points
     keep = positions[:, 2] < ceiling
     if not keep.any():
-        return
-    positions, colours = positions[keep], colours[keep]
+        return {}
+    positions, colours, labels = positions[keep], colours[keep], labels[keep]
     steps = np.diff(np.unique(np.round(positions[:, 0], 4)))
     edge = steps.min() if len(steps) else 0.25
     order = np.argsort(positions[:, 2], kind="stable")
@@ -112,11 +164,174 @@ def draw_map(axes, points, ceiling):
     cells = np.round((positions[order, :2] - low) / edge).astype(int)
     image = np.ones((cells[:, 1].max() + 1, cells[:, 0].max() + 1, 4))
     image[..., 3] = 0.0
-    image[cells[:, 1], cells[:, 0], :3] = 0.45 + 0.55 * colours[order]  # pale: the lines are what matters
+    image[cells[:, 1], cells[:, 0], :3] = paleness + (1 - paleness) * colours[order]
     image[cells[:, 1], cells[:, 0], 3] = 1.0
+    top = {(x, y): i for i, (x, y) in zip(order, cells)}  # the highest one comes last
     high = low + edge * np.array([image.shape[1] - 1, image.shape[0] - 1])
     axes.imshow(image, origin="lower", interpolation="nearest",
                 extent=(low[0] - edge / 2, high[0] + edge / 2, low[1] - edge / 2, high[1] + edge / 2))
+    cells_of = collections.Counter(int(labels[i]) for i in top.values())
+    colour_of = {int(labels[i]): colours[i] for i in top.values()}
+    return {label: (count, colour_of[label]) for label, count in sorted(cells_of.items())}
+
+
+def finish_plan(axes, title):
+    """What all figures seen from above have in common."""
+    axes.use_sticky_edges = False
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.margins(0.04)
+    axes.set(xlabel="x [m]", ylabel="y [m]", title=title)
+    axes.grid(color="#dddddd", linewidth=0.6)
+    axes.set_axisbelow(True)
+
+
+def draw_classes(run):
+    """The map from above in the colours of its classes, with the way of the robot."""
+    points = read_map(run / "map.ply")
+    if points is None:
+        raise MissingInput("map.ply is missing or unreadable")
+    _, positions, _ = read_trajectory(run / ESTIMATE)
+    figure, axes = plt.subplots(figsize=(10, 7.5))
+    seen = draw_map(axes, points, positions[:, 2].mean() + HEAD_ROOM_M, paleness=0.0)
+    axes.plot(*positions[:, :2].T, color="white", linewidth=2.4)
+    way, = axes.plot(*positions[:, :2].T, color="black", linewidth=1.2)
+    start, = axes.plot(*positions[0, :2], "o", color="white", markeredgecolor="black", markersize=8)
+    end, = axes.plot(*positions[-1, :2], "s", color="white", markeredgecolor="black", markersize=8)
+    names = class_names(run)
+    named = sorted(((count, names[label], colour) for label, (count, colour) in seen.items() if label in names),
+                   key=lambda entry: (-entry[0], entry[1]))[:MAX_CLASSES]
+    patches = [plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="#555555", linewidth=0.5)
+               for _, _, colour in named]
+    axes.legend([way, start, end, *patches], ["way of the robot", "start", "end", *(name for _, name, _ in named)],
+                loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
+    finish_plan(axes, f"Semantic map from above, without ceilings: {run.resolve().name}")
+    return figure
+
+
+def draw_coverage(run):
+    path = run / "timeline.csv"
+    rows = read_table(path)
+    seconds, volume, share = (numbers(rows, column, path) for column in
+                              ("time_s", "explored_volume_m3", "explored_share"))
+    if not np.isfinite(volume).any():
+        raise MissingInput("timeline.csv has no explored volume")
+    figure, axes = plt.subplots(figsize=(10, 5))
+    axes.plot(seconds, volume, color=BLUE, linewidth=1.8)
+    axes.set(xlabel="time since the first frame [s]", ylabel="explored volume [m³]", title="Explored volume over time")
+    axes.set_xlim(0, seconds[-1])
+    axes.set_ylim(bottom=0)
+    axes.grid(color="#dddddd", linewidth=0.6)
+    if not np.isfinite(share).any():
+        return figure
+    axes.yaxis.label.set_color(BLUE)
+    right = axes.twinx()
+    right.plot(seconds, 100 * share, color=ORANGE, linewidth=1.8)
+    right.set_ylabel("share of the explorable volume [%]", color=ORANGE)
+    right.set_ylim(0, 100)
+    for level in (80, 90):
+        reached = np.flatnonzero(100 * share >= level)
+        if len(reached):
+            at = seconds[reached[0]]
+            right.plot(at, level, "o", color=ORANGE)
+            right.annotate(f"{level} % after {at:.0f} s", (at, level), xytext=(8, -14), textcoords="offset points",
+                           color=ORANGE)
+    return figure
+
+
+def draw_pose_graph(run):
+    """Key-frames that follow each other are joined by odometry; every other edge is a loop closure."""
+    positions, edges = read_pose_graph(run / "pose_graph.g2o")
+    is_loop = np.abs(edges[:, 1] - edges[:, 0]) > 1
+    figure, axes = plt.subplots(figsize=(10, 7.5))
+    for kind, colour in ((~is_loop, BLUE), (is_loop, ORANGE)):
+        axes.add_collection(LineCollection(positions[edges[kind], :2], colors=colour, linewidths=1.0))
+    nodes, = axes.plot(*positions[:, :2].T, ".", color=BLUE, markersize=4)
+    odometry, loops = (plt.Line2D([], [], color=colour) for colour in (BLUE, ORANGE))
+    axes.legend([nodes, odometry, loops],
+                [f"{len(positions)} key-frames", "odometry", f"{is_loop.sum()} loop closures"],
+                loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
+    finish_plan(axes, f"Pose graph, optimised: {run.resolve().name}")
+    return figure
+
+
+def shown_decision(rows):
+    """Rows of the decision with most candidates that were not rejected, these first and the best of them foremost, and
+    their number; of several such decisions, the one nearest to the middle of the run."""
+    decisions = collections.defaultdict(list)
+    for row in rows:
+        decisions[int(row["decision"])].append(row)
+    accepted = {number: sum(not row["rejection"] for row in of) for number, of in decisions.items()}
+    middle = (min(decisions) + max(decisions)) / 2
+    chosen = min(decisions, key=lambda number: (-accepted[number], abs(number - middle), number))
+    of = sorted(decisions[chosen], key=lambda row: (bool(row["rejection"]), -float(row["utility"])))
+    return of, accepted[chosen]
+
+
+def draw_candidates(axes, rows, count, shade, path):
+    """Candidates from above, numbered by rank; returns what the legend says of them."""
+    x, y, yaw = (numbers(rows, name, path) for name in ("x_m", "y_m", "yaw_rad"))
+    entries = []
+    if count < len(rows):
+        rejected, = axes.plot(x[count:], y[count:], "x", color="#777777", markersize=6)
+        entries.append((rejected, f"{len(rows) - count} rejected"))
+    for i in reversed(range(count)):  # the best one on top
+        axes.annotate("", (x[i] + 0.5 * math.cos(yaw[i]), y[i] + 0.5 * math.sin(yaw[i])), (x[i], y[i]),
+                      arrowprops={"arrowstyle": "-|>", "color": shade[i], "linewidth": 1.6})
+        axes.plot(x[i], y[i], "o", color=shade[i], markeredgecolor="black", markeredgewidth=0.5, markersize=6)
+        axes.annotate(str(i + 1), (x[i], y[i]), xytext=(4, 4), textcoords="offset points", fontsize=8)
+    for column, marker, size, colour, name in (("is_chosen", "o", 15, ORANGE, "chosen"),
+                                               ("is_chosen_by_mi_only", "s", 19, BLUE, "mi_only would choose")):
+        chosen = [i for i, row in enumerate(rows) if row[column] == "1"]
+        if chosen:
+            ring, = axes.plot(x[chosen], y[chosen], marker, color="none", markeredgecolor=colour, markeredgewidth=1.8,
+                              markersize=size)
+            entries.append((ring, name))
+    return entries
+
+
+def draw_bars(panels, rows, count, shade, path):
+    """What each candidate that was not rejected costs and gives, by rank."""
+    for panel, (column, name) in zip(panels, DECISION_BARS):
+        panel.barh(np.arange(count), numbers(rows[:count], column, path), color=shade, height=0.7)
+        panel.set_yticks(np.arange(count), np.arange(count) + 1, fontsize=8)
+        panel.invert_yaxis()
+        panel.set_title(name, fontsize=9)
+        panel.locator_params(axis="x", nbins=3)
+        panel.grid(axis="x", color="#dddddd", linewidth=0.6)
+        panel.set_axisbelow(True)
+    panels[0].set_ylabel("candidate, by utility")
+
+
+def draw_decision(run):
+    """What one decision was made from: where the candidates are, and what each one costs and gives."""
+    path = run / DECISIONS
+    table = read_table(path)
+    if not table:
+        raise MissingInput(f"{DECISIONS} holds no decision")
+    stamps, positions, _ = read_trajectory(run / ESTIMATE)
+    points = read_map(run / "map.ply")
+    try:
+        rows, count = shown_decision(table)
+        number, method, time_s = rows[0]["decision"], rows[0]["method"], float(rows[0]["time_s"])
+        figure, (plan, *panels) = plt.subplots(1, 1 + len(DECISION_BARS), figsize=(13, 6.5),
+                                               gridspec_kw={"width_ratios": [5] + [1] * len(DECISION_BARS)})
+        if points is not None:
+            draw_map(plan, points, positions[:, 2].mean() + HEAD_ROOM_M, paleness=0.7)
+        gone = positions[stamps <= time_s]
+        way, = plan.plot(*gone[:, :2].T, color="black", linewidth=1.0)
+        robot, = plan.plot(*gone[-1:, :2].T, "*", color="black", markersize=13)
+        shade = plt.get_cmap("viridis")(np.linspace(0.95, 0.05, count))
+        entries = draw_candidates(plan, rows, count, shade, path)
+        draw_bars(panels, rows, count, shade, path)
+    except (KeyError, TypeError, ValueError) as error:
+        raise MissingInput(f"{path.name} is damaged ({error})") from error
+    plan.legend(*zip((way, "way until then"), (robot, "robot"), *entries), loc="upper center",
+                bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False)
+    finish_plan(plan, "")
+    figure.suptitle(f"Decision {number} at {time_s:.1f} s by method {method}, the one with most candidates; "
+                    "the map is that of the run's end")
+    figure.tight_layout()
+    return figure
 
 
 def draw_trajectory(run):
@@ -136,11 +351,7 @@ def draw_trajectory(run):
     axes.plot(*break_gaps(stamps, positions)[1][:, :2].T, color=ORANGE, linewidth=1.4, label="estimate")
     axes.plot(*positions[0, :2], "o", color="white", markeredgecolor="black", markersize=9, label="start")
     axes.plot(*positions[-1, :2], "s", color=ORANGE, markeredgecolor="black", markersize=9, label="end")
-    axes.set_aspect("equal", adjustable="datalim" if points is None else "box")
-    axes.margins(0.08)
-    axes.set(xlabel="x [m]", ylabel="y [m]", title=f"Trajectory in the map frame: {run.resolve().name}")
-    axes.grid(color="#dddddd", linewidth=0.6)
-    axes.set_axisbelow(True)
+    finish_plan(axes, f"Trajectory in the map frame: {run.resolve().name}")
     axes.legend(loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
     return figure
 
@@ -205,7 +416,9 @@ def draw_class_iou(run):
     return figure
 
 
-FIGURES = {"trajectory.png": draw_trajectory, "errors.png": draw_errors, "class_iou.png": draw_class_iou}
+FIGURES = {"map.png": draw_classes, "trajectory.png": draw_trajectory, "pose_graph.png": draw_pose_graph,
+           "coverage.png": draw_coverage, "errors.png": draw_errors, "class_iou.png": draw_class_iou,
+           "decision.png": draw_decision}
 
 
 def save(figure, path):
@@ -231,6 +444,8 @@ def main():
         return 2
     drawn = 0
     for name, draw in FIGURES.items():
+        if draw is draw_decision and not (run / DECISIONS).exists():
+            continue  # a run without a planner
         try:
             save(draw(run), folder / name)
             drawn += 1

@@ -1,6 +1,7 @@
 #include "planner/conversions.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "common/messages/geometry.hpp"
@@ -15,9 +16,9 @@ constexpr double kSameAngle_rad = 1e-6;
 constexpr double kGroundOffset_m = 0.05;  // markers just above the floor
 
 geometry_msgs::msg::Pose to_message(const Pose2& pose) {
-  return messages::to_message(geometry::make_pose(
-      {pose.p_map.x(), pose.p_map.y(), 0.0},
-      Eigen::Quaterniond(Eigen::AngleAxisd(pose.yaw_rad, Eigen::Vector3d::UnitZ()))));
+  return messages::to_message(
+      geometry::make_pose({pose.p_map.x(), pose.p_map.y(), 0.0},
+                          Eigen::Quaterniond(Eigen::AngleAxisd(pose.yaw_rad, Eigen::Vector3d::UnitZ()))));
 }
 
 geometry_msgs::msg::Point to_point(const Eigen::Vector2d& p_map) {
@@ -69,6 +70,15 @@ Marker candidate_marker(const Candidate& candidate, bool is_chosen, std::int32_t
   return result;
 }
 
+geometry::Matrix6d symmetric(const std::array<double, 21>& upper_triangle) {
+  geometry::Matrix6d upper = geometry::Matrix6d::Zero();
+  std::size_t at = 0;
+  for (int row = 0; row < 6; ++row) {
+    for (int column = row; column < 6; ++column) upper(row, column) = upper_triangle[at++];
+  }
+  return upper.selfadjointView<Eigen::Upper>();
+}
+
 messages::Converted<geometry::Pose> near_pose(const geometry_msgs::msg::Pose& message) {
   auto T = messages::from_message(message);
   if (T && !(T->translation().norm() <= kFarthest_m))
@@ -114,12 +124,7 @@ messages::Converted<GraphMessage> to_core(const lapis_msgs::msg::PoseGraph& mess
   std::sort(graph.keyframes.begin(), graph.keyframes.end(),
             [](const Keyframe& a, const Keyframe& b) { return a.id < b.id; });
   for (const auto& edge : message.edges()) {
-    geometry::Matrix6d information;
-    std::size_t at = 0;
-    for (int row = 0; row < 6; ++row) {
-      for (int column = row; column < 6; ++column)
-        information(row, column) = information(column, row) = edge.information()[at++];
-    }
+    const geometry::Matrix6d information = symmetric(edge.information());
     if (!information.allFinite()) return Result::refused("the information of an edge is not finite");
     graph.edges.push_back({edge.from_id(), edge.to_id(), information,
                            edge.type() == lapis_msgs::msg::PoseGraphEdge_Constants::TYPE_LOOP_CLOSURE});
@@ -134,6 +139,7 @@ messages::Converted<mapping::MapState> to_core(const lapis_msgs::msg::MapState& 
   state.tiles = message.tiles();
   state.checksum = message.checksum();
   state.resolution_m = message.resolution_m();
+  state.session = message.session();
   if (!(state.resolution_m >= mapping::kMinResolution_m && state.resolution_m <= mapping::kMaxResolution_m))
     return messages::Converted<mapping::MapState>::refused("no map has voxels of that size");
   return state;

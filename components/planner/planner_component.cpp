@@ -115,8 +115,23 @@ void PlannerComponent::set_graph(const lapis_msgs::msg::PoseGraph& message) {
   graph_ = std::move(*graph);
 }
 
+/// Nothing that is known is in the map frame of the new session.
+void PlannerComponent::begin_session(std::int64_t session) {
+  session_ = session;
+  worker_.discard();
+  robot_.reset();
+  obstacles_.reset();
+  surroundings_.reset();
+  surroundings_state_.reset();
+  decision_ = {};
+  knowledge_.reset();
+  known_graph_ = {};
+  explorer_.forget_map();
+}
+
 void PlannerComponent::note_frame(const Tracked& frame) {
-  ++frames_;
+  if (frame.session() != session_) begin_session(frame.session());
+  context_.status().value("frames", ++frames_);
   stamp_ = messages::from_message(frame.header().stamp());
   tracking_ = tracking_of(frame);
   if (tracking_ == Tracking::kLost) robot_.reset();
@@ -150,7 +165,8 @@ void PlannerComponent::take_decision() {
   if (!output) return;
   knowledge_ = std::move(output->knowledge);
   decision_time_s_ = output->time_s;
-  const Decision& decision = output->decision;
+  decision_ = std::move(output->decision);
+  const Decision& decision = decision_;
   ++decisions_;
   disagreements_ += decision.agrees_with_mi_only() ? 0 : 1;
   context_.status().value("decisions", decisions_);
@@ -158,8 +174,6 @@ void PlannerComponent::take_decision() {
   if (!decision.problem.empty()) drop("pose graph", decision.problem);
   explorer_.take(decision, stamp_);
   candidates_.publish(to_message(decision, decisions_, config_.method, header()));
-  if (markers_.matched() > 0)
-    markers_.publish(to_markers(surroundings_->frontiers(), surroundings_->grid(), decision, header()));
   if (log_ && !log_->write(decision, decisions_, config_.method, stamp_.seconds())) {
     spdlog::error("{}/{} cannot be written; exploration goes on without it", config_.output_dir, kLogFile);
     log_.reset();
@@ -168,7 +182,7 @@ void PlannerComponent::take_decision() {
 
 /// Takes over what has changed. Not while a decision reads it.
 void PlannerComponent::refresh() {
-  if (map_.map() == nullptr) return;
+  if (map_.map() == nullptr || map_.state()->session != session_) return;
   const mapping::MapState& state = *map_.state();
   const bool is_other_map = surroundings_state_ && surroundings_state_->resolution_m != state.resolution_m;
   const bool has_other_classes = std::exchange(has_new_labels_, false);  // what a hit tells depends on their number
@@ -207,7 +221,7 @@ void PlannerComponent::begin_decision() {
   input.memory = explorer_.memory(stamp_);
   input.config = config_.decision;
   input.knowledge = knowledge_;
-  const bool has_edges = graph_ && !graph_->edges.empty();
+  const bool has_edges = graph_ && graph_->session == session_ && !graph_->edges.empty();
   if (has_edges && versions_of_graph() != known_graph_) {
     input.graph = graph_;
     if (landmarks_.state() && landmarks_.state()->session == graph_->session) input.landmarks = landmarks_.tiles();
@@ -223,16 +237,27 @@ void PlannerComponent::publish() {
     is_blocked_ = false;
     path_.publish(to_message(explorer_.path(), header()));
   }
+  publish_markers();
   publish_status();
+}
+
+/// Of each decision while somebody reads, and at once for who begins to.
+void PlannerComponent::publish_markers() {
+  const bool has_new_reader = markers_.matched() > std::exchange(marker_readers_, markers_.matched());
+  const bool is_new = std::exchange(shown_decision_, decisions_) != decisions_;
+  if (markers_.matched() == 0 || !surroundings_ || !(is_new || has_new_reader)) return;
+  markers_.publish(to_markers(surroundings_->frontiers(), surroundings_->grid(), decision_, header()));
 }
 
 void PlannerComponent::publish_status() {
   const bool has_changed = explorer_.state() != reported_state_ || explorer_.reason() != reported_reason_;
-  if (reported_at_ && !has_changed && abs(stamp_ - *reported_at_) < kStatusPeriod) return;
+  const bool has_decided = decisions_ != reported_decisions_;  // each decision's time is told
+  if (reported_at_ && !has_changed && !has_decided && abs(stamp_ - *reported_at_) < kStatusPeriod) return;
   if (has_changed) spdlog::info("{}", explorer_.reason());
   reported_at_ = stamp_;
   reported_state_ = explorer_.state();
   reported_reason_ = explorer_.reason();
+  reported_decisions_ = decisions_;
   lapis_msgs::msg::PlannerStatus message;
   message.header(header());
   message.state(to_message(explorer_.state()));
@@ -240,6 +265,7 @@ void PlannerComponent::publish_status() {
   message.explored_volume_m3(surroundings_ ? surroundings_->explored_volume_m3() : 0.0);
   message.decision_time_s(decision_time_s_);
   message.decisions(decisions_);
+  message.decisions_unlike_mi_only(disagreements_);
   status_.publish(message);
 }
 

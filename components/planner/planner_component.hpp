@@ -38,6 +38,7 @@ class PlannerComponent {
   void set_map_state(const lapis_msgs::msg::MapState& message);
   void add_landmarks(const lapis_msgs::msg::LandmarkTile& message);
   void set_graph(const lapis_msgs::msg::PoseGraph& message);
+  void begin_session(std::int64_t session);
   void note_frame(const Tracked& frame);
   void set_pose(const nav_msgs::msg::Odometry& message);
   void note_controller(const lapis_msgs::msg::ControllerStatus& message);
@@ -49,6 +50,7 @@ class PlannerComponent {
   GraphVersions versions_of_graph() const;
   void begin_decision();
   void publish();
+  void publish_markers();
   void publish_status();
   void drop(const std::string& what, const std::string& reason);
   mapping::SensorModel sensor_model() const;
@@ -71,6 +73,7 @@ class PlannerComponent {
   mapping::LandmarkMirror landmarks_;
   std::optional<GraphMessage> graph_;
   std::optional<nav_msgs::msg::OccupancyGrid> obstacles_;  // newest, not yet taken over
+  std::int64_t session_ = 0;                               // of slam
   std::uint64_t frames_ = 0;
   time::Time stamp_;  // of the newest frame
   Tracking tracking_ = Tracking::kLost;
@@ -85,13 +88,16 @@ class PlannerComponent {
   Explorer explorer_;
   DecisionWorker worker_;
   std::optional<DecisionLog> log_;
-  std::uint64_t decisions_ = 0, disagreements_ = 0;
+  Decision decision_;  // the last one
+  std::uint64_t decisions_ = 0, disagreements_ = 0, shown_decision_ = 0;
+  std::size_t marker_readers_ = 0;
   double decision_time_s_ = 0.0;
   std::uint64_t published_path_ = 0;
   time::Time path_stamp_;  // of the frame with which it was published
   std::optional<time::Time> reported_at_;
   State reported_state_ = State::kIdle;
   std::string reported_reason_;
+  std::uint64_t reported_decisions_ = 0;
 };
 
 }  // namespace lapis::planner

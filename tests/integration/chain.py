@@ -27,12 +27,13 @@ AWS_CLASSES = DATA / "environments/aws_small_house/classes.csv"
 COMPONENTS = ("slam", "semantic_mapper", "evaluator", "sensor_replay")
 # What a run folder has, and what of it is equal to the byte in a repeated run (docs/evaluation.md).
 FILES = ("trajectory_estimate.txt", "trajectory_ground_truth.txt", "keyframes.txt", "pose_graph.g2o", "slam.lapis",
-         "map.lapis", "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "figures/trajectory.png",
-         "figures/errors.png")
+         "map.lapis", "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "figures/map.png",
+         "figures/trajectory.png", "figures/pose_graph.png", "figures/coverage.png", "figures/errors.png")
 FILES_OF_LABELS = ("figures/class_iou.png",)
 FILES_OF_TRUTH = tuple(f"ground_truth/{name}" for name in ("mesh.lapis", "flood.lapis", "ideal.lapis", "classes.json",
                                                            "rooms.json", "navmap.png", "navmap.yaml"))
-MEASURED_BY_THE_CLOCK = {"real_time_factor", "wall_time_s", "cpu_ms_per_frame", "peak_rss_mb"}
+MEASURED_BY_THE_CLOCK = {"real_time_factor", "wall_time_s", "cpu_ms_per_frame", "peak_rss_mb", "decision_time_p50_s",
+                         "decision_time_p95_s"}
 SKIPPED = 77  # SKIP_RETURN_CODE of ctest
 
 

@@ -14,8 +14,8 @@ MEASURED = ("exit_reason", "frames_total", "frames_tracked", "lost_time_s", "loo
             "map_error_p95_m", "map_completeness_mean_m", "reference_fusion_share", "explored_volume_m3",
             "path_length_m", "real_time_factor", "duration_s", "wall_time_s", "cpu_ms_per_frame", "peak_rss_mb")
 OF_LABELS = ("iou_top8_mean", "iou_mean", "iou_by_class")
-NOT_MEASURED = ("ate_at_80_m", "explored_share", "time_to_80_s", "time_to_90_s", "collisions", "decision_time_p50_s",
-                "decision_time_p95_s",
+NOT_MEASURED = ("ate_at_80_m", "explored_share", "time_to_80_s", "time_to_90_s", "collisions", "planner_state",
+                "decisions", "decisions_unlike_mi_only_share", "decision_time_p50_s", "decision_time_p95_s",
                 *(f"{prefix}_{key}" for prefix in ("ideal", "mesh")
                   for key in ("map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m", *OF_LABELS)))
 

@@ -91,6 +91,9 @@ ordered_json to_document(const RunMetrics& m) {
   document["time_to_90_s"] = value_or_null(m.time_to_90_s);
   document["path_length_m"] = value_or_null(m.path_length_m);
   document["collisions"] = value_or_null(m.collisions);
+  document["planner_state"] = value_or_null(m.planner_state);
+  document["decisions"] = value_or_null(m.decisions);
+  document["decisions_unlike_mi_only_share"] = value_or_null(m.decisions_unlike_mi_only_share);
   document["decision_time_p50_s"] = value_or_null(m.decision_time_p50_s);
   document["decision_time_p95_s"] = value_or_null(m.decision_time_p95_s);
   document["real_time_factor"] = value_or_null(m.real_time_factor);
@@ -132,6 +135,19 @@ TrajectoryFigures trajectory_figures(const Trajectory& reference, const Trajecto
   const auto relative = relative_error(estimate, matches, {.delta = 1.0, .unit = DeltaUnit::kMetres});
   if (relative) figures.rpe_1m_rmse_m = relative->translation_m.rmse;
   return figures;
+}
+
+std::optional<double> ate_raw_rmse_up_to(double path_m, const Trajectory& reference, const Trajectory& estimate,
+                                         const AssociationConfig& association) {
+  double gone_m = 0.0;
+  for (std::size_t i = 1; i < reference.size(); ++i) {
+    gone_m += (reference[i].T_world_body.translation() - reference[i - 1].T_world_body.translation()).norm();
+    if (gone_m < path_m) continue;
+    Trajectory first = estimate;
+    std::erase_if(first, [&](const StampedPose& pose) { return pose.stamp > reference[i].stamp; });
+    return position_rmse(associate(reference, first, association), Alignment::kNone);
+  }
+  return std::nullopt;
 }
 
 MapFigures map_figures(const LabelledVoxels& reference, const LabelledVoxels& estimate,

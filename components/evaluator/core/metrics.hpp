@@ -60,7 +60,10 @@ struct RunMetrics {
   std::optional<double> time_to_90_s;
   std::optional<double> path_length_m;
   std::optional<std::int64_t> collisions;
-  std::optional<double> decision_time_p50_s;
+  std::optional<std::string> planner_state;  ///< the last one
+  std::optional<std::int64_t> decisions;
+  std::optional<double> decisions_unlike_mi_only_share;
+  std::optional<double> decision_time_p50_s;  ///< wall time
   std::optional<double> decision_time_p95_s;
   std::optional<double> real_time_factor;
   std::optional<double> duration_s;
@@ -72,6 +75,9 @@ struct RunMetrics {
 /// Figures of an estimate against a reference already expressed in the estimate's map frame.
 TrajectoryFigures trajectory_figures(const Trajectory& reference, const Trajectory& estimate,
                                      const AssociationConfig& association = {});
+/// ate_raw_rmse_m of the estimates up to the time at which the reference has gone so far; none when it never has.
+std::optional<double> ate_raw_rmse_up_to(double path_m, const Trajectory& reference, const Trajectory& estimate,
+                                         const AssociationConfig& association = {});
 /// Figures of a map against a reference on the same grid. Classes without an entry in `class_names` are named by id.
 /// Throws std::invalid_argument when the resolutions differ.
 MapFigures map_figures(const LabelledVoxels& reference, const LabelledVoxels& estimate,

@@ -7,7 +7,7 @@ namespace lapis::evaluator {
 namespace {
 
 constexpr const char* kHeader =
-    "time_s,explored_volume_m3,explored_share,path_length_m,position_error_m,position_sigma_m,state\n";
+    "time_s,explored_volume_m3,explored_share,path_length_m,position_error_m,position_sigma_m,state,planner_state\n";
 
 std::string cell(const std::optional<double>& value) {
   if (!value) return "";
@@ -22,8 +22,8 @@ std::string to_csv(const std::vector<TimelineRow>& rows) {
   std::string text = kHeader;
   for (const TimelineRow& row : rows) {
     text += cell(row.time_s) + "," + cell(row.explored_volume_m3) + "," + cell(row.explored_share) + "," +
-            cell(row.path_length_m) + "," + cell(row.position_error_m) + ",," +
-            (row.is_tracking ? "TRACKING" : "LOST") + "\n";
+            cell(row.path_length_m) + "," + cell(row.position_error_m) + "," + cell(row.position_sigma_m) + "," +
+            (row.is_tracking ? "TRACKING" : "LOST") + "," + row.planner_state + "\n";
   }
   return text;
 }

@@ -13,7 +13,9 @@ struct TimelineRow {
   std::optional<double> explored_share;
   std::optional<double> path_length_m;
   std::optional<double> position_error_m;  ///< not aligned
+  std::optional<double> position_sigma_m;  ///< as slam predicts it: root of the variances' sum over x, y, z
   bool is_tracking = false;
+  std::string planner_state;   ///< empty without a planner
   bool is_comparable = false;  ///< the map has the grid and the session that the run is judged by; not written
 };
 

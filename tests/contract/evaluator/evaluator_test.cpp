@@ -103,6 +103,34 @@ TEST_F(EvaluatorContract, ACollisionIsTheBeginningOfAContact) {
   EXPECT_THAT(read(std::filesystem::path(folder) / "metrics.json"), HasSubstr("\"collisions\": 2"));
 }
 
+TEST_F(EvaluatorContract, ThePlannersDecisionsAndSlamsSigmaAreKept) {
+  auto& planner = probe.advertise(topics::kPlannerStatus);
+  auto& pose = probe.advertise(topics::kSlamOdometry);
+  ASSERT_TRUE(probe.wait_until([&] { return planner.matched() > 0 && pose.matched() > 0; })) << evaluator.log();
+  nav_msgs::msg::Odometry odometry;
+  for (const std::size_t diagonal : {0U, 7U, 14U}) odometry.pose().covariance()[diagonal] = 0.0012;
+  pose.publish(odometry);
+  lapis_msgs::msg::PlannerStatus status;
+  status.state(lapis_msgs::msg::PlannerStatus_Constants::STATE_EXPLORING);
+  status.reason("drives somewhere");
+  status.decision_time_s(0.25);
+  status.decisions(2);
+  status.decisions_unlike_mi_only(1);
+  planner.publish(status);
+  planner.wait_until_acknowledged(5.0);
+  pose.wait_until_acknowledged(5.0);
+  send(feed.frame(0), 0);
+  ASSERT_TRUE(evaluator.wait_for_line("progress: 0 s, 0 m3 explored, 0.0 m driven, loops closed: 0, EXPLORING: drives"))
+      << evaluator.log();
+  EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
+  const std::string metrics = read(std::filesystem::path(folder) / "metrics.json");
+  EXPECT_THAT(metrics, HasSubstr("\"planner_state\": \"EXPLORING\""));
+  EXPECT_THAT(metrics, HasSubstr("\"decisions\": 2"));
+  EXPECT_THAT(metrics, HasSubstr("\"decisions_unlike_mi_only_share\": 0.5"));
+  EXPECT_THAT(metrics, HasSubstr("\"decision_time_p95_s\": 0.25"));
+  EXPECT_THAT(read(std::filesystem::path(folder) / "timeline.csv"), HasSubstr(",0.060000,TRACKING,EXPLORING\n"));
+}
+
 TEST_F(EvaluatorContract, GarbageIsSurvived) {
   send(feed.frame(0), 0);
   auto wrong = feed.frame(1);

@@ -30,12 +30,11 @@ inline constexpr double kResolution_m = 0.25;
 using Drawing = std::vector<std::string>;
 
 /// A room of 5 m x 4 m. Its door to the unknown is in the wall on the right.
-inline const Drawing kRoomWithDoor{"####################", "#..................#", "#..................#",
-                                   "#..................#", "#..................#", "#..................#",
-                                   "#...................", "#...................", "#...................",
-                                   "#..................#", "#..................#", "#..................#",
-                                   "#..................#", "#..................#", "#..................#",
-                                   "####################"};
+inline const Drawing kRoomWithDoor{
+    "####################", "#..................#", "#..................#", "#..................#",
+    "#..................#", "#..................#", "#...................", "#...................",
+    "#...................", "#..................#", "#..................#", "#..................#",
+    "#..................#", "#..................#", "#..................#", "####################"};
 /// The same without a door.
 inline const Drawing kClosedRoom = [] {
   Drawing lines = kRoomWithDoor;
@@ -86,6 +85,7 @@ class Peers {
     message.header(header());
     message.epoch(epoch);
     message.version(map_version_);
+    message.session(session);
     message.resolution_m(kResolution_m);
     message.tiles(static_cast<std::uint32_t>(tiles_.size()));
     std::uint64_t checksum = 0;
@@ -98,15 +98,14 @@ class Peers {
   PoseGraph graph() {
     PoseGraph message;
     message.header(header());
-    message.session(1);
+    message.session(session);
     message.version(++graph_version_);
     for (std::uint64_t id = 0; id < 5; ++id) {
       lapis_msgs::msg::PoseGraphNode node;
       node.id(id);
       const double x = position.x() - 0.5 * static_cast<double>(4 - id);
-      node.pose(messages::to_message(
-          geometry::make_pose({x, position.y(), 0.0}, Eigen::Quaterniond::Identity()) *
-          geometry::T_base_camera({1.0, 0.0})));
+      node.pose(messages::to_message(geometry::make_pose({x, position.y(), 0.0}, Eigen::Quaterniond::Identity()) *
+                                     geometry::T_base_camera({1.0, 0.0})));
       message.nodes().push_back(node);
       if (id > 0) message.edges().push_back(odometry_edge(id - 1, id));
     }
@@ -117,17 +116,17 @@ class Peers {
     edge.from_id(from);
     edge.to_id(to);
     edge.relative_pose().orientation().w(1.0);
-    for (const std::size_t diagonal : {0, 6, 11, 15, 18, 20}) edge.information()[diagonal] = 1e4;
+    for (const std::size_t diagonal : {0U, 6U, 11U, 15U, 18U, 20U}) edge.information()[diagonal] = 1e4;
     return edge;
   }
 
   /// Stamp, frame and, while slam tracks, pose of the next tick; the robot drives on.
   void publish_frame(std::uint8_t tracking = lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING) {
-    stamp = time::Time{1'000'000'000} + time::Duration::from_seconds(++frame_number_ / kRate_hz);
+    stamp = time::Time{1'000'000'000} + time::Duration::from_seconds(++frames_so_far / kRate_hz);
     Tracked frame;
     frame.header(messages::header(stamp, "camera_color_optical_frame"));
     frame.map_frame_id("map");
-    frame.session(1);
+    frame.session(session);
     frame.state(tracking);
     frames.publish(frame);
     drive();
@@ -173,7 +172,9 @@ class Peers {
   dds::Publisher<nav_msgs::msg::Odometry>& odometry;
   dds::Publisher<lapis_msgs::msg::ControllerStatus>& controller;
 
+  std::int64_t session = 1;
   std::int64_t epoch = 5;
+  int frames_so_far = 0;
   time::Time stamp{1'000'000'000};
   Eigen::Vector2d position{2.0, 2.0};
   double yaw_rad = 0.0;
@@ -193,7 +194,6 @@ class Peers {
 
   std::set<mapping::TileIndex> tiles_;
   std::uint64_t map_version_ = 0, graph_version_ = 0;
-  int frame_number_ = 0;
   std::vector<geometry::Pose> way_;
 };
 

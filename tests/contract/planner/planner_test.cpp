@@ -79,11 +79,13 @@ TEST_F(PlannerContract, MarkersAreMadeForReadersOnly) {
   const auto& markers = viewer.collect(topics::kPlannerMarkers);
   ASSERT_TRUE(viewer.wait_until_known_by("planner"));
   const time::Time joined = peers.stamp;
-  const std::size_t decisions = candidates.size();
-  ASSERT_TRUE(ticks_until([&] { return candidates.size() > decisions; }));
-  ASSERT_TRUE(viewer.wait_until([&] { return !markers.empty(); })) << planner->log();
+  ASSERT_TRUE(tick()) << planner->log();
+  ASSERT_TRUE(viewer.wait_until([&] { return !markers.empty(); })) << "at once for a new reader" << planner->log();
   ASSERT_GE(markers[0].markers().size(), 3U);
   EXPECT_GT(messages::from_message(markers[0].markers()[0].header().stamp()), joined) << "there were some before";
+  const std::size_t decisions = candidates.size();
+  ASSERT_TRUE(ticks_until([&] { return candidates.size() > decisions; }));
+  EXPECT_TRUE(viewer.wait_until([&] { return markers.size() == 2; })) << "and with each decision" << planner->log();
 }
 
 class PlannerLatency : public PlannerContract, public ::testing::WithParamInterface<int> {};
@@ -131,7 +133,7 @@ TEST_F(PlannerContract, GoesHomeAtTheEndWhenAskedTo) {
   EXPECT_LT((peers.position - Eigen::Vector2d(2, 2)).norm(), 0.31);
 }
 
-// Services --------------------------------------------------------------------------------------------------------------
+// Services -----------------------------------------------------------------------------------------------------------
 
 class PlannerServices : public PlannerContract {
  protected:
@@ -192,7 +194,7 @@ TEST_F(PlannerServices, ReturnsHomeAndIsDone) {
   EXPECT_TRUE(stands());
 }
 
-// Files and ends ----------------------------------------------------------------------------------------------------------
+// Files and ends -----------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, LastWordAfterSigtermIsAnEmptyPath) {
   get_going();

@@ -11,7 +11,8 @@ import unittest
 from pathlib import Path
 
 SCRIPT = Path(sys.argv.pop(1))
-ALL = {"trajectory.png", "errors.png", "class_iou.png"}
+ALL = {"map.png", "trajectory.png", "pose_graph.png", "coverage.png", "errors.png", "class_iou.png", "decision.png"}
+FROM_ESTIMATE = {"map.png", "trajectory.png", "errors.png", "decision.png"}
 
 
 def write_trajectory(path, drift):
@@ -43,6 +44,29 @@ def write_metrics(path):
     path.write_text(json.dumps({"iou_top8_mean": 0.585, "iou_by_class": classes}))
 
 
+def write_pose_graph(path):
+    lines = [f"VERTEX_SE3:QUAT {i} {0.1 * i} {0.01 * i * i} 1 0 0 0 1" for i in range(30)]
+    lines += [f"EDGE_SE3:QUAT {i} {j} 0 0 0 0 0 0 1 " + "1 " * 21
+              for i, j in [(k, k + 1) for k in range(29)] + [(2, 20), (3, 25)]]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def write_timeline(path):
+    rows = [f"{t},{0.5 * t},{0.005 * t if t > 5 else ''},{0.2 * t},0.01,0.02,TRACKING,EXPLORING" for t in range(190)]
+    path.write_text("time_s,explored_volume_m3,explored_share,path_length_m,position_error_m,position_sigma_m,state,"
+                    "planner_state\n" + "\n".join(rows) + "\n")
+
+
+def write_decisions(path):
+    """Decision 2 has most candidates, one of which is rejected, but decision 1 has as many that are not."""
+    header = "decision,time_s,method,candidate,x_m,y_m,yaw_rad,cost_m,path_information_nats,d_optimality,utility," \
+             "is_chosen,is_chosen_by_mi_only,rejection"
+    rows = [f"{d},{5 * d}.0,lapis,{c},{c},{d},0.5,{1 + c},{100 - c},1.5,{0 if d == 2 and c == 3 else 2.5 - c},"
+            f"{int(c == 0)},{int(c == 1)},{'no way' if d == 2 and c == 3 else ''}"
+            for d, count in ((1, 3), (2, 4), (3, 1)) for c in range(count)]
+    path.write_text("\n".join([header, *rows]) + "\n")
+
+
 class Figures(unittest.TestCase):
     def setUp(self):
         self.run_folder = Path(tempfile.mkdtemp()) / "a_run"
@@ -51,6 +75,9 @@ class Figures(unittest.TestCase):
         write_trajectory(self.run_folder / "trajectory_ground_truth.txt", 0)
         write_map(self.run_folder / "map.ply")
         write_metrics(self.run_folder / "metrics.json")
+        write_pose_graph(self.run_folder / "pose_graph.g2o")
+        write_timeline(self.run_folder / "timeline.csv")
+        write_decisions(self.run_folder / "decisions.csv")
 
     def tearDown(self):
         shutil.rmtree(self.run_folder.parent)
@@ -70,19 +97,27 @@ class Figures(unittest.TestCase):
             self.assertEqual((self.run_folder / "figures" / name).read_bytes(), before[name])
 
     def test_each_missing_file_is_named_and_the_rest_is_drawn(self):
-        for name, kept in (("map.ply", ALL), ("trajectory_ground_truth.txt", ALL - {"errors.png"}),
-                           ("trajectory_estimate.txt", {"class_iou.png"}), ("metrics.json", ALL - {"class_iou.png"})):
-            with self.subTest(name):
+        for names, kept in ((("map.ply",), ALL - {"map.png"}),
+                            (("trajectory_estimate.txt",), ALL - FROM_ESTIMATE),
+                            (("trajectory_ground_truth.txt", "metrics.json", "pose_graph.g2o", "timeline.csv"),
+                             {"map.png", "trajectory.png", "decision.png"})):
+            with self.subTest(names):
                 self.tearDown()
                 self.setUp()
-                (self.run_folder / name).unlink()
+                for name in names:
+                    (self.run_folder / name).unlink()
                 result, drawn = self.draw()
                 self.assertEqual((result.returncode, drawn), (0, kept))
-                self.assertIn(name, result.stderr)
+                for name in names:
+                    self.assertIn(f"{name} is missing", result.stderr)
+
+    def test_a_run_without_a_planner_has_no_figure_of_a_decision(self):
+        (self.run_folder / "decisions.csv").unlink()
+        result, drawn = self.draw()
+        self.assertEqual((result.returncode, result.stderr, drawn), (0, "", ALL - {"decision.png"}))
 
     def test_damaged_files_are_no_crash(self):
-        for name in ("trajectory_estimate.txt", "trajectory_ground_truth.txt", "map.ply", "metrics.json"):
-            path = self.run_folder / name
+        for path in list(self.run_folder.iterdir()):
             path.write_bytes(path.read_bytes()[: path.stat().st_size // 2 - 3])
         result, drawn = self.draw()
         self.assertNotIn("class_iou.png", drawn)

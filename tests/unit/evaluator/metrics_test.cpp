@@ -6,6 +6,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "evaluator/core/decision_record.hpp"
 #include "evaluator/core/timeline.hpp"
 
 namespace lapis::evaluator {
@@ -114,6 +115,36 @@ TEST(Metrics, TrajectoryFiguresOfADriftingWalk) {
   EXPECT_FALSE(trajectory_figures({}, estimate).ate_raw_rmse_m);
 }
 
+TEST(Metrics, AteUpToAWayIsThatOfThePosesBefore) {
+  Trajectory reference, estimate;  // 1 m/s; the estimate is 1 m beside at the start, and 5 m from 3 s on
+  for (int i = 0; i <= 10; ++i) {
+    const auto pose = [i](double y) { return geometry::make_pose({1.0 * i, y, 0}, Eigen::Quaterniond::Identity()); };
+    reference.push_back({time::Time::from_seconds(i), pose(0.0)});
+    estimate.push_back({time::Time::from_seconds(i), pose(i < 3 ? 1.0 : 5.0)});
+  }
+  EXPECT_NEAR(*ate_raw_rmse_up_to(2.0, reference, estimate), 1.0, 1e-12);
+  EXPECT_NEAR(*ate_raw_rmse_up_to(3.0, reference, estimate), std::sqrt((3.0 + 25.0) / 4.0), 1e-12);
+  EXPECT_TRUE(ate_raw_rmse_up_to(10.0, reference, estimate));
+  EXPECT_FALSE(ate_raw_rmse_up_to(10.1, reference, estimate));
+}
+
+TEST(Metrics, DecisionsAreCountedOnceWhateverIsToldTwice) {
+  DecisionRecord record;
+  RunMetrics metrics;
+  record.add({});
+  record.write_to(metrics);
+  EXPECT_FALSE(metrics.decisions || metrics.decision_time_p50_s || metrics.decisions_unlike_mi_only_share);
+  for (const DecisionCounts& told : {DecisionCounts{1, 0, 0.1}, {1, 0, 0.1}, {2, 1, 0.3}, {2, 1, 0.3}})
+    record.add(told);
+  record.add({1, 1, 0.5});  // a planner that was restarted
+  record.add({2, 1, 0.7});
+  record.write_to(metrics);
+  EXPECT_EQ(metrics.decisions, 4);
+  EXPECT_DOUBLE_EQ(*metrics.decisions_unlike_mi_only_share, 0.5);
+  EXPECT_DOUBLE_EQ(*metrics.decision_time_p50_s, 0.4);
+  EXPECT_DOUBLE_EQ(*metrics.decision_time_p95_s, 0.67);
+}
+
 TEST(Metrics, MapFiguresNameTheClasses) {
   const auto map = make_labelled_voxels(0.25, {{{0, 0, 0}, 1}, {{1, 0, 0}, 1}, {{2, 0, 0}, 7}});
   RunMetrics metrics;
@@ -135,9 +166,10 @@ TEST(Metrics, ARunThatLostTooManyFramesIsLost) {
 TEST(Timeline, WhatWasNotMeasuredIsEmpty) {
   TimelineRow row;
   row.time_s = 1.5;
-  EXPECT_THAT(to_csv({row}), HasSubstr("state\n1.500000,,,,,,LOST\n"));
-  row = {2.0, 10.0, 0.25, 3.0, 0.125, true, true};
-  EXPECT_THAT(to_csv({row}), HasSubstr("\n2.000000,10.000000,0.250000,3.000000,0.125000,,TRACKING\n"));
+  EXPECT_THAT(to_csv({row}), HasSubstr("state\n1.500000,,,,,,LOST,\n"));
+  row = {2.0, 10.0, 0.25, 3.0, 0.125, 0.0625, true, "EXPLORING", true};
+  EXPECT_THAT(to_csv({row}),
+              HasSubstr("\n2.000000,10.000000,0.250000,3.000000,0.125000,0.062500,TRACKING,EXPLORING\n"));
 }
 
 TEST(Timeline, TimeToReachIsThatOfTheFirstRow) {

@@ -122,6 +122,20 @@ TEST_F(SlamGraphTest, YoungerKeyframesAndLandmarksFollowACorrection) {
   EXPECT_TRUE(graph_.covariance(3).isApprox(compound_covariance(graph_.covariance(2), step(2, 3), covariance_)));
 }
 
+// A pose that a correction leaves alone is still multiplied by T T^-1, whose rounding must not pile up.
+TEST_F(SlamGraphTest, AHundredCorrectionsLeaveTheFirstKeyframeWhereItIs) {
+  const Pose first = map_.keyframe(0).T_map_camera;
+  for (int k = 0; k < 100; ++k) {
+    GraphCorrection correction;
+    for (const Keyframe& keyframe : map_.keyframes()) correction.T_map_before.push_back(keyframe.T_map_camera);
+    correction.T_map_camera = correction.T_map_before;
+    correction.covariances.resize(correction.T_map_camera.size());
+    correction.weights.assign(graph_.edges().size(), 1.0);
+    graph_.apply(correction, map_);
+  }
+  EXPECT_TRUE(map_.keyframe(0).T_map_camera.isApprox(first, 1e-12));
+}
+
 TEST_F(SlamGraphTest, VisualEdgesFollowWhatBundleAdjustmentMoved) {
   map_.set_pose(3, map_.keyframe(3).T_map_camera * random_pose(0.01));
   graph_.follow(map_, {3});

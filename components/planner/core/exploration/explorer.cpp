@@ -59,6 +59,18 @@ void Explorer::return_home() {
   enter(State::kReturning, "asked to return");
 }
 
+void Explorer::forget_map() {
+  drop_goal();
+  memory_.clear();
+  looks_.clear();
+  home_.reset();
+  last_tracked_.reset();
+  decided_at_.reset();
+  empty_decisions_ = 0;
+  if (state_ == State::kRecovering) enter(interrupted_, "slam has begun another map");
+  if (state_ == State::kReturning) enter(State::kFailed, "the map in which it started is gone");
+}
+
 void Explorer::enter(State state, std::string reason) {
   state_ = state;
   reason_ = std::move(reason);

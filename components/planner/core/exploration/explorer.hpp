@@ -54,6 +54,8 @@ class Explorer {
   void stop();
   void pause();
   void return_home();
+  /// Places are of a map that is gone: none is known any more, not even where it started.
+  void forget_map();
 
   /// Looks at what has happened since the last call. True when a decision is wanted.
   bool step(const Report& report, const Surroundings* surroundings);

@@ -4,14 +4,14 @@
 // near; landmarks on the surfaces that the key-frames saw. CPU time of all threads.
 
 #include <algorithm>
+#include <cmath>
 #include <map>
-#include <memory>
-#include <numeric>
 #include <variant>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 
+#include "planner/core/decision/decision.hpp"
 #include "planner/core/exploration/surroundings.hpp"
 #include "tests/benchmark/planner/half_explored.hpp"
 

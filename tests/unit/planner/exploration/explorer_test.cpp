@@ -144,6 +144,34 @@ TEST(Explorer, ADoorThatClosesIsNoReasonToWait) {
   EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
 }
 
+TEST(Explorer, PlacesOfAMapThatIsGoneAreForgotten) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.run(5.0);
+  world.tracking = Tracking::kLost;
+  world.tick();
+  ASSERT_EQ(world.explorer.state(), State::kRecovering);
+  world.explorer.forget_map();
+  EXPECT_EQ(world.explorer.state(), State::kExploring);
+  EXPECT_EQ(world.explorer.reason(), "slam has begun another map");
+  EXPECT_TRUE(world.explorer.memory(world.now).left_alone.empty());
+  EXPECT_FALSE(world.explorer.memory(world.now).goal);
+  world.tracking = Tracking::kTracking;
+  world.run(300.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone);
+}
+
+TEST(Explorer, ThereIsNoWayHomeIntoAMapThatIsGone) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.run(10.0);
+  world.explorer.return_home();
+  world.explorer.forget_map();
+  EXPECT_EQ(world.explorer.state(), State::kFailed);
+  EXPECT_EQ(world.explorer.reason(), "the map in which it started is gone");
+  EXPECT_TRUE(world.explorer.path().empty());
+}
+
 TEST(Explorer, IdlesUntilItIsStarted) {
   WalkWorld world(closed(kThreeRooms));
   world.run(5.0);

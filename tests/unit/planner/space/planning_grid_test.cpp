@@ -52,6 +52,22 @@ TEST(PlanningGrid, ForgetsBlocksThatAreGone) {
   EXPECT_EQ(world.grid.clearance_m({0, 0}), world.grid.config().max_clearance_m);
 }
 
+// Cells 0 to 2 at the bottom of the band (0.25 to 0.5 m): never seen, seen to be free, seen to be occupied. Above all
+// of them the camera has looked through.
+TEST(PlanningGrid, FreeAreOnlyCellsWhoseBottomHasBeenSeen) {
+  constexpr std::size_t kBottom = 64, kAbove = 128;
+  std::array<std::uint32_t, mapping::kBlockVoxels> passes{};
+  passes[kBottom + 1] = passes[kAbove] = passes[kAbove + 1] = passes[kAbove + 2] = 3 * mapping::kOneVote;
+  const mapping::HitVote hit{kBottom + 2, 1, 3 * mapping::kOneVote};
+  mapping::VoxelMap map(0.25);
+  map.set_block({}, mapping::VoxelBlock(passes, std::span(&hit, 1)));
+  PlanningGrid grid({}, 0.25);
+  grid.update_map(map, mapping::BeliefReader{mapping::SensorModel{}}, map.sorted_blocks());
+  EXPECT_EQ(grid.state({0, 0}), kUnknown);
+  EXPECT_EQ(grid.state({1, 0}), kFree);
+  EXPECT_EQ(grid.state({2, 0}), kOccupied);
+}
+
 TEST(PlanningGrid, AnotherSensorModelLooksAtEverything) {
   World world;
   world.map.set({0, 0}, kOccupied);

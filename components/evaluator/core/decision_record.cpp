@@ -1,0 +1,23 @@
+#include "evaluator/core/decision_record.hpp"
+
+#include "evaluator/core/statistics.hpp"
+
+namespace lapis::evaluator {
+
+void DecisionRecord::add(const DecisionCounts& told) {
+  if (told.decisions < last_.decisions) last_ = {};
+  if (told.decisions > last_.decisions) times_s_.push_back(told.last_time_s);
+  decisions_ += static_cast<std::int64_t>(told.decisions - last_.decisions);
+  unlike_mi_only_ += static_cast<std::int64_t>(told.unlike_mi_only - last_.unlike_mi_only);
+  last_ = told;
+}
+
+void DecisionRecord::write_to(RunMetrics& metrics) const {
+  if (decisions_ == 0) return;
+  metrics.decisions = decisions_;
+  metrics.decisions_unlike_mi_only_share = static_cast<double>(unlike_mi_only_) / static_cast<double>(decisions_);
+  metrics.decision_time_p50_s = quantile(times_s_, 0.5);
+  metrics.decision_time_p95_s = quantile(times_s_, 0.95);
+}
+
+}  // namespace lapis::evaluator

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "evaluator/core/metrics.hpp"
+
+namespace lapis::evaluator {
+
+/// What a planner says of its decisions so far.
+struct DecisionCounts {
+  std::uint64_t decisions = 0;
+  std::uint64_t unlike_mi_only = 0;  ///< where mutual information alone would have chosen another candidate
+  double last_time_s = 0.0;          ///< wall time that the last one took
+};
+
+/// The decisions of a run, from what the planner tells after each of them.
+class DecisionRecord {
+ public:
+  /// Counts that are smaller than before are those of a planner that was restarted.
+  void add(const DecisionCounts& told);
+  /// Fills in what RunMetrics has of decisions.
+  void write_to(RunMetrics& metrics) const;
+
+ private:
+  DecisionCounts last_;
+  std::int64_t decisions_ = 0, unlike_mi_only_ = 0;
+  std::vector<double> times_s_;
+};
+
+}  // namespace lapis::evaluator

@@ -1,0 +1,130 @@
+#!/usr/bin/env python3
+"""explore.sh in simulated buildings. Without the furniture package, so that it is the same everywhere."""
+import collections
+import csv
+import math
+import re
+import signal
+import struct
+
+import chain
+
+NO_FURNITURE = ("--set", "simulator.world.furniture_folder=/nowhere")
+COMPONENTS = ("slam", "semantic_mapper", "planner", "controller", "evaluator", "simulator")
+FILES = chain.FILES + chain.FILES_OF_LABELS + chain.FILES_OF_TRUTH + ("decisions.csv", "figures/decision.png")
+SENSING_RANGE_M = 5.0  # robot.sensing_range_m
+VOXEL_M = 0.25  # semantic_mapper.resolution_m
+
+FLAT = f"""labels: {chain.REPOSITORY}/config/labels/mpcat40.yaml
+rooms:
+  - {{id: living, rect: [0, 0, 4, 3], floor: parquet, wall: wallpaper_leaves}}
+  - {{id: hall, rect: [4.12, 0, 5.6, 3], floor: tiles, wall: brick}}
+openings:
+  - {{door: [4.06, 1.5]}}
+pictures:
+  - {{room: living, wall: south, x: 0.7}}
+  - {{room: living, wall: north, x: 2.7}}
+  - {{room: hall, wall: east, y: 1.5}}
+starts:
+  - {{at: [2, 1.2], yaw_deg: 90}}
+"""
+
+
+def explore(out, *options):
+    """launch_scripts/explore.sh, started."""
+    return chain.Process([chain.REPOSITORY / "launch_scripts/explore.sh", "--out", out, *options], f"{out}.log")
+
+
+def table(file):
+    with file.open(newline="", encoding="utf-8") as stream:
+        return list(csv.DictReader(stream))
+
+
+class ExploreTest(chain.ChainTest):
+    def explore(self, name, *options):
+        """Explores to the end, demands success and returns the run folder."""
+        out = self.folder / name
+        with explore(out, *options) as run:
+            self.assertEqual(run.wait(170), 0, run.output())
+            self.assert_no_orphan(run)
+            self.assertRegex(run.output(), r"(?m)^\d+ s, \d+ m3 explored \(\d+\.\d %\), [\d.]+ m driven, loops closed: ")
+        return out
+
+    def assert_files(self, folder):
+        for file in (*FILES, "manifest.yaml", "metrics.json", *(f"logs/{name}.log" for name in COMPONENTS)):
+            self.assertTrue((folder / file).is_file() and (folder / file).stat().st_size > 0, file)
+        self.assertEqual(list(folder.rglob("*.part*")), [])
+        self.assertTrue(chain.is_map_whole(folder / "map.lapis"))
+
+    def assert_decisions(self, folder):
+        """Every decision has its rows, and one of them is chosen unless none can be driven to."""
+        decisions = collections.defaultdict(list)
+        for row in table(folder / "decisions.csv"):
+            decisions[int(row["decision"])].append(row)
+        told = chain.metrics_of(folder)["decisions"]
+        self.assertGreater(told, 5)
+        self.assertLessEqual(max(decisions), told)
+        for number, rows in decisions.items():
+            self.assertEqual([int(row["candidate"]) for row in rows], list(range(len(rows))), number)
+            possible = [row for row in rows if not row["rejection"]]
+            self.assertEqual(sum(row["is_chosen"] == "1" for row in rows), 1 if possible else 0, number)
+
+    # The folders have the same last name, because a figure has it in its title.
+    def test_the_robot_explores_and_the_same_seed_gives_the_same_bytes(self):
+        options = ("--duration", "25", "--seed", "3", *NO_FURNITURE)
+        first, second = (self.explore(name, *options) for name in ("first/run", "second/run"))
+        self.assert_files(first)
+        self.assert_decisions(first)
+        self.assert_same_run(first, second, FILES)
+        metrics = chain.metrics_of(first)
+        self.assertEqual((metrics["exit_reason"], metrics["planner_state"]), ("completed", "EXPLORING"))
+        self.assertEqual(metrics["collisions"], 0)
+        self.assertEqual(set(metrics["cpu_ms_per_frame"]), set(COMPONENTS))
+        self.assertEqual([name for name, value in metrics["cpu_ms_per_frame"].items() if value is None], [])
+        self.assertGreater(metrics["decision_time_p95_s"], 0.0)
+        # What is farther from the start than the camera sees cannot be seen by turning there.
+        seen = [math.hypot(x, y) for x, y in self.explored_places(first)]
+        self.assertGreater(max(seen), SENSING_RANGE_M + 2 * VOXEL_M)
+        rows = table(first / "timeline.csv")
+        self.assertEqual({row["planner_state"] for row in rows[2:]}, {"EXPLORING"})
+        self.assertEqual([row["time_s"] for row in rows if not row["position_sigma_m"]], [])
+        shares = [float(row["explored_share"]) for row in rows]
+        self.assertGreater(shares[-1], 2 * shares[0])
+
+    def explored_places(self, folder):
+        """x and y of the occupied voxels of map.ply, whose vertices have 3 floats, 3 bytes, a short and a float."""
+        head, _, body = (folder / "map.ply").read_bytes().partition(b"end_header\n")
+        self.assertIn(b"property ushort label", head)
+        return [vertex[:2] for vertex in struct.iter_unpack("<fffBBBHf", body)]
+
+    def test_done_when_nothing_is_left(self):
+        scene = self.folder / "flat.yaml"
+        scene.write_text(FLAT)
+        folder = self.explore("run", "--scene", scene, "--method", "nearest", "--duration", "120")
+        manifest = (folder / "manifest.yaml").read_text()
+        self.assertIn("  planner_state: DONE\n  planner_reason: \"nothing is left that can be reached\"\n", manifest)
+        metrics = chain.metrics_of(folder)
+        self.assertEqual((metrics["exit_reason"], metrics["planner_state"]), ("completed", "DONE"))
+        self.assertGreater(metrics["explored_share"], 0.75)
+        self.assertLess(metrics["duration_s"], 119.0)
+
+    def test_an_interrupted_run_has_all_that_a_whole_one_has(self):
+        run = explore(self.folder / "run", *NO_FURNITURE, "--method", "mi_only")
+        self.addCleanup(run.kill)
+        driven = re.compile(r" [1-9]\d*\.\d m driven, .* EXPLORING: ")
+        self.assertTrue(run.wait_for(lambda lines: any(driven.search(line) for line in lines), 90), run.output())
+        self.assertEqual(run.stop(signal.SIGINT, 60), 130, run.output())
+        self.assert_no_orphan(run)
+        self.assert_files(self.folder / "run")
+        self.assertEqual(chain.metrics_of(self.folder / "run")["exit_reason"], "stopped")
+        self.assertIn("  planner: 0\n", (self.folder / "run/manifest.yaml").read_text())
+
+    def test_what_the_planner_refuses_is_bad_set_up(self):
+        with explore(self.folder / "run", "--method", "no_such_method") as run:
+            self.assertEqual(run.wait(), 2, run.output())
+            self.assertIn("planner.method", run.output())
+            self.assert_no_orphan(run)
+
+
+if __name__ == "__main__":
+    chain.main(needs_recordings=False)

@@ -88,7 +88,9 @@ void describe(Field& field, HallucinationConfig& c) {
   field("impossible_landmarks", c.impossible_landmarks, config::in_range(1, 10'000),
         "seen again, of which a loop closure is impossible, or fewer");
   field("certain_landmarks", c.certain_landmarks, config::in_range(2, 10'000),
-        "seen again, of which it is certain, or more; linear in between");
+        "seen again, of which it is as sure as it gets, or more; linear in between");
+  field("max_probability", c.max_probability, config::in_range(0.05, 1.0),
+        "of a loop closure, however many landmarks are seen again");
   field("min_loop_way_m", c.min_loop_way_m, config::in_range(0.0, 100.0),
         "along the pose graph; nearer key-frames make no loop [m]");
   field("place_radius_m", c.place_radius_m, config::in_range(0.1, 20.0), "key-frames of one place [m]");
@@ -123,6 +125,12 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "between hallucinated key-frames [m]");
   field("turn_cost_m_per_rad", c.decision.turn_cost_m_per_rad, config::in_range(0.0, 10.0),
         "of turning at the ends of a path [m/rad]");
+  field("alternatives", c.decision.alternatives, config::in_range(0, 3),
+        "other ways to the nearest goal of each frontier, at most");
+  field("revisit_sigma_m", c.decision.revisit_sigma_m, config::in_range(0.0, 100.0),
+        "when the position is less sure, old key-frames are goals, too; 0: never [m]");
+  field("information_discount_sigma_m", c.decision.information_discount_sigma_m, config::in_range(0.0, 100.0),
+        "information from a position with this sigma counts half; 0: all counts [m]");
   field("keep_factor", c.decision.keep_factor, config::in_range(1.0, 10.0),
         "another goal must be so much better than the one being driven to");
   field("grid", c.surroundings.grid);

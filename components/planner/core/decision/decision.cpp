@@ -2,110 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <utility>
 
+#include "planner/core/decision/proposals.hpp"
 #include "planner/core/space/path_planner.hpp"
 
 namespace lapis::planner {
 namespace {
 
 constexpr double kSameGoal_m = 0.5;  // goals nearer to each other are one
-
-Candidate rejected(const Frontier& frontier, std::string reason) {
-  Candidate candidate;
-  candidate.frontier = frontier.id;
-  candidate.goal.p_map = candidate.target_map = frontier.centroid_map;
-  candidate.rejection = std::move(reason);
-  return candidate;
-}
-
-double turn_between(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi)); }
-
-// Turning at both ends of a way; corners in between are driven through.
-double turning(const Pose2& robot, const std::vector<Pose2>& way) {
-  if (way.size() < 2) return turn_between(robot.yaw_rad, way.back().yaw_rad);
-  return turn_between(robot.yaw_rad, way.front().yaw_rad) +
-         turn_between(way[way.size() - 2].yaw_rad, way.back().yaw_rad);
-}
-
-void add_way(const Situation& s, const CostTree& tree, const Viewpoint& viewpoint, const DecisionConfig& config,
-             Candidate& candidate) {
-  const Path path = straightened(s.grid, config.path, tree.path_to(viewpoint.cell));
-  candidate.points = points_of(s.grid, path);
-  candidate.points.front() = s.robot.p_map;
-  candidate.way = poses_along(candidate.points, config.view_spacing_m, viewpoint.pose.yaw_rad);
-  candidate.value.cost_m = path.length_m + config.turn_cost_m_per_rad * turning(s.robot, candidate.way);
-}
-
-Candidate candidate_at(const Situation& s, const CostTree& tree, std::uint32_t frontier, const Viewpoint& viewpoint,
-                       const DecisionConfig& config) {
-  Candidate candidate;
-  candidate.frontier = frontier;
-  candidate.goal = viewpoint.pose;
-  candidate.target_map = s.grid.center_of(viewpoint.target);
-  add_way(s, tree, viewpoint, config, candidate);
-  return candidate;
-}
-
-bool is_left_alone(const Eigen::Vector2d& target_map, const Memory& memory) {
-  return std::any_of(memory.left_alone.begin(), memory.left_alone.end(),
-                     [&](const Eigen::Vector2d& place) { return (place - target_map).norm() <= memory.radius_m; });
-}
-
-std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const Memory& memory,
-                               const DecisionConfig& config) {
-  std::vector<Candidate> candidates;
-  for (const auto& entry : s.frontiers.frontiers()) {
-    const Frontier& frontier = entry.second;
-    const ViewpointResult found = sample_viewpoints(s.grid, tree, frontier, config.viewpoints);
-    if (found.status != ViewpointStatus::kFound) candidates.push_back(rejected(frontier, reason_of(found.status)));
-    for (const Viewpoint& viewpoint : found.viewpoints) {
-      Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
-      if (is_left_alone(candidate.target_map, memory)) candidate.rejection = kLeftAlone;
-    }
-  }
-  return candidates;
-}
-
-// The stops of TARE's tour; as many of the first ones as may be looked at.
-std::vector<Candidate> propose_tour(const Situation& s, const CostTree& tree, const Memory& memory,
-                                    const DecisionConfig& config) {
-  const geometry::PinholeCamera& camera = s.view.config().camera;
-  const double fov_rad = 2.0 * std::atan(0.5 * camera.width / camera.fx);
-  const Tour tour =
-      plan_tour({s.grid, s.frontiers, tree, s.robot, fov_rad, config.path, config.viewpoints,
-                 config.turn_cost_m_per_rad, memory.left_alone, memory.radius_m, memory.goal, config.keep_factor},
-                config.tare);
-  std::vector<Candidate> candidates;
-  for (const TourStop& stop : tour.stops) {
-    Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, stop.frontier, stop.viewpoint, config));
-    candidate.value.tour_place = static_cast<int>(candidates.size());
-    if (candidate.value.tour_place > config.max_candidates)
-      candidate.rejection = "more than " + std::to_string(config.max_candidates) + " others come before";
-  }
-  for (const auto& [id, reason] : tour.missed) candidates.push_back(rejected(s.frontiers.frontiers().at(id), reason));
-  return candidates;
-}
-
-// Keeps those with the shortest ways, but of every frontier the nearest one before the second of any.
-void reject_far_ones(std::vector<Candidate>& candidates, int most) {
-  std::vector<std::pair<int, double>> rank(candidates.size());  // place within the frontier, cost
-  std::vector<std::size_t> order;
-  for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i].rejection.empty()) continue;
-    order.push_back(i);
-    rank[i].second = candidates[i].value.cost_m;
-    for (const Candidate& other : candidates) {
-      const bool is_before = other.frontier == candidates[i].frontier && other.rejection.empty() &&
-                             other.value.cost_m < candidates[i].value.cost_m;
-      rank[i].first += is_before ? 1 : 0;
-    }
-  }
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
-  for (auto k = static_cast<std::size_t>(most); k < order.size(); ++k)
-    candidates[order[k]].rejection = "more than " + std::to_string(most) + " others are nearer";
-}
 
 geometry::Pose camera_pose(const Situation& s, const Pose2& pose) {
   geometry::Pose T_map_base = geometry::Pose::Identity();
@@ -168,6 +73,19 @@ std::string add_gain(const Situation& s, const DecisionConfig& config, Candidate
   return "";
 }
 
+// The Fisher information of a surface's position is 1 / c^2 where the map alone limits it, and 1 / (c^2 + s^2) where
+// the camera's position has variance s^2 besides; the views' variances lie between those of the robot and of the path's
+// end.
+void discount_information(const Situation& s, double limit_m, Candidate& candidate) {
+  const double robot = std::pow(position_sigma_m(*s.graph) / limit_m, 2);
+  const double end = std::pow(candidate.gain.end_sigma_m / limit_m, 2);
+  const auto last = static_cast<double>(candidate.way.size() - 1);
+  double sum = 0.0;
+  for (double i = 0.0; i <= last; i += 1.0) sum += 1.0 / (1.0 + std::lerp(robot, end, last > 0.0 ? i / last : 1.0));
+  candidate.value.path_information *= sum / (last + 1.0);
+  candidate.value.goal_information /= 1.0 + end;
+}
+
 bool is_current_goal(const Candidate& candidate, const Memory& memory) {
   return memory.goal && (memory.goal->p_map - candidate.goal.p_map).norm() < kSameGoal_m;
 }
@@ -192,18 +110,16 @@ std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, Met
 Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config) {
   const CostTree tree = grow_cost_tree(situation.grid, config.path, {situation.grid.cell_of(situation.robot.p_map)});
   Decision decision;
-  if (config.method == Method::kTare) {
-    decision.candidates = propose_tour(situation, tree, memory, config);
-  } else {
-    decision.candidates = propose(situation, tree, memory, config);
-    reject_far_ones(decision.candidates, config.max_candidates);
-  }
+  decision.candidates = propose(situation, tree, memory, config);
   const std::vector<Candidate*> open = open_ones(decision.candidates);
   add_information(situation, open);
   for (Candidate* candidate : open) {
     if (situation.graph == nullptr || situation.landmarks == nullptr) continue;
-    if (std::string problem = add_gain(situation, config, *candidate); !problem.empty())
+    if (std::string problem = add_gain(situation, config, *candidate); !problem.empty()) {
       decision.problem = std::move(problem);
+    } else if (config.information_discount_sigma_m > 0.0) {
+      discount_information(situation, config.information_discount_sigma_m, *candidate);
+    }
   }
   for (Candidate* candidate : open) candidate->utility = utility(config.method, candidate->value, config.utility);
   decision.chosen = best_by(decision.candidates, config.method, memory, config);

@@ -25,7 +25,13 @@ struct DecisionConfig {
   double node_spacing_m = 1.0;       ///< between hallucinated key-frames, in [0.2, 10]
   double sigma_limit_voxels = 0.5;   ///< of the position at a path's end: what is more exact is of no use; in (0, 10]
   double turn_cost_m_per_rad = 0.5;  ///< of turning at the path's ends, in [0, 10]
-  double keep_factor = 1.2;          ///< another goal must be so much better than the one being driven to, in [1, 10]
+  int alternatives = 0;              ///< other ways to the nearest goal of each frontier, at most; in [0, 3]
+  /// When the position's sigma [m] is larger, old key-frames with many landmarks are goals, too, for methods that count
+  /// loops; 0: never.
+  double revisit_sigma_m = 0.0;
+  /// The information of a view from a position with sigma s counts 1 / (1 + (s / this)^2) [m]; 0: all of it.
+  double information_discount_sigma_m = 0.0;
+  double keep_factor = 1.2;  ///< another goal must be so much better than the one being driven to, in [1, 10]
 };
 
 /// What a decision is made from. The graph and its landmarks are null before slam has two key-frames.
@@ -40,11 +46,18 @@ struct Situation {
   Pose2 robot;
 };
 
-/// A way to a place from which a frontier is seen.
+enum class CandidateKind {
+  kFrontier,     ///< the best way to a place from which a frontier is seen
+  kAlternative,  ///< another way to such a place
+  kRevisit,      ///< the best way to an old key-frame
+};
+
+/// A way to a place from which there is something to see.
 struct Candidate {
-  std::uint32_t frontier = 0;
+  CandidateKind kind = CandidateKind::kFrontier;
+  std::uint32_t frontier = 0;  ///< 0: a revisit
   Pose2 goal;
-  Eigen::Vector2d target_map{0, 0};     ///< what is looked at from there [m]
+  Eigen::Vector2d target_map{0, 0};     ///< what is looked at from there, or the place that is revisited [m]
   std::vector<Eigen::Vector2d> points;  ///< corners of the way from the robot to the goal [m]; empty when there is none
   std::vector<Pose2> way;               ///< views along it
   PathValue value;

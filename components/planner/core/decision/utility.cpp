@@ -19,6 +19,11 @@ std::optional<Method> method_of(const std::string& name) {
   return static_cast<Method>(found - names.begin());
 }
 
+bool counts_loops(Method method) {
+  return method == Method::kPaper || method == Method::kFixedN || method == Method::kJoint ||
+         method == Method::kDoptOnly;
+}
+
 double utility(Method method, const PathValue& value, const UtilityConfig& config) {
   const double cost_m = std::max(value.cost_m, config.least_cost_m);
   switch (method) {

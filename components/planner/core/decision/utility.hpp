@@ -23,6 +23,9 @@ const std::vector<std::string>& method_names();
 /// Nothing for another name.
 std::optional<Method> method_of(const std::string& name);
 
+/// True for methods that loop closures are worth something to.
+bool counts_loops(Method method);
+
 struct UtilityConfig {
   double beta = 1.0;           ///< what a nat about the trajectory counts against one about the map, in [0, 100]
   double least_cost_m = 0.25;  ///< shorter ways count as this long, > 0

@@ -115,8 +115,7 @@ bool Explorer::explore(const Report& report, const Surroundings& surroundings) {
   const bool is_due = !decided_at_ || (report.now - *decided_at_).seconds() >= config_.replan_period_s;
   if (!goal_) return is_due;
   if (has_arrived(*report.robot)) {
-    looks_.push_back({goal_->target_map, report.now + time::Duration::from_seconds(config_.settle_s)});
-    memory_.leave_alone(looks_.back().target_map, looks_.back().due);
+    note_arrival(report.now);
     drop_goal();
     return true;
   }
@@ -128,6 +127,12 @@ bool Explorer::explore(const Report& report, const Surroundings& surroundings) {
   }
   if (!is_path_free(*report.robot, surroundings.grid())) return true;
   return is_due;
+}
+
+void Explorer::note_arrival(time::Time now) {
+  if (goal_->kind == CandidateKind::kRevisit) return memory_.add_failure(goal_->target_map, now);  // not for ever
+  looks_.push_back({goal_->target_map, now + time::Duration::from_seconds(config_.settle_s)});
+  memory_.leave_alone(looks_.back().target_map, looks_.back().due);
 }
 
 bool Explorer::has_arrived(const Pose2& robot) const {
@@ -178,10 +183,13 @@ void Explorer::take(const Decision& decision, time::Time now) {
     const Candidate& chosen = decision.candidates[*decision.chosen];
     empty_decisions_ = 0;
     const bool is_new = !goal_ || (goal_->target_map - chosen.target_map).norm() > config_.memory.radius_m;
-    if (is_new) goal_ = Goal{chosen.goal, chosen.target_map, remaining(chosen.way.front(), chosen.goal), now};
+    if (is_new)
+      goal_ = Goal{chosen.goal, chosen.target_map, chosen.kind, remaining(chosen.way.front(), chosen.goal), now};
     goal_->pose = chosen.goal;
     goal_->target_map = chosen.target_map;
-    reason_ = "drives to frontier " + std::to_string(chosen.frontier);
+    goal_->kind = chosen.kind;
+    const bool is_revisit = chosen.kind == CandidateKind::kRevisit;
+    reason_ = is_revisit ? "revisits an old place" : "drives to frontier " + std::to_string(chosen.frontier);
     return set_path(poses_along(chosen.points, config_.path_spacing_m, chosen.goal.yaw_rad));
   }
   drop_goal();

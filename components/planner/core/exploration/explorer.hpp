@@ -75,6 +75,7 @@ class Explorer {
   struct Goal {
     Pose2 pose;
     Eigen::Vector2d target_map;
+    CandidateKind kind;
     double nearest_m;  ///< that the robot has come, turns included
     time::Time progress_at;
   };
@@ -86,6 +87,7 @@ class Explorer {
   void recover(const Report& report, const Surroundings* surroundings);
   void go_home(const Report& report, const Surroundings& surroundings);
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
+  void note_arrival(time::Time now);
   bool has_arrived(const Pose2& robot) const;
   bool is_stuck(const Report& report);
   bool is_path_free(const Pose2& robot, const PlanningGrid& grid) const;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <queue>
 #include <string>
@@ -126,6 +127,11 @@ std::optional<int> AnalysedGraph::node_of(std::uint64_t keyframe) const {
                                       [](const Keyframe& k, std::uint64_t id) { return k.id < id; });
   if (found == keyframes.end() || found->id != keyframe) return std::nullopt;
   return static_cast<int>(found - keyframes.begin());
+}
+
+double position_sigma_m(const AnalysedGraph& graph) {
+  const int newest = graph.factor.node_count() - 1;
+  return std::sqrt(graph.factor.covariance(std::array{newest})(0, 0) * graph.position_variance_per_resistance);
 }
 
 std::variant<AnalysedGraph, GraphError> analyse_graph(std::span<const Keyframe> keyframes,

@@ -49,6 +49,9 @@ struct AnalysedGraph {
   std::optional<int> node_of(std::uint64_t keyframe) const;
 };
 
+/// Standard deviation of the newest key-frame's position, each axis, from the first one [m].
+double position_sigma_m(const AnalysedGraph& graph);
+
 /// @param keyframes by ascending id. The error says which edge has no weight or names a key-frame that is not there, or
 /// that there are fewer than two connected key-frames.
 std::variant<AnalysedGraph, GraphError> analyse_graph(std::span<const Keyframe> keyframes,

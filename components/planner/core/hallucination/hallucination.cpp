@@ -11,12 +11,6 @@ constexpr double kLeastLength_m = 0.02;  // of a hallucinated odometry edge
 
 std::size_t index(int i) { return static_cast<std::size_t>(i); }
 
-double loop_probability(int landmarks, const HallucinationConfig& config) {
-  const double share = static_cast<double>(landmarks - config.impossible_landmarks) /
-                       (config.certain_landmarks - config.impossible_landmarks);
-  return std::clamp(share, 0.0, 1.0);
-}
-
 // Finds, pose by pose, the old places that a path sees again.
 class PlaceFinder {
  public:
@@ -86,6 +80,12 @@ double probability_of(PlaceSet closed, const std::vector<Place>& places) {
 }
 
 }  // namespace
+
+double loop_probability(int landmarks, const HallucinationConfig& config) {
+  const double share = static_cast<double>(landmarks - config.impossible_landmarks) /
+                       (config.certain_landmarks - config.impossible_landmarks);
+  return config.max_probability * std::clamp(share, 0.0, 1.0);
+}
 
 Hallucination hallucinate(const AnalysedGraph& graph, const LandmarkIndex& landmarks, const InformationField& field,
                           const geometry::PinholeCamera& camera, std::span<const geometry::Pose> T_map_cameras,

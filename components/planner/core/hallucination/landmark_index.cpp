@@ -72,7 +72,7 @@ double free_probability(const InformationField& field, const Eigen::Vector3d& fr
 
 LandmarkIndex::LandmarkIndex(const std::map<mapping::TileIndex, mapping::LandmarkTile>& tiles,
                              const AnalysedGraph& graph, double resolution_m)
-    : keyframes_(graph.keyframes.size()), resolution_m_(resolution_m) {
+    : shared_(graph.keyframes.size(), 0), resolution_m_(resolution_m) {
   const std::vector<Seen> seen = collect(tiles, graph, resolution_m);
   for (std::size_t first = 0, last = 0; first < seen.size(); first = last) {
     Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -82,6 +82,7 @@ LandmarkIndex::LandmarkIndex(const std::map<mapping::TileIndex, mapping::Landmar
       for (const int node : landmark.observers) {
         const Eigen::Vector3f eye = graph.keyframes[index(node)].T_map_camera.translation().cast<float>();
         observations_.push_back({node, landmark.p_map - eye});
+        shared_[index(node)] += landmark.observers.size() > 1 ? 1 : 0;
       }
       landmarks_.push_back({landmark.p_map, static_cast<std::uint32_t>(observations_.size())});
     }
@@ -94,7 +95,7 @@ std::vector<Covisibility> LandmarkIndex::predict(const geometry::PinholeCamera& 
                                                  const CovisibilityConfig& config) const {
   const geometry::Pose T_camera_map = T_map_camera.inverse();
   const Eigen::Vector3d eye = T_map_camera.translation();
-  std::vector<int> counts(keyframes_, 0);
+  std::vector<int> counts(shared_.size(), 0);
   std::uint32_t first = 0;
   for (const Cell& cell : cells_) {
     const std::uint32_t begin = std::exchange(first, cell.landmarks_end);

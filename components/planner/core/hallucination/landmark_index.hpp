@@ -38,6 +38,9 @@ class LandmarkIndex {
 
   std::size_t size() const { return landmarks_.size(); }
 
+  /// Landmarks of a key-frame that others have seen, too.
+  int shared_landmarks(int node) const { return shared_[static_cast<std::size_t>(node)]; }
+
   /// Which key-frames' landmarks a camera at T_map_camera would see again: on the image, within range, free in the map
   /// up to the voxel before theirs, and from a similar direction and distance. By ascending node, no zero counts.
   std::vector<Covisibility> predict(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
@@ -60,7 +63,7 @@ class LandmarkIndex {
   void count(std::size_t landmark, const Eigen::Vector3f& camera, const CovisibilityConfig& config,
              std::vector<int>& counts) const;
 
-  std::size_t keyframes_;
+  std::vector<int> shared_;  ///< by key-frame
   double resolution_m_;
   std::vector<Cell> cells_;
   std::vector<Landmark> landmarks_;

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "tests/unit/planner/hallucination/small_world.hpp"
@@ -189,6 +190,119 @@ TEST(Decide, LoopsDrawTheJointUtilityToOldPlaces) {
   EXPECT_LT(joint.gain.end_sigma_m, joint.gain.end_sigma_without_loops_m);
   explorer.config.utility.beta = 0.0;
   EXPECT_TRUE(explorer.is_left(explorer.chosen())) << "without loops the near end is worth more per metre";
+}
+
+// A corridor round a block; the robot stands west of it, what is unknown lies east. 8 by 4 m.
+const std::vector<std::string> kBlock = {
+    "#################################",  //
+    "#...............................#",  //
+    "#...............................#",  //
+    "#...............................#",  //
+    "#........###############........#",  //
+    "#........###############........ ",  //
+    "#....R...###############........ ",  //
+    "#........###############........ ",  //
+    "#........###############........#",  //
+    "#...............................#",  //
+    "#...............................#",  //
+    "#...............................#",  //
+    "#################################",
+};
+
+int count(const Decision& decision, CandidateKind kind) {
+  return static_cast<int>(std::count_if(decision.candidates.begin(), decision.candidates.end(),
+                                        [&](const Candidate& c) { return c.kind == kind; }));
+}
+
+TEST(Decide, AlternativesGoRoundTheOtherSide) {
+  Explorer explorer(kBlock);
+  EXPECT_EQ(count(explorer.choose(), CandidateKind::kAlternative), 0) << "unless asked for";
+  explorer.config.alternatives = 1;
+  const Decision decision = explorer.choose();
+  ASSERT_EQ(count(decision, CandidateKind::kAlternative), static_cast<int>(explorer.frontiers.frontiers().size()));
+  const Candidate& other = decision.candidates.back();
+  const auto best = std::find_if(decision.candidates.begin(), decision.candidates.end(), [&](const Candidate& c) {
+    return c.kind == CandidateKind::kFrontier && (c.goal.p_map - other.goal.p_map).norm() < 1e-9;
+  });
+  ASSERT_NE(best, decision.candidates.end());
+  const auto is_above = [&](const Candidate& c) {
+    return std::any_of(c.way.begin(), c.way.end(), [](const Pose2& pose) { return pose.p_map.y() > 2.0; });
+  };
+  EXPECT_NE(is_above(other), is_above(*best));
+  EXPECT_LE(other.value.cost_m, 1.6 * best->value.cost_m);
+  EXPECT_GT(other.value.path_information, 0.0);
+  EXPECT_EQ(other.frontier, best->frontier);
+}
+
+// slam came from the middle of the corridor, where it saw much, and has gone a long way since.
+struct LongAway : Explorer {
+  explicit LongAway(const std::vector<std::string>& lines = kCorridor, double y = 0.9, double yaw = 1.57)
+      : Explorer(lines), chain({camera_at(4.5, y, yaw), camera_at(4.6, y, yaw), camera_at(4.5, -20.0, 0.0),
+                                camera_at(2.4, -20.0, 0.0), camera_at(2.4, 0.9, 0.0)}),
+        of_graph(chain.graph()), of_landmarks(test::tile_of(test::wall_at(4.5f, 3.0f), {10, 11}), of_graph, 0.25) {
+    graph = &of_graph;
+    landmarks = &of_landmarks;
+    config.method = Method::kJoint;
+  }
+  test::Chain chain;
+  AnalysedGraph of_graph;
+  LandmarkIndex of_landmarks;
+};
+
+TEST(Decide, RevisitsAnOldPlaceWhenItIsUnsure) {
+  LongAway explorer;
+  const double sigma_m = position_sigma_m(explorer.of_graph);
+  EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "unless asked for";
+  explorer.config.revisit_sigma_m = 1.1 * sigma_m;
+  EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "it is sure enough";
+  explorer.config.revisit_sigma_m = 0.9 * sigma_m;
+  const Decision decision = explorer.choose();
+  ASSERT_EQ(count(decision, CandidateKind::kRevisit), 1) << "two key-frames at one place";
+  const Candidate& revisit = decision.candidates.back();
+  EXPECT_EQ(revisit.frontier, 0u);
+  EXPECT_LT((revisit.goal.p_map - Eigen::Vector2d(4.5, 0.9)).norm(), 0.3);
+  EXPECT_NEAR(revisit.goal.yaw_rad, 1.57, 1e-6) << "the key-frame's own heading";
+  EXPECT_GT(revisit.value.cost_m, 2.0);
+  Memory memory;
+  memory.left_alone = {revisit.target_map};
+  EXPECT_EQ(explorer.choose(memory).candidates.back().rejection, kLeftAlone);
+  explorer.config.method = Method::kNearest;
+  EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "loops are worth nothing to it";
+}
+
+TEST(Decide, AnAlternativePassesAnOldPlaceInItsDirection) {
+  std::vector<std::string> hall(20, "#.................................");
+  hall.front() = hall.back() = "##################################";
+  hall[8][6] = 'R';
+  LongAway explorer(hall, 1.1, 0.3);
+  explorer.config.alternatives = 1;
+  const Decision decision = explorer.choose();
+  ASSERT_GE(count(decision, CandidateKind::kAlternative), 1);
+  const Candidate& past = decision.candidates.back();
+  const auto near = std::find_if(past.points.begin(), past.points.end(),
+                                 [](const Eigen::Vector2d& p) { return (p - Eigen::Vector2d(4.5, 1.1)).norm() < 0.3; });
+  ASSERT_LT(near - past.points.begin(), std::ssize(past.points) - 1);
+  const Eigen::Vector2d on = *(near + 1) - *near;
+  EXPECT_NEAR(std::atan2(on.y(), on.x()), 0.3, 0.2) << "as the key-frame looked, but for the cells";
+  explorer.config.path.max_detour = 1.0;
+  EXPECT_EQ(count(explorer.choose(), CandidateKind::kAlternative), 0) << "too long a way round";
+}
+
+TEST(Decide, InformationFromAnUnsurePositionCountsLess) {
+  LongAway explorer;
+  const Decision sure = explorer.choose();
+  explorer.config.information_discount_sigma_m = position_sigma_m(explorer.of_graph);
+  const Decision unsure = explorer.choose();
+  ASSERT_EQ(sure.candidates.size(), unsure.candidates.size());
+  for (std::size_t i = 0; i < sure.candidates.size(); ++i) {
+    const Candidate &all = sure.candidates[i], &less = unsure.candidates[i];
+    if (!all.rejection.empty()) continue;
+    const double share = less.value.path_information / all.value.path_information;
+    EXPECT_LE(share, 0.55) << "half at the robot's sigma";
+    EXPECT_GE(share, 0.2);
+    const double end = all.gain.end_sigma_m / explorer.config.information_discount_sigma_m;
+    EXPECT_NEAR(less.value.goal_information, all.value.goal_information / (1.0 + end * end), 1e-9);
+  }
 }
 
 TEST(Decide, IsDeterministic) {

@@ -40,6 +40,11 @@ TEST(AnalysedGraph, PositionVarianceIsThatOfThePositionAlone) {
   EXPECT_NEAR(graph.position_variance_per_resistance / weight, 0.02 * 0.02, 1e-12);
 }
 
+TEST(AnalysedGraph, TheNewestPositionIsAsSureAsItsChain) {
+  const AnalysedGraph graph = Chain(std::vector<geometry::Pose>(5, camera_at(0, 0, 0))).graph();
+  EXPECT_NEAR(position_sigma_m(graph), 0.01 * std::sqrt(4.0), 1e-9) << "four edges of 1 cm";
+}
+
 TEST(AnalysedGraph, WaysGoAlongEdgesAndTurnsCount) {
   Chain chain({camera_at(0, 0, 0), camera_at(4, 0, 0), camera_at(4, 4, 0), camera_at(0, 4, std::numbers::pi)});
   const AnalysedGraph open = chain.graph();

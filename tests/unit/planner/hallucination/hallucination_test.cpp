@@ -67,7 +67,7 @@ TEST(Hallucinate, FindsTheOldPlaceFromTheNodeThatSeesMostOfIt) {
   EXPECT_EQ(path.places[0].keyframe, 0);
   EXPECT_EQ(path.places[0].node, 1);
   EXPECT_EQ(path.places[0].landmarks, 100);
-  EXPECT_NEAR(path.places[0].probability, 70.0 / 90.0, 1e-12);
+  EXPECT_NEAR(path.places[0].probability, 0.75 * 70.0 / 90.0, 1e-12);
   const HallucinatedEdge& loop = path.graph.edges.back();
   EXPECT_EQ(loop.place, 0);
   EXPECT_EQ(loop.edge.a, 6);

@@ -34,6 +34,14 @@ TEST(LandmarkIndex, SeesAgainWhatAKeyframeSaw) {
   EXPECT_THAT(world.seen_from(camera_at(0.2, 0.1, 0.1)), ElementsAre(Covisibility{0, 100}));
 }
 
+TEST(LandmarkIndex, CountsWhatKeyframesShare) {
+  const AnalysedGraph graph = Chain({camera_at(0, 0, 0), camera_at(0, 1, 0)}).graph();
+  EXPECT_EQ(OneWall().index.shared_landmarks(0), 0) << "nobody else has seen it";
+  const LandmarkIndex both(tile_of(wall_at(3.0f), {10, 11}), graph, 0.25);
+  EXPECT_EQ(both.shared_landmarks(0), 100);
+  EXPECT_EQ(both.shared_landmarks(1), 100);
+}
+
 TEST(LandmarkIndex, NotBehindTheCameraOrBeyondTheImageOrRange) {
   OneWall world;
   EXPECT_THAT(world.seen_from(camera_at(0, 0, 3.0)), IsEmpty());

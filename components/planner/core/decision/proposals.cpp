@@ -1,0 +1,243 @@
+#include "planner/core/decision/proposals.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <string>
+#include <utility>
+
+#include "planner/core/space/alternative_paths.hpp"
+#include "planner/core/space/line.hpp"
+#include "planner/core/space/path_planner.hpp"
+
+namespace lapis::planner {
+namespace {
+
+constexpr std::size_t kMostRevisits = 5;  // of a decision, the nearest
+constexpr double kPass_m = 0.75;          // way past an old place, in its direction
+constexpr double kSameHeading_rad = 0.5;
+constexpr double kLikely = 0.5;  // probability of a loop closure at the place itself
+
+Candidate rejected(const Frontier& frontier, std::string reason) {
+  Candidate candidate;
+  candidate.frontier = frontier.id;
+  candidate.goal.p_map = candidate.target_map = frontier.centroid_map;
+  candidate.rejection = std::move(reason);
+  return candidate;
+}
+
+double turn_between(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi)); }
+
+// Turning at both ends of a way; corners in between are driven through.
+double turning(const Pose2& robot, const std::vector<Pose2>& way) {
+  if (way.size() < 2) return turn_between(robot.yaw_rad, way.back().yaw_rad);
+  return turn_between(robot.yaw_rad, way.front().yaw_rad) +
+         turn_between(way[way.size() - 2].yaw_rad, way.back().yaw_rad);
+}
+
+void set_way(const Situation& s, const DecisionConfig& config, const Path& path, Candidate& candidate) {
+  candidate.points = points_of(s.grid, path);
+  candidate.points.front() = s.robot.p_map;
+  candidate.way = poses_along(candidate.points, config.view_spacing_m, candidate.goal.yaw_rad);
+  candidate.value.cost_m = path.length_m + config.turn_cost_m_per_rad * turning(s.robot, candidate.way);
+}
+
+Candidate candidate_at(const Situation& s, const CostTree& tree, std::uint32_t frontier, const Viewpoint& viewpoint,
+                       const DecisionConfig& config) {
+  Candidate candidate;
+  candidate.frontier = frontier;
+  candidate.goal = viewpoint.pose;
+  candidate.target_map = s.grid.center_of(viewpoint.target);
+  set_way(s, config, straightened(s.grid, config.path, tree.path_to(viewpoint.cell)), candidate);
+  return candidate;
+}
+
+bool is_left_alone(const Eigen::Vector2d& target_map, const Memory& memory) {
+  return std::any_of(memory.left_alone.begin(), memory.left_alone.end(),
+                     [&](const Eigen::Vector2d& place) { return (place - target_map).norm() <= memory.radius_m; });
+}
+
+std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tree, const Memory& memory,
+                                         const DecisionConfig& config) {
+  std::vector<Candidate> candidates;
+  for (const auto& entry : s.frontiers.frontiers()) {
+    const Frontier& frontier = entry.second;
+    const ViewpointResult found = sample_viewpoints(s.grid, tree, frontier, config.viewpoints);
+    if (found.status != ViewpointStatus::kFound) candidates.push_back(rejected(frontier, reason_of(found.status)));
+    for (const Viewpoint& viewpoint : found.viewpoints) {
+      Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
+      if (is_left_alone(candidate.target_map, memory)) candidate.rejection = kLeftAlone;
+    }
+  }
+  return candidates;
+}
+
+// The stops of TARE's tour; as many of the first ones as may be looked at.
+std::vector<Candidate> propose_tour(const Situation& s, const CostTree& tree, const Memory& memory,
+                                    const DecisionConfig& config) {
+  const geometry::PinholeCamera& camera = s.view.config().camera;
+  const double fov_rad = 2.0 * std::atan(0.5 * camera.width / camera.fx);
+  const Tour tour =
+      plan_tour({s.grid, s.frontiers, tree, s.robot, fov_rad, config.path, config.viewpoints,
+                 config.turn_cost_m_per_rad, memory.left_alone, memory.radius_m, memory.goal, config.keep_factor},
+                config.tare);
+  std::vector<Candidate> candidates;
+  for (const TourStop& stop : tour.stops) {
+    Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, stop.frontier, stop.viewpoint, config));
+    candidate.value.tour_place = static_cast<int>(candidates.size());
+    if (candidate.value.tour_place > config.max_candidates)
+      candidate.rejection = "more than " + std::to_string(config.max_candidates) + " others come before";
+  }
+  for (const auto& [id, reason] : tour.missed) candidates.push_back(rejected(s.frontiers.frontiers().at(id), reason));
+  return candidates;
+}
+
+// Keeps those with the shortest ways, but of every frontier the nearest one before the second of any.
+void reject_far_ones(std::vector<Candidate>& candidates, int most) {
+  std::vector<std::pair<int, double>> rank(candidates.size());  // place within the frontier, cost
+  std::vector<std::size_t> order;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!candidates[i].rejection.empty()) continue;
+    order.push_back(i);
+    rank[i].second = candidates[i].value.cost_m;
+    for (const Candidate& other : candidates) {
+      const bool is_before = other.frontier == candidates[i].frontier && other.rejection.empty() &&
+                             other.value.cost_m < candidates[i].value.cost_m;
+      rank[i].first += is_before ? 1 : 0;
+    }
+  }
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
+  for (auto k = static_cast<std::size_t>(most); k < order.size(); ++k)
+    candidates[order[k]].rejection = "more than " + std::to_string(most) + " others are nearer";
+}
+
+// Where the robot stood when it made an old key-frame that shares many landmarks with others.
+struct OldPlace {
+  Pose2 pose;
+  Cell cell;
+};
+
+OldPlace place_of(const Situation& s, const Keyframe& keyframe) {
+  const geometry::Pose T_map_base = keyframe.T_map_camera * s.T_base_camera.inverse();
+  const Eigen::Vector3d forward = T_map_base.linear().col(0);
+  const Eigen::Vector2d p = T_map_base.translation().head<2>();
+  return {{p, std::atan2(forward.y(), forward.x())}, s.grid.cell_of(p)};
+}
+
+// That can be reached; the one with the most such landmarks first, others not beside it.
+std::vector<OldPlace> old_places(const Situation& s, const CostTree& tree, const HallucinationConfig& config) {
+  std::vector<std::pair<int, int>> ranked;  // less landmarks, node
+  for (int node = 0; node < s.graph->factor.node_count(); ++node) {
+    const int landmarks = s.landmarks->shared_landmarks(node);
+    const bool is_old = s.graph->way_from_newest_m[static_cast<std::size_t>(node)] >= config.min_loop_way_m;
+    if (is_old && loop_probability(landmarks, config) >= kLikely) ranked.emplace_back(-landmarks, node);
+  }
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<OldPlace> places;
+  for (const auto& entry : ranked) {
+    const OldPlace place = place_of(s, s.graph->keyframes[static_cast<std::size_t>(entry.second)]);
+    const bool is_new = std::none_of(places.begin(), places.end(), [&](const OldPlace& other) {
+      return (other.pose.p_map - place.pose.p_map).norm() < config.place_radius_m;
+    });
+    if (is_new && s.grid.is_traversable(place.cell) && tree.cost_m(place.cell)) places.push_back(place);
+  }
+  return places;
+}
+
+bool passes(const std::vector<Pose2>& way, const Pose2& pose, double apart_m) {
+  return std::any_of(way.begin(), way.end(), [&](const Pose2& on_way) {
+    return (on_way.p_map - pose.p_map).norm() < apart_m &&
+           turn_between(on_way.yaw_rad, pose.yaw_rad) < kSameHeading_rad;
+  });
+}
+
+bool is_open_line(const PlanningGrid& grid, Cell from, Cell to) {
+  return walk_line(from, to, [&](Cell c, double) { return grid.is_traversable(c); });
+}
+
+/// The way to a candidate's goal past the first old place that is not too far off: through it and on in its direction,
+/// so that the camera sees what the key-frame saw.
+std::optional<Path> path_past(const Situation& s, const CostTree& tree, const std::vector<OldPlace>& places,
+                              const DecisionConfig& config, const Candidate& candidate, double direct_m) {
+  const CostTree from_goal = grow_cost_tree(s.grid, config.path, {s.grid.cell_of(candidate.goal.p_map)});
+  for (const OldPlace& place : places) {
+    if (passes(candidate.way, place.pose, config.path.min_apart_m)) continue;
+    const Eigen::Vector2d heading(std::cos(place.pose.yaw_rad), std::sin(place.pose.yaw_rad));
+    const Cell beyond = s.grid.cell_of(place.pose.p_map + kPass_m * heading);
+    if (!is_open_line(s.grid, place.cell, beyond) || !from_goal.cost_m(beyond)) continue;
+    Path path = straightened(s.grid, config.path, tree.path_to(place.cell));
+    std::vector<Cell> back = from_goal.path_to(beyond);
+    std::reverse(back.begin(), back.end());
+    const Path rest = straightened(s.grid, config.path, back);
+    path.length_m += distance(place.cell, beyond) * s.grid.resolution_m() + rest.length_m;
+    if (path.length_m > config.path.max_detour * direct_m) continue;
+    path.cells.insert(path.cells.end(), rest.cells.begin(), rest.cells.end());
+    return path;
+  }
+  return std::nullopt;
+}
+
+/// Other ways to a candidate's goal: around other obstacles, then past an old place.
+void add_alternatives(const Situation& s, const CostTree& tree, const std::vector<OldPlace>& places,
+                      const DecisionConfig& config, const Candidate& candidate, std::vector<Candidate>& all) {
+  const Cell from = s.grid.cell_of(s.robot.p_map), to = s.grid.cell_of(candidate.goal.p_map);
+  std::vector<Path> paths = find_alternatives(s.grid, config.path, from, to, 1 + config.alternatives);
+  if (paths.empty()) return;
+  const double direct_m = paths.front().length_m;
+  paths.erase(paths.begin());
+  if (paths.size() < static_cast<std::size_t>(config.alternatives)) {
+    if (auto past = path_past(s, tree, places, config, candidate, direct_m)) paths.push_back(*std::move(past));
+  }
+  for (const Path& path : paths) {
+    Candidate& other = all.emplace_back(candidate);
+    other.kind = CandidateKind::kAlternative;
+    set_way(s, config, path, other);
+  }
+}
+
+/// To the nearest goal of every frontier that is still open.
+void add_alternatives(const Situation& s, const CostTree& tree, const std::vector<OldPlace>& places,
+                      const DecisionConfig& config, std::vector<Candidate>& candidates) {
+  std::map<std::uint32_t, std::size_t> nearest;  // by frontier
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    if (!candidates[i].rejection.empty()) continue;
+    const auto [known, is_new] = nearest.try_emplace(candidates[i].frontier, i);
+    if (!is_new && candidates[i].value.cost_m < candidates[known->second].value.cost_m) known->second = i;
+  }
+  std::vector<Candidate> others;
+  for (const auto& entry : nearest) add_alternatives(s, tree, places, config, candidates[entry.second], others);
+  candidates.insert(candidates.end(), others.begin(), others.end());
+}
+
+void add_revisits(const Situation& s, const CostTree& tree, std::vector<OldPlace> places, const Memory& memory,
+                  const DecisionConfig& config, std::vector<Candidate>& candidates) {
+  std::stable_sort(places.begin(), places.end(),
+                   [&](const OldPlace& a, const OldPlace& b) { return *tree.cost_m(a.cell) < *tree.cost_m(b.cell); });
+  places.resize(std::min(places.size(), kMostRevisits));
+  for (const OldPlace& place : places) {
+    const Viewpoint viewpoint{place.cell, {s.grid.center_of(place.cell), place.pose.yaw_rad}, place.cell, 0.0};
+    Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, 0, viewpoint, config));
+    candidate.kind = CandidateKind::kRevisit;
+    if (is_left_alone(candidate.target_map, memory)) candidate.rejection = kLeftAlone;
+  }
+}
+
+}  // namespace
+
+std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const Memory& memory,
+                               const DecisionConfig& config) {
+  if (config.method == Method::kTare) return propose_tour(s, tree, memory, config);
+  std::vector<Candidate> candidates = propose_frontiers(s, tree, memory, config);
+  reject_far_ones(candidates, config.max_candidates);
+  const bool may_revisit = config.revisit_sigma_m > 0.0 && counts_loops(config.method);
+  if (config.alternatives == 0 && !may_revisit) return candidates;
+  std::vector<OldPlace> places;
+  if (s.graph != nullptr && s.landmarks != nullptr) places = old_places(s, tree, config.hallucination);
+  if (config.alternatives > 0) add_alternatives(s, tree, places, config, candidates);
+  if (may_revisit && !places.empty() && position_sigma_m(*s.graph) > config.revisit_sigma_m)
+    add_revisits(s, tree, std::move(places), memory, config, candidates);
+  return candidates;
+}
+
+}  // namespace lapis::planner

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <vector>
+
+#include "planner/core/decision/decision.hpp"
+#include "planner/core/space/path_search.hpp"
+
+namespace lapis::planner {
+
+/// All candidates of a decision with their ways, those that are out of the question with the reason. Without options:
+/// viewpoints of every frontier, of which the ones with the shortest ways stay open; for kTare the stops of its tour.
+/// @param tree from the robot's cell
+std::vector<Candidate> propose(const Situation& situation, const CostTree& tree, const Memory& memory,
+                               const DecisionConfig& config);
+
+}  // namespace lapis::planner

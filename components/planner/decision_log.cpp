@@ -11,12 +11,21 @@ namespace {
 // Texts have no quotes of their own; commas would make columns.
 std::string quoted(const std::string& text) { return text.find(',') == std::string::npos ? text : '"' + text + '"'; }
 
+const char* name_of(CandidateKind kind) {
+  switch (kind) {
+    case CandidateKind::kFrontier: return "frontier";
+    case CandidateKind::kAlternative: return "alternative";
+    case CandidateKind::kRevisit: return "revisit";
+  }
+  return "";
+}
+
 }  // namespace
 
 DecisionLog::DecisionLog(const std::string& path) {
   if (const auto problem = files::set_aside(path)) throw std::runtime_error(*problem);
   file_.open(path);
-  file_ << "decision,time_s,method,candidate,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
+  file_ << "decision,time_s,method,candidate,kind,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
            "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
            "utility,is_chosen,is_chosen_by_mi_only,agrees_with_mi_only,rejection\n";
   if (!file_.flush()) throw std::runtime_error(path + " cannot be written");
@@ -25,10 +34,10 @@ DecisionLog::DecisionLog(const std::string& path) {
 bool DecisionLog::write(const Decision& decision, std::uint64_t id, const std::string& method, double time_s) {
   for (std::size_t i = 0; i < decision.candidates.size(); ++i) {
     const Candidate& c = decision.candidates[i];
-    file_ << std::setprecision(9) << id << ',' << time_s << ',' << method << ',' << i << ',' << c.frontier << ','
-          << c.goal.p_map.x() << ',' << c.goal.p_map.y() << ',' << c.goal.yaw_rad << ',' << c.value.cost_m << ','
-          << c.value.path_information << ',' << c.value.goal_information << ',' << c.places << ','
-          << c.value.loop_gain << ',' << c.gain.fixed_n_change << ',' << c.gain.end_sigma_without_loops_m << ','
+    file_ << std::setprecision(9) << id << ',' << time_s << ',' << method << ',' << i << ',' << name_of(c.kind) << ','
+          << c.frontier << ',' << c.goal.p_map.x() << ',' << c.goal.p_map.y() << ',' << c.goal.yaw_rad << ','
+          << c.value.cost_m << ',' << c.value.path_information << ',' << c.value.goal_information << ',' << c.places
+          << ',' << c.value.loop_gain << ',' << c.gain.fixed_n_change << ',' << c.gain.end_sigma_without_loops_m << ','
           << c.gain.end_sigma_m << ',' << c.value.d_optimality << ',' << c.utility << ',' << (decision.chosen == i)
           << ',' << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only() << ',' << quoted(c.rejection)
           << '\n';

@@ -46,6 +46,7 @@ Decision decision() {
   Decision decision;
   decision.candidates.resize(2);
   Candidate& chosen = decision.candidates[0];
+  chosen.kind = CandidateKind::kAlternative;
   chosen.frontier = 17;
   chosen.goal = {{1.5, -2.5}, 0.25};
   chosen.value = {3.5, 4.5, 5.5, 6.5, 7.5};
@@ -76,6 +77,7 @@ TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
                                                     {"time_s", "12.0666667"},
                                                     {"method", "joint"},
                                                     {"candidate", "0"},
+                                                    {"kind", "alternative"},
                                                     {"frontier", "17"},
                                                     {"x_m", "1.5"},
                                                     {"y_m", "-2.5"},

@@ -23,8 +23,14 @@ DecisionOutput make(DecisionInput input) {
   DecisionOutput output;
   std::string problem;
   std::tie(output.knowledge, problem) = renew(input);
-  Situation situation{input.surroundings->grid(),  input.surroundings->frontiers(), input.surroundings->field(),
-                      *input.view,                 input.T_base_camera,             nullptr, nullptr, input.robot};
+  Situation situation{input.surroundings->grid(),
+                      input.surroundings->frontiers(),
+                      input.surroundings->field(),
+                      *input.view,
+                      input.T_base_camera,
+                      nullptr,
+                      nullptr,
+                      input.robot};
   if (output.knowledge) {
     situation.graph = &output.knowledge->graph;
     situation.landmarks = &output.knowledge->landmarks;

@@ -249,8 +249,7 @@ TEST(MapMirror, BlocksThatAreGoneWithTheirMapperHaveChanged) {
   MapMirror mirror;
   for (int i = 0; i < 3; ++i) apply_all(mirror, before, before.publish(test::random_votes(random)));
   mirror.take_changed_blocks();
-  for (const auto& tile : after.publish(hit_in({9, 0, 0})))
-    mirror.apply_tile(11, tile.index, tile.version, tile.bytes);
+  for (const auto& tile : after.publish(hit_in({9, 0, 0}))) mirror.apply_tile(11, tile.index, tile.version, tile.bytes);
   EXPECT_TRUE(mirror.take_changed_blocks().empty()) << "the old map is still served";
   mirror.apply_state(after.state());
   EXPECT_EQ(mirror.take_changed_blocks(), difference(before.map(), after.map()));

@@ -44,8 +44,8 @@ PlanningGrid::PlanningGrid(const GridConfig& config, double resolution_m)
 /// Unknown where the bottom of a free column has not been seen.
 mapping::ColumnCells PlanningGrid::floor_plan(const mapping::BlockColumn& column, const mapping::VoxelMap& map,
                                               const mapping::BeliefReader& reader) const {
-  const double bottom_m = std::min(config_.band.min_height_m + std::max(config_.bottom_m, resolution_m_),
-                                   config_.band.max_height_m);
+  const double bottom_m =
+      std::min(config_.band.min_height_m + std::max(config_.bottom_m, resolution_m_), config_.band.max_height_m);
   mapping::ColumnCells cells = mapping::project_column(column, map, reader, config_.band);
   const mapping::ColumnCells bottom =
       mapping::project_column(column, map, reader, {config_.band.min_height_m, bottom_m});

@@ -42,8 +42,9 @@ struct ObstacleGrid {
 inline constexpr double kMaxReach_m = 1000.0;
 
 /// Floor plan in which the robot plans: the projection of the map's voxels (column_projection.hpp) under a layer of
-/// obstacles that come and go. Free are only cells whose bottom has been seen: a camera looks over what is low and near. An obstacle makes its cell occupied until a grid says that it is free or until no grid
-/// has shown it for `obstacle_expiry_s`; what the map says is occupied stays so.
+/// obstacles that come and go. Free are only cells whose bottom has been seen: a camera looks over what is low and
+/// near. An obstacle makes its cell occupied until a grid says that it is free or until no grid has shown it for
+/// `obstacle_expiry_s`; what the map says is occupied stays so.
 ///
 /// Clearance is measured from centre to centre: walls are taken to be in the middle of their cells. A cell is
 /// traversable when it is free and its clearance is at least footprint radius + margin (and it is

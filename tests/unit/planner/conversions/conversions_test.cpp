@@ -22,8 +22,8 @@ namespace Markers = visualization_msgs::msg::Marker_Constants;
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 geometry_msgs::msg::Pose pose(double x, double y, double yaw_rad) {
-  return messages::to_message(geometry::make_pose(
-      {x, y, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()))));
+  return messages::to_message(
+      geometry::make_pose({x, y, 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ()))));
 }
 
 nav_msgs::msg::OccupancyGrid grid() {

@@ -14,13 +14,13 @@
 namespace lapis::planner::test {
 
 /// A building drawn as text ('#' wall, '.' floor, 'G' glass: a wall that is not seen, 'R' where the robot starts), a
-/// robot that follows paths exactly, and a camera that sees 90 degrees and 5 m of it. Ideal, but for what a test spoils.
+/// robot that follows paths exactly, and a camera that sees 90 degrees and 5 m of it. Ideal, but for what a test
+/// spoils.
 class WalkWorld {
  public:
   explicit WalkWorld(std::vector<std::string> lines, const ExplorerConfig& explorer_config = {})
-      : lines_(std::move(lines)), known_(kResolution_m),
-        surroundings({}, mapping::SensorModel{}, kResolution_m), explorer(explorer_config),
-        view_({.camera = kCamera, .columns = 16, .rows = 9, .range_m = 5.0}) {
+      : lines_(std::move(lines)), known_(kResolution_m), surroundings({}, mapping::SensorModel{}, kResolution_m),
+        explorer(explorer_config), view_({.camera = kCamera, .columns = 16, .rows = 9, .range_m = 5.0}) {
     decision_config.method = Method::kMiOnly;
     for (int y = 0; y < height(); ++y) {
       for (int x = 0; x < width(y); ++x) {

@@ -18,7 +18,8 @@ namespace lapis::planner::test {
 class FlatMap {
  public:
   explicit FlatMap(double resolution_m)
-      : map_(resolution_m), layer_(static_cast<std::int32_t>(std::ceil(mapping::HeightBand{}.min_height_m / resolution_m - 0.5))) {}
+      : map_(resolution_m),
+        layer_(static_cast<std::int32_t>(std::ceil(mapping::HeightBand{}.min_height_m / resolution_m - 0.5))) {}
 
   const mapping::VoxelMap& map() const { return map_; }
   std::int8_t at(Cell c) const {

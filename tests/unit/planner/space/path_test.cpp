@@ -238,7 +238,8 @@ TEST(FindPath, LeavesUnknownAndOccupiedCells) {
   rooted.escape_m = 0.0;
   EXPECT_EQ(find_path(world.grid, rooted, {3, 1}, {0, 0}).status, PathStatus::kFound) << "a neighbour is traversable";
   const TextWorld lost({"....       ....", "....       ....", "....       ...."});
-  EXPECT_EQ(find_path(lost.grid, {.escape_m = 0.5}, {7, 1}, {0, 0}).status, PathStatus::kNoPath) << "0.75 m of unknown space";
+  EXPECT_EQ(find_path(lost.grid, {.escape_m = 0.5}, {7, 1}, {0, 0}).status, PathStatus::kNoPath)
+      << "0.75 m of unknown space";
   EXPECT_EQ(find_path(lost.grid, {}, {6, 1}, {0, 0}).status, PathStatus::kFound) << "0.5 m";
 }
 

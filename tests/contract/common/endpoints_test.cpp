@@ -96,7 +96,7 @@ const std::vector<Process> kProcesses = {
      {"--set", "evaluator.output_dir=FOLDER"},
      {readers(topics::kTrackedFrame, topics::kGroundTruth, topics::kCollision, topics::kDepth, topics::kLabels,
               topics::kDepthInfo, topics::kStaticTransforms, topics::kPoseGraph, topics::kVoxelTiles, topics::kMapState,
-              topics::kDiagnostics, topics::kLabelInfo)}},
+              topics::kDiagnostics, topics::kLabelInfo, topics::kPlannerStatus, topics::kSlamOdometry)}},
     {"planner",
      "planner",
      {},

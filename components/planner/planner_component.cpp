@@ -15,8 +15,14 @@ constexpr time::Duration kStatusPeriod{1'000'000'000};
 constexpr const char* kLogFile = "decisions.csv";
 constexpr const char* kLapisMethod = "joint";  // docs/decisions/0031-the-method-called-lapis.md
 
+Measure measure_of(const std::string& name) {
+  if (name == "shannon") return Measure::kShannon;
+  return name == "csqmi" ? Measure::kCsqmi : Measure::kSemantic;
+}
+
 PlannerComponentConfig completed(PlannerComponentConfig config) {
   config.decision.method = *method_of(config.method == "lapis" ? kLapisMethod : config.method);
+  config.surroundings.measure = measure_of(config.measure);
   config.surroundings.grid.footprint_radius_m = config.robot.radius_m;
   config.decision.hallucination.covisibility.max_range_m = config.robot.sensing_range_m;
   config.explorer.path = config.decision.path;

@@ -11,6 +11,7 @@ namespace lapis::planner {
 /// What the process adds to the method's configuration.
 struct PlannerComponentConfig {
   std::string method = "lapis";
+  std::string measure = "semantic";
   bool autostart = true;
   SurroundingsConfig surroundings;
   DecisionConfig decision;
@@ -111,6 +112,8 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("method", c.method,
         config::one_of({"lapis", "paper", "fixed_n", "joint", "ssmi", "tare", "nearest", "mi_only", "dopt_only"}),
         "what decides between paths (README)");
+  field("measure", c.measure, config::one_of({"semantic", "shannon", "csqmi"}),
+        "information of the map: about space and classes, or about space alone (README)");
   field("autostart", c.autostart, config::anything(), "explore at once; false: wait for /planner/start");
   field("beta", c.decision.utility.beta, config::in_range(0.0, 100.0),
         "method joint: what a nat about the trajectory counts against one about the map");

@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kProgress_m = 0.3;         // nearer by less is no progress
 constexpr double kMetresPerTurn_rad = 0.5;  // turning towards the final heading is progress, too
+constexpr double kNearEnough_m = 1.0;       // to a place that itself cannot be reached
 constexpr double kPathTolerance_m = 1.0;    // of the path that has been driven already
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
@@ -23,6 +24,20 @@ double turn(const Pose2& a, const Pose2& b) {
 // What is left to do: distance, and the turn where the robot is near.
 double remaining(const Pose2& robot, const Pose2& goal) {
   return distance(robot, goal) + kMetresPerTurn_rad * turn(robot, goal);
+}
+
+// Of the cells that can be reached; the robot may have started where it cannot get back to, as beside a wall.
+std::optional<Cell> nearest_reached(const PlanningGrid& grid, const CostTree& tree, const Eigen::Vector2d& place_map) {
+  const Cell middle = grid.cell_of(place_map);
+  const int reach = static_cast<int>(kNearEnough_m / grid.resolution_m());
+  std::optional<Cell> nearest;
+  for (Cell step{0, -reach}; step.y <= reach; ++step.y) {
+    for (step.x = -reach; step.x <= reach; ++step.x) {
+      const Cell c = middle + step;
+      if (tree.cost_m(c) && (!nearest || distance(c, middle) < distance(*nearest, middle))) nearest = c;
+    }
+  }
+  return nearest;
 }
 
 bool has_frontier_at(const Surroundings& surroundings, const Eigen::Vector2d& target_map, double radius_m) {
@@ -222,10 +237,13 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
 }
 
 void Explorer::go_home(const Report& report, const Surroundings& surroundings) {
-  const bool is_there = distance(*report.robot, *home_) <= config_.goal_tolerance_m;
-  if (is_there) {
+  if (!goal_)
+    goal_ = Goal{*home_, home_->p_map, CandidateKind::kFrontier, remaining(*report.robot, *home_), report.now};
+  const bool is_there = !path_.empty() && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m;
+  if (is_there || is_stuck(report)) {
+    const std::string trouble = path_.empty() ? "no way back is known" : "it gets no nearer to where it started";
     drop_goal();
-    return enter(State::kDone, "is back where it started");
+    return is_there ? enter(State::kDone, "is back where it started") : enter(State::kFailed, trouble);
   }
   const bool is_due = !decided_at_ || (report.now - *decided_at_).seconds() >= config_.replan_period_s;
   if (!is_due) return;
@@ -236,12 +254,14 @@ void Explorer::go_home(const Report& report, const Surroundings& surroundings) {
 
 void Explorer::drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings) {
   const PlanningGrid& grid = surroundings.grid();
-  const PathResult result = find_path(grid, config_.path, grid.cell_of(report.robot->p_map), grid.cell_of(to.p_map));
-  if (result.status != PathStatus::kFound) {
+  const CostTree tree = grow_cost_tree(grid, config_.path, {grid.cell_of(report.robot->p_map)});
+  const auto end = nearest_reached(grid, tree, to.p_map);
+  if (!end) {
     reason_ = "no way back is known";
-    return drop_goal();
+    if (!path_.empty()) set_path({});
+    return;
   }
-  std::vector<Eigen::Vector2d> points = points_of(grid, result.path);
+  std::vector<Eigen::Vector2d> points = points_of(grid, straightened(grid, config_.path, tree.path_to(*end)));
   points.front() = report.robot->p_map;
   set_path(poses_along(points, config_.path_spacing_m, to.yaw_rad));
 }

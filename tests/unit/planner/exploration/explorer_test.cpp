@@ -9,6 +9,7 @@ namespace lapis::planner {
 namespace {
 
 using test::WalkWorld;
+using ::testing::AnyOf;
 using ::testing::HasSubstr;
 
 const std::vector<std::string> kThreeRooms = {
@@ -142,6 +143,33 @@ TEST(Explorer, ADoorThatClosesIsNoReasonToWait) {
   for (int y = 3; y <= 5; ++y) world.set({11, y}, '#');
   world.run(600.0);
   EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+}
+
+TEST(Explorer, SaysThatNoWayLeadsHome) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  while (world.robot.p_map.x() < 4.0 && world.now.seconds() < 100.0) world.run(0.2);
+  ASSERT_GT(world.robot.p_map.x(), 4.0) << "it is not in the next room";
+  for (int y = 3; y <= 5; ++y) world.set({11, y}, '#');
+  world.explorer.return_home();
+  world.run(200.0);
+  EXPECT_EQ(world.explorer.state(), State::kFailed);
+  EXPECT_THAT(world.explorer.reason(), AnyOf("no way back is known", "it gets no nearer to where it started"));
+  EXPECT_TRUE(world.explorer.path().empty());
+}
+
+// It began nearer to a wall than a planned way leads.
+TEST(Explorer, ComesAsNearToHomeAsItMay) {
+  auto lines = closed(kThreeRooms);
+  std::swap(lines[4][3], lines[1][1]);  // 'R' into the corner
+  WalkWorld world(lines, {.returns_home = true});
+  world.robot.p_map += Eigen::Vector2d(-0.1, 0.1);
+  const Pose2 home = world.robot;
+  world.explorer.start();
+  world.run(400.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  EXPECT_EQ(world.explorer.reason(), "is back where it started");
+  EXPECT_LT((world.robot.p_map - home.p_map).norm(), 1.0);
 }
 
 TEST(Explorer, PlacesOfAMapThatIsGoneAreForgotten) {

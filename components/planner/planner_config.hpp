@@ -148,14 +148,18 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("goal_tolerance_m", c.explorer.goal_tolerance_m, config::in_range(0.05, 2.0), "at a goal [m]");
   field("goal_tolerance_rad", c.explorer.goal_tolerance_rad, config::in_range(0.05, 3.2), "at a goal [rad]");
   field("progress_timeout_s", c.explorer.progress_timeout_s, config::in_range(1.0, 600.0),
-        "without coming nearer a goal has failed [s]");
+        "without moving a goal has failed [s]");
+  field("slowest_m_s", c.explorer.slowest_m_s, config::in_range(0.01, 5.0),
+        "a way that takes longer than at this speed has failed [m/s]");
   field("settle_s", c.explorer.settle_s, config::in_range(0.0, 60.0),
         "after arriving, until the map tells whether the look was in vain [s]");
   field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),
         "without tracking, exploration has failed [s]");
   field("path_spacing_m", c.explorer.path_spacing_m, config::in_range(0.02, 1.0), "between poses of /planner/path [m]");
   field("confirmations", c.explorer.confirmations, config::in_range(1, 100),
-        "decisions in a row that find nothing before exploration is over");
+        "looks around, a full turn in all, that find nothing before exploration is over");
+  field("patience_s", c.explorer.patience_s, config::in_range(0.0, 600.0),
+        "for obstacles that may go away before exploration is over [s]");
   field("returns_home", c.explorer.returns_home, config::anything(), "drives to where it started when nothing is left");
   field("sensor_model", c.sensor_model);
   field("decision_latency_frames", c.decision_latency_frames, config::in_range(1, 100),

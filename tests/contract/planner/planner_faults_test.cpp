@@ -263,7 +263,7 @@ TEST_F(PlannerContract, GoalThatIsAlwaysBlockedIsGivenUp) {
   std::vector<Eigen::Vector2d> goals;
   for (int i = 0; i < 60 * kRate_hz && state() != STATE_DONE; ++i) {
     if (has_path()) {
-      goals.push_back(goal());
+      if ((goal() - peers.position).norm() > 0.3) goals.push_back(goal());  // else it looks around
       ASSERT_TRUE(tick());
       peers.say_blocked();
       ASSERT_TRUE(ticks_until([this] { return !has_path(); }, 1.0)) << reason() << planner->log();

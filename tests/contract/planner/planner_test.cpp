@@ -108,6 +108,7 @@ TEST_F(PlannerContract, WaitsForMapAndPose) {
 }
 
 TEST_F(PlannerContract, ClosedRoomIsDone) {
+  peers.drives = true;
   ASSERT_TRUE(start()) << planner->log();
   peers.draw(kClosedRoom);
   ASSERT_TRUE(ticks_until([this] { return state() == STATE_DONE; }, 20.0)) << reason() << planner->log();

@@ -10,20 +10,15 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kProgress_m = 0.3;         // nearer by less is no progress
-constexpr double kMetresPerTurn_rad = 0.5;  // turning towards the final heading is progress, too
-constexpr double kNearEnough_m = 1.0;       // to a place that itself cannot be reached
-constexpr double kPathTolerance_m = 1.0;    // of the path that has been driven already
+constexpr double kMotion_m = 0.3, kMotion_rad = 0.3;  // less is standing still
+constexpr double kAhead_m = 0.35;                     // what stops the robot is about there
+constexpr double kNearEnough_m = 1.0;                 // to a place that itself cannot be reached
+constexpr double kPathTolerance_m = 1.0;              // of the path that has been driven already
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
 
 double turn(const Pose2& a, const Pose2& b) {
   return std::abs(std::remainder(a.yaw_rad - b.yaw_rad, 2.0 * std::numbers::pi));
-}
-
-// What is left to do: distance, and the turn where the robot is near.
-double remaining(const Pose2& robot, const Pose2& goal) {
-  return distance(robot, goal) + kMetresPerTurn_rad * turn(robot, goal);
 }
 
 // Of the cells that can be reached; the robot may have started where it cannot get back to, as beside a wall.
@@ -52,8 +47,12 @@ bool has_frontier_at(const Surroundings& surroundings, const Eigen::Vector2d& ta
 }  // namespace
 
 void Explorer::start() {
-  if (state_ == State::kDone || state_ == State::kFailed || state_ == State::kIdle) memory_.clear();
+  if (state_ == State::kDone || state_ == State::kFailed || state_ == State::kIdle) {
+    memory_.clear();
+    blocked_.clear();
+  }
   empty_decisions_ = 0;
+  nothing_since_.reset();
   decided_at_.reset();
   lost_at_.reset();
   enter(State::kExploring, "started");
@@ -77,6 +76,8 @@ void Explorer::return_home() {
 void Explorer::forget_map() {
   drop_goal();
   memory_.clear();
+  blocked_.clear();
+  nothing_since_.reset();
   looks_.clear();
   home_.reset();
   last_tracked_.reset();
@@ -101,7 +102,7 @@ void Explorer::drop_goal() {
   if (!path_.empty()) set_path({});
 }
 
-bool Explorer::step(const Report& report, const Surroundings* surroundings) {
+bool Explorer::step(const Report& report, Surroundings* surroundings) {
   if (report.robot && !home_) home_ = report.robot;
   if (report.robot && report.tracking == Tracking::kTracking) last_tracked_ = report.robot;
   const bool is_active = state_ == State::kExploring || state_ == State::kReturning || state_ == State::kRecovering;
@@ -125,8 +126,10 @@ bool Explorer::step(const Report& report, const Surroundings* surroundings) {
   return explore(report, *surroundings);
 }
 
-bool Explorer::explore(const Report& report, const Surroundings& surroundings) {
+bool Explorer::explore(const Report& report, Surroundings& surroundings) {
+  surroundings.set_blocked(blocked_.left_alone(report.now));
   judge_looks(surroundings, report.now);
+  may_change_ = surroundings.grid().has_passing_obstacles();
   const bool is_due = !decided_at_ || (report.now - *decided_at_).seconds() >= config_.replan_period_s;
   if (!goal_) return is_due;
   if (has_arrived(*report.robot)) {
@@ -134,9 +137,10 @@ bool Explorer::explore(const Report& report, const Surroundings& surroundings) {
     drop_goal();
     return true;
   }
-  if (report.is_blocked || is_stuck(report)) {
-    memory_.add_failure(goal_->target_map, report.now);
-    reason_ = report.is_blocked ? "the way was blocked" : "no progress";
+  const bool is_late = goal_->deadline && report.now > *goal_->deadline;
+  if (report.is_blocked || is_late || stands_still(report)) {
+    note_failure(report);
+    reason_ = report.is_blocked ? "the way was blocked" : is_late ? "the way took too long" : "it did not get on";
     drop_goal();
     return true;
   }
@@ -145,8 +149,9 @@ bool Explorer::explore(const Report& report, const Surroundings& surroundings) {
 }
 
 void Explorer::note_arrival(time::Time now) {
-  if (goal_->kind == CandidateKind::kRevisit) return memory_.add_failure(goal_->target_map, now);  // not for ever
-  looks_.push_back({goal_->target_map, now + time::Duration::from_seconds(config_.settle_s)});
+  if (!goal_->target_map) return;
+  if (goal_->kind == CandidateKind::kRevisit) return memory_.add_failure(*goal_->target_map, now);  // not for ever
+  looks_.push_back({*goal_->target_map, now + time::Duration::from_seconds(config_.settle_s)});
   memory_.leave_alone(looks_.back().target_map, looks_.back().due);
 }
 
@@ -155,13 +160,24 @@ bool Explorer::has_arrived(const Pose2& robot) const {
          turn(robot, goal_->pose) <= config_.goal_tolerance_rad;
 }
 
-bool Explorer::is_stuck(const Report& report) {
-  const double left = remaining(*report.robot, goal_->pose);
-  if (left < goal_->nearest_m - kProgress_m) {
-    goal_->nearest_m = left;
-    goal_->progress_at = report.now;
+bool Explorer::stands_still(const Report& report) {
+  const bool has_moved =
+      distance(*report.robot, goal_->moved_from) > kMotion_m || turn(*report.robot, goal_->moved_from) > kMotion_rad;
+  if (has_moved) {
+    goal_->moved_from = *report.robot;
+    goal_->moved_at = report.now;
   }
-  return (report.now - goal_->progress_at).seconds() > config_.progress_timeout_s;
+  return (report.now - goal_->moved_at).seconds() > config_.progress_timeout_s;
+}
+
+// The target is left alone, and ways no longer lead through what stopped the robot.
+void Explorer::note_failure(const Report& report) {
+  if (goal_->target_map) memory_.add_failure(*goal_->target_map, report.now);
+  auto pose = std::min_element(path_.begin(), path_.end(), [&](const Pose2& a, const Pose2& b) {
+    return distance(*report.robot, a) < distance(*report.robot, b);
+  });
+  while (pose != path_.end() && distance(*report.robot, *pose) < kAhead_m) ++pose;
+  if (pose != path_.end()) blocked_.add_failure(pose->p_map, report.now);
 }
 
 // From the robot on; cells that it stands in or has behind it do not matter.
@@ -194,25 +210,46 @@ Memory Explorer::memory(time::Time now) const {
 void Explorer::take(const Decision& decision, time::Time now) {
   if (state_ != State::kExploring) return;
   decided_at_ = now;
-  if (decision.chosen) {
-    const Candidate& chosen = decision.candidates[*decision.chosen];
-    empty_decisions_ = 0;
-    const bool is_new = !goal_ || (goal_->target_map - chosen.target_map).norm() > config_.memory.radius_m;
-    if (is_new)
-      goal_ = Goal{chosen.goal, chosen.target_map, chosen.kind, remaining(chosen.way.front(), chosen.goal), now};
-    goal_->pose = chosen.goal;
-    goal_->target_map = chosen.target_map;
-    goal_->kind = chosen.kind;
-    const bool is_revisit = chosen.kind == CandidateKind::kRevisit;
-    reason_ = is_revisit ? "revisits an old place" : "drives to frontier " + std::to_string(chosen.frontier);
-    return set_path(poses_along(chosen.points, config_.path_spacing_m, chosen.goal.yaw_rad));
+  if (!decision.chosen) return end_or_look_around(now);
+  empty_decisions_ = 0;
+  nothing_since_.reset();
+  follow(decision.candidates[*decision.chosen], now);
+}
+
+void Explorer::follow(const Candidate& chosen, time::Time now) {
+  const bool is_new =
+      !goal_ || !goal_->target_map || (*goal_->target_map - chosen.target_map).norm() > config_.memory.radius_m;
+  if (is_new) {
+    const double longest_s = config_.progress_timeout_s + chosen.value.cost_m / config_.slowest_m_s;
+    if (!goal_) goal_ = Goal{.moved_from = chosen.way.front(), .moved_at = now};
+    goal_->deadline = now + time::Duration::from_seconds(longest_s);
   }
+  goal_->pose = chosen.goal;
+  goal_->target_map = chosen.target_map;
+  goal_->kind = chosen.kind;
+  const bool is_revisit = chosen.kind == CandidateKind::kRevisit;
+  reason_ = is_revisit ? "revisits an old place" : "drives to frontier " + std::to_string(chosen.frontier);
+  set_path(poses_along(chosen.points, config_.path_spacing_m, chosen.goal.yaw_rad));
+}
+
+// A turn in all directions may show what has been missed. After it what has failed gets another chance.
+void Explorer::end_or_look_around(time::Time now) {
+  const bool turns = goal_ && !goal_->target_map && distance(*last_tracked_, goal_->pose) <= config_.goal_tolerance_m;
+  if (turns) return;
   drop_goal();
-  reason_ = "no frontier can be driven to";
-  if (!looks_.empty() || memory_.forgive(now)) return;
-  if (++empty_decisions_ < config_.confirmations) return;
-  if (config_.returns_home) return enter(State::kReturning, "nothing is left that can be reached");
-  enter(State::kDone, "nothing is left that can be reached");
+  if (!nothing_since_) nothing_since_ = now;
+  const bool is_worth_waiting = may_change_ && (now - *nothing_since_).seconds() < config_.patience_s;
+  if (empty_decisions_ < config_.confirmations || is_worth_waiting) {
+    ++empty_decisions_;
+    goal_ = Goal{.pose = *last_tracked_, .moved_from = *last_tracked_, .moved_at = now};
+    goal_->pose.yaw_rad += 2.0 * std::numbers::pi / config_.confirmations;
+    reason_ = "looks around: no frontier can be driven to";
+    return set_path({goal_->pose});
+  }
+  empty_decisions_ = 0;
+  const bool has_forgiven = memory_.forgive(now), has_unblocked = blocked_.forgive(now);
+  if (has_forgiven || has_unblocked) return;
+  enter(config_.returns_home ? State::kReturning : State::kDone, "nothing is left that can be reached");
 }
 
 void Explorer::recover(const Report& report, const Surroundings* surroundings) {
@@ -237,11 +274,10 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
 }
 
 void Explorer::go_home(const Report& report, const Surroundings& surroundings) {
-  if (!goal_)
-    goal_ = Goal{*home_, home_->p_map, CandidateKind::kFrontier, remaining(*report.robot, *home_), report.now};
+  if (!goal_) goal_ = Goal{.pose = *home_, .moved_from = *report.robot, .moved_at = report.now};
   const bool is_there = !path_.empty() && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m;
-  if (is_there || is_stuck(report)) {
-    const std::string trouble = path_.empty() ? "no way back is known" : "it gets no nearer to where it started";
+  if (is_there || stands_still(report)) {
+    const std::string trouble = path_.empty() ? "no way back is known" : "it does not get on to where it started";
     drop_goal();
     return is_there ? enter(State::kDone, "is back where it started") : enter(State::kFailed, trouble);
   }
@@ -263,6 +299,7 @@ void Explorer::drive_to(const Pose2& to, const Report& report, const Surrounding
   }
   std::vector<Eigen::Vector2d> points = points_of(grid, straightened(grid, config_.path, tree.path_to(*end)));
   points.front() = report.robot->p_map;
+  if (*end == grid.cell_of(to.p_map)) points.back() = to.p_map;
   set_path(poses_along(points, config_.path_spacing_m, to.yaw_rad));
 }
 

@@ -24,15 +24,17 @@ enum class State {
 struct ExplorerConfig {
   GoalMemoryConfig memory = {};
   PathConfig path = {};
-  double replan_period_s = 1.0;      ///< between decisions while a goal is being driven to, in [0.5, 60]
-  double goal_tolerance_m = 0.3;     ///< in [0.05, 2]
-  double goal_tolerance_rad = 0.3;   ///< in [0.05, 3.2]
-  double progress_timeout_s = 15.0;  ///< without coming 0.3 m or 0.3 rad nearer, a goal has failed, in [1, 600]
-  double settle_s = 1.5;             ///< after arriving, until the map tells whether the look was in vain, in [0, 60]
-  double lost_timeout_s = 60.0;      ///< without tracking, exploration has failed, in [1, 3600]
-  double path_spacing_m = 0.1;       ///< between poses of the path, in [0.02, 1]
-  int confirmations = 3;             ///< decisions in a row that find nothing before it is over, in [1, 100]
-  bool returns_home = false;         ///< when nothing is left
+  double replan_period_s = 1.0;     ///< between decisions while a goal is being driven to, in [0.5, 60]
+  double goal_tolerance_m = 0.3;    ///< in [0.05, 2]
+  double goal_tolerance_rad = 0.3;  ///< in [0.05, 3.2]
+  double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
+  double slowest_m_s = 0.15;        ///< a way that takes longer than at this speed has failed, in [0.01, 5]
+  double settle_s = 1.5;            ///< after arriving, until the map tells whether the look was in vain, in [0, 60]
+  double lost_timeout_s = 60.0;     ///< without tracking, exploration has failed, in [1, 3600]
+  double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
+  int confirmations = 3;      ///< looks around, a full turn in all, that find nothing before it is over, in [1, 100]
+  double patience_s = 20.0;   ///< for obstacles that may go away before it is over, in [0, 600]
+  bool returns_home = false;  ///< when nothing is left
 };
 
 enum class Tracking { kTracking, kDeadReckoning, kLost };
@@ -48,7 +50,7 @@ struct Report {
 /// The mission: when to decide, what to do with the decision, and when it is over.
 class Explorer {
  public:
-  explicit Explorer(const ExplorerConfig& config) : config_(config), memory_(config.memory) {}
+  explicit Explorer(const ExplorerConfig& config) : config_(config), memory_(config.memory), blocked_(config.memory) {}
 
   void start();
   void stop();
@@ -58,7 +60,7 @@ class Explorer {
   void forget_map();
 
   /// Looks at what has happened since the last call. True when a decision is wanted.
-  bool step(const Report& report, const Surroundings* surroundings);
+  bool step(const Report& report, Surroundings* surroundings);
   /// What decide() has to leave alone, and what is being driven to.
   Memory memory(time::Time now) const;
   /// Acts on a decision that was wanted; one that came too late changes nothing.
@@ -73,28 +75,33 @@ class Explorer {
 
  private:
   struct Goal {
-    Pose2 pose;
-    Eigen::Vector2d target_map;
-    CandidateKind kind;
-    double nearest_m;  ///< that the robot has come, turns included
-    time::Time progress_at;
+    Pose2 pose = {};
+    std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< none: a look around, or the way home
+    CandidateKind kind = CandidateKind::kFrontier;
+    std::optional<time::Time> deadline = std::nullopt;
+    Pose2 moved_from;  ///< where the robot was when it last had moved
+    time::Time moved_at;
   };
 
   void enter(State state, std::string reason);
   void set_path(std::vector<Pose2> path);
   void drop_goal();
-  bool explore(const Report& report, const Surroundings& surroundings);
+  bool explore(const Report& report, Surroundings& surroundings);
+  void follow(const Candidate& chosen, time::Time now);
+  void end_or_look_around(time::Time now);
   void recover(const Report& report, const Surroundings* surroundings);
   void go_home(const Report& report, const Surroundings& surroundings);
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
   void note_arrival(time::Time now);
   bool has_arrived(const Pose2& robot) const;
-  bool is_stuck(const Report& report);
+  bool stands_still(const Report& report);
+  void note_failure(const Report& report);
   bool is_path_free(const Pose2& robot, const PlanningGrid& grid) const;
   void judge_looks(const Surroundings& surroundings, time::Time now);
 
   ExplorerConfig config_;
-  GoalMemory memory_;
+  GoalMemory memory_;   ///< targets
+  GoalMemory blocked_;  ///< places on the way
   State state_ = State::kIdle;
   State interrupted_ = State::kExploring;  ///< what to go on with when slam tracks again
   std::string reason_ = "not started";
@@ -107,8 +114,9 @@ class Explorer {
   };
   std::vector<Look> looks_;  ///< whose effect on the map is awaited
   std::optional<Pose2> home_, last_tracked_;
-  std::optional<time::Time> decided_at_, lost_at_;
+  std::optional<time::Time> decided_at_, lost_at_, nothing_since_;
   int empty_decisions_ = 0;
+  bool may_change_ = false;  ///< obstacles stand where there may soon be none
 };
 
 }  // namespace lapis::planner

@@ -1,5 +1,8 @@
 #include "planner/core/exploration/surroundings.hpp"
 
+#include <set>
+#include <utility>
+
 namespace lapis::planner {
 namespace {
 
@@ -34,6 +37,12 @@ bool Surroundings::update_obstacles(const ObstacleGrid& grid, time::Time stamp) 
   frontiers_.update(grid_, *changed);
   frontiers_.update(grid_, grid_.expire_obstacles(stamp));
   return true;
+}
+
+void Surroundings::set_blocked(std::span<const Eigen::Vector2d> places_map) {
+  std::set<Cell> cells;
+  for (const Eigen::Vector2d& place : places_map) cells.insert(grid_.cell_of(place));
+  frontiers_.update(grid_, grid_.set_blocked(std::move(cells)));
 }
 
 void Surroundings::count_observed(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed) {

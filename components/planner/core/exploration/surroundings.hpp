@@ -32,6 +32,8 @@ class Surroundings {
   void update_map(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed);
   /// False when the grid is malformed.
   bool update_obstacles(const ObstacleGrid& grid, time::Time stamp);
+  /// Places that the robot found it cannot pass, whatever the map says [m, map]; all others are as the map says.
+  void set_blocked(std::span<const Eigen::Vector2d> places_map);
 
  private:
   void count_observed(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iterator>
 #include <set>
+#include <utility>
 
 namespace lapis::planner {
 namespace {
@@ -132,11 +133,24 @@ std::vector<Cell> PlanningGrid::expire_obstacles(time::Time now) {
   return renew(touched);
 }
 
+std::vector<Cell> PlanningGrid::set_blocked(std::set<Cell> cells) {
+  std::vector<Cell> touched;
+  std::set_symmetric_difference(cells.begin(), cells.end(), blocked_.begin(), blocked_.end(),
+                                std::back_inserter(touched));
+  blocked_ = std::move(cells);
+  return renew(touched);
+}
+
+bool PlanningGrid::has_passing_obstacles() const {
+  return std::any_of(obstacles_.begin(), obstacles_.end(),
+                     [&](const auto& entry) { return mapped_.at(entry.first) == mapping::kFree; });
+}
+
 /// Brings the state of these cells up to date, and the distances; returns those that changed.
 std::vector<Cell> PlanningGrid::renew(std::span<const Cell> touched) {
   std::vector<Cell> changed;
   for (const Cell& c : touched) {
-    const bool is_blocked = !obstacles_.empty() && obstacles_.contains(c);
+    const bool is_blocked = blocked_.contains(c) || (!obstacles_.empty() && obstacles_.contains(c));
     const std::int8_t value = is_blocked ? mapping::kOccupied : mapped_.at(c);
     if (state_.at(c) == value) continue;
     state_[c] = value;

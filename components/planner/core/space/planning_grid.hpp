@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <map>
 #include <optional>
+#include <set>
 #include <span>
 #include <vector>
 
@@ -62,6 +63,8 @@ class PlanningGrid {
   /// Lays a grid over the plan. Nothing, and no change, when it is malformed: not as many cells as width x height, a
   /// resolution outside [0.01, 1] m, or cells beyond kMaxReach_m.
   std::optional<std::vector<Cell>> update_obstacles(const ObstacleGrid& grid, time::Time stamp);
+  /// Cells that the robot found it cannot pass, whatever is seen there: occupied until they are left out here.
+  std::vector<Cell> set_blocked(std::set<Cell> cells);
   /// Forgets obstacles that were last seen more than `obstacle_expiry_s` before `now`.
   std::vector<Cell> expire_obstacles(time::Time now);
 
@@ -69,6 +72,8 @@ class PlanningGrid {
   std::int8_t state(Cell c) const { return state_.at(c); }
   /// Distance to the nearest occupied cell, at most max_clearance_m() [m].
   double clearance_m(Cell c) const;
+  /// True when an obstacle stands where the map says that it is free: it may go away.
+  bool has_passing_obstacles() const;
   /// Far enough from what is occupied.
   bool has_room(Cell c) const { return to_occupied_.squared(c) >= required_squared_; }
   bool is_traversable(Cell c) const {
@@ -99,7 +104,8 @@ class PlanningGrid {
   std::optional<mapping::SensorModel> model_;  ///< of the last update_map
   SparseGrid<std::int8_t> mapped_;             ///< the map's part
   std::map<Cell, time::Time> obstacles_;       ///< when last seen
-  SparseGrid<std::int8_t> state_;              ///< both together
+  std::set<Cell> blocked_;
+  SparseGrid<std::int8_t> state_;  ///< all together
   DistanceField to_occupied_;
   DistanceField to_unknown_;
 };

@@ -13,7 +13,8 @@
 
 namespace lapis::planner::test {
 
-/// A building drawn as text ('#' wall, '.' floor, 'G' glass: a wall that is not seen, 'R' where the robot starts), a
+/// A building drawn as text ('#' wall, '.' floor, 'G' a wall that is not seen, 'W' a window: seen through, not passed,
+/// 'O' an obstacle that only the obstacle layer knows, 'R' where the robot starts), a
 /// robot that follows paths exactly, and a camera that sees 90 degrees and 5 m of it. Ideal, but for what a test
 /// spoils.
 class WalkWorld {
@@ -38,12 +39,42 @@ class WalkWorld {
     now = now + time::Duration::from_seconds(kTick_s);
     look();
     surroundings.update_map(known_.map(), known_.flush());
+    surroundings.update_obstacles(obstacles(), now);
     const Report report{now, tracking == Tracking::kLost ? std::nullopt : std::optional(robot), tracking, is_blocked};
-    if (explorer.step(report, &surroundings)) decide_now();
+    const bool had_goal = explorer.memory(now).goal.has_value();
+    const bool is_decision_wanted = explorer.step(report, &surroundings);
+    if (had_goal && !explorer.memory(now).goal && is_failure(explorer.reason())) count_failure();
+    if (is_decision_wanted) decide_now();
+    const Pose2 before = robot;
     move();
+    const bool is_idle =
+        explorer.state() == State::kExploring && robot.p_map == before.p_map && robot.yaw_rad == before.yaw_rad;
+    idle_s_ = is_idle ? idle_s_ + kTick_s : 0.0;
+    longest_idle_s = std::max(longest_idle_s, idle_s_);
+  }
+  /// The map and the robot in it move by so many cells, as after a loop closure.
+  void jump(Cell by) {
+    std::map<Cell, std::int8_t> moved;
+    for (int y = 0; y < height(); ++y) {
+      for (int x = 0; x < width(y); ++x) {
+        moved[Cell{x, y} + offset_ + by] = known_.at(Cell{x, y} + offset_);
+        known_.set(Cell{x, y} + offset_, mapping::kUnknown);
+      }
+    }
+    for (const auto& [c, value] : moved) known_.set(c, value);
+    offset_ = offset_ + by;
+    robot.p_map += kResolution_m * Eigen::Vector2d(by.x, by.y);
+  }
+  /// How often the robot set out in vain for the target for which it did so most.
+  int most_failures() const {
+    int most = 0;
+    for (const auto& failure : failures_) most = std::max(most, failure.second);
+    return most;
   }
 
-  char at(Cell c) const {
+  /// In the map.
+  char at(Cell in_map) const {
+    const Cell c = in_map - offset_;
     if (c.y < 0 || c.y >= height() || c.x < 0 || c.x >= width(c.y)) return ' ';
     return lines_[static_cast<std::size_t>(height() - 1 - c.y)][static_cast<std::size_t>(c.x)];
   }
@@ -55,9 +86,9 @@ class WalkWorld {
     int floor = 0, known = 0;
     for (int y = 0; y < height(); ++y) {
       for (int x = 0; x < width(y); ++x) {
-        if (at({x, y}) != '.') continue;
+        if (at(Cell{x, y} + offset_) != '.') continue;
         ++floor;
-        known += known_.at({x, y}) == mapping::kFree ? 1 : 0;
+        known += known_.at(Cell{x, y} + offset_) == mapping::kFree ? 1 : 0;
       }
     }
     return static_cast<double>(known) / floor;
@@ -82,8 +113,9 @@ class WalkWorld {
   bool see(Cell c) {
     const char what = at(c);
     if (what == '#') known_.set(c, mapping::kOccupied);
-    if (what == '.' || what == 'R') known_.set(c, mapping::kFree);
-    return what == '.' || what == 'R';
+    const bool is_seen_through = what == '.' || what == 'R' || what == 'W';
+    if (is_seen_through) known_.set(c, mapping::kFree);
+    return is_seen_through;
   }
   void decide_now() {
     ++decisions;
@@ -91,6 +123,25 @@ class WalkWorld {
                                       geometry::T_base_camera({1.0, 0.0}), nullptr, nullptr, robot},
                                      explorer.memory(now), decision_config);
     explorer.take(decision, now);
+    if (decision.chosen) target_ = decision.candidates[*decision.chosen].target_map;
+  }
+  static bool is_failure(const std::string& reason) {
+    return reason == "the way was blocked" || reason == "the way took too long" || reason == "it did not get on";
+  }
+  void count_failure() {
+    for (auto& [target, count] : failures_) {
+      if ((target - target_).norm() > GoalMemoryConfig{}.radius_m) continue;
+      ++count;
+      return;
+    }
+    failures_.emplace_back(target_, 1);
+  }
+  ObstacleGrid obstacles() const {
+    ObstacleGrid grid{Eigen::Vector2d::Zero(), kResolution_m, width(0), height(), {}};
+    for (int y = 0; y < height(); ++y) {
+      for (int x = 0; x < width(0); ++x) grid.cells.push_back(at({x, y}) == 'O' ? 100 : 0);
+    }
+    return grid;
   }
   /// 0.6 m/s along the path, turning at once; walls stop it.
   void move() {
@@ -111,7 +162,7 @@ class WalkWorld {
   }
   bool is_wall(const Eigen::Vector2d& p) const {
     const char what = at(surroundings.grid().cell_of(p));
-    return what == '#' || what == 'G';
+    return what == '#' || what == 'G' || what == 'W' || what == 'O';
   }
 
   std::vector<std::string> lines_;
@@ -127,11 +178,16 @@ class WalkWorld {
   bool is_blocked = false;
   int decisions = 0;
   double travelled_m = 0.0;
+  double longest_idle_s = 0.0;  ///< without moving or turning while it explored
 
  private:
   View view_;
   std::uint64_t followed_ = 0;
   std::size_t next_ = 0;
+  Cell offset_{0, 0};
+  double idle_s_ = 0.0;
+  Eigen::Vector2d target_{0, 0};
+  std::vector<std::pair<Eigen::Vector2d, int>> failures_;
 };
 
 }  // namespace lapis::planner::test

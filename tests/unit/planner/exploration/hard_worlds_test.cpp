@@ -1,0 +1,149 @@
+// Worlds that break explorers. In all of them exploration ends, the robot never stands still for long before, and a
+// target that cannot be had is driven to three times at most.
+#include <gtest/gtest.h>
+
+#include "tests/unit/planner/exploration/walk_world.hpp"
+
+namespace lapis::planner {
+namespace {
+
+using test::WalkWorld;
+
+constexpr double kLongestIdle_s = 10.0;
+
+const std::vector<std::string> kTwoRooms = {
+    "#########################################",  //
+    "#..........#............................#",  //
+    "#..........#............................#",  //
+    "#.R.....................................#",  //
+    "#.......................................#",  //
+    "#.......................................#",  //
+    "#..........#............................#",  //
+    "#..........#............................#",  //
+    "#########################################",
+};
+
+class HardWorld : public testing::Test {
+ protected:
+  /// Explores until it is over; `share` of the floor is to be known then.
+  static void explore(WalkWorld& world, double share) {
+    if (world.explorer.state() == State::kIdle) world.explorer.start();
+    world.run(900.0);
+    EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+    EXPECT_GE(world.explored_share(), share);
+    EXPECT_LE(world.longest_idle_s, kLongestIdle_s);
+    EXPECT_TRUE(world.explorer.path().empty());
+  }
+};
+
+TEST_F(HardWorld, ARoomThatCannotBeEntered) {
+  WalkWorld world({
+      "#####################",  //
+      "#.........##........#",  //
+      "#.........##........#",  //
+      "#.R.......W.........#",  // a hatch of one cell, seen through
+      "#.........##........#",  //
+      "#.........##........#",  //
+      "#####################",
+  });
+  explore(world, 0.5);
+  EXPECT_LE(world.most_failures(), 3);
+}
+
+TEST_F(HardWorld, FreeSpaceBehindAGlassWall) {
+  WalkWorld world({
+      "#########################",  //
+      "#...........W...........#",  //
+      "#...........W...........#",  //
+      "#.R.........W...........#",  //
+      "#...........W...........#",  //
+      "#...........W...........#",  //
+      "#########################",
+  });
+  explore(world, 0.5);
+  EXPECT_LE(world.most_failures(), 3);
+}
+
+TEST_F(HardWorld, AClosedRoom) {
+  WalkWorld world({"#######", "#.....#", "#.....#", "#..R..#", "#.....#", "#.....#", "#######"});
+  explore(world, 1.0);
+}
+
+TEST_F(HardWorld, OneFrontierLeftInACorner) {
+  WalkWorld world({
+      "##########################",  //
+      "#...............#........#",  //
+      "#...............#........#",  //
+      "#.R.............#........#",  //
+      "#...............#........#",  //
+      "#........................#",  //
+      "#........................#",  //
+      "#........................#",  //
+      "##########################",
+  });
+  explore(world, 1.0);
+}
+
+TEST_F(HardWorld, AFrontierOfAQuarterMetre) {
+  WalkWorld world({
+      "######################",  //
+      "#..........#.........#",  //
+      "#..........#.........#",  //
+      "#.R..................#",  // a door of 0.75 m, and behind it a niche of one cell
+      "#....................#",  //
+      "#....................#",  //
+      "#..........#.........#",  //
+      "#..........#######.###",  //
+      "#..........#######.###",  //
+      "######################",
+  });
+  explore(world, 1.0);
+}
+
+TEST_F(HardWorld, ADoorThatClosesBehindTheRobot) {
+  WalkWorld world(kTwoRooms);
+  world.explorer.start();
+  while (world.robot.p_map.x() < 3.5 && world.explorer.state() == State::kExploring) world.run(0.2);
+  ASSERT_GE(world.robot.p_map.x(), 3.5) << "it has not gone through";
+  for (int y = 3; y <= 5; ++y) world.set({11, y}, '#');
+  explore(world, 0.5);
+}
+
+TEST_F(HardWorld, AStartBesideAWall) {
+  WalkWorld world({
+      "#################",  //
+      "#R..............#",  //
+      "#...............#",  //
+      "#...............#",  //
+      "#...............#",  //
+      "#...............#",  //
+      "#################",
+  });
+  world.robot.p_map += Eigen::Vector2d(-0.1, 0.1);
+  world.robot.yaw_rad = 2.4;  // it faces the corner
+  explore(world, 1.0);
+}
+
+TEST_F(HardWorld, AnObstacleThatComesAndGoes) {
+  WalkWorld world(kTwoRooms);
+  world.explorer.start();
+  world.run(2.0);
+  for (int y = 3; y <= 5; ++y) world.set({11, y}, 'O');
+  world.run(15.0);
+  EXPECT_LT(world.robot.p_map.x(), 2.75) << "it is through";
+  for (int y = 3; y <= 5; ++y) world.set({11, y}, '.');
+  explore(world, 1.0);
+}
+
+TEST_F(HardWorld, AMapThatJumpsWhileTheRobotDrives) {
+  WalkWorld world(kTwoRooms);
+  world.explorer.start();
+  for (const Cell by : {Cell{3, 1}, Cell{-2, 2}, Cell{-4, -5}}) {
+    world.run(4.0);
+    world.jump(by);
+  }
+  explore(world, 1.0);
+}
+
+}  // namespace
+}  // namespace lapis::planner

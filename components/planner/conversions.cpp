@@ -86,6 +86,42 @@ messages::Converted<geometry::Pose> near_pose(const geometry_msgs::msg::Pose& me
   return T;
 }
 
+geometry_msgs::msg::Point to_point(const Eigen::Vector3d& p_map) {
+  geometry_msgs::msg::Point point;
+  point.x(p_map.x());
+  point.y(p_map.y());
+  point.z(p_map.z());
+  return point;
+}
+
+/// Key-frames that the way would add to the pose graph.
+Marker keyframe_marker(const Candidate& chosen, const std_msgs::msg::Header& header) {
+  Marker nodes = marker("hallucinated_keyframes", visualization_msgs::msg::Marker_Constants::SPHERE_LIST, 0, header);
+  nodes.scale().x(0.12);
+  nodes.scale().y(0.12);
+  nodes.scale().z(0.12);
+  nodes.color().g(1.0f);
+  for (const auto& p : chosen.nodes_map) nodes.points().push_back(to_point(p));
+  return nodes;
+}
+
+/// Loops that it may close; the less probable, the more transparent.
+Marker loop_marker(const Candidate& chosen, const std_msgs::msg::Header& header) {
+  Marker loops = marker("hallucinated_loops", visualization_msgs::msg::Marker_Constants::LINE_LIST, 0, header);
+  loops.scale().x(0.03);
+  loops.color().r(1.0f);
+  loops.color().b(1.0f);
+  for (const ExpectedLoop& loop : chosen.loops) {
+    auto color = loops.color();
+    color.a(static_cast<float>(loop.probability));
+    for (const auto& p : {loop.node_map, loop.keyframe_map}) {
+      loops.points().push_back(to_point(p));
+      loops.colors().push_back(color);
+    }
+  }
+  return loops;
+}
+
 }  // namespace
 
 messages::Converted<Pose2> to_core(const geometry_msgs::msg::Pose& message) {
@@ -205,6 +241,10 @@ visualization_msgs::msg::MarkerArray to_markers(const FrontierMap& frontiers, co
     const auto id = static_cast<std::int32_t>(i);
     message.markers().push_back(candidate_marker(decision.candidates[i], decision.chosen == i, id, header));
   }
+  if (!decision.chosen) return message;
+  const Candidate& chosen = decision.candidates[*decision.chosen];
+  if (!chosen.nodes_map.empty()) message.markers().push_back(keyframe_marker(chosen, header));
+  if (!chosen.loops.empty()) message.markers().push_back(loop_marker(chosen, header));
   return message;
 }
 

@@ -36,11 +36,11 @@ bool DecisionLog::write(const Decision& decision, std::uint64_t id, const std::s
     const Candidate& c = decision.candidates[i];
     file_ << std::setprecision(9) << id << ',' << time_s << ',' << method << ',' << i << ',' << name_of(c.kind) << ','
           << c.frontier << ',' << c.goal.p_map.x() << ',' << c.goal.p_map.y() << ',' << c.goal.yaw_rad << ','
-          << c.value.cost_m << ',' << c.value.path_information << ',' << c.value.goal_information << ',' << c.places
-          << ',' << c.value.loop_gain << ',' << c.gain.fixed_n_change << ',' << c.gain.end_sigma_without_loops_m << ','
-          << c.gain.end_sigma_m << ',' << c.value.d_optimality << ',' << c.utility << ',' << (decision.chosen == i)
-          << ',' << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only() << ',' << quoted(c.rejection)
-          << '\n';
+          << c.value.cost_m << ',' << c.value.path_information << ',' << c.value.goal_information << ','
+          << c.loops.size() << ',' << c.value.loop_gain << ',' << c.gain.fixed_n_change << ','
+          << c.gain.end_sigma_without_loops_m << ',' << c.gain.end_sigma_m << ',' << c.value.d_optimality << ','
+          << c.utility << ',' << (decision.chosen == i) << ',' << (decision.by_mi_only == i) << ','
+          << decision.agrees_with_mi_only() << ',' << quoted(c.rejection) << '\n';
   }
   return static_cast<bool>(file_.flush());
 }

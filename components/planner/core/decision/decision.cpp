@@ -64,7 +64,12 @@ std::string add_gain(const Situation& s, const DecisionConfig& config, Candidate
   const auto literal = literal_d_optimality(*s.graph, path);
   if (const auto* error = std::get_if<GraphError>(&literal)) return error->message;
   candidate.gain = std::get<ExpectedGain>(gain);
-  candidate.places = static_cast<int>(path.places.size());
+  for (const geometry::Pose& node : nodes) candidate.nodes_map.emplace_back(node.translation());
+  for (const Place& place : path.places) {
+    const geometry::Pose& keyframe = s.graph->keyframes[static_cast<std::size_t>(place.keyframe)].T_map_camera;
+    candidate.loops.push_back(
+        {candidate.nodes_map[static_cast<std::size_t>(place.node)], keyframe.translation(), place.probability});
+  }
   candidate.value.loop_gain = candidate.gain.saturated_loop_gain;
   const int n = s.graph->factor.node_count();
   candidate.value.d_optimality = config.method == Method::kFixedN

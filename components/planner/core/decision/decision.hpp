@@ -52,6 +52,13 @@ enum class CandidateKind {
   kRevisit,      ///< the best way to an old key-frame
 };
 
+/// Loop closure that a path may bring.
+struct ExpectedLoop {
+  Eigen::Vector3d node_map{0, 0, 0};      ///< hallucinated key-frame that sees most of the place [m]
+  Eigen::Vector3d keyframe_map{0, 0, 0};  ///< of the place [m]
+  double probability = 0.0;
+};
+
 /// A way to a place from which there is something to see.
 struct Candidate {
   CandidateKind kind = CandidateKind::kFrontier;
@@ -62,9 +69,10 @@ struct Candidate {
   std::vector<Pose2> way;               ///< views along it
   PathValue value;
   ExpectedGain gain;
-  int places = 0;         ///< old ones that the path would see again
-  double utility = 0.0;   ///< of the method
-  std::string rejection;  ///< why it was not considered; empty otherwise
+  std::vector<Eigen::Vector3d> nodes_map;  ///< hallucinated key-frames [m]
+  std::vector<ExpectedLoop> loops;         ///< to old places that the path would see again
+  double utility = 0.0;                    ///< of the method
+  std::string rejection;                   ///< why it was not considered; empty otherwise
 };
 
 struct Decision {

@@ -244,6 +244,25 @@ TEST(PlannerConversions, EveryStateHasItsNumber) {
   EXPECT_EQ(to_message(State::kFailed), STATE_FAILED);
 }
 
+TEST(PlannerConversions, MarkersShowWhatThePoseGraphMayGain) {
+  Decision made = decision();
+  Candidate& chosen = made.candidates[*made.chosen];
+  chosen.nodes_map = {{1.0, 2.0, 1.0}, {2.0, 2.0, 1.0}};
+  chosen.loops = {{chosen.nodes_map[1], {5.0, 2.0, 1.0}, 0.25}};
+  const test::World world;
+  const auto message = to_markers(FrontierMap({}), world.grid, made, messages::header(time::Time{1}, "map"));
+  const auto& nodes = message.markers().at(message.markers().size() - 2);
+  EXPECT_EQ(nodes.type(), Markers::SPHERE_LIST);
+  EXPECT_EQ(nodes.points().size(), 2U);
+  const auto& loops = message.markers().back();
+  EXPECT_EQ(loops.type(), Markers::LINE_LIST);
+  ASSERT_EQ(loops.points().size(), 2U);
+  EXPECT_EQ(loops.points()[0].x(), 2.0);
+  EXPECT_EQ(loops.points()[1].x(), 5.0);
+  ASSERT_EQ(loops.colors().size(), 2U);
+  EXPECT_EQ(loops.colors()[0].a(), 0.25f);
+}
+
 TEST(PlannerConversions, MarkersReplaceTheOldOnesAndAreFinite) {
   test::World world;
   for (int y = 0; y < 8; ++y) {

@@ -186,7 +186,11 @@ TEST(Decide, LoopsDrawTheJointUtilityToOldPlaces) {
   EXPECT_EQ(decision.problem, "");
   const Candidate& joint = decision.candidates[*decision.chosen];
   EXPECT_FALSE(explorer.is_left(joint));
-  EXPECT_GE(joint.places, 1);
+  ASSERT_FALSE(joint.loops.empty());
+  EXPECT_GT(joint.loops[0].probability, 0.0);
+  EXPECT_LE(joint.loops[0].probability, 1.0);
+  EXPECT_GT((joint.loops[0].node_map - joint.loops[0].keyframe_map).norm(), 0.0);
+  EXPECT_FALSE(joint.nodes_map.empty());
   EXPECT_LT(joint.gain.end_sigma_m, joint.gain.end_sigma_without_loops_m);
   explorer.config.utility.beta = 0.0;
   EXPECT_TRUE(explorer.is_left(explorer.chosen())) << "without loops the near end is worth more per metre";

@@ -50,7 +50,7 @@ Decision decision() {
   chosen.frontier = 17;
   chosen.goal = {{1.5, -2.5}, 0.25};
   chosen.value = {3.5, 4.5, 5.5, 6.5, 7.5};
-  chosen.places = 2;
+  chosen.loops.resize(2);
   chosen.gain = {0.0, 8.5, 9.5, 10.5};
   chosen.utility = 11.5;
   decision.candidates[1].frontier = 18;

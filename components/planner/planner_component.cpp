@@ -20,9 +20,22 @@ Measure measure_of(const std::string& name) {
   return name == "csqmi" ? Measure::kCsqmi : Measure::kSemantic;
 }
 
+Criterion criterion_of(const std::string& name) {
+  if (name == "a") return Criterion::kA;
+  if (name == "t") return Criterion::kT;
+  return name == "e" ? Criterion::kE : Criterion::kD;
+}
+
+Sparsifier sparsifier_of(const std::string& name) {
+  if (name == "mac") return Sparsifier::kMac;
+  return name == "log_det" ? Sparsifier::kLogTrees : Sparsifier::kNone;
+}
+
 PlannerComponentConfig completed(PlannerComponentConfig config) {
   config.decision.method = *method_of(config.method == "lapis" ? kLapisMethod : config.method);
   config.surroundings.measure = measure_of(config.measure);
+  config.decision.graph.criterion = criterion_of(config.criterion);
+  config.decision.graph.sparsifier = sparsifier_of(config.sparsifier);
   config.surroundings.grid.footprint_radius_m = config.robot.radius_m;
   config.decision.hallucination.covisibility.max_range_m = config.robot.sensing_range_m;
   config.explorer.path = config.decision.path;

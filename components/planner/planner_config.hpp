@@ -12,6 +12,8 @@ namespace lapis::planner {
 struct PlannerComponentConfig {
   std::string method = "lapis";
   std::string measure = "semantic";
+  std::string criterion = "d";
+  std::string sparsifier = "none";
   bool autostart = true;
   SurroundingsConfig surroundings;
   DecisionConfig decision;
@@ -134,6 +136,12 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "when the position is less sure, old key-frames are goals, too; 0: never [m]");
   field("information_discount_sigma_m", c.decision.information_discount_sigma_m, config::in_range(0.0, 100.0),
         "information from a position with this sigma counts half; 0: all counts [m]");
+  field("criterion", c.criterion, config::one_of({"d", "a", "t", "e"}),
+        "mean of the eigenvalues of an edge's information that is its weight in the pose graph (README)");
+  field("sparsifier", c.sparsifier, config::one_of({"none", "mac", "log_det"}),
+        "what thins a large pose graph out: for connectivity, or for its log-determinant (README)");
+  field("max_graph_edges", c.decision.graph.max_edges, config::in_range(1, 10'000'000),
+        "what the sparsifier leaves, but for a spanning tree");
   field("keep_factor", c.decision.keep_factor, config::in_range(1.0, 10.0),
         "another goal must be so much better than the one being driven to");
   field("grid", c.surroundings.grid);

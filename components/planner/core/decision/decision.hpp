@@ -19,6 +19,7 @@ struct DecisionConfig {
   PathConfig path;
   ViewpointConfig viewpoints;
   TareConfig tare;
+  GraphConfig graph;
   HallucinationConfig hallucination;
   int max_candidates = 20;           ///< whose information is computed; the ones with the shortest ways; in [1, 1000]
   double view_spacing_m = 0.75;      ///< between views along a path, in [0.1, 10]

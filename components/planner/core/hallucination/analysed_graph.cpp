@@ -135,25 +135,27 @@ double position_sigma_m(const AnalysedGraph& graph) {
 }
 
 std::variant<AnalysedGraph, GraphError> analyse_graph(std::span<const Keyframe> keyframes,
-                                                      std::span<const KeyframeEdge> edges, Criterion criterion) {
+                                                      std::span<const KeyframeEdge> edges, const GraphConfig& config) {
   if (keyframes.empty()) return GraphError{"the pose graph has no key-frame"};
-  auto component = component_of(keyframes.back().id, edges, criterion);
+  auto component = component_of(keyframes.back().id, edges, config.criterion);
   if (auto* error = std::get_if<GraphError>(&component)) return *error;
   const auto& part = std::get<KeyframeGraph>(component);
   auto selected = select(keyframes, part.keyframes);
   if (!selected) return GraphError{"an edge names a key-frame that the pose graph does not have"};
   if (selected->size() < 2) return GraphError{"the newest key-frame is not connected to any other"};
-  auto factor = LaplacianFactor::make(part.graph);
+  const auto thinned = sparsify(part.graph, config.sparsifier, config.max_edges);
+  if (auto* error = std::get_if<GraphError>(&thinned)) return *error;
+  auto factor = LaplacianFactor::make(std::get<WeightedGraph>(thinned));
   if (auto* error = std::get_if<GraphError>(&factor)) return *error;
 
   AnalysedGraph graph{std::get<LaplacianFactor>(std::move(factor)), *std::move(selected), {}, {}, {}};
-  graph.loops = loops_of(graph, edges, criterion);
+  graph.loops = loops_of(graph, edges, config.criterion);
   const int newest = static_cast<int>(graph.keyframes.size()) - 1;
   graph.way_from_newest_m = ways_from(newest, part.graph, graph.keyframes);
   graph.travelled_m = travelled(graph.keyframes);
   graph.odometry_weight_metres = calibrate_odometry(graph.factor, graph.keyframes);
   graph.loop_weight = calibrate_loops(graph);
-  graph.position_variance_per_resistance = calibrate_position(edges, criterion);
+  graph.position_variance_per_resistance = calibrate_position(edges, config.criterion);
   return graph;
 }
 

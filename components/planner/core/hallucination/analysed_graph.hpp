@@ -8,6 +8,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "planner/core/spectral/laplacian_factor.hpp"
+#include "planner/core/spectral/sparsification.hpp"
 
 namespace lapis::planner {
 
@@ -22,6 +23,12 @@ inline constexpr double kMetresPerRadian = 0.5;
 /// Way from one pose to another: distance, and the angle between them times kMetresPerRadian [m].
 double way_between(const geometry::Pose& a, const geometry::Pose& b);
 
+struct GraphConfig {
+  Criterion criterion = Criterion::kD;  ///< of the edges' weights
+  Sparsifier sparsifier = Sparsifier::kNone;
+  int max_edges = 10'000;  ///< what the sparsifier leaves of a larger graph, in [1, 10^7]
+};
+
 struct LoopClosure {
   int older = 0, newer = 0;  ///< nodes
   double weight = 0.0;
@@ -33,7 +40,7 @@ struct AnalysedGraph {
   LaplacianFactor factor;
   std::vector<Keyframe> keyframes;  ///< by id
   std::vector<LoopClosure> loops;
-  /// Shortest way along edges from the newest key-frame to each node [m].
+  /// Shortest way along edges, also those that were thinned out, from the newest key-frame to each node [m].
   std::vector<double> way_from_newest_m;
   /// Way through all key-frames up to each, in the order of ids [m].
   std::vector<double> travelled_m;
@@ -55,6 +62,7 @@ double position_sigma_m(const AnalysedGraph& graph);
 /// @param keyframes by ascending id. The error says which edge has no weight or names a key-frame that is not there, or
 /// that there are fewer than two connected key-frames.
 std::variant<AnalysedGraph, GraphError> analyse_graph(std::span<const Keyframe> keyframes,
-                                                      std::span<const KeyframeEdge> edges, Criterion criterion);
+                                                      std::span<const KeyframeEdge> edges,
+                                                      const GraphConfig& config = {});
 
 }  // namespace lapis::planner

@@ -95,7 +95,7 @@ std::variant<LoopOutcomes, GraphError> loop_outcomes(const FinishedRun& run, con
   LoopOutcomes outcomes;
   for (const Stretch& stretch : stretches_of(run.keyframes, stretch_m)) {
     const std::span<const Keyframe> before(run.keyframes.data(), stretch.begin);
-    const auto analysed = analyse_graph(before, edges_until(run.edges, before.back().id), Criterion::kD);
+    const auto analysed = analyse_graph(before, edges_until(run.edges, before.back().id));
     if (const auto* error = std::get_if<GraphError>(&analysed)) return *error;
     const auto& graph = std::get<AnalysedGraph>(analysed);
     const LandmarkIndex landmarks(run.landmarks, graph, run.field.resolution_m());

@@ -163,6 +163,23 @@ class GrowingGraph {
   std::vector<Eigen::VectorXd> updates_;  // z of each edge since the factorisation
 };
 
+// Moves the edges of the heaviest spanning tree to the front: Kruskal's algorithm. Returns their end.
+std::vector<WeightedEdge>::iterator tree_first(int node_count, std::vector<WeightedEdge>& edges) {
+  std::stable_sort(edges.begin(), edges.end(),
+                   [](const WeightedEdge& left, const WeightedEdge& right) { return left.weight > right.weight; });
+  std::vector<int> parents(index(node_count));
+  std::iota(parents.begin(), parents.end(), 0);
+  const auto root_of = [&](int node) {
+    while (parents[index(node)] != node) node = parents[index(node)] = parents[index(parents[index(node)])];
+    return node;
+  };
+  return std::stable_partition(edges.begin(), edges.end(), [&](const WeightedEdge& edge) {
+    const int a = root_of(edge.a), b = root_of(edge.b);
+    parents[index(a)] = b;
+    return a != b;
+  });
+}
+
 }  // namespace
 
 std::variant<Sparsification, GraphError> maximize_connectivity(const SparsificationProblem& problem,
@@ -205,6 +222,18 @@ std::variant<Sparsification, GraphError> maximize_log_trees(const Sparsification
   // Submodular: what is not chosen gains no more in a larger graph.
   const Eigen::VectorXd gains = graph->shares(chosen).array().log1p();
   return Sparsification{indices(chosen), graph->log_trees(), graph->log_trees() + gains.dot(largest(problem, gains))};
+}
+
+std::variant<WeightedGraph, GraphError> sparsify(const WeightedGraph& graph, Sparsifier sparsifier, int max_edges) {
+  if (sparsifier == Sparsifier::kNone || std::ssize(graph.edges()) <= max_edges) return graph;
+  std::vector<WeightedEdge> edges = graph.edges();
+  const auto end_of_tree = tree_first(graph.node_count(), edges);
+  SparsificationProblem problem{graph.node_count(), {edges.begin(), end_of_tree}, {end_of_tree, edges.end()}, 0};
+  problem.kept = std::max(0, max_edges - static_cast<int>(problem.fixed.size()));
+  const auto result = sparsifier == Sparsifier::kMac ? maximize_connectivity(problem) : maximize_log_trees(problem);
+  if (const auto* error = std::get_if<GraphError>(&result)) return *error;
+  for (const int k : std::get<Sparsification>(result).kept) problem.fixed.push_back(problem.candidates[index(k)]);
+  return WeightedGraph::make(problem.node_count, std::move(problem.fixed));
 }
 
 }  // namespace lapis::planner

@@ -37,4 +37,11 @@ std::variant<Sparsification, GraphError> maximize_connectivity(const Sparsificat
 /// 1 - 1/e of the best gain (Nemhauser, Wolsey and Fisher, 1978). Deterministic. Fails as above.
 std::variant<Sparsification, GraphError> maximize_log_trees(const SparsificationProblem& problem);
 
+/// What chooses the edges of a graph that is too large.
+enum class Sparsifier { kNone, kMac, kLogTrees };
+
+/// The graph with `max_edges` edges at most: the heaviest spanning tree, which stays whatever the number, and the edges
+/// that the sparsifier keeps beside it. Deterministic.
+std::variant<WeightedGraph, GraphError> sparsify(const WeightedGraph& graph, Sparsifier sparsifier, int max_edges);
+
 }  // namespace lapis::planner

@@ -133,7 +133,7 @@ DecisionConfig config_for(const Situation& now) {
 
 void decision(benchmark::State& state) {
   const GraphParts parts = graph_of(static_cast<std::size_t>(state.range(0)));
-  const auto graph = std::get<AnalysedGraph>(analyse_graph(parts.keyframes, parts.edges, Criterion::kD));
+  const auto graph = std::get<AnalysedGraph>(analyse_graph(parts.keyframes, parts.edges));
   const LandmarkIndex landmarks(parts.landmarks, graph, kResolution_m);
   const Situation now = situation(graph, landmarks);
   const DecisionConfig config = config_for(now);
@@ -150,7 +150,7 @@ void decision(benchmark::State& state) {
 void knowledge(benchmark::State& state) {
   const GraphParts parts = graph_of(static_cast<std::size_t>(state.range(0)));
   for (auto _ : state) {
-    const auto graph = std::get<AnalysedGraph>(analyse_graph(parts.keyframes, parts.edges, Criterion::kD));
+    const auto graph = std::get<AnalysedGraph>(analyse_graph(parts.keyframes, parts.edges));
     benchmark::DoNotOptimize(LandmarkIndex(parts.landmarks, graph, kResolution_m).size());
   }
   state.counters["edges"] = static_cast<double>(parts.edges.size());

@@ -14,7 +14,7 @@ using test::Chain;
 using test::information;
 
 std::string error_of(const std::vector<Keyframe>& keyframes, const std::vector<KeyframeEdge>& edges) {
-  const auto made = analyse_graph(keyframes, edges, Criterion::kD);
+  const auto made = analyse_graph(keyframes, edges);
   const auto* error = std::get_if<GraphError>(&made);
   return error == nullptr ? "" : error->message;
 }
@@ -38,6 +38,28 @@ TEST(AnalysedGraph, PositionVarianceIsThatOfThePositionAlone) {
   const AnalysedGraph graph = chain.graph();
   const double weight = *edge_weight(chain.edges[0].information, Criterion::kD);
   EXPECT_NEAR(graph.position_variance_per_resistance / weight, 0.02 * 0.02, 1e-12);
+}
+
+TEST(AnalysedGraph, WeightsAreOfTheCriterion) {
+  Chain chain({camera_at(0, 0, 0), camera_at(1, 0, 0)});
+  chain.edges[0].information = information(0.02, 0.01);
+  GraphConfig config;
+  config.criterion = Criterion::kE;
+  const auto graph = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, config));
+  EXPECT_NEAR(graph.odometry_weight_metres, 2500.0, 1e-6) << "the least information, over a metre";
+}
+
+TEST(AnalysedGraph, AThinnedGraphKeepsItsLoopsAndWays) {
+  Chain chain({camera_at(0, 0, 0), camera_at(4, 0, 0), camera_at(4, 4, 0), camera_at(0, 4, 0)});
+  chain.edges.push_back({10, 12, information(0.02, 0.02), true});
+  chain.edges.push_back({10, 13, information(0.05, 0.05), true});
+  GraphConfig config;
+  config.sparsifier = Sparsifier::kLogTrees;
+  config.max_edges = 4;
+  const auto thinned = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, config));
+  EXPECT_EQ(thinned.loops.size(), 2u);
+  EXPECT_NEAR(thinned.way_from_newest_m[0], 4.0, 1e-9);
+  EXPECT_GT(position_sigma_m(thinned), position_sigma_m(chain.graph()));
 }
 
 TEST(AnalysedGraph, TheNewestPositionIsAsSureAsItsChain) {

@@ -32,7 +32,7 @@ struct Chain {
       if (id > 10) edges.push_back({id - 1, id, information(0.01, 0.01)});
     }
   }
-  AnalysedGraph graph() const { return std::get<AnalysedGraph>(analyse_graph(keyframes, edges, Criterion::kD)); }
+  AnalysedGraph graph() const { return std::get<AnalysedGraph>(analyse_graph(keyframes, edges)); }
 
   std::vector<Keyframe> keyframes;
   std::vector<KeyframeEdge> edges;

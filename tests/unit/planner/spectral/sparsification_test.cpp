@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <random>
@@ -131,6 +132,56 @@ TEST(Sparsification, NamesWhatIsWrong) {
     EXPECT_EQ(std::get<GraphError>(method(problem)).message, "node 19 is not connected to node 0");
     problem.candidates[5] = {3, 4, 0.0};
     EXPECT_EQ(std::get<GraphError>(method(problem)).message, "edge 3-4 has weight 0; a weight is positive and finite");
+  }
+}
+
+WeightedGraph sparse(const WeightedGraph& graph, Sparsifier sparsifier, int max_edges) {
+  return std::get<WeightedGraph>(sparsify(graph, sparsifier, max_edges));
+}
+
+TEST(Sparsify, LeavesSmallGraphsAsTheyAre) {
+  const WeightedGraph graph = test::three_laps(60);
+  const int edges = static_cast<int>(graph.edges().size());
+  EXPECT_EQ(sparse(graph, Sparsifier::kNone, 1).edges().size(), graph.edges().size());
+  EXPECT_EQ(sparse(graph, Sparsifier::kLogTrees, edges).edges().size(), graph.edges().size());
+  EXPECT_EQ(std::ssize(sparse(graph, Sparsifier::kLogTrees, edges - 1).edges()), edges - 1);
+}
+
+TEST(Sparsify, KeepsTheHeaviestSpanningTree) {
+  const WeightedGraph square = test::make_graph(4, {{0, 1, 1.0}, {1, 2, 5.0}, {2, 3, 4.0}, {0, 3, 3.0}, {0, 2, 2.0}});
+  for (const Sparsifier sparsifier : {Sparsifier::kMac, Sparsifier::kLogTrees}) {
+    const auto tree = sparse(square, sparsifier, 1).edges();
+    ASSERT_EQ(tree.size(), 3u);
+    for (std::size_t i = 0; i < 3; ++i) EXPECT_GE(tree[i].weight, 3.0);
+  }
+}
+
+// Share of the pairs of candidates that come in the same order of their loops' worth, in the whole graph and in the
+// thinned one.
+double share_in_order(const WeightedGraph& whole, const WeightedGraph& thinned) {
+  const LaplacianFactor factors[] = {test::make_factor(whole), test::make_factor(thinned)};
+  std::vector<std::array<double, 2>> gains;
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const HallucinatedGraph path = test::path_with_loops(whole.node_count(), seed);
+    gains.push_back({test::make_gain(factors[0], path).loop_gain(kEveryPlace),
+                     test::make_gain(factors[1], path).loop_gain(kEveryPlace)});
+  }
+  int pairs = 0, in_order = 0;
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    for (std::size_t j = 0; j < i; ++j, ++pairs)
+      in_order += (gains[i][0] < gains[j][0]) == (gains[i][1] < gains[j][1]) ? 1 : 0;
+  }
+  return static_cast<double>(in_order) / pairs;
+}
+
+// Half of what is beside the tree is taken away.
+TEST(Sparsify, CandidatesKeepTheirOrder) {
+  const WeightedGraph graph = test::three_laps(400);
+  const int half = (static_cast<int>(graph.edges().size()) + graph.node_count()) / 2;
+  for (const Sparsifier sparsifier : {Sparsifier::kMac, Sparsifier::kLogTrees}) {
+    const double share = share_in_order(graph, sparse(graph, sparsifier, half));
+    RecordProperty(sparsifier == Sparsifier::kMac ? "mac" : "log_det", std::to_string(share));
+    EXPECT_GE(share, 0.9);
   }
 }
 

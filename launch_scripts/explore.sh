@@ -21,7 +21,7 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
   --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml)
   --freerun        by the wall clock, frames may be lost; default: lock-step
   --restart        a process that dies is started again, at most three times each, but for the simulator; what is lost
-                   with it: README.md
+                   with it: docs/architecture.md
   --set KEY=VALUE  configuration, as for replay.sh; planner. and controller. are components, too
 
 Results of an earlier run in DIR are removed. Exit status: 0 ran to the end, 1 a process failed or no frame came,

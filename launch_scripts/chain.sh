@@ -13,6 +13,8 @@ robots=("$repository/config/robot.yaml") # files of the robot's description
 subject="" # line of the manifest that says what is played
 resumed="" # map that slam goes on with
 shown="" view=cat # component whose log is shown while the run goes on (default: the source), and how
+max_restarts=0 # of each component that dies
+declare -A restarts=() # by component, so far
 command_line="$*"
 
 source_of_frames() { echo "${components[-1]}"; }
@@ -87,6 +89,10 @@ write_manifest() {
     printf 'version: "%s"\ncommit: "%s"\ncommand: |-\n  %s %s\n%s\nexit_status:\n' "$("$bin/lapis_slam" --version)" \
       "$(git -C "$repository" describe --always --dirty 2>/dev/null)" "${0##*/}" "$command_line" "$subject"
     for name in "${names[@]}"; do echo "  $name: ${statuses[$name]:-null}"; done
+    if [ "$max_restarts" -gt 0 ]; then
+      echo "restarts:"
+      for name in "${names[@]}"; do echo "  $name: ${restarts[$name]:-0}"; done
+    fi
     if [ -f "$out/simulation.yaml" ]; then echo "simulation:" && sed 's/^/  /' "$out/simulation.yaml"; fi
     echo "configuration:"
     for name in "${components[@]}"; do
@@ -108,6 +114,40 @@ interrupted() {
   exit "$2"
 }
 
+# start_component NAME ARGUMENT...: the arguments are added to its own.
+start_component() {
+  collect_arguments "$1"
+  if [ "$1" = "${shown:-$(source_of_frames)}" ]; then
+    start_shown "$view" "$1" "${arguments[@]}" "${@:2}"
+  else
+    start "$1" "${arguments[@]}" "${@:2}"
+  fi
+}
+
+# allow_restarts: what --restart does; lock-step waits for who comes again.
+allow_restarts() {
+  max_restarts=3
+  give "$(source_of_frames)" lockstep.silent_participant=wait
+}
+
+# restart NAME: starts a component that has died anew. False when that must not be: it has been often enough, its
+# set-up is bad, or it is the source of frames, whose state is the run.
+restart() {
+  local name=$1 number=$((${restarts[$1]:-0} + 1)) more=()
+  [ "$number" -le "$max_restarts" ] && [ "$name" != "$(source_of_frames)" ] || return 1
+  end_process "$name"
+  [ "${statuses[$name]}" != 2 ] || return 1
+  [ "$name" != "$shown" ] || wait "$viewer" || true
+  restarts[$name]=$number
+  echo "${0##*/}: $name ended with status ${statuses[$name]} and is started again ($number of $max_restarts)" |
+    tee -a "$out/logs/$name.log" >&2
+  unset "statuses[$name]"
+  if [ "$name" = semantic_mapper ] && [ -f "$out/map.lapis" ]; then
+    more=(--set "semantic_mapper.resume_from=$out/map.lapis" --set semantic_mapper.resume_any_session=false)
+  fi
+  start_component "$name" "${more[@]}"
+}
+
 # run_chain: starts the components and waits for the end of the source, which is the first one to end unless something
 # went wrong; then ends the others, writes the manifest and says how it went.
 run_chain() {
@@ -117,16 +157,12 @@ run_chain() {
   trap 'interrupted SIGINT 130' INT
   trap 'interrupted SIGTERM 143' TERM
   for name in "${components[@]}"; do
-    collect_arguments "$name"
-    if [ "$name" = "${shown:-$source}" ]; then
-      start_shown "$view" "$name" "${arguments[@]}"
-    else
-      start "$name" "${arguments[@]}"
-    fi
+    start_component "$name"
     [ "$name" = "$source" ] || wait_ready "$name" 20
   done
   wait_first
-  early=${names[first]}
+  while restart "$first"; do wait_first; done
+  early=$first
   end_all
   write_manifest
   [ "$early" = "$source" ] || fail_with "$early" "ended early with status ${statuses[$early]}"

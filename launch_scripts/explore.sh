@@ -7,7 +7,7 @@ source "$(dirname "$0")/chain.sh"
 usage() {
   cat <<'TEXT'
 usage: explore.sh [--scene NAME|DIR] [--method METHOD] [--duration S] [--seed N] [--out DIR] [--robot FILE]...
-                  [--freerun] [--set KEY=VALUE]...
+                  [--freerun] [--restart] [--set KEY=VALUE]...
 
 Lets the robot explore a simulated building until nothing reachable is left or the time is up, and leaves a run folder
 with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figures.
@@ -20,6 +20,8 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
   --out DIR        run folder; default: out/<name of scene>_<method>_<seed>
   --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml)
   --freerun        by the wall clock, frames may be lost; default: lock-step
+  --restart        a process that dies is started again, at most three times each, but for the simulator; what is lost
+                   with it: docs/architecture.md
   --set KEY=VALUE  configuration, as for replay.sh; planner. and controller. are components, too
 
 Results of an earlier run in DIR are removed. Exit status: 0 ran to the end, 1 a process failed or no frame came,
@@ -27,7 +29,7 @@ Results of an earlier run in DIR are removed. Exit status: 0 ran to the end, 1 a
 TEXT
 }
 
-scene=apartment method=lapis duration=300 seed=1 mode=lockstep requests=()
+scene=apartment method=lapis duration=300 seed=1 mode=lockstep restarting="" requests=()
 while [ $# -gt 0 ]; do
   case $1 in
     --scene | --method | --duration | --seed | --out | --robot | --set)
@@ -42,6 +44,7 @@ while [ $# -gt 0 ]; do
     --out) out=$2 && shift ;;
     --robot) robots+=("$2") && shift ;;
     --freerun) mode=freerun ;;
+    --restart) restarting=yes ;;
     --set) requests+=("$2") && shift ;;
     *) die "unknown argument $1 (see --help)" ;;
   esac
@@ -51,6 +54,7 @@ require_build
 components=(slam semantic_mapper planner controller evaluator simulator)
 give planner "planner.method=$method"
 give simulator "lockstep.stages=[slam, semantic_mapper, planner, controller, evaluator]"
+[ -z "$restarting" ] || allow_restarts
 for request in "${requests[@]}"; do route "$request"; done
 out=${out:-$repository/out/$(basename "$scene" .yaml)_${method}_$seed}
 make_run_folder

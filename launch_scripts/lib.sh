@@ -4,10 +4,9 @@
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bin=${LAPIS_BIN:-$repository/build/release/bin}
 out="" # run folder, set by the script
-pids=()
-names=()
+names=() # of the processes, in the order of their start
+declare -A pids=() statuses=() # by name; statuses of those that have ended
 viewer="" # process that shows a log
-declare -A statuses=() # by name, of those that have ended
 
 # die TEXT: bad set-up.
 die() {
@@ -48,10 +47,9 @@ play_once() {
   if [ $status -eq 0 ]; then echo "$identity" >"$folder/identity"; else tail -n 3 "$folder.log" >&2; fi
 }
 
-# start NAME ARGUMENT...: lapis_NAME in the background, its log in $out/logs/NAME.log. It ends with this shell, however
-# that ends.
+# start NAME ARGUMENT...: lapis_NAME in the background, its log at the end of $out/logs/NAME.log. It ends with this
+# shell, however that ends.
 start() {
-  : >"$out/logs/$1.log"
   launch "$@" >>"$out/logs/$1.log" 2>&1
 }
 
@@ -59,7 +57,6 @@ start() {
 start_shown() {
   local view=$1 sink
   shift
-  : >"$out/logs/$1.log" # there is something to look into at once
   exec {sink}> >(trap '' INT TERM && tee -a "$out/logs/$1.log" | "$view")
   viewer=$!
   launch "$@" >&"$sink" 2>&1
@@ -84,14 +81,14 @@ launch() {
   local name=$1
   shift
   setpriv --pdeathsig TERM "$bin/lapis_$name" "$@" &
-  pids+=($!)
-  names+=("$name")
+  pids[$name]=$!
+  [[ " ${names[*]} " == *" $name "* ]] || names+=("$name")
 }
 
-# wait_ready NAME SECONDS: until the process started last has printed its ready line.
+# wait_ready NAME SECONDS: until the process has printed its ready line.
 wait_ready() {
-  local name=$1 pid=${pids[-1]} deadline=$((SECONDS + $2)) status=0
-  until grep -q " $name: ready" "$out/logs/$name.log"; do
+  local name=$1 pid=${pids[$1]} deadline=$((SECONDS + $2)) status=0
+  until grep -qs " $name: ready" "$out/logs/$name.log"; do
     if ! kill -0 "$pid" 2>/dev/null; then
       wait "$pid" || status=$?
       fail_with "$name" "ended before it was ready, with status $status" "$status"
@@ -101,32 +98,32 @@ wait_ready() {
   done
 }
 
-# wait_first: until one of the processes has ended; sets `first` to its index. Asked again and again, because `wait -n`
+# wait_first: until one of the processes has ended; sets `first` to its name. Asked again and again, because `wait -n`
 # of bash 5.2 waits for ever when the process ends while bash reaps another child, and a trap that exits out of
 # `read -t` crashes.
 wait_first() {
   while true; do
-    for first in "${!pids[@]}"; do
-      kill -0 "${pids[first]}" 2>/dev/null || return 0
+    for first in "${names[@]}"; do
+      kill -0 "${pids[$first]}" 2>/dev/null || return 0
     done
     sleep 0.1
   done
 }
 
-# end_process INDEX: asks a process to stop and keeps its exit status.
+# end_process NAME: asks a process to stop and keeps its exit status.
 end_process() {
-  local index=$1 status=0
-  kill -TERM "${pids[index]}" 2>/dev/null || true
-  wait "${pids[index]}" || status=$?
-  statuses[${names[index]}]=$status
+  local status=0
+  kill -TERM "${pids[$1]}" 2>/dev/null || true
+  wait "${pids[$1]}" || status=$?
+  statuses[$1]=$status
 }
 
 # Ends everything that still runs; the trap of every script that starts processes. The source of frames, which is started
 # last, first; then in the order of the starts: who collects what others write at their end was started after them.
 end_all() {
-  local index indices=("${!pids[@]}")
-  for index in "${indices[@]: -1}" "${indices[@]}"; do
-    [ -n "${statuses[${names[index]}]:-}" ] || end_process "$index"
+  local name
+  for name in "${names[@]: -1}" "${names[@]}"; do
+    [ -n "${statuses[$name]:-}" ] || end_process "$name"
   done
   [ -z "$viewer" ] || wait "$viewer" 2>/dev/null || true # now the log is complete
 }

@@ -7,7 +7,7 @@ source "$(dirname "$0")/chain.sh"
 usage() {
   cat <<'TEXT'
 usage: replay.sh DATASET|--scene NAME [--out DIR] [--rate X] [--start S] [--duration S] [--labels FILE]
-                 [--seed N] [--tour FILE] [--robot FILE]... [--set KEY=VALUE]...
+                 [--seed N] [--tour FILE] [--robot FILE]... [--restart] [--set KEY=VALUE]...
 
 Plays DATASET (a folder in the layout of the TUM RGB-D benchmark, with camera.yaml; what lapis_simulator --export-tum
 wrote has the scene's ground truth, too), or drives a robot on a tour through
@@ -21,6 +21,7 @@ a simulated building, and leaves a run folder with trajectory, pose graph, seman
                    Default: lock-step, nothing is lost
   --start S        of a data set: skip S seconds;  --duration S  play S seconds
   --labels FILE    of a data set: CSV file class_id,class,... that names the labels
+  --restart        a process that dies is started again, as by explore.sh
   --set KEY=VALUE  configuration, for example semantic_mapper.resolution_m=0.1 or dds.socket_buffer_bytes=212992;
                    it goes to the component that KEY begins with (dds.: to all; robot.: to all that know the robot).
                    What describes the map and how frames enter it goes from semantic_mapper to the references of evaluator
@@ -32,7 +33,7 @@ TEXT
 }
 
 of_data_set=() of_scene=() # options given that the other kind of source does not know
-dataset="" scene="" rate="" requests=()
+dataset="" scene="" rate="" restarting="" requests=()
 while [ $# -gt 0 ]; do
   case $1 in
     --out | --rate | --start | --duration | --labels | --scene | --seed | --tour | --robot | --set)
@@ -47,6 +48,7 @@ while [ $# -gt 0 ]; do
     --duration) play+=("$1" "$2") && shift ;;
     --start | --labels) play+=("$1" "$2") of_data_set+=("$1") && shift ;;
     --seed | --tour) play+=("$1" "$2") of_scene+=("$1") && shift ;;
+    --restart) restarting=yes ;;
     --set) requests+=("$2") && shift ;;
     -*) die "unknown option $1 (see --help)" ;;
     *) [ -z "$dataset" ] || die "two data sets given: $dataset and $1"; dataset=$1 ;;
@@ -65,6 +67,7 @@ components=(slam semantic_mapper evaluator "${scene:+simulator}${dataset:+sensor
 if [ -z "$scene" ] && [ -d "$dataset/ground_truth" ]; then
   give evaluator "evaluator.ground_truth_dir=$dataset/ground_truth"
 fi
+[ -z "$restarting" ] || allow_restarts
 for request in "${requests[@]}"; do route "$request"; done
 out=${out:-$repository/out/$(basename "${dataset:-$scene}" .yaml)}
 make_run_folder

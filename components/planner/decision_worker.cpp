@@ -48,8 +48,10 @@ void DecisionWorker::start(DecisionInput input, std::uint64_t due) {
   result_ = std::async(std::launch::async, make, std::move(input));
 }
 
-std::optional<DecisionOutput> DecisionWorker::take(std::uint64_t frame) {
+std::optional<DecisionOutput> DecisionWorker::take(std::uint64_t frame, bool waits) {
   if (!is_busy() || frame < due_) return std::nullopt;
+  const bool is_late = result_.wait_for(std::chrono::seconds(0)) != std::future_status::ready;
+  if (is_late && !waits) return std::nullopt;
   return result_.get();
 }
 

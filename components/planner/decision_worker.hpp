@@ -35,15 +35,15 @@ struct DecisionOutput {
   double time_s = 0.0;  ///< wall time that it took
 };
 
-/// Makes decisions in a thread of its own. The result is due at a fixed frame, however long it took, so that runs are
-/// the same on fast and on slow machines.
+/// Makes decisions in a thread of its own. The result is due at a fixed frame, so that in lock-step, where who asks
+/// waits for it, runs are the same on fast and on slow machines.
 class DecisionWorker {
  public:
   bool is_busy() const { return result_.valid(); }
   /// Begins; the result is due at frame number `due`. Not while busy. What the input points to must stay as it is.
   void start(DecisionInput input, std::uint64_t due);
-  /// The result once it is due, waiting for it if need be.
-  std::optional<DecisionOutput> take(std::uint64_t frame);
+  /// The result once it is due; nothing while it is late, unless that is waited for.
+  std::optional<DecisionOutput> take(std::uint64_t frame, bool waits);
   /// Waits for a decision that nobody wants any more.
   void discard();
 

@@ -11,7 +11,6 @@
 namespace lapis::planner {
 namespace {
 
-constexpr time::Duration kStatusPeriod{1'000'000'000};
 constexpr const char* kLogFile = "decisions.csv";
 constexpr const char* kLapisMethod = "joint";  // docs/decisions/0031-the-method-called-lapis.md
 
@@ -171,7 +170,7 @@ void PlannerComponent::note_controller(const lapis_msgs::msg::ControllerStatus& 
 
 void PlannerComponent::work(const runtime::Cycle& cycle) {
   if (cycle.is_final) return worker_.discard();
-  take_decision();
+  take_decision(cycle.inputs_complete);
   if (!worker_.is_busy()) {
     refresh();
     if (explorer_.step(report(), surroundings_ ? &*surroundings_ : nullptr)) begin_decision();
@@ -179,8 +178,9 @@ void PlannerComponent::work(const runtime::Cycle& cycle) {
   publish();
 }
 
-void PlannerComponent::take_decision() {
-  auto output = worker_.take(frames_);
+/// Waits for a decision that is late in lock-step only: by the wall clock the robot would stop for want of a status.
+void PlannerComponent::take_decision(bool waits) {
+  auto output = worker_.take(frames_, waits);
   if (!output) return;
   knowledge_ = std::move(output->knowledge);
   decision_time_s_ = output->time_s;
@@ -268,10 +268,11 @@ void PlannerComponent::publish_markers() {
   markers_.publish(to_markers(surroundings_->frontiers(), surroundings_->grid(), decision_, header()));
 }
 
+/// With each frame: the controller stops for want of it.
 void PlannerComponent::publish_status() {
   const bool has_changed = explorer_.state() != reported_state_ || explorer_.reason() != reported_reason_;
   const bool has_decided = decisions_ != reported_decisions_;  // each decision's time is told
-  if (reported_at_ && !has_changed && !has_decided && abs(stamp_ - *reported_at_) < kStatusPeriod) return;
+  if (reported_at_ == stamp_ && !has_changed && !has_decided) return;
   if (has_changed) spdlog::info("{}", explorer_.reason());
   reported_at_ = stamp_;
   reported_state_ = explorer_.state();

@@ -44,7 +44,7 @@ class PlannerComponent {
   void note_controller(const lapis_msgs::msg::ControllerStatus& message);
 
   void work(const runtime::Cycle& cycle);
-  void take_decision();
+  void take_decision(bool waits);
   void refresh();
   Report report() const;
   GraphVersions versions_of_graph() const;

@@ -203,6 +203,12 @@ void SemanticMapperComponent::end_map() {
 
 /// The first map of the process goes on with the saved one, if there is one.
 std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t session) {
+  if (resumed_ && !config_.resume_any_session && session != static_cast<std::int64_t>(note(*resumed_, "session"))) {
+    spdlog::warn("{} is of another session of slam; a new map begins", config_.resume_from);
+    resumed_.reset();
+    resumed_labels_ = {};
+    resumed_frames_ = 0;
+  }
   if (!resumed_) return std::make_unique<SemanticMapper>(config_.map);
   if (session < static_cast<std::int64_t>(note(*resumed_, "session"))) {
     throw runtime::BadSetup("semantic_mapper.resume_from: " + config_.resume_from +

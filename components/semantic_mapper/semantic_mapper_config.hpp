@@ -22,9 +22,10 @@ struct SemanticMapperComponentConfig {
   double frame_interval_s = 0.0;
   double tile_period_s = 0.5;
   double view_period_s = 1.0;
-  double obstacle_period_s = 0.5;
+  double obstacle_period_s = 0.06;  // each frame at 15 Hz: the controller stops for want of them
   int re_anchor_work_per_cycle = 1'000'000;
   std::string resume_from;
+  bool resume_any_session = true;
   std::string output_dir;
   double save_period_s = 30.0;
   robot::RobotDescription robot;
@@ -75,6 +76,8 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
         "least time between obstacle grids, by the frames' stamps [s]");
   field("resume_from", c.resume_from, config::anything(),
         "map.lapis of an earlier run to go on with, beside slam.resume_from; empty: none");
+  field("resume_any_session", c.resume_any_session, config::anything(),
+        "as slam.resume_from makes one; false: a new map begins unless slam still runs that the map was made with");
   field("output_dir", c.output_dir, config::anything(), "folder for map.lapis, map.ot and map.ply; empty: none");
   field("save_period_s", c.save_period_s, config::in_range(1.0, 86400.0),
         "time between saves, by the frames' stamps [s]");

@@ -1,8 +1,12 @@
 // Prints a line per sample of the chain's topics, so that a test written in a script can see what is published:
 //   TOPIC stamp_s DETAIL
 // with the number of the session (/slam/frame), of the integrated frames (map_state), or the process and its number of
-// frames (/diagnostics). It saves the map when SIGUSR1 comes and prints the answer. It ends on SIGTERM.
+// frames (/diagnostics); and with the time of its arrival [s, steady clock] in the stamp's place
+//   arrived arrival_s pose|map|path|command [FORWARD TURN]
+// for what the robot must not move without, and for /cmd_vel [m/s, rad/s]. It saves the map when SIGUSR1 comes and
+// prints the answer. It ends on SIGTERM.
 
+#include <chrono>
 #include <csignal>
 #include <iostream>
 #include <optional>
@@ -31,6 +35,21 @@ void print_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message) {
     }
     print("diagnostics", message.header().stamp(), status.hardware_id() + " " + frames);
   }
+}
+
+void print_arrival(const std::string& what) {
+  const std::chrono::duration<double> now = std::chrono::steady_clock::now().time_since_epoch();
+  std::cout << "arrived " << std::fixed << now.count() << ' ' << what << std::endl;
+}
+
+void listen_to_arrivals(TopicProbe& probe) {
+  probe.listen<nav_msgs::msg::Odometry>(topics::kSlamOdometry, [](auto&) { print_arrival("pose"); });
+  probe.listen<nav_msgs::msg::OccupancyGrid>(topics::kObstacles, [](auto&) { print_arrival("map"); });
+  probe.listen<nav_msgs::msg::Path>(topics::kPlannerPath, [](auto&) { print_arrival("path"); });
+  probe.listen<lapis_msgs::msg::PlannerStatus>(topics::kPlannerStatus, [](auto&) { print_arrival("path"); });
+  probe.listen<geometry_msgs::msg::Twist>(topics::kCommand, [](auto& m) {
+    print_arrival("command " + std::to_string(m.linear().x()) + ' ' + std::to_string(m.angular().z()));
+  });
 }
 
 void listen(TopicProbe& probe) {
@@ -64,6 +83,7 @@ int main() {
   std::signal(SIGUSR1, [](int) { is_asked_to_save = 1; });
   TopicProbe probe("stamp_probe");
   listen(probe);
+  listen_to_arrivals(probe);
   auto& client = probe.client(lapis::topics::kSaveMap);
   std::cout << "stamp_probe: ready" << std::endl;
   while (is_asked_to_stop == 0) {

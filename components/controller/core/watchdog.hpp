@@ -10,10 +10,11 @@
 namespace lapis::controller {
 
 struct WatchdogConfig {
-  double pose_timeout_s = 0.22;    ///< in [0.05, 60]; with a period of 20 Hz after it, a command of 0 within 0.3 s
-  double camera_timeout_s = 0.22;  ///< in [0.05, 60]
-  double map_timeout_s = 1.0;      ///< in [0.05, 60]
-  double planner_timeout_s = 2.0;  ///< in [0.05, 60]
+  // In [0.05, 60]; with a period of 20 Hz after 0.22 s, a command of 0 within 0.3 s.
+  double pose_timeout_s = 0.22;
+  double camera_timeout_s = 0.22;
+  double map_timeout_s = 0.22;
+  double planner_timeout_s = 0.22;
 };
 
 /// What the robot must not move without: depth images, its pose, a depth image that could be used together with a pose,

@@ -49,8 +49,8 @@ class Surroundings {
     stamp = time::Time{1'000'000'000} + time::Duration::from_seconds(++frames_ / kRate_hz);
     if (who.camera) publish_view();
     if (who.pose) publish_pose();
-    if (who.map && frames_ % 7 == 1) publish_map();
-    if (who.planner && frames_ % 7 == 1) planner_.publish({});
+    if (who.map) publish_map();
+    if (who.planner) planner_.publish({});
   }
   void drive(const geometry_msgs::msg::Twist& command) {
     yaw_rad += command.angular().z() / kRate_hz;

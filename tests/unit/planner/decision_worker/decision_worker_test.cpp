@@ -48,35 +48,44 @@ TEST_F(DecisionWorkerTest, ResultIsDueAtItsFrameAndNotBefore) {
   EXPECT_FALSE(worker_.is_busy());
   worker_.start(input(), 10);
   for (std::uint64_t frame = 7; frame < 10; ++frame) {
-    EXPECT_FALSE(worker_.take(frame)) << frame;
+    EXPECT_FALSE(worker_.take(frame, true)) << frame;
     EXPECT_TRUE(worker_.is_busy());
   }
-  const auto output = worker_.take(10);
+  const auto output = worker_.take(10, true);
   ASSERT_TRUE(output);
   EXPECT_TRUE(output->decision.chosen);
   EXPECT_GT(output->time_s, 0.0);
   EXPECT_FALSE(worker_.is_busy());
-  EXPECT_FALSE(worker_.take(11)) << "a result is taken once";
+  EXPECT_FALSE(worker_.take(11, true)) << "a result is taken once";
 }
 
 TEST_F(DecisionWorkerTest, FrameThatWasMissedDoesNotLoseTheResult) {
   worker_.start(input(), 10);
-  EXPECT_TRUE(worker_.take(13));
+  EXPECT_TRUE(worker_.take(13, true));
+}
+
+TEST_F(DecisionWorkerTest, LateResultIsWaitedForOnlyWhenAsked) {
+  DecisionInput slow = input();
+  slow.graph = graph(2000);
+  worker_.start(std::move(slow), 1);
+  EXPECT_FALSE(worker_.take(1, false)) << "done before it was asked for";
+  EXPECT_TRUE(worker_.is_busy());
+  EXPECT_TRUE(worker_.take(1, true));
 }
 
 TEST_F(DecisionWorkerTest, DiscardedResultNeverComes) {
   worker_.start(input(), 1);
   worker_.discard();
   EXPECT_FALSE(worker_.is_busy());
-  EXPECT_FALSE(worker_.take(5));
+  EXPECT_FALSE(worker_.take(5, true));
   worker_.discard();  // of nothing
   worker_.start(input(), 6);
-  EXPECT_TRUE(worker_.take(6));
+  EXPECT_TRUE(worker_.take(6, true));
 }
 
 TEST_F(DecisionWorkerTest, DecisionIsThatOfTheCore) {
   worker_.start(input(), 1);
-  const Decision made = worker_.take(1)->decision;
+  const Decision made = worker_.take(1, true)->decision;
   const DecisionInput in = input();
   const Decision expected = decide({surroundings_.grid(), surroundings_.frontiers(), surroundings_.field(), view_,
                                     in.T_base_camera, nullptr, nullptr, in.robot},
@@ -91,14 +100,14 @@ TEST_F(DecisionWorkerTest, KnowledgeIsKeptUntilThereIsANewerGraph) {
   DecisionInput first = input();
   first.graph = graph(3);
   worker_.start(std::move(first), 1);
-  const auto known = worker_.take(1)->knowledge;
+  const auto known = worker_.take(1, true)->knowledge;
   ASSERT_NE(known, nullptr);
   EXPECT_EQ(known->graph.keyframes.size(), 3U);
 
   DecisionInput second = input();
   second.knowledge = known;
   worker_.start(std::move(second), 2);
-  auto output = worker_.take(2);
+  auto output = worker_.take(2, true);
   EXPECT_EQ(output->knowledge, known) << "nothing new, nothing computed";
   EXPECT_GT(output->decision.candidates[*output->decision.chosen].value.d_optimality, 0.0) << "but used";
 
@@ -107,7 +116,7 @@ TEST_F(DecisionWorkerTest, KnowledgeIsKeptUntilThereIsANewerGraph) {
   third.graph = graph(4);
   third.landmarks = test::tile_of(test::wall_at(3.0f, 2.0f), {10, 11});
   worker_.start(std::move(third), 3);
-  output = worker_.take(3);
+  output = worker_.take(3, true);
   ASSERT_NE(output->knowledge, nullptr);
   EXPECT_EQ(output->knowledge->graph.keyframes.size(), 4U);
   EXPECT_EQ(output->knowledge->landmarks.size(), 100U);
@@ -117,14 +126,14 @@ TEST_F(DecisionWorkerTest, GraphThatCannotBeUsedIsExplainedAndNoneIsUsedInstead)
   DecisionInput first = input();
   first.graph = graph(3);
   worker_.start(std::move(first), 1);
-  const auto known = worker_.take(1)->knowledge;
+  const auto known = worker_.take(1, true)->knowledge;
 
   DecisionInput second = input();
   second.knowledge = known;
   second.graph = graph(3);
   second.graph->edges.push_back({12, 99, test::information(0.01, 0.01)});
   worker_.start(std::move(second), 2);
-  const auto output = worker_.take(2);
+  const auto output = worker_.take(2, true);
   EXPECT_EQ(output->knowledge, nullptr) << "the old graph is not the one of these poses";
   EXPECT_THAT(output->decision.problem, HasSubstr("key-frame that the pose graph does not have"));
   EXPECT_TRUE(output->decision.chosen) << "frontiers are driven to all the same";

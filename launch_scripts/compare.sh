@@ -10,7 +10,7 @@ usage: compare.sh --variant 'NAME [KEY=VALUE]...' --variant '...' [--scenes NAME
                   [--first N] [--recorded] [--out DIR]
 
 Plays every scene (bundled names or files) with N seeds, and every data set once, to each variant, and prints a table:
-maps and trajectories of the variants side by side, and the differences to the first one with 95 % bootstrap intervals.
+maps and trajectories of the variants, and the differences to the first one with 95 % bootstrap intervals.
 A run that DIR has already from the same programs and settings is not repeated.
 
   --variant TEXT     a name and its settings, as for replay.sh
@@ -21,6 +21,7 @@ A run that DIR has already from the same programs and settings is not repeated.
   --out DIR          default: out/compare
 
 Example: launch_scripts/compare.sh --scenes apartment --variant on --variant 'off semantic_mapper.re_anchor=false'
+docs/scenes.md has one that shows what forced revisits of old places are worth.
 TEXT
 }
 

@@ -10,12 +10,13 @@ import random
 import statistics
 import sys
 
-SHARED = {  # the same for all variants
+CIRCUMSTANCES = {  # of a run: format, value
+    "path m": ("{:.1f}", lambda m: m["path_length_m"]),
     "loops": ("{:.0f}", lambda m: m["loop_closures"]),
     "correction cm": ("{:.1f}", lambda m: 100 * m["correction_rmse_m"]),
-    "ATE origin cm": ("{:.1f}", lambda m: 100 * m["ate_origin_rmse_m"]),
 }
-FIGURES = {  # of each variant: format, value
+FIGURES = {  # of which differences are shown
+    "ATE origin cm": ("{:.1f}", lambda m: 100 * m["ate_origin_rmse_m"]),
     "IoU 8": ("{:.3f}", lambda m: m["iou_top8_mean"]),
     "map error cm": ("{:.2f}", lambda m: 100 * m["map_error_mean_m"]),
     "ideal IoU 8": ("{:.3f}", lambda m: m["ideal_iou_top8_mean"]),
@@ -50,15 +51,13 @@ def interval(differences):
 
 
 def print_runs(runs, variants):
-    header = ["run", *SHARED, *(f"{figure}: {name}" for figure in FIGURES for name in variants)]
-    print("| " + " | ".join(header) + " |")
-    print("| --- |" + " --- |" * (len(header) - 1))
+    columns = CIRCUMSTANCES | FIGURES
+    print("| run | variant | " + " | ".join(columns) + " |")
+    print("| --- | --- |" + " --- |" * len(columns))
     for run, by_variant in runs.items():
-        base = by_variant[variants[0]]
-        cells = [shown(form, value_of(base, function)) for form, function in SHARED.values()]
-        for form, function in FIGURES.values():
-            cells += [shown(form, value_of(by_variant[name], function)) for name in variants]
-        print(f"| {run} | " + " | ".join(cells) + " |")
+        for name in variants:
+            cells = [shown(form, value_of(by_variant[name], function)) for form, function in columns.values()]
+            print(f"| {run} | {name} | " + " | ".join(cells) + " |")
 
 
 def print_differences(runs, variants, title):
@@ -85,9 +84,9 @@ def main():
     print_runs(runs, variants)
     print_differences(runs, variants, "All runs")
     closed = {run: by_variant for run, by_variant in runs.items()
-              if (value_of(by_variant[variants[0]], SHARED["loops"][1]) or 0) > 0}
+              if (value_of(by_variant[variants[0]], CIRCUMSTANCES["loops"][1]) or 0) > 0}
     if 0 < len(closed) < len(runs):
-        print_differences(closed, variants, "Runs in which a loop closed")
+        print_differences(closed, variants, f"Runs in which {variants[0]} closed a loop")
     return 0 if all(m is not None for by_variant in runs.values() for m in by_variant.values()) else 1
 
 

@@ -34,6 +34,11 @@ struct ValueText {
     for (const auto& word : *v) out += (out.size() > 1 ? ", " : "") + quoted(word);
     return out + "]";
   }
+  std::string operator()(const Numbers* v) const {
+    std::string out = "[";
+    for (const double number : *v) out += (out.size() > 1 ? ", " : "") + number_text(number);
+    return out + "]";
+  }
 };
 
 }  // namespace

@@ -25,11 +25,12 @@ Bound one_of(std::initializer_list<std::string> words);
 Bound anything();
 
 using Words = std::vector<std::string>;
+using Numbers = std::vector<double>;
 
 /// One configuration value: where it is, what it may be, what it means.
 struct Entry {
   std::string path;  ///< "slam.tracker.max_depth_m"
-  std::variant<bool*, int*, std::int64_t*, double*, std::string*, Words*> value;
+  std::variant<bool*, int*, std::int64_t*, double*, std::string*, Words*, Numbers*> value;
   Bound bound;
   std::string meaning;
 };

@@ -31,10 +31,10 @@ struct Store {
   const YAML::Node& node;
   const std::string& source;
 
-  void operator()(bool* target) const { *target = scalar<bool>("true or false"); }
-  void operator()(int* target) const { *target = bounded<int>("a whole number"); }
-  void operator()(std::int64_t* target) const { *target = bounded<std::int64_t>("a whole number"); }
-  void operator()(double* target) const { *target = bounded<double>("a number"); }
+  void operator()(bool* target) const { *target = scalar<bool>(node, "true or false"); }
+  void operator()(int* target) const { *target = bounded<int>(node, "a whole number"); }
+  void operator()(std::int64_t* target) const { *target = bounded<std::int64_t>(node, "a whole number"); }
+  void operator()(double* target) const { *target = bounded<double>(node, "a number"); }
   void operator()(std::string* target) const { *target = word(node); }
   void operator()(Words* target) const {
     if (!node.IsSequence()) reject("a list such as [a, b] is needed");
@@ -42,24 +42,32 @@ struct Store {
     for (const auto& item : node) words.push_back(word(item));
     *target = std::move(words);
   }
+  void operator()(Numbers* target) const {
+    if (!node.IsSequence()) reject("a list such as [1, 2] is needed");
+    Numbers numbers;
+    for (const auto& item : node) numbers.push_back(bounded<double>(item, "a number"));
+    *target = std::move(numbers);
+  }
 
  private:
   [[noreturn]] void reject(const std::string& problem) const { fail(place(source, node), entry.path, problem); }
 
-  std::string shown() const { return node.IsScalar() ? "'" + node.Scalar() + "'" : "this value"; }
+  static std::string shown(const YAML::Node& item) {
+    return item.IsScalar() ? "'" + item.Scalar() + "'" : "this value";
+  }
 
   template <class T>
-  T scalar(const std::string& wanted) const {
+  T scalar(const YAML::Node& item, const std::string& wanted) const {
     T value{};
-    if (!node.IsScalar() || !YAML::convert<T>::decode(node, value)) reject(shown() + " is not " + wanted);
+    if (!item.IsScalar() || !YAML::convert<T>::decode(item, value)) reject(shown(item) + " is not " + wanted);
     return value;
   }
 
   template <class T>
-  T bounded(const std::string& wanted) const {
-    const T value = scalar<T>(wanted);
+  T bounded(const YAML::Node& item, const std::string& wanted) const {
+    const T value = scalar<T>(item, wanted);
     if (!is_inside(entry.bound, static_cast<double>(value))) {
-      reject(shown() + " is out of range, allowed is " + entry.bound.text());
+      reject(shown(item) + " is out of range, allowed is " + entry.bound.text());
     }
     return value;
   }

@@ -22,12 +22,14 @@ const char* name_of(CandidateKind kind) {
 
 }  // namespace
 
-DecisionLog::DecisionLog(const std::string& path) {
+DecisionLog::DecisionLog(const std::string& path, const std::vector<double>& compared_priors) {
   if (const auto problem = files::set_aside(path)) throw std::runtime_error(*problem);
   file_.open(path);
   file_ << "decision,time_s,method,candidate,kind,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
            "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
-           "utility,is_chosen,is_chosen_by_mi_only,agrees_with_mi_only,rejection\n";
+           "utility,is_chosen,is_chosen_by_mi_only,agrees_with_mi_only,";
+  for (const double prior : compared_priors) file_ << "is_chosen_with_prior_" << prior << ',';
+  file_ << "rejection\n";
   if (!file_.flush()) throw std::runtime_error(path + " cannot be written");
 }
 
@@ -40,7 +42,9 @@ bool DecisionLog::write(const Decision& decision, std::uint64_t id, const std::s
           << c.loops.size() << ',' << c.value.loop_gain << ',' << c.gain.fixed_n_change << ','
           << c.gain.end_sigma_without_loops_m << ',' << c.gain.end_sigma_m << ',' << c.value.d_optimality << ','
           << c.utility << ',' << (decision.chosen == i) << ',' << (decision.by_mi_only == i) << ','
-          << decision.agrees_with_mi_only() << ',' << quoted(c.rejection) << '\n';
+          << decision.agrees_with_mi_only() << ',';
+    for (const auto& chosen : decision.by_compared_fields) file_ << (chosen == i) << ',';
+    file_ << quoted(c.rejection) << '\n';
   }
   return static_cast<bool>(file_.flush());
 }

@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <string>
+#include <vector>
 
 #include "planner/core/decision/decision.hpp"
 
@@ -11,7 +12,8 @@ namespace lapis::planner {
 class DecisionLog {
  public:
   /// An older file of that name is set aside. Throws std::runtime_error when it cannot be written.
-  explicit DecisionLog(const std::string& path);
+  /// @param compared_priors of the fields that decisions are compared with; a column each
+  explicit DecisionLog(const std::string& path, const std::vector<double>& compared_priors = {});
   /// False when the disk refuses.
   bool write(const Decision& decision, std::uint64_t id, const std::string& method, double time_s);
 

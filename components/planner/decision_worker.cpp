@@ -30,7 +30,8 @@ DecisionOutput make(DecisionInput input) {
                       input.T_base_camera,
                       nullptr,
                       nullptr,
-                      input.robot};
+                      input.robot,
+                      input.surroundings->compared_fields()};
   if (output.knowledge) {
     situation.graph = &output.knowledge->graph;
     situation.landmarks = &output.knowledge->landmarks;

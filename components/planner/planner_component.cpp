@@ -67,7 +67,7 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
       explorer_(config_.explorer) {
   if (!config_.output_dir.empty()) {
     files::require_writable_folder(config_.output_dir, "planner.output_dir");
-    log_.emplace((std::filesystem::path(config_.output_dir) / kLogFile).string());
+    log_.emplace((std::filesystem::path(config_.output_dir) / kLogFile).string(), config_.surroundings.compared_priors);
   }
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { add_tile(m); });

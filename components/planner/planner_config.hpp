@@ -170,6 +170,8 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "for obstacles that may go away before exploration is over [s]");
   field("returns_home", c.explorer.returns_home, config::anything(), "drives to where it started when nothing is left");
   field("sensor_model", c.sensor_model);
+  field("compared_priors", c.surroundings.compared_priors, config::in_range(0.001, 0.999),
+        "of sensor_model.prior_occupied: decisions.csv tells what would have been chosen with each");
   field("decision_latency_frames", c.decision_latency_frames, config::in_range(1, 100),
         "from the frame that a decision is made from to the one at which it takes effect");
   field("output_dir", c.output_dir, config::anything(), "folder for decisions.csv; empty: none");

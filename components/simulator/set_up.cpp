@@ -5,9 +5,11 @@
 #include <cstdlib>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "simulator/core/assets/load_scene.hpp"
 #include "simulator/core/assets/text_scan.hpp"
+#include "simulator/core/robot/tour_revisits.hpp"
 #include "simulator/furniture.hpp"
 #include "simulator/scene_yaml.hpp"
 
@@ -171,8 +173,14 @@ std::optional<TourFollower> plan_tour(const World& world, const StartPose& start
   if (way_points.empty()) {
     throw std::runtime_error("scene " + world.scene().name + " has no tour; give a file with --tour FILE");
   }
-  const TourConfig tour = tour_config(config);
-  return TourFollower(world.nav_map(), plan_tour(world.nav_map(), start.position, way_points, tour), tour);
+  const TourConfig setting = tour_config(config);
+  const NavMap& map = world.nav_map();
+  Tour tour = plan_tour(map, start.position, way_points, setting);
+  if (config.tour_revisit_every_m > 0.0) {
+    const auto more = with_revisits(map, tour, config.tour_revisit_every_m, setting.path);
+    tour = plan_tour(map, start.position, more, setting);
+  }
+  return TourFollower(map, std::move(tour), setting);
 }
 
 }  // namespace lapis::simulator

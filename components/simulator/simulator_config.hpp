@@ -36,6 +36,7 @@ struct SimulatorConfig {
   double duration_s = 0.0;
   bool ends_when_explored = false;
   std::string tour;
+  double tour_revisit_every_m = 0.0;
   std::string start;
   std::string output_dir;
   int wait_for_readers = 0;
@@ -101,6 +102,8 @@ void describe(Field& field, SimulatorConfig& c) {
         "the run ends, too, when /planner/status tells DONE or FAILED");
   field("tour", c.tour, config::anything(),
         "\"bundled\", or a file with way-points, that the robot drives by itself; empty: it obeys /cmd_vel");
+  field("tour_revisit_every_m", c.tour_revisit_every_m, config::in_range(0.0, 1000.0),
+        "after so much way each, the tour goes back to an old place and comes back; 0: never [m]");
   field("start", c.start, config::anything(), "\"x y yaw_deg\" [m, m, deg]; empty: drawn by the seed");
   field("output_dir", c.output_dir, config::anything(),
         "run folder for simulation.yaml and ground_truth/; empty: none");

@@ -25,6 +25,7 @@ struct Outer {
   std::string mode = "fast";
   std::int64_t seed = 7;
   Words stages = {"slam", "semantic_mapper"};
+  Numbers limits = {0.25, 3};
 };
 
 template <class Field>
@@ -39,6 +40,7 @@ void describe(Field& field, Outer& c) {
   field("mode", c.mode, one_of({"fast", "exact"}), "which way");
   field("seed", c.seed, at_least(0), "random seed");
   field("stages", c.stages, anything(), "order");
+  field("limits", c.limits, in_range(0, 10), "of everything");
 }
 
 class ConfigTest : public ::testing::Test {
@@ -77,17 +79,20 @@ TEST_F(ConfigTest, OverrideReachesEveryKind) {
   apply_override(schema_, "slam.mode=exact");
   apply_override(schema_, "slam.seed=9000000000");
   apply_override(schema_, "slam.stages=[a, b, c]");
+  apply_override(schema_, "slam.limits=[0.5, 10]");
   EXPECT_DOUBLE_EQ(config_.tracker.max_depth_m, 2.5);
   EXPECT_FALSE(config_.enabled);
   EXPECT_EQ(config_.mode, "exact");
   EXPECT_EQ(config_.seed, 9000000000);
   EXPECT_EQ(config_.stages, (Words{"a", "b", "c"}));
+  EXPECT_EQ(config_.limits, (Numbers{0.5, 10}));
 }
 
 TEST_F(ConfigTest, PrintedConfigurationReadsBackUnchanged) {
   config_.tracker.max_depth_m = 1.0 / 3.0;
   config_.mode = "exact";
   config_.stages = {"with \"quotes\"", "and \\ back"};
+  config_.limits = {};
   const std::string text = to_yaml(schema_);
   Outer other;
   Schema other_schema;
@@ -110,6 +115,7 @@ TEST_F(ConfigTest, OutOfRangeNamesValueAndBound) {
               AllOf(HasSubstr("robot.yaml:1"), HasSubstr("slam.tracker.max_depth_m"), HasSubstr("'40'"),
                     HasSubstr("0.1 to 20")));
   EXPECT_THAT(error_of_text("slam: {tracker: {max_depth_m: .nan}}"), HasSubstr("out of range"));
+  EXPECT_THAT(error_of_set("slam.limits=[1, 11]"), AllOf(HasSubstr("'11'"), HasSubstr("0 to 10")));
   EXPECT_THAT(error_of_set("slam.mode=slow"), AllOf(HasSubstr("'slow'"), HasSubstr("fast | exact")));
 }
 
@@ -127,6 +133,8 @@ TEST_F(ConfigTest, WrongTypesAreErrors) {
   EXPECT_THAT(error_of_text("slam: {enabled: perhaps}"), HasSubstr("not true or false"));
   EXPECT_THAT(error_of_text("slam: {tracker: 4}"), HasSubstr("a section with keys is needed"));
   EXPECT_THAT(error_of_text("slam: {stages: slam}"), HasSubstr("a list"));
+  EXPECT_THAT(error_of_text("slam: {limits: 1}"), HasSubstr("a list"));
+  EXPECT_THAT(error_of_text("slam: {limits: [1, few]}"), HasSubstr("'few' is not a number"));
   EXPECT_THAT(error_of_text("slam: {mode: [fast]}"), HasSubstr("text is needed"));
   EXPECT_THAT(error_of_text("slam: {seed: 1, seed: 2}"), HasSubstr("twice"));
   EXPECT_THAT(error_of_set("slam.seed"), HasSubstr("path=value"));

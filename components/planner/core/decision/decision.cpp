@@ -110,25 +110,38 @@ std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, Met
   return best;
 }
 
-}  // namespace
-
-Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config) {
-  const CostTree tree = grow_cost_tree(situation.grid, config.path, {situation.grid.cell_of(situation.robot.p_map)});
+/// What the map and the pose graph would gain by each proposal, and the best one.
+Decision choose(const Situation& s, std::vector<Candidate> proposals, const Memory& memory,
+                const DecisionConfig& config) {
   Decision decision;
-  decision.candidates = propose(situation, tree, memory, config);
+  decision.candidates = std::move(proposals);
   const std::vector<Candidate*> open = open_ones(decision.candidates);
-  add_information(situation, open);
+  add_information(s, open);
   for (Candidate* candidate : open) {
-    if (situation.graph == nullptr || situation.landmarks == nullptr) continue;
-    if (std::string problem = add_gain(situation, config, *candidate); !problem.empty()) {
+    if (s.graph == nullptr || s.landmarks == nullptr) continue;
+    if (std::string problem = add_gain(s, config, *candidate); !problem.empty()) {
       decision.problem = std::move(problem);
     } else if (config.information_discount_sigma_m > 0.0) {
-      discount_information(situation, config.information_discount_sigma_m, *candidate);
+      discount_information(s, config.information_discount_sigma_m, *candidate);
     }
   }
   for (Candidate* candidate : open) candidate->utility = utility(config.method, candidate->value, config.utility);
   decision.chosen = best_by(decision.candidates, config.method, memory, config);
   decision.by_mi_only = best_by(decision.candidates, Method::kMiOnly, memory, config);
+  return decision;
+}
+
+}  // namespace
+
+Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config) {
+  const CostTree tree = grow_cost_tree(situation.grid, config.path, {situation.grid.cell_of(situation.robot.p_map)});
+  const std::vector<Candidate> proposals = propose(situation, tree, memory, config);
+  Decision decision = choose(situation, proposals, memory, config);
+  for (const InformationField& field : situation.compared_fields) {
+    const Situation other{situation.grid,  situation.frontiers, field,          situation.view, situation.T_base_camera,
+                          situation.graph, situation.landmarks, situation.robot};
+    decision.by_compared_fields.push_back(choose(other, proposals, memory, config).chosen);
+  }
   return decision;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -45,6 +46,8 @@ struct Situation {
   const AnalysedGraph* graph = nullptr;
   const LandmarkIndex* landmarks = nullptr;
   Pose2 robot;
+  /// The field of the same map with other sensor models; what each of them would have chosen is told, too.
+  std::span<const InformationField> compared_fields = {};
 };
 
 enum class CandidateKind {
@@ -80,7 +83,9 @@ struct Decision {
   std::vector<Candidate> candidates;      ///< at least one for each frontier
   std::optional<std::size_t> chosen;      ///< index; nothing when none can be driven to
   std::optional<std::size_t> by_mi_only;  ///< what MI / Cost would have chosen
-  std::string problem;                    ///< of the pose graph, when loops could not be judged; empty otherwise
+  /// What would have been chosen with each of the compared fields.
+  std::vector<std::optional<std::size_t>> by_compared_fields;
+  std::string problem;  ///< of the pose graph, when loops could not be judged; empty otherwise
   bool agrees_with_mi_only() const { return chosen == by_mi_only; }
 };
 

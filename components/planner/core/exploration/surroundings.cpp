@@ -18,7 +18,13 @@ int observed_voxels(const mapping::VoxelBlock* block) {
 
 Surroundings::Surroundings(const SurroundingsConfig& config, const mapping::SensorModel& model, double resolution_m)
     : reader_(model), grid_(config.grid, resolution_m), frontiers_(config.frontiers),
-      field_(resolution_m, model, config.measure) {}
+      field_(resolution_m, model, config.measure) {
+  for (const double prior : config.compared_priors) {
+    mapping::SensorModel other = model;
+    other.prior_occupied = prior;
+    compared_fields_.emplace_back(resolution_m, other, config.measure);
+  }
+}
 
 double Surroundings::explored_volume_m3() const {
   const double edge_m = grid_.resolution_m();
@@ -27,6 +33,7 @@ double Surroundings::explored_volume_m3() const {
 
 void Surroundings::update_map(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed) {
   field_.update(map, changed);
+  for (InformationField& field : compared_fields_) field.update(map, changed);
   frontiers_.update(grid_, grid_.update_map(map, reader_, changed));
   count_observed(map, changed);
 }

@@ -4,6 +4,7 @@
 #include <memory>
 #include <span>
 #include <unordered_map>
+#include <vector>
 
 #include "planner/core/information/information_field.hpp"
 #include "planner/core/space/frontier_map.hpp"
@@ -14,6 +15,7 @@ struct SurroundingsConfig {
   GridConfig grid;
   FrontierConfig frontiers;
   Measure measure = Measure::kSemantic;
+  std::vector<double> compared_priors;  ///< P(occupied) of voxels never observed, instead of the sensor model's
 };
 
 /// What the planner knows of the building: floor plan with obstacles, frontiers and the information of every voxel, all
@@ -25,6 +27,8 @@ class Surroundings {
   const PlanningGrid& grid() const { return grid_; }
   const FrontierMap& frontiers() const { return frontiers_; }
   const InformationField& field() const { return field_; }
+  /// The same with each of the compared priors.
+  std::span<const InformationField> compared_fields() const { return compared_fields_; }
   /// Of all observed voxels [m^3].
   double explored_volume_m3() const;
 
@@ -42,6 +46,7 @@ class Surroundings {
   PlanningGrid grid_;
   FrontierMap frontiers_;
   InformationField field_;
+  std::vector<InformationField> compared_fields_;
   std::unordered_map<mapping::BlockIndex, int, mapping::GridIndexHash> observed_;  ///< voxels by block, none with 0
   std::size_t observed_voxels_ = 0;
 };

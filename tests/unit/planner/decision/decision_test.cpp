@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 #include "tests/unit/planner/hallucination/small_world.hpp"
 #include "tests/unit/planner/space/flat_map.hpp"
@@ -36,7 +37,8 @@ struct Explorer {
     robot.p_map = world.grid.center_of(world.places.at('R'));
   }
   Decision choose(const Memory& memory = {}) const {
-    return decide({world.grid, frontiers, field, view, geometry::T_base_camera({1.0, 0.0}), graph, landmarks, robot},
+    return decide({world.grid, frontiers, field, view, geometry::T_base_camera({1.0, 0.0}), graph, landmarks, robot,
+                   compared_fields},
                   memory, config);
   }
   Candidate chosen(const Memory& memory = {}) const {
@@ -52,6 +54,7 @@ struct Explorer {
   TextWorld world;
   FrontierMap frontiers;
   InformationField field;
+  std::vector<InformationField> compared_fields;
   View view;
   DecisionConfig config;
   const AnalysedGraph* graph = nullptr;
@@ -307,6 +310,44 @@ TEST(Decide, InformationFromAnUnsurePositionCountsLess) {
     const double end = all.gain.end_sigma_m / explorer.config.information_discount_sigma_m;
     EXPECT_NEAR(less.value.goal_information, all.value.goal_information / (1.0 + end * end), 1e-9);
   }
+}
+
+InformationField field_with_prior(const Explorer& explorer, double prior_occupied) {
+  mapping::SensorModel model;
+  model.prior_occupied = prior_occupied;
+  InformationField field(0.25, model, Measure::kSemantic);
+  field.rebuild(explorer.world.map.map());
+  return field;
+}
+
+TEST(Decide, TellsWhatOtherFieldsWouldHaveChosenAndChoosesTheSame) {
+  const std::vector<double> priors = {0.02, 0.1, 0.5, 0.8};
+  int others = 0;
+  for (const std::string& name : method_names()) {
+    LongAway explorer;
+    explorer.config.method = *method_of(name);
+    Memory memory;
+    for (const bool has_goal : {false, true}) {
+      const Decision alone = explorer.choose(memory);
+      for (const double prior : priors) explorer.compared_fields.push_back(field_with_prior(explorer, prior));
+      const Decision made = explorer.choose(memory);
+      explorer.compared_fields.clear();
+      EXPECT_EQ(made.chosen, alone.chosen) << name;
+      for (std::size_t i = 0; i < made.candidates.size(); ++i)
+        EXPECT_EQ(made.candidates[i].utility, alone.candidates[i].utility) << name;
+      ASSERT_EQ(made.by_compared_fields.size(), priors.size());
+      EXPECT_TRUE(alone.by_compared_fields.empty());
+      for (std::size_t k = 0; k < priors.size(); ++k) {
+        const InformationField own = std::exchange(explorer.field, field_with_prior(explorer, priors[k]));
+        EXPECT_EQ(made.by_compared_fields[k], explorer.choose(memory).chosen) << name << ", prior " << priors[k];
+        explorer.field = own;
+        others += made.by_compared_fields[k] == made.chosen ? 0 : 1;
+      }
+      ASSERT_TRUE(alone.chosen);
+      if (!has_goal) memory.goal = alone.candidates[(*alone.chosen + 1) % alone.candidates.size()].goal;
+    }
+  }
+  EXPECT_GT(others, 0) << "of no use as a test";
 }
 
 TEST(Decide, IsDeterministic) {

@@ -118,6 +118,19 @@ TEST_F(DecisionLogTest, SaysWhereMiOnlyWouldHaveGone) {
   EXPECT_THAT(Row(rows[2].end() - 4, rows[2].end()), ElementsAre("0", "1", "0", ""));
 }
 
+TEST_F(DecisionLogTest, HasAColumnForEachPriorThatIsCompared) {
+  Decision compared = decision();
+  compared.by_compared_fields = {0, 1, std::nullopt};
+  DecisionLog log(file_.string(), {0.05, 0.1, 0.5});
+  ASSERT_TRUE(log.write(compared, 1, "joint", 1.0));
+  const auto rows = read(file_);
+  const auto last_of = [](const Row& row) { return Row(row.end() - 4, row.end() - 1); };
+  EXPECT_THAT(last_of(rows[0]),
+              ElementsAre("is_chosen_with_prior_0.05", "is_chosen_with_prior_0.1", "is_chosen_with_prior_0.5"));
+  EXPECT_THAT(last_of(rows[1]), ElementsAre("1", "0", "0"));
+  EXPECT_THAT(last_of(rows[2]), ElementsAre("0", "1", "0"));
+}
+
 TEST_F(DecisionLogTest, DecisionWithoutCandidatesHasNoRow) {
   DecisionLog log(file_.string());
   ASSERT_TRUE(log.write({}, 1, "joint", 1.0));

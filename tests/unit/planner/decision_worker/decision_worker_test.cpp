@@ -39,7 +39,7 @@ class DecisionWorkerTest : public ::testing::Test {
     return {1, 1, chain.keyframes, chain.edges};
   }
 
-  Surroundings surroundings_{{}, mapping::SensorModel{}, 0.25};
+  Surroundings surroundings_{{{}, {}, Measure::kSemantic, {0.05, 0.2}}, mapping::SensorModel{}, 0.25};
   const View view_{{.camera = test::kCamera, .columns = 16, .rows = 9, .range_m = 5.0}};
   DecisionWorker worker_;
 };
@@ -88,9 +88,11 @@ TEST_F(DecisionWorkerTest, DecisionIsThatOfTheCore) {
   const Decision made = worker_.take(1, true)->decision;
   const DecisionInput in = input();
   const Decision expected = decide({surroundings_.grid(), surroundings_.frontiers(), surroundings_.field(), view_,
-                                    in.T_base_camera, nullptr, nullptr, in.robot},
+                                    in.T_base_camera, nullptr, nullptr, in.robot, surroundings_.compared_fields()},
                                    in.memory, in.config);
   EXPECT_EQ(made.chosen, expected.chosen);
+  EXPECT_EQ(made.by_compared_fields, expected.by_compared_fields);
+  EXPECT_EQ(made.by_compared_fields.size(), 2U);
   ASSERT_EQ(made.candidates.size(), expected.candidates.size());
   for (std::size_t i = 0; i < made.candidates.size(); ++i)
     EXPECT_EQ(made.candidates[i].utility, expected.candidates[i].utility);

@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <map>
+#include <stdexcept>
 #include <utility>
 
 #include "common/mapping/map_file.hpp"

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +9,7 @@
 #include "common/mapping/map_mirror.hpp"
 #include "evaluator/core/coverage.hpp"
 #include "evaluator/core/ground_truth.hpp"
+#include "evaluator/core/metrics.hpp"
 #include "evaluator/core/plain_fusion.hpp"
 #include "evaluator/core/timeline.hpp"
 #include "evaluator/evaluator_config.hpp"

@@ -56,7 +56,7 @@ std::optional<double> RunRecord::position_error_m() const {
 
 std::optional<double> RunRecord::path_length_m() const {
   if (truth_world_.empty()) return std::nullopt;
-  return evaluator::path_length_m(truth_world_);
+  return trajectory::path_length_m(truth_world_);
 }
 
 void RunRecord::write_to(RunMetrics& m, const Trajectory& keyframes, std::int64_t frames_missed, bool has_ended) const {
@@ -71,7 +71,7 @@ void RunRecord::write_to(RunMetrics& m, const Trajectory& keyframes, std::int64_
   if (truth.empty()) return;
   m.online = trajectory_figures(truth, estimate_);
   m.keyframes = trajectory_figures(truth, keyframes);
-  m.path_length_m = evaluator::path_length_m(truth);
+  m.path_length_m = trajectory::path_length_m(truth);
   m.ate_at_80_m = ate_raw_rmse_up_to(80.0, truth, estimate_);
   if (*m.path_length_m > 0.0 && m.online.ate_raw_rmse_m) m.ate_per_metre = *m.online.ate_raw_rmse_m / *m.path_length_m;
 }

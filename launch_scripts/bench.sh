@@ -83,8 +83,7 @@ for benchmark in "$bin"/lapis_*_benchmark; do
 done
 printf '\nkernels, load before: %s\n' "$load"
 "$repository/launch_scripts/bench_table.py" "$out"/*.json
-"$repository/launch_scripts/bench_figure.py" "$out/decision_time.png" \
-  "$out"/lapis_planner_{decision,spectral}_benchmark.json || trouble "FAILED: bench_figure.py"
+"$repository/launch_scripts/bench_figure.py" "$out/decision_time.png" "$out"/*.json || trouble "FAILED: bench_figure.py"
 for name in "${others[@]}"; do
   arguments=()
   if [ "$name" = lapis_pose_graph_benchmark ]; then

@@ -6,41 +6,50 @@ source "$(dirname "$0")/lib.sh"
 
 usage() {
   cat <<'TEXT'
-usage: bench.sh [DATASET] [--runs N]
-  DATASET   recorded RGB-D; default: rgbd/aws_small_house_loop in LAPIS_TEST_DATA
-  --runs N  lock-step replays of which the median is printed; default 3; 0: kernels only
-Run it on a machine that has nothing else to do: the table names the load it found.
+usage: bench.sh [DATASET] [--runs N] [--out DIR]
+  DATASET    recorded RGB-D; default: rgbd/aws_small_house_loop in LAPIS_TEST_DATA
+  --runs N   lock-step replays of which the median is printed; default 3; 0: kernels only
+  --out DIR  keeps results as JSON, and decision_time.png; default: out/bench
+Run it on a machine that has nothing else to do: the table names the load it found. What needs data that is not there
+is skipped, and told at the end. Exit status 1 when a benchmark failed.
 TEXT
 }
 
-dataset=${LAPIS_TEST_DATA:-$repository/../shared/data}/rgbd/aws_small_house_loop runs=3
+data=${LAPIS_TEST_DATA:-$repository/../shared/data}
+dataset=$data/rgbd/aws_small_house_loop runs=3 out=$repository/out/bench
 while [ $# -gt 0 ]; do
   case $1 in
     -h | --help) usage && exit 0 ;;
-    --runs) [ $# -gt 1 ] || die "--runs needs a value"; runs=$2 && shift ;;
+    --runs | --out) [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;&
+    --runs) runs=$2 && shift ;;
+    --out) out=$2 && shift ;;
     -*) die "unknown option $1 (see --help)" ;;
     *) dataset=$1 ;;
   esac
   shift
 done
 [[ $runs =~ ^[0-9]+$ ]] || die "--runs $runs: wanted is a number"
-[ "$runs" = 0 ] || [ -d "$dataset" ] || die "$dataset: no such folder; name a data set, set LAPIS_TEST_DATA, or --runs 0"
 require_build
-export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST
-out=$(mktemp -d)
-trap 'rm -r "$out"' EXIT
+export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
+mkdir -p "$out" || die "$out cannot be made a folder; choose another with --out DIR"
+rm -f "$out"/*.json
+read -r load _ </proc/loadavg
+troubles=() # what failed or was skipped
+
+trouble() { troubles+=("$*") && echo "$*" >&2; }
 
 play() { # NAME OPTION...
   local name=$1
   shift
   "$repository/launch_scripts/replay.sh" "$dataset" --out "$out/$name" --set evaluator.figures=false "$@" \
-    >"$out/$name.log" 2>&1 || { cat "$out/$name.log" >&2; exit 1; }
+    >"$out/$name.log" 2>&1 || { tail -n 5 "$out/$name.log" >&2 && die "$name failed"; }
 }
-read -r load _ </proc/loadavg
-for ((run = 1; run <= runs; ++run)); do play "lockstep_$run"; done
-[ "$runs" = 0 ] || play real_time --rate 1
 
-[ "$runs" = 0 ] || python3 - "$out" "$runs" "$load" <<'PYTHON'
+print_chain() {
+  local run
+  for ((run = 1; run <= runs; ++run)); do play "lockstep_$run"; done
+  play real_time --rate 1
+  python3 - "$out" "$runs" "$load" <<'PYTHON'
 import json, re, statistics, sys
 out, runs, load = sys.argv[1], int(sys.argv[2]), sys.argv[3]
 metrics = [json.load(open(f"{out}/lockstep_{run + 1}/metrics.json")) for run in range(runs)]
@@ -55,20 +64,34 @@ for name in metrics[0]["cpu_ms_per_frame"]:
     lost = f"{total - done[name]} of {total}" if name in done else ""
     print(f"{name:18}{cpu:14.1f}{memory:14.0f}{lost:>20}")
 PYTHON
+}
 
+if [ "$runs" -gt 0 ] && [ -d "$dataset" ]; then
+  print_chain
+elif [ "$runs" -gt 0 ]; then
+  trouble "SKIPPED: CPU time of the chain; $dataset is no folder: name a data set, or set LAPIS_TEST_DATA"
+fi
 
 # Google Benchmarks go into one table; the others print their own.
 others=()
 for benchmark in "$bin"/lapis_*_benchmark; do
   name=$(basename "$benchmark")
   if ! "$benchmark" --benchmark_list_tests >/dev/null 2>&1; then others+=("$name") && continue; fi
-  "$benchmark" --benchmark_out="$out/$name.json" >"$out/$name.log" 2>&1 || { cat "$out/$name.log" >&2; exit 1; }
+  echo "$name" >&2
+  "$benchmark" --benchmark_min_time=0.2 --benchmark_out="$out/$name.json" >"$out/$name.log" 2>&1 ||
+    { tail -n 5 "$out/$name.log" >&2 && trouble "FAILED: $name"; }
 done
-echo "kernels, load before: $load"
+printf '\nkernels, load before: %s\n' "$load"
 "$repository/launch_scripts/bench_table.py" "$out"/*.json
+"$repository/launch_scripts/bench_figure.py" "$out/decision_time.png" "$out"/*.json || trouble "FAILED: bench_figure.py"
 for name in "${others[@]}"; do
   arguments=()
-  if [ "$name" = lapis_pose_graph_benchmark ]; then arguments=("${LAPIS_TEST_DATA:-$repository/../shared/data}/posegraph"); fi
+  if [ "$name" = lapis_pose_graph_benchmark ]; then
+    if [ ! -d "$data/posegraph" ]; then trouble "SKIPPED: $name; no folder $data/posegraph" && continue; fi
+    arguments=("$data/posegraph")
+  fi
   printf '\n%s\n' "$name"
-  "$bin/$name" "${arguments[@]}"
+  "$bin/$name" "${arguments[@]}" || trouble "FAILED: $name"
 done
+[ ${#troubles[@]} -eq 0 ] || printf '%s\n' "" "${troubles[@]}"
+[[ " ${troubles[*]}" != *" FAILED:"* ]]

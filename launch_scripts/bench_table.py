@@ -51,23 +51,28 @@ def shown(nanoseconds):
     return f"{nanoseconds:.3g} ns"
 
 
+def times(ratio):
+    return f"{ratio:.0f}" if ratio >= 100 else f"{ratio:.3g}"
+
+
 def main():
-    print("| executable | kernel | time | peer | ratio |")
+    print("| benchmark | kernel | time | peer | ratio |")
     print("| --- | --- | --- | --- | --- |")
     for file in sys.argv[1:]:
         kernels = read(file)
+        benchmark = pathlib.Path(file).stem.removeprefix("lapis_").removesuffix("_benchmark")
         for name, result in kernels.items():
             cells = ["-", "-"]
             if result.get("error_occurred"):
-                print(f"| {pathlib.Path(file).stem} | {name} | {result['error_message']} | - | - |")
+                print(f"| {benchmark} | {name} | {result['error_message']} | - | - |")
                 continue
             peer = peer_of(name, kernels)
             own = next((counter for counter in OWN_RATIO if counter in result), None)
             if peer:
-                cells = [f"{peer}: {shown(time_ns(kernels[peer]))}", f"{time_ns(kernels[peer]) / time_ns(result):.3g}"]
+                cells = [f"{peer}: {shown(time_ns(kernels[peer]))}", times(time_ns(kernels[peer]) / time_ns(result))]
             elif own:
-                cells = [f"{OWN_RATIO[own]}: {result[OWN_RATIO[own]]:.3g} ms", f"{result[own]:.3g}"]
-            print(f"| {pathlib.Path(file).stem} | {name} | {shown(time_ns(result))} | " + " | ".join(cells) + " |")
+                cells = [f"{OWN_RATIO[own]}: {result[OWN_RATIO[own]]:.3g} ms", times(result[own])]
+            print(f"| {benchmark} | {name} | {shown(time_ns(result))} | " + " | ".join(cells) + " |")
     return 0
 
 

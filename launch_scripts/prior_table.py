@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Prints how many decisions would have been others with another prior occupancy of unknown voxels.
 
-usage: prior_table.py RUN_FOLDER...     of explore.sh --set 'planner.compared_priors=[0.05, 0.1, 0.2, 0.5]'
+usage: prior_table.py RUN_FOLDER...     of explore.sh or benchmark.sh --set 'planner.compared_priors=[0.05, 0.1, 0.2, 0.5]'
 
 Each decision is compared by itself: the same map, pose graph, candidates and goal that is being driven to (which counts
 planner.keep_factor times), whatever the run did afterwards. Decisions without a candidate that can be driven to are

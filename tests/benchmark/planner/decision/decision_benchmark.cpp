@@ -41,9 +41,10 @@ void join(GraphParts& parts, std::size_t from, std::size_t to, bool is_loop) {
 
 Eigen::Vector3d point_of(const mapping::CompactFrame& frame, std::size_t sample) {
   const auto columns = static_cast<std::size_t>(frame.columns()), stride = static_cast<std::size_t>(frame.stride());
+  const std::size_t column = sample % columns * stride, row = sample / columns * stride;
   const double z = 1e-3 * frame.depth_mm()[sample];
-  return {z * (static_cast<double>(sample % columns * stride) - frame.camera().cx) / frame.camera().fx,
-          z * (static_cast<double>(sample / columns * stride) - frame.camera().cy) / frame.camera().fy, z};
+  return {z * (static_cast<double>(column) - frame.camera().cx) / frame.camera().fx,
+          z * (static_cast<double>(row) - frame.camera().cy) / frame.camera().fy, z};
 }
 
 /// A hundred points that the key-frame saw, and those before and after it.
@@ -156,11 +157,11 @@ void knowledge(benchmark::State& state) {
   state.counters["edges"] = static_cast<double>(parts.edges.size());
 }
 
-BENCHMARK(decision)->Name("decide")->Arg(300)->Arg(1000)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
+const std::vector<std::vector<std::int64_t>> kKeyframes = {{100, 300, 1000, 3000, 10000}};
+BENCHMARK(decision)->Name("decide")->ArgsProduct(kKeyframes)->MeasureProcessCPUTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(knowledge)
     ->Name("graph_and_landmarks")
-    ->Arg(300)
-    ->Arg(1000)
+    ->ArgsProduct(kKeyframes)
     ->MeasureProcessCPUTime()
     ->Unit(benchmark::kMillisecond);
 

@@ -103,9 +103,8 @@ inline constexpr Topic<lapis_msgs::msg::VoxelTile> kVoxelTiles{
 inline constexpr Topic<lapis_msgs::msg::MapState> kMapState{"/semantic_mapper/map_state", dds::kLatched,
                                                             "semantic_mapper", "after the tiles of a version",
                                                             "version and checksum of the map"};
-inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kObstacles{"/semantic_mapper/obstacles", dds::kLatched,
-                                                                "semantic_mapper", "each frame",
-                                                                "from the last 10 s of frames; safety"};
+inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kObstacles{
+    "/semantic_mapper/obstacles", dds::kLatched, "semantic_mapper", "each frame", "from the last 10 s of frames"};
 inline constexpr Topic<octomap_msgs::msg::Octomap> kOctomap{"/semantic_mapper/octomap", dds::kLatched,
                                                             "semantic_mapper", "at most 1 Hz",
                                                             "ColorOcTree in class colours; made only for readers"};
@@ -134,7 +133,7 @@ inline constexpr Topic<visualization_msgs::msg::MarkerArray> kPlannerMarkers{
     "/planner/markers", dds::kLatched, "planner", "each decision",
     "frontiers, candidates, hallucinated graph; made only for readers"};
 inline constexpr Topic<lapis_msgs::msg::PlannerStatus> kPlannerStatus{"/planner/status", dds::kLatched, "planner",
-                                                                      "1 Hz and on change", "state and reason"};
+                                                                      "each frame and on change", "state and reason"};
 inline constexpr ServiceTopic<std_srvs::srv::Trigger> kStartExploring{"/planner/start", "planner",
                                                                       "explore, also after a pause or the end"};
 inline constexpr ServiceTopic<std_srvs::srv::Trigger> kStopExploring{"/planner/stop", "planner", "stand still, idle"};

@@ -87,6 +87,22 @@ TEST_F(SavedSemanticMap, IsSetAsideByANewMap) {
   EXPECT_EQ(files::read_file((folder_.path() / "map.1.lapis").string(), error), before) << error;
 }
 
+TEST_F(SavedSemanticMap, IsGoneOnWithBySupervisedRestartsOnlyInTheSameSessionOfSlam) {
+  const std::string same_session = "semantic_mapper.resume_any_session=false";
+  ASSERT_NO_FATAL_FAILURE(save_a_map({output()}, 0, 2, 7));
+  ASSERT_NO_FATAL_FAILURE(save_a_map({output(), resume(), same_session}, 2, 4, 7));
+  EXPECT_EQ(load(file()).provenance.at("frames"), "4");
+  EXPECT_FALSE(fs::exists(folder_.path() / "map.1.lapis"));
+  for (const int session : {8, 6}) {
+    std::string error;
+    const auto before = files::read_file(file(), error);
+    ASSERT_NO_FATAL_FAILURE(save_a_map({output(), resume(), same_session}, 4, 6, session));
+    EXPECT_EQ(load(file()).provenance.at("frames"), "2") << "a new map";
+    const std::string aside = session == 8 ? "map.1.lapis" : "map.2.lapis";
+    EXPECT_EQ(files::read_file((folder_.path() / aside).string(), error), before) << error;
+  }
+}
+
 TEST_F(SavedSemanticMap, IsNotMixedWithTheNextMapOfSlam) {
   ASSERT_NO_FATAL_FAILURE(save_a_map({output()}, 0, 2, 1));
   mapping::VoxelMap last(0.25);

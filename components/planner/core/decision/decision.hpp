@@ -89,11 +89,17 @@ struct Decision {
   bool agrees_with_mi_only() const { return chosen == by_mi_only; }
 };
 
+/// A target that is a frontier still, although it has been looked at from there [m, map].
+struct VainLook {
+  Eigen::Vector2d target_map, from_map;
+};
+
 /// What is not to be driven to, and what is being driven to.
 struct Memory {
   std::vector<Eigen::Vector2d> left_alone;  ///< targets [m, map]
-  double radius_m = 0.75;                   ///< what lies nearer to one of them is left alone, too
-  std::optional<Pose2> goal;                ///< current one
+  std::vector<VainLook> vain_looks;
+  double radius_m = 0.75;     ///< what lies nearer to such places is meant, too
+  std::optional<Pose2> goal;  ///< current one
 };
 
 /// Chooses where to go: candidates in front of every frontier, their ways, what the map and the pose graph would gain

@@ -58,6 +58,14 @@ bool is_left_alone(const Eigen::Vector2d& target_map, const Memory& memory) {
                      [&](const Eigen::Vector2d& place) { return (place - target_map).norm() <= memory.radius_m; });
 }
 
+/// Another look from about the same place shows no more; one from elsewhere may.
+bool is_looked_at(const Candidate& candidate, const Memory& memory) {
+  return std::any_of(memory.vain_looks.begin(), memory.vain_looks.end(), [&](const VainLook& look) {
+    return (look.target_map - candidate.target_map).norm() <= memory.radius_m &&
+           (look.from_map - candidate.goal.p_map).norm() <= memory.radius_m;
+  });
+}
+
 std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tree, const Memory& memory,
                                          const DecisionConfig& config) {
   std::vector<Candidate> candidates;
@@ -67,6 +75,7 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
     if (found.status != ViewpointStatus::kFound) candidates.push_back(rejected(frontier, reason_of(found.status)));
     for (const Viewpoint& viewpoint : found.viewpoints) {
       Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
+      if (is_looked_at(candidate, memory)) candidate.rejection = "was looked at from here in vain";
       if (is_left_alone(candidate.target_map, memory)) candidate.rejection = kLeftAlone;
     }
   }

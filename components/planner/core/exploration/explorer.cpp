@@ -50,6 +50,7 @@ void Explorer::start() {
   if (state_ == State::kDone || state_ == State::kFailed || state_ == State::kIdle) {
     memory_.clear();
     blocked_.clear();
+    vain_looks_.clear();
   }
   empty_decisions_ = 0;
   nothing_since_.reset();
@@ -79,6 +80,7 @@ void Explorer::forget_map() {
   blocked_.clear();
   nothing_since_.reset();
   looks_.clear();
+  vain_looks_.clear();
   home_.reset();
   last_tracked_.reset();
   decided_at_.reset();
@@ -151,8 +153,8 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
 void Explorer::note_arrival(time::Time now) {
   if (!goal_->target_map) return;
   if (goal_->kind == CandidateKind::kRevisit) return memory_.add_failure(*goal_->target_map, now);  // not for ever
-  looks_.push_back({*goal_->target_map, now + time::Duration::from_seconds(config_.settle_s)});
-  memory_.leave_alone(looks_.back().target_map, looks_.back().due);
+  looks_.push_back({{*goal_->target_map, goal_->pose.p_map}, now + time::Duration::from_seconds(config_.settle_s)});
+  memory_.leave_alone(*goal_->target_map, looks_.back().due);
 }
 
 bool Explorer::has_arrived(const Pose2& robot) const {
@@ -193,8 +195,11 @@ bool Explorer::is_path_free(const Pose2& robot, const PlanningGrid& grid) const 
 // A frontier that is still there after it has been looked at is glass, or noise.
 void Explorer::judge_looks(const Surroundings& surroundings, time::Time now) {
   while (!looks_.empty() && looks_.front().due <= now) {
-    if (has_frontier_at(surroundings, looks_.front().target_map, surroundings.grid().resolution_m()))
-      memory_.add_failure(looks_.front().target_map, now);
+    const VainLook& look = looks_.front().look;
+    if (has_frontier_at(surroundings, look.target_map, surroundings.grid().resolution_m())) {
+      memory_.add_failure(look.target_map, now);
+      vain_looks_.push_back(look);
+    }
     looks_.erase(looks_.begin());
   }
 }
@@ -202,6 +207,7 @@ void Explorer::judge_looks(const Surroundings& surroundings, time::Time now) {
 Memory Explorer::memory(time::Time now) const {
   Memory memory;
   memory.left_alone = memory_.left_alone(now);
+  memory.vain_looks = vain_looks_;
   memory.radius_m = config_.memory.radius_m;
   if (goal_) memory.goal = goal_->pose;
   return memory;

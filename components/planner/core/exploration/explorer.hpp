@@ -109,10 +109,11 @@ class Explorer {
   std::uint64_t path_number_ = 0;
   std::optional<Goal> goal_;
   struct Look {
-    Eigen::Vector2d target_map;
+    VainLook look;  ///< if it is in vain
     time::Time due;
   };
   std::vector<Look> looks_;  ///< whose effect on the map is awaited
+  std::vector<VainLook> vain_looks_;
   std::optional<Pose2> home_, last_tracked_;
   std::optional<time::Time> decided_at_, lost_at_, nothing_since_;
   int empty_decisions_ = 0;

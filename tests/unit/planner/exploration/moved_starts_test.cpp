@@ -1,0 +1,112 @@
+// The robot starts anywhere, in any direction (F17, 100 seeds): exploration ends, what can be reached is known then,
+// the robot never stands still for long, and a target that cannot be had is driven to three times at most.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <set>
+
+#include "tests/unit/planner/exploration/walk_world.hpp"
+
+namespace lapis::planner {
+namespace {
+
+using test::WalkWorld;
+using Lines = std::vector<std::string>;
+
+constexpr unsigned kSeeds = 100;
+constexpr double kLongestIdle_s = 10.0, kLongestRun_s = 900.0, kLeastShare = 0.98;
+
+const std::vector<Lines> kWorlds = {
+    {
+        "#########################################",  //
+        "#..........#............................#",  //
+        "#..........#............................#",  //
+        "#.......................................#",  //
+        "#.......................................#",  //
+        "#.......................................#",  //
+        "#..........#............................#",  //
+        "#..........#............................#",  //
+        "#########################################",
+    },
+    {
+        "#########################################",  //
+        "#..........#.............##.............#",  //
+        "#..........#.............##.............#",  //
+        "#..........#............................#",  //
+        "#.....................................###",  //
+        "#.....................................###",  //
+        "#.....................................###",  //
+        "#..........#............................#",  //
+        "#..........#............................#",  //
+        "####...#####............................#",  //
+        "#..........#####################....#####",  //
+        "#..........#............................#",  //
+        "#..........#............................#",  //
+        "#..........#............................#",  //
+        "#..........#............................#",  //
+        "#########################################",
+    },
+    {
+        "#########################",  // two rooms that cannot be entered
+        "#...........#...........#",  //
+        "#...........#...........#",  //
+        "#...........W...........#",  //
+        "#...........#...........#",  //
+        "#...........#...........#",  //
+        "#####...#################",  //
+        "#...........#...........#",  //
+        "#...........#...........#",  //
+        "#...........#...........#",  //
+        "#########################",
+    },
+};
+
+/// A start drawn by seed, and what can be reached from there.
+struct Start {
+  explicit Start(unsigned seed) : lines(kWorlds[seed % kWorlds.size()]) {
+    std::mt19937 random(seed);
+    const auto below = [&](std::size_t end) { return static_cast<int>(random() % end); };
+    do cell = {below(lines.front().size()), below(lines.size())};
+    while (at(cell) != '.');
+    yaw_rad = below(360) * std::numbers::pi / 180.0;
+    std::vector<Cell> open{cell};
+    reachable.insert(cell);
+    while (!open.empty()) {
+      const Cell from = open.back();
+      open.pop_back();
+      for (const Cell step : {Cell{1, 0}, Cell{-1, 0}, Cell{0, 1}, Cell{0, -1}}) {
+        if (at(from + step) == '.' && reachable.insert(from + step).second) open.push_back(from + step);
+      }
+    }
+    at(cell) = 'R';
+  }
+  char& at(Cell c) { return lines[lines.size() - 1 - static_cast<std::size_t>(c.y)][static_cast<std::size_t>(c.x)]; }
+
+  Lines lines;
+  Cell cell{0, 0};
+  double yaw_rad = 0.0;
+  std::set<Cell> reachable;
+};
+
+class MovedStart : public testing::TestWithParam<unsigned> {};
+
+TEST_P(MovedStart, IsExploredToTheEnd) {
+  const Start start(GetParam());
+  WalkWorld world(start.lines);
+  world.robot.yaw_rad = start.yaw_rad;
+  world.explorer.start();
+  world.run(kLongestRun_s);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  const auto known = std::count_if(start.reachable.begin(), start.reachable.end(),
+                                   [&](Cell c) { return world.surroundings.grid().state(c) == mapping::kFree; });
+  EXPECT_GE(static_cast<double>(known), kLeastShare * static_cast<double>(start.reachable.size()))
+      << "from " << start.cell.x << ", " << start.cell.y;
+  EXPECT_LE(world.longest_idle_s, kLongestIdle_s);
+  EXPECT_LE(world.most_failures(), 3);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, MovedStart, testing::Range(1U, kSeeds + 1U));
+
+}  // namespace
+}  // namespace lapis::planner

@@ -29,12 +29,11 @@ class KinematicWorld {
   Decision step() {
     drive();
     now = now + time::Duration::from_seconds(1.0 / kRate_hz);
-    ++frames_;
     controller.note_camera(now, now);
     controller.note_planner(now);
     if (has_pose) controller.set_pose(T_map_base, now, now);
     if (has_pose) controller.see({image(), camera, T_base_camera()}, now, now);
-    if (frames_ % 7 == 1) controller.set_obstacles(grid(), now, now);
+    controller.set_obstacles(grid(), now, now);
     Decision decision = controller.step(now);
     acting_ = commanded_;
     commanded_ = decision.command;
@@ -119,7 +118,6 @@ class KinematicWorld {
   }
 
   std::vector<Box> boxes_;
-  int frames_ = 0;
   Velocity commanded_, acting_;
 
  public:

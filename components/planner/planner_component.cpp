@@ -11,6 +11,7 @@
 namespace lapis::planner {
 namespace {
 
+constexpr double kFarewell_s = 1.0;
 constexpr const char* kLogFile = "decisions.csv";
 constexpr const char* kLapisMethod = "joint";  // docs/decisions/0031-the-method-called-lapis.md
 
@@ -305,6 +306,7 @@ std_msgs::msg::Header PlannerComponent::header() const { return messages::header
 void PlannerComponent::finish() {
   worker_.discard();
   path_.publish(to_message(std::vector<Pose2>{}, header()));
+  path_.wait_until_acknowledged(kFarewell_s);
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
 }
 

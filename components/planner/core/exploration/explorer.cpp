@@ -153,8 +153,25 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
 void Explorer::note_arrival(time::Time now) {
   if (!goal_->target_map) return;
   if (goal_->kind == CandidateKind::kRevisit) return memory_.add_failure(*goal_->target_map, now);  // not for ever
-  looks_.push_back({{*goal_->target_map, goal_->pose.p_map}, now + time::Duration::from_seconds(config_.settle_s)});
-  memory_.leave_alone(*goal_->target_map, looks_.back().due);
+  await({*goal_->target_map, goal_->pose.p_map}, now, config_.settle_s);
+}
+
+// What is seen from nearby only, such as an obstacle on a place that the map does not know, is forgotten when the robot
+// is away: without this it would come back for ever.
+void Explorer::note_vanished(const Decision& decision, time::Time now) {
+  if (!goal_ || !goal_->target_map || goal_->kind == CandidateKind::kRevisit) return;
+  const bool is_there = std::any_of(decision.candidates.begin(), decision.candidates.end(), [&](const Candidate& c) {
+    return c.rejection.empty() && (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
+  });
+  if (!is_there) await({*goal_->target_map, last_tracked_->p_map}, now, config_.memory.expiry_s);
+}
+
+/// Leaves the target alone until then, when it is judged whether the look was in vain.
+void Explorer::await(const VainLook& look, time::Time now, double seconds) {
+  const time::Time due = now + time::Duration::from_seconds(seconds);
+  const auto later = std::find_if(looks_.begin(), looks_.end(), [&](const Look& other) { return other.due > due; });
+  looks_.insert(later, {look, due});
+  memory_.leave_alone(look.target_map, due);
 }
 
 bool Explorer::has_arrived(const Pose2& robot) const {
@@ -216,6 +233,7 @@ Memory Explorer::memory(time::Time now) const {
 void Explorer::take(const Decision& decision, time::Time now) {
   if (state_ != State::kExploring) return;
   decided_at_ = now;
+  note_vanished(decision, now);
   if (!decision.chosen) return end_or_look_around(now);
   empty_decisions_ = 0;
   nothing_since_.reset();

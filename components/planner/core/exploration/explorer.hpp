@@ -93,6 +93,8 @@ class Explorer {
   void go_home(const Report& report, const Surroundings& surroundings);
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
   void note_arrival(time::Time now);
+  void note_vanished(const Decision& decision, time::Time now);
+  void await(const VainLook& look, time::Time now, double seconds);
   bool has_arrived(const Pose2& robot) const;
   bool stands_still(const Report& report);
   void note_failure(const Report& report);
@@ -112,7 +114,7 @@ class Explorer {
     VainLook look;  ///< if it is in vain
     time::Time due;
   };
-  std::vector<Look> looks_;  ///< whose effect on the map is awaited
+  std::vector<Look> looks_;  ///< whose effect on the map is awaited, the first due first
   std::vector<VainLook> vain_looks_;
   std::optional<Pose2> home_, last_tracked_;
   std::optional<time::Time> decided_at_, lost_at_, nothing_since_;

@@ -64,6 +64,13 @@ TEST_F(HardWorld, FreeSpaceBehindAGlassWall) {
   EXPECT_LE(world.most_failures(), 3);
 }
 
+TEST_F(HardWorld, FrontiersThatGoWhenTheRobotComesAndComeBackWhenItIsAway) {
+  const std::string wall(82, '#'), floor(80, '.');
+  WalkWorld world({wall, '#' + floor + '#', "N.R" + floor.substr(2) + 'N', '#' + floor + '#', wall});
+  explore(world, 1.0);
+  EXPECT_LE(world.travelled_m, 6 * 20.0) << "a few times from end to end";
+}
+
 TEST_F(HardWorld, AClosedRoom) {
   WalkWorld world({"#######", "#.....#", "#.....#", "#..R..#", "#.....#", "#.....#", "#######"});
   explore(world, 1.0);

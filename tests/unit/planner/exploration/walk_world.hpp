@@ -14,9 +14,9 @@
 namespace lapis::planner::test {
 
 /// A building drawn as text ('#' wall, '.' floor, 'G' a wall that is not seen, 'W' a window: seen through, not passed,
-/// 'O' an obstacle that only the obstacle layer knows, 'R' where the robot starts), a
-/// robot that follows paths exactly, and a camera that sees 90 degrees and 5 m of it. Ideal, but for what a test
-/// spoils.
+/// 'O' an obstacle that only the obstacle layer knows, 'N' one that it knows only while the robot is near and that
+/// hides what is there from the map, 'R' where the robot starts), a robot that follows paths exactly, and a camera that
+/// sees 90 degrees and 5 m of it. Ideal, but for what a test spoils.
 class WalkWorld {
  public:
   explicit WalkWorld(std::vector<std::string> lines, const ExplorerConfig& explorer_config = {})
@@ -139,9 +139,14 @@ class WalkWorld {
   ObstacleGrid obstacles() const {
     ObstacleGrid grid{Eigen::Vector2d::Zero(), kResolution_m, width(0), height(), {}};
     for (int y = 0; y < height(); ++y) {
-      for (int x = 0; x < width(0); ++x) grid.cells.push_back(at({x, y}) == 'O' ? 100 : 0);
+      for (int x = 0; x < width(0); ++x) grid.cells.push_back(occupancy({x, y}));
     }
     return grid;
+  }
+  std::int8_t occupancy(Cell c) const {
+    constexpr double kNear_m = 4.0;
+    if (at(c) != 'N') return at(c) == 'O' ? 100 : 0;
+    return (robot.p_map - center(c)).norm() < kNear_m ? 100 : -1;
   }
   /// 0.6 m/s along the path, turning at once; walls stop it.
   void move() {
@@ -162,7 +167,7 @@ class WalkWorld {
   }
   bool is_wall(const Eigen::Vector2d& p) const {
     const char what = at(surroundings.grid().cell_of(p));
-    return what == '#' || what == 'G' || what == 'W' || what == 'O';
+    return what == '#' || what == 'G' || what == 'W' || what == 'O' || what == 'N';
   }
 
   std::vector<std::string> lines_;

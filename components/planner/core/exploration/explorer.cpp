@@ -234,7 +234,7 @@ void Explorer::take(const Decision& decision, time::Time now) {
   if (state_ != State::kExploring) return;
   decided_at_ = now;
   note_vanished(decision, now);
-  if (!decision.chosen) return end_or_look_around(now);
+  if (!decision.chosen) return end_or_look_around(decision, now);
   empty_decisions_ = 0;
   nothing_since_.reset();
   follow(decision.candidates[*decision.chosen], now);
@@ -257,7 +257,7 @@ void Explorer::follow(const Candidate& chosen, time::Time now) {
 }
 
 // A turn in all directions may show what has been missed. After it what has failed gets another chance.
-void Explorer::end_or_look_around(time::Time now) {
+void Explorer::end_or_look_around(const Decision& decision, time::Time now) {
   const bool turns = goal_ && !goal_->target_map && distance(*last_tracked_, goal_->pose) <= config_.goal_tolerance_m;
   if (turns) return;
   drop_goal();
@@ -271,7 +271,9 @@ void Explorer::end_or_look_around(time::Time now) {
     return set_path({goal_->pose});
   }
   empty_decisions_ = 0;
-  const bool has_forgiven = memory_.forgive(now), has_unblocked = blocked_.forgive(now);
+  const bool is_any_left_alone = std::any_of(decision.candidates.begin(), decision.candidates.end(),
+                                             [](const Candidate& c) { return c.rejection == kLeftAlone; });
+  const bool has_forgiven = is_any_left_alone && memory_.forgive(now), has_unblocked = blocked_.forgive(now);
   if (has_forgiven || has_unblocked) return;
   enter(config_.returns_home ? State::kReturning : State::kDone, "nothing is left that can be reached");
 }

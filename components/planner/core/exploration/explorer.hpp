@@ -88,7 +88,7 @@ class Explorer {
   void drop_goal();
   bool explore(const Report& report, Surroundings& surroundings);
   void follow(const Candidate& chosen, time::Time now);
-  void end_or_look_around(time::Time now);
+  void end_or_look_around(const Decision& decision, time::Time now);
   void recover(const Report& report, const Surroundings* surroundings);
   void go_home(const Report& report, const Surroundings& surroundings);
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);

@@ -25,6 +25,21 @@ REDWOOD = DATA / "rgbd/redwood_livingroom1"
 AWS = DATA / "rgbd/aws_small_house_loop"
 AWS_CLASSES = DATA / "environments/aws_small_house/classes.csv"
 COMPONENTS = ("slam", "semantic_mapper", "evaluator", "sensor_replay")
+# A scene file: two rooms that are quickly explored.
+FLAT = f"""labels: {REPOSITORY}/config/labels/mpcat40.yaml
+rooms:
+  - {{id: living, rect: [0, 0, 4, 3], floor: parquet, wall: wallpaper_leaves}}
+  - {{id: hall, rect: [4.12, 0, 5.6, 3], floor: tiles, wall: brick}}
+openings:
+  - {{door: [4.06, 1.5]}}
+pictures:
+  - {{room: living, wall: south, x: 0.7}}
+  - {{room: living, wall: west, y: 1.5}}
+  - {{room: living, wall: north, x: 2.7}}
+  - {{room: hall, wall: east, y: 1.5}}
+starts:
+  - {{at: [2, 1.2], yaw_deg: 90}}
+"""
 # What a run folder has, and what of it is equal to the byte in a repeated run (docs/evaluation.md).
 FILES = ("trajectory_estimate.txt", "trajectory_ground_truth.txt", "keyframes.txt", "pose_graph.g2o", "slam.lapis",
          "map.lapis", "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "figures/map.png",

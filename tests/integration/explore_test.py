@@ -15,20 +15,6 @@ FILES = chain.FILES + chain.FILES_OF_LABELS + chain.FILES_OF_TRUTH + ("decisions
 SENSING_RANGE_M = 5.0  # robot.sensing_range_m
 VOXEL_M = 0.25  # semantic_mapper.resolution_m
 
-FLAT = f"""labels: {chain.REPOSITORY}/config/labels/mpcat40.yaml
-rooms:
-  - {{id: living, rect: [0, 0, 4, 3], floor: parquet, wall: wallpaper_leaves}}
-  - {{id: hall, rect: [4.12, 0, 5.6, 3], floor: tiles, wall: brick}}
-openings:
-  - {{door: [4.06, 1.5]}}
-pictures:
-  - {{room: living, wall: south, x: 0.7}}
-  - {{room: living, wall: north, x: 2.7}}
-  - {{room: hall, wall: east, y: 1.5}}
-starts:
-  - {{at: [2, 1.2], yaw_deg: 90}}
-"""
-
 
 def explore(out, *options):
     """launch_scripts/explore.sh, started."""
@@ -99,7 +85,7 @@ class ExploreTest(chain.ChainTest):
 
     def test_done_when_nothing_is_left(self):
         scene = self.folder / "flat.yaml"
-        scene.write_text(FLAT)
+        scene.write_text(chain.FLAT)
         folder = self.explore("run", "--scene", scene, "--method", "nearest", "--duration", "120")
         manifest = (folder / "manifest.yaml").read_text()
         self.assertIn("  planner_state: DONE\n  planner_reason: \"nothing is left that can be reached\"\n", manifest)

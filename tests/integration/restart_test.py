@@ -14,21 +14,6 @@ SPEAKS_FOR = {"slam": "pose", "semantic_mapper": "map", "planner": "path"}
 LONGEST_GAP_S = 0.1  # between commands, of which 20 come in a second; in a longer one the machine had no time for us
 TRIES = 3
 
-FLAT = f"""labels: {chain.REPOSITORY}/config/labels/mpcat40.yaml
-rooms:
-  - {{id: living, rect: [0, 0, 4, 3], floor: parquet, wall: wallpaper_leaves}}
-  - {{id: hall, rect: [4.12, 0, 5.6, 3], floor: tiles, wall: brick}}
-openings:
-  - {{door: [4.06, 1.5]}}
-pictures:
-  - {{room: living, wall: south, x: 0.7}}
-  - {{room: living, wall: west, y: 1.5}}
-  - {{room: living, wall: north, x: 2.7}}
-  - {{room: hall, wall: east, y: 1.5}}
-starts:
-  - {{at: [2, 1.2], yaw_deg: 90}}
-"""
-
 
 class Arrival:
     """A line of the probe: time [s], what came, and of a command whether the robot is to move."""
@@ -78,7 +63,7 @@ class RestartTest(chain.ChainTest):
 
     def test_exploration_completes_although_each_process_is_killed_in_turn(self):
         scene = self.folder / "flat.yaml"
-        scene.write_text(FLAT, encoding="utf-8")
+        scene.write_text(chain.FLAT, encoding="utf-8")
         run = self.explore("--scene", scene, "--method", "nearest", "--duration", "200",
                            "--set", "semantic_mapper.save_period_s=1")
         for victim in VICTIMS:

@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
 """Prints the table of benchmark.sh from run folders DIR/SCENE/METHOD/seed_N, and writes it as CSV.
 
-usage: benchmark_table.py CSV_FILE RUN_FOLDER...
+usage: benchmark_table.py CSV_FILE RUN_FOLDER|CSV_FILE...
+
+CSV files that it wrote earlier, on other machines for example, may stand among the folders.
 """
 
 import collections
@@ -46,23 +48,31 @@ def time_to(metrics, key):
 
 
 class Run:
-    """A run folder: what it is of, how it ended, and its values by column; None where it did not give one."""
+    """What a run is of, how it ended, and its values by column; None where it did not give one."""
+
+    def __init__(self, of, outcome, commit, values):
+        self.scene, self.method, self.seed = of
+        self.outcome, self.commit, self.values = outcome, commit, values
+
+    @property
+    def has_failed(self):
+        return self.outcome == "FAILED"
+
+
+class FolderRun(Run):
+    """A run whose folder is there."""
 
     def __init__(self, folder):
         self.folder = folder
-        self.scene, self.method, self.seed = (*folder.parts[-3:-1], folder.name.removeprefix("seed_"))
         try:
             self.metrics = json.loads((folder / "metrics.json").read_text())
         except OSError:
             self.metrics = {}
-        # benchmark.sh writes the file when the run has succeeded; a run that ended early has metrics, too.
-        self.has_failed = not (folder / "identity").exists()
-        self.outcome = self._outcome()
-        self.values = {name: self._value(function) for name, (_, function) in COLUMNS.items()}
-        self.commit = self._commit()
+        super().__init__((*folder.parts[-3:-1], folder.name.removeprefix("seed_")), self._outcome(), self._commit(),
+                         {name: self._value(function) for name, (_, function) in COLUMNS.items()})
 
     def _outcome(self):
-        if self.has_failed:
+        if not (self.folder / "identity").exists():  # written when the run has succeeded; others have metrics, too
             return "FAILED"
         if self.metrics["exit_reason"] == "lost":
             return "lost"
@@ -70,7 +80,7 @@ class Run:
 
     def _value(self, function):
         try:
-            return function(self.metrics)
+            return float(function(self.metrics))
         except (KeyError, TypeError):  # null: not defined for this run
             return None
 
@@ -82,12 +92,21 @@ class Run:
         return found and found[1]
 
 
-def runs_of(folders):
-    """Runs by (scene, method), in the order of the folders."""
+def rows_of(file):
+    """Runs of a CSV file that write_csv wrote."""
+    with file.open(newline="") as stream:
+        for row in csv.DictReader(stream):
+            values = {name: NEVER if row[name] == "never" else float(row[name]) if row[name] else None
+                      for name in COLUMNS}
+            yield Run((row["scene"], row["method"], row["seed"]), row["outcome"], row["commit"] or None, values)
+
+
+def runs_of(paths):
+    """Runs by (scene, method), in the order of the folders and CSV files."""
     groups = collections.defaultdict(list)
-    for folder in folders:
-        run = Run(pathlib.Path(folder).absolute())
-        groups[run.scene, run.method].append(run)
+    for path in (pathlib.Path(path).absolute() for path in paths):
+        for run in rows_of(path) if path.suffix == ".csv" else [FolderRun(path)]:
+            groups[run.scene, run.method].append(run)
     return groups
 
 
@@ -121,7 +140,7 @@ def write_csv(target, groups):
         writer.writerow(["scene", "method", "seed", "outcome", "commit", *COLUMNS])
         for (scene, method), runs in groups.items():
             for run in runs:
-                values = ["" if value in (None, NEVER) else value for value in run.values.values()]
+                values = ["never" if value == NEVER else value for value in run.values.values()]
                 writer.writerow([scene, method, run.seed, run.outcome, run.commit, *values])
 
 

@@ -1,0 +1,67 @@
+#!/usr/bin/env python3
+"""benchmark_table.py on made-up runs: outcomes, medians, and tables that are put together from earlier ones."""
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+SCRIPT = Path(sys.argv.pop(1))
+METRICS = {"exit_reason": "completed", "planner_state": "DONE", "explored_share": 0.9, "time_to_80_s": 50.0,
+           "time_to_90_s": None, "path_length_m": 40.0, "collisions": 0}
+
+
+class BenchmarkTableTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+
+    def run_folder(self, name, has_succeeded=True, **changes):
+        folder = self.folder / name
+        folder.mkdir(parents=True)
+        (folder / "metrics.json").write_text(json.dumps(METRICS | changes))
+        (folder / "manifest.yaml").write_text('version: "0.1.0"\ncommit: "abc123"\n')
+        if has_succeeded:
+            (folder / "identity").write_text("0\n")
+        return folder
+
+    def table(self, target, *sources):
+        """Exit status, and the cells of each line of the table."""
+        result = subprocess.run([sys.executable, "-B", SCRIPT, self.folder / target, *sources], capture_output=True,
+                                text=True)
+        self.assertEqual(result.stderr, "")
+        lines = [[cell.strip() for cell in line.split("|")[1:-1]] for line in result.stdout.splitlines()]
+        return result.returncode, [dict(zip(lines[0], line)) for line in lines[2:]]
+
+    def test_runs_and_their_median(self):
+        status, rows = self.table("runs.csv", self.run_folder("flat/lapis/seed_1"),
+                                  self.run_folder("flat/lapis/seed_2", explored_share=0.7, time_to_80_s=None),
+                                  self.run_folder("flat/lapis/seed_3", explored_share=0.95, planner_state="EXPLORING"))
+        self.assertEqual(status, 0)
+        self.assertEqual([row["outcome"] for row in rows], ["done", "done", "time up", "2 done, 1 time up"])
+        self.assertEqual([row["explored %"] for row in rows], ["90.0", "70.0", "95.0", "90.0"])
+        self.assertEqual([row["80 % s"] for row in rows], ["50", "-", "50", "50"])
+        self.assertEqual([row["90 % s"] for row in rows], ["-"] * 4)
+        self.assertEqual([row["commit"] for row in rows], ["abc123"] * 3 + ["-"])
+
+    def test_a_run_that_failed_is_told_and_is_in_no_median(self):
+        status, rows = self.table("runs.csv", self.run_folder("flat/tare/seed_1"),
+                                  self.run_folder("flat/tare/seed_2", has_succeeded=False, explored_share=0.1))
+        self.assertEqual(status, 1)
+        self.assertEqual([row["outcome"] for row in rows], ["done", "FAILED", "1 done, 1 FAILED"])
+        self.assertEqual(rows[-1]["explored %"], "90.0")
+
+    def test_tables_can_be_put_together(self):
+        runs = [self.run_folder("flat/lapis/seed_1"), self.run_folder("flat/lapis/seed_2", time_to_80_s=None),
+                self.run_folder("hall/lapis/seed_1", explored_share=0.5)]
+        whole = self.table("whole.csv", *runs)
+        self.table("first.csv", runs[0])
+        self.assertEqual(self.table("joined.csv", self.folder / "first.csv", *runs[1:]), whole)
+        self.assertEqual(self.table("again.csv", self.folder / "joined.csv"), whole)
+        self.assertEqual((self.folder / "again.csv").read_text(), (self.folder / "whole.csv").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -13,6 +13,7 @@ namespace {
 constexpr double kMotion_m = 0.3, kMotion_rad = 0.3;  // less is standing still
 constexpr double kAhead_m = 0.35;                     // what stops the robot is about there
 constexpr double kNearEnough_m = 1.0;                 // to a place that itself cannot be reached
+constexpr std::size_t kTrailPoses = 50;               // that are remembered
 constexpr double kPathTolerance_m = 1.0;              // of the path that has been driven already
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
@@ -83,6 +84,7 @@ void Explorer::forget_map() {
   vain_looks_.clear();
   home_.reset();
   last_tracked_.reset();
+  trail_.clear();
   decided_at_.reset();
   empty_decisions_ = 0;
   if (state_ == State::kRecovering) enter(interrupted_, "slam has begun another map");
@@ -106,7 +108,7 @@ void Explorer::drop_goal() {
 
 bool Explorer::step(const Report& report, Surroundings* surroundings) {
   if (report.robot && !home_) home_ = report.robot;
-  if (report.robot && report.tracking == Tracking::kTracking) last_tracked_ = report.robot;
+  if (report.robot && report.tracking == Tracking::kTracking) note_tracked(*report.robot);
   const bool is_active = state_ == State::kExploring || state_ == State::kReturning || state_ == State::kRecovering;
   if (!is_active) return false;
   if (!home_) {
@@ -295,8 +297,25 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
     return enter(State::kFailed,
                  "slam has not tracked for " + std::to_string(std::lround(config_.lost_timeout_s)) + " s");
   }
-  const bool can_drive = report.tracking == Tracking::kDeadReckoning && report.robot && last_tracked_;
-  if (can_drive && surroundings != nullptr && path_.empty()) drive_to(*last_tracked_, report, *surroundings);
+  const bool can_drive = report.tracking == Tracking::kDeadReckoning && report.robot && !trail_.empty();
+  if (can_drive && surroundings != nullptr) retrace(report, *surroundings);
+}
+
+void Explorer::note_tracked(const Pose2& robot) {
+  last_tracked_ = robot;
+  const bool is_elsewhere =
+      trail_.empty() || distance(robot, trail_.back()) > kMotion_m || turn(robot, trail_.back()) > kMotion_rad;
+  if (is_elsewhere) trail_.push_back(robot);
+  if (trail_.size() > kTrailPoses) trail_.pop_front();
+}
+
+// Back along the way that was tracked, as far as need be: at its end is what slam lost itself in.
+void Explorer::retrace(const Report& report, const Surroundings& surroundings) {
+  const bool is_there = distance(*report.robot, trail_.back()) <= config_.goal_tolerance_m &&
+                        turn(*report.robot, trail_.back()) <= config_.goal_tolerance_rad;
+  const bool goes_on = is_there && trail_.size() > 1;
+  if (goes_on) trail_.pop_back();
+  if (goes_on || path_.empty()) drive_to(trail_.back(), report, surroundings);
 }
 
 void Explorer::go_home(const Report& report, const Surroundings& surroundings) {

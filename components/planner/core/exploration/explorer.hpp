@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
@@ -90,6 +91,8 @@ class Explorer {
   void follow(const Candidate& chosen, time::Time now);
   void end_or_look_around(const Decision& decision, time::Time now);
   void recover(const Report& report, const Surroundings* surroundings);
+  void note_tracked(const Pose2& robot);
+  void retrace(const Report& report, const Surroundings& surroundings);
   void go_home(const Report& report, const Surroundings& surroundings);
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
   void note_arrival(time::Time now);
@@ -117,6 +120,7 @@ class Explorer {
   std::vector<Look> looks_;  ///< whose effect on the map is awaited, the first due first
   std::vector<VainLook> vain_looks_;
   std::optional<Pose2> home_, last_tracked_;
+  std::deque<Pose2> trail_;  ///< tracked, each somewhere else than the one before
   std::optional<time::Time> decided_at_, lost_at_, nothing_since_;
   int empty_decisions_ = 0;
   bool may_change_ = false;  ///< obstacles stand where there may soon be none

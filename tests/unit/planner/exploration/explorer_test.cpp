@@ -130,10 +130,24 @@ TEST(Explorer, DrivesBackToWhereItWasTrackedWhenWheelsLead) {
   world.tick();
   world.tracking = Tracking::kDeadReckoning;
   world.robot.p_map += Eigen::Vector2d(0.0, -0.5);
-  world.run(5.0);
+  world.run(0.8);
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
   EXPECT_EQ(world.explorer.reason(), "slam reckons by wheels alone");
   EXPECT_LT((world.robot.p_map - place).norm(), 0.4);
+}
+
+// In a view that tells slam nothing the robot is where it was tracked last.
+TEST(Explorer, GoesBackFartherWhereItIsStillNotTracked) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.run(5.0);
+  const double travelled_m = world.travelled_m;
+  const Eigen::Vector2d place = world.robot.p_map;
+  world.tracking = Tracking::kDeadReckoning;
+  world.run(10.0);
+  EXPECT_EQ(world.explorer.state(), State::kRecovering);
+  EXPECT_GT((world.robot.p_map - place).norm(), 1.0);
+  EXPECT_LT(world.travelled_m, 2.0 * travelled_m + 0.5) << "along the way it came";
 }
 
 TEST(Explorer, ADoorThatClosesIsNoReasonToWait) {

@@ -290,6 +290,7 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
     drop_goal();
     interrupted_ = state_;
     lost_at_ = report.now;
+    if (last_tracked_) trail_.push_back(*last_tracked_);
     enter(State::kRecovering, report.tracking == Tracking::kLost ? "slam is lost" : "slam reckons by wheels alone");
   }
   if ((report.now - *lost_at_).seconds() > config_.lost_timeout_s) {

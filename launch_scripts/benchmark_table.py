@@ -94,8 +94,14 @@ class FolderRun(Run):
 
 def rows_of(file):
     """Runs of a CSV file that write_csv wrote."""
+    if not file.is_file():
+        sys.exit(f"{file}: no such file")
     with file.open(newline="") as stream:
-        for row in csv.DictReader(stream):
+        table = csv.DictReader(stream)
+        missing = {"scene", "method", "seed", "outcome", "commit", *COLUMNS} - set(table.fieldnames or ())
+        if missing:
+            sys.exit(f"{file}: no table of benchmark.sh, the column {min(missing)} is not there")
+        for row in table:
             values = {name: NEVER if row[name] == "never" else float(row[name]) if row[name] else None
                       for name in COLUMNS}
             yield Run((row["scene"], row["method"], row["seed"]), row["outcome"], row["commit"] or None, values)

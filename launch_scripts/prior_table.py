@@ -18,7 +18,10 @@ PREFIX = "is_chosen_with_prior_"
 
 def changes_of(folder):
     """Number of decisions, and by prior how many of them it changes."""
-    with (pathlib.Path(folder) / "decisions.csv").open(newline="") as stream:
+    file = pathlib.Path(folder) / "decisions.csv"
+    if not file.is_file():
+        sys.exit(f"{file}: no such file; wanted is a run folder of explore.sh")
+    with file.open(newline="") as stream:
         table = csv.DictReader(stream)
         changes = {name.removeprefix(PREFIX): 0 for name in table.fieldnames if name.startswith(PREFIX)}
         count = 0

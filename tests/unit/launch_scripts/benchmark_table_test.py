@@ -62,6 +62,15 @@ class BenchmarkTableTest(unittest.TestCase):
         self.assertEqual(self.table("again.csv", self.folder / "joined.csv"), whole)
         self.assertEqual((self.folder / "again.csv").read_text(), (self.folder / "whole.csv").read_text())
 
+    def test_what_is_no_table_is_refused(self):
+        other = self.folder / "other.csv"
+        other.write_text("scene,method\n1,2\n")
+        for source, complaint in ((self.folder / "none.csv", "no such file"), (other, "no table of benchmark.sh")):
+            result = subprocess.run([sys.executable, "-B", SCRIPT, self.folder / "runs.csv", source],
+                                    capture_output=True, text=True)
+            self.assertEqual(result.returncode, 1)
+            self.assertIn(f"{source}: {complaint}", result.stderr)
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

@@ -136,7 +136,7 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   may_change_ = surroundings.grid().has_passing_obstacles();
   const bool is_due = !decided_at_ || (report.now - *decided_at_).seconds() >= config_.replan_period_s;
   if (!goal_) return is_due;
-  if (has_arrived(*report.robot)) {
+  if (is_at(goal_->pose, *report.robot)) {
     note_arrival(report.now);
     drop_goal();
     return true;
@@ -176,9 +176,8 @@ void Explorer::await(const VainLook& look, time::Time now, double seconds) {
   memory_.leave_alone(look.target_map, due);
 }
 
-bool Explorer::has_arrived(const Pose2& robot) const {
-  return distance(robot, goal_->pose) <= config_.goal_tolerance_m &&
-         turn(robot, goal_->pose) <= config_.goal_tolerance_rad;
+bool Explorer::is_at(const Pose2& place, const Pose2& robot) const {
+  return distance(robot, place) <= config_.goal_tolerance_m && turn(robot, place) <= config_.goal_tolerance_rad;
 }
 
 bool Explorer::stands_still(const Report& report) {
@@ -312,9 +311,7 @@ void Explorer::note_tracked(const Pose2& robot) {
 
 // Back along the way that was tracked, as far as need be: at its end is what slam lost itself in.
 void Explorer::retrace(const Report& report, const Surroundings& surroundings) {
-  const bool is_there = distance(*report.robot, trail_.back()) <= config_.goal_tolerance_m &&
-                        turn(*report.robot, trail_.back()) <= config_.goal_tolerance_rad;
-  const bool goes_on = is_there && trail_.size() > 1;
+  const bool goes_on = is_at(trail_.back(), *report.robot) && trail_.size() > 1;
   if (goes_on) trail_.pop_back();
   if (goes_on || path_.empty()) drive_to(trail_.back(), report, surroundings);
 }

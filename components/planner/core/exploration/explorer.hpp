@@ -98,7 +98,7 @@ class Explorer {
   void note_arrival(time::Time now);
   void note_vanished(const Decision& decision, time::Time now);
   void await(const VainLook& look, time::Time now, double seconds);
-  bool has_arrived(const Pose2& robot) const;
+  bool is_at(const Pose2& place, const Pose2& robot) const;
   bool stands_still(const Report& report);
   void note_failure(const Report& report);
   bool is_path_free(const Pose2& robot, const PlanningGrid& grid) const;

@@ -129,6 +129,7 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   for (const Match match : {depth_match, label_match, confidence_match, info_match}) {
     if (match == Match::kWait) return false;
   }
+  told_stamp_ = now;
   if (tracked.state() != lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING) {
     drop("slam does not track");
   } else if (depth == nullptr) {
@@ -262,7 +263,7 @@ void SemanticMapperComponent::follow_graph(const Graph& graph) {
 
 void SemanticMapperComponent::publish(bool is_final) {
   if (is_final || seconds_since(tiles_stamp_, stamp_) >= config_.tile_period_s) publish_tiles();
-  if (seconds_since(obstacles_stamp_, stamp_) >= config_.obstacle_period_s) publish_obstacles();
+  if (seconds_since(obstacles_stamp_, told_stamp_) >= config_.obstacle_period_s) publish_obstacles();
   publish_views(is_final || seconds_since(views_stamp_, stamp_) >= config_.view_period_s);
   if (config_.output_dir.empty() || seconds_since(saved_stamp_, stamp_) < config_.save_period_s) return;
   saved_stamp_ = stamp_;
@@ -290,7 +291,7 @@ void SemanticMapperComponent::publish_tiles() {
   }
   const auto state = mapper_->state();
   lapis_msgs::msg::MapState message;
-  message.header(header());
+  message.header(header(stamp_));
   message.epoch(epoch_);
   message.version(state.version);
   message.session(session_);
@@ -304,9 +305,10 @@ void SemanticMapperComponent::publish_tiles() {
   map_state_.publish(message);
 }
 
+/// Also of frames that could not be integrated, for the robot has to find back to where slam tracks.
 void SemanticMapperComponent::publish_obstacles() {
-  obstacles_stamp_ = stamp_;
-  obstacles_.publish(to_message(obstacle_layer_->grid(), header()));
+  obstacles_stamp_ = told_stamp_;
+  obstacles_.publish(to_message(obstacle_layer_->grid(), header(told_stamp_)));
 }
 
 /// True when a view is due and read by anybody, or when a reader has come since the last look.
@@ -325,10 +327,10 @@ void SemanticMapperComponent::publish_views(bool is_due) {
   const auto reader = belief_reader();
   const auto& map = mapper_->map();
   if (wants_octomap) {
-    octomap_.publish(to_message(encode_octree(map, reader, label_list_), map.resolution_m(), header()));
+    octomap_.publish(to_message(encode_octree(map, reader, label_list_), map.resolution_m(), header(stamp_)));
   }
-  if (wants_points) points_.publish(to_message(occupied_points(map, reader, label_list_), header()));
-  if (wants_grid) grid_.publish(to_message(floor_plan_->project(map, reader), header()));
+  if (wants_points) points_.publish(to_message(occupied_points(map, reader, label_list_), header(stamp_)));
+  if (wants_grid) grid_.publish(to_message(floor_plan_->project(map, reader), header(stamp_)));
 }
 
 std_srvs::srv::Trigger_Response SemanticMapperComponent::save_on_request() {
@@ -392,9 +394,9 @@ mapping::BeliefReader SemanticMapperComponent::belief_reader() const {
   return mapping::BeliefReader(model);
 }
 
-std_msgs::msg::Header SemanticMapperComponent::header() const {
+std_msgs::msg::Header SemanticMapperComponent::header(time::Time stamp) const {
   std_msgs::msg::Header h;
-  h.stamp(messages::to_message(stamp_));
+  h.stamp(messages::to_message(stamp));
   h.frame_id(context_.frame("map"));
   return h;
 }

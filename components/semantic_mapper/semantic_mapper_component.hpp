@@ -55,7 +55,7 @@ class SemanticMapperComponent {
   std::optional<std::string> save();
   std::optional<std::string> write_files();
   mapping::BeliefReader belief_reader() const;
-  std_msgs::msg::Header header() const;
+  std_msgs::msg::Header header(time::Time stamp) const;
 
   Config config_;
   runtime::Context& context_;
@@ -84,6 +84,7 @@ class SemanticMapperComponent {
   std::int64_t session_ = 0;
   std::int64_t epoch_ = 0;
   time::Time stamp_;                       // of the newest integrated frame
+  time::Time told_stamp_;                  // of the newest frame that slam told of
   std::optional<time::Time> tiles_stamp_;  // published last
   std::optional<time::Time> views_stamp_;
   std::optional<time::Time> obstacles_stamp_;

@@ -94,5 +94,18 @@ TEST_F(Obstacles, GridsComeFifteenTimesASecondOfStampsAndToLateJoiners) {
   EXPECT_EQ(seen.back(), grids.back());
 }
 
+// A robot that slam does not track goes by wheels, and its controller stands still without a map.
+TEST_F(Obstacles, GridsGoOnWhileSlamDoesNotTrack) {
+  ASSERT_TRUE(map_frame(0)) << mapper.log();
+  ASSERT_TRUE(probe.wait_until([&] { return grids.size() == 1; })) << mapper.log();
+  auto lost = tracked(2);
+  lost.state(lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST);
+  feed.send(feed.frame(CameraFeed::stamp(2), slow_motion(0)));
+  slam.publish(lost);
+  ASSERT_TRUE(probe.wait_until([&] { return grids.size() == 2; })) << mapper.log();
+  EXPECT_EQ(stamp_of(grids[1]), CameraFeed::stamp(2));
+  EXPECT_EQ(grids[1].data(), grids[0].data());
+}
+
 }  // namespace
 }  // namespace lapis::test

@@ -52,6 +52,7 @@ void Explorer::start() {
     memory_.clear();
     blocked_.clear();
     vain_looks_.clear();
+    losses_.clear();
   }
   empty_decisions_ = 0;
   nothing_since_.reset();
@@ -82,6 +83,7 @@ void Explorer::forget_map() {
   nothing_since_.reset();
   looks_.clear();
   vain_looks_.clear();
+  losses_.clear();
   home_.reset();
   last_tracked_.reset();
   trail_.clear();
@@ -286,6 +288,7 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
     return enter(interrupted_, "slam tracks again");
   }
   if (state_ != State::kRecovering) {
+    note_loss(report.now);
     drop_goal();
     interrupted_ = state_;
     lost_at_ = report.now;
@@ -299,6 +302,16 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
   }
   const bool can_drive = report.tracking == Tracking::kDeadReckoning && report.robot && !trail_.empty();
   if (can_drive && surroundings != nullptr) retrace(report, *surroundings);
+}
+
+// Slam may lose itself anywhere; on the way to the same target again, it does so for what is seen there.
+void Explorer::note_loss(time::Time now) {
+  if (!goal_ || !goal_->target_map) return;
+  const bool is_again = std::any_of(losses_.begin(), losses_.end(), [&](const Eigen::Vector2d& target_map) {
+    return (target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
+  });
+  if (is_again) memory_.add_failure(*goal_->target_map, now);
+  losses_.push_back(*goal_->target_map);
 }
 
 void Explorer::note_tracked(const Pose2& robot) {

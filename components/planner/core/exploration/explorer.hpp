@@ -91,6 +91,7 @@ class Explorer {
   void follow(const Candidate& chosen, time::Time now);
   void end_or_look_around(const Decision& decision, time::Time now);
   void recover(const Report& report, const Surroundings* surroundings);
+  void note_loss(time::Time now);
   void note_tracked(const Pose2& robot);
   void retrace(const Report& report, const Surroundings& surroundings);
   void go_home(const Report& report, const Surroundings& surroundings);
@@ -119,6 +120,7 @@ class Explorer {
   };
   std::vector<Look> looks_;  ///< whose effect on the map is awaited, the first due first
   std::vector<VainLook> vain_looks_;
+  std::vector<Eigen::Vector2d> losses_;  ///< targets on the way to which slam stopped tracking [m, map]
   std::optional<Pose2> home_, last_tracked_;
   std::deque<Pose2> trail_;  ///< tracked, each somewhere else than the one before
   std::optional<time::Time> decided_at_, lost_at_, nothing_since_;

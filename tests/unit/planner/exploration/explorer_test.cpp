@@ -150,6 +150,22 @@ TEST(Explorer, GoesBackFartherWhereItIsStillNotTracked) {
   EXPECT_LT(world.travelled_m, 2.0 * travelled_m + 0.5) << "along the way it came";
 }
 
+TEST(Explorer, GivesUpARoomInWhichSlamDoesNotTrack) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  int losses = 0;
+  while (world.explorer.state() != State::kDone && world.now.seconds() < 600.0) {
+    const bool is_lost = world.robot.p_map.x() > 22 * WalkWorld::kResolution_m;
+    if (is_lost && world.tracking == Tracking::kTracking) ++losses;
+    world.tracking = is_lost ? Tracking::kDeadReckoning : Tracking::kTracking;
+    world.tick();
+  }
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  EXPECT_GT(losses, 1);
+  EXPECT_LT(losses, 25);
+  EXPECT_GT(world.explored_share(), 0.7);
+}
+
 TEST(Explorer, ADoorThatClosesIsNoReasonToWait) {
   WalkWorld world(closed(kThreeRooms));
   world.explorer.start();

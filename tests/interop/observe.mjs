@@ -19,17 +19,23 @@ const PEERS = 32; // participants per host that announcements reach, as with ROS
 const domain = Number(process.env.ROS_DOMAIN_ID ?? 0);
 const discoveryPort = (participant) => 7410 + 250 * domain + 2 * participant;
 
-// The package knows multicast discovery only. This socket does what LOCALHOST asks for: announcements go to each
-// possible participant of this host, and we listen where the others' announcements go.
+// The package knows multicast discovery only, and announces itself once: a process that is just starting and does not
+// listen yet would never hear of it. This socket does what LOCALHOST asks for: announcements go to each possible
+// participant of this host, again every second as RTPS has it, and we listen where the others' announcements go.
 function loopbackSockets(participantId) {
   return async (options) => {
     const socket = await UdpSocketNode.Create({ ...options, reuseAddr: false });
     const [send, bind] = [socket.send.bind(socket), socket.bind.bind(socket)];
+    const announce = async (data) => {
+      for (let peer = 0; peer < PEERS; ++peer) await send(data, 0, data.length, discoveryPort(peer), LOOPBACK);
+    };
     socket.bind = (where) => bind({ address: LOOPBACK, port: where.port ? 0 : discoveryPort(participantId) });
     socket.addMembership = async () => {};
     socket.send = async (data, offset, length, port, address) => {
       if (!address.startsWith("239.")) return send(data, offset, length, port, address);
-      for (let peer = 0; peer < PEERS; ++peer) await send(data, offset, length, discoveryPort(peer), LOOPBACK);
+      const announcement = data.slice(offset, offset + length);
+      setInterval(() => announce(announcement), 1000);
+      return announce(announcement);
     };
     return socket;
   };

@@ -12,8 +12,8 @@ struct HallucinationConfig {
   CovisibilityConfig covisibility;
   /// Landmarks seen again of which a loop closure is impossible (or fewer), and as sure as it gets (or more); its
   /// probability is linear in between. 1 <= impossible < certain.
-  int impossible_landmarks = 30, certain_landmarks = 120;
-  double max_probability = 0.75;    ///< of a loop closure, however many landmarks are seen again, in [0.05, 1]
+  int impossible_landmarks = 10, certain_landmarks = 100;
+  double max_probability = 0.6;     ///< of a loop closure, however many landmarks are seen again, in [0.05, 1]
   double min_loop_way_m = 5.0;      ///< along the graph; nearer key-frames are seen by every path; in [0, 100]
   double place_radius_m = 2.0;      ///< key-frames nearer to each other are one place, in [0.1, 20]
   double revisit_spacing_m = 20.0;  ///< way after a loop closure before its place counts again, in [0, 1000]

@@ -62,7 +62,11 @@ TEST(Hallucinate, OdometryFallsWithDistance) {
 }
 
 TEST(Hallucinate, FindsTheOldPlaceFromTheNodeThatSeesMostOfIt) {
-  const Hallucination path = Square().drive(kHome);
+  Square world;
+  world.config.impossible_landmarks = 30;
+  world.config.certain_landmarks = 120;
+  world.config.max_probability = 0.75;
+  const Hallucination path = world.drive(kHome);
   ASSERT_EQ(path.places.size(), 1u);
   EXPECT_EQ(path.places[0].keyframe, 0);
   EXPECT_EQ(path.places[0].node, 1);

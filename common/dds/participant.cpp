@@ -18,7 +18,9 @@ using compat::IPLocator;
 using compat::rtps::Locator_t;
 
 constexpr std::uint32_t kSharedMemorySegmentBytes = 16u << 20;  // ten times the largest image
-constexpr std::uint32_t kPeersPerHost = 32;                     // as rmw_fastrtps asks of LOCALHOST peers
+// rmw_fastrtps looks for 32 participants on each host. Fast DDS numbers those of one process without reusing numbers,
+// and each of ours takes two.
+constexpr std::uint32_t kPeersPerHost = 64;
 
 Locator_t peer_locator(const std::string& address) {
   Locator_t locator;
@@ -66,6 +68,16 @@ void apply_discovery(const DiscoverySettings& discovery, compat::fdds::DomainPar
   }
 }
 
+compat::fdds::DomainParticipant* create_participant(int domain, const compat::fdds::DomainParticipantQos& qos) {
+  auto* factory = compat::fdds::DomainParticipantFactory::get_instance();
+  auto* participant = factory->create_participant(static_cast<std::uint32_t>(domain), qos);
+  if (participant == nullptr) {
+    throw std::runtime_error("DDS participant could not be created in domain " + std::to_string(domain) +
+                             "; see the Fast DDS message above");
+  }
+  return participant;
+}
+
 rmw_dds_common::msg::Gid to_message(const Gid& gid) {
   rmw_dds_common::msg::Gid message;
   message.data(gid);
@@ -82,12 +94,11 @@ Participant::Participant(const ParticipantOptions& options) : options_(options) 
   apply_transport(options, qos);
   apply_discovery(options.discovery, qos);
   compat::announce_no_type_information(qos);
-  auto* factory = compat::fdds::DomainParticipantFactory::get_instance();
-  participant_ = factory->create_participant(static_cast<std::uint32_t>(options.discovery.domain), qos);
-  if (participant_ == nullptr) {
-    throw std::runtime_error("DDS participant could not be created in domain " +
-                             std::to_string(options.discovery.domain) + "; see the Fast DDS message above");
-  }
+  participant_ = create_participant(options.discovery.domain, qos);
+  // Fast DDS announces a participant before it listens, and the others answer a first announcement only. So a second
+  // participant comes and goes, and the first hears what they answer to that: decision 0029.
+  compat::fdds::DomainParticipantFactory::get_instance()->delete_participant(
+      create_participant(options.discovery.domain, qos));
   publisher_ = participant_->create_publisher(compat::fdds::PUBLISHER_QOS_DEFAULT);
   subscriber_ = participant_->create_subscriber(compat::fdds::SUBSCRIBER_QOS_DEFAULT);
   using Info = rmw_dds_common::msg::ParticipantEntitiesInfo;

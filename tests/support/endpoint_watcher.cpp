@@ -62,7 +62,9 @@ class EndpointWatcher::Listener : public compat::fdds::DomainParticipantListener
 #ifdef LAPIS_FASTDDS_3
   void on_participant_discovery(DomainParticipant*, compat::rtps::ParticipantDiscoveryStatus status,
                                 const compat::fdds::ParticipantBuiltinTopicData& info, bool&) override {
-    if (status != compat::rtps::ParticipantDiscoveryStatus::DISCOVERED_PARTICIPANT) return;
+    using Status = compat::rtps::ParticipantDiscoveryStatus;
+    if (status == Status::REMOVED_PARTICIPANT || status == Status::DROPPED_PARTICIPANT) remove(dds::to_gid(info.guid));
+    if (status != Status::DISCOVERED_PARTICIPANT) return;
     add(SeenParticipant{info.participant_name.to_string(), text_of(info.user_data.getValue()), dds::to_gid(info.guid)});
   }
   void on_data_writer_discovery(DomainParticipant*, compat::rtps::WriterDiscoveryStatus status,
@@ -75,8 +77,12 @@ class EndpointWatcher::Listener : public compat::fdds::DomainParticipantListener
   }
 #else
   void on_participant_discovery(DomainParticipant*, compat::rtps::ParticipantDiscoveryInfo&& found) override {
-    if (found.status != compat::rtps::ParticipantDiscoveryInfo::DISCOVERED_PARTICIPANT) return;
+    using Info = compat::rtps::ParticipantDiscoveryInfo;
     const auto& info = found.info;
+    if (found.status == Info::REMOVED_PARTICIPANT || found.status == Info::DROPPED_PARTICIPANT) {
+      remove(dds::to_gid(info.m_guid));
+    }
+    if (found.status != Info::DISCOVERED_PARTICIPANT) return;
     add(SeenParticipant{info.m_participantName.to_string(), text_of(info.m_userData.getValue()),
                         dds::to_gid(info.m_guid)});
   }
@@ -96,6 +102,10 @@ class EndpointWatcher::Listener : public compat::fdds::DomainParticipantListener
   void add(SeenParticipant participant) {
     const std::lock_guard lock(mutex);
     participants.push_back(std::move(participant));
+  }
+  void remove(const dds::Gid& gid) {
+    const std::lock_guard lock(mutex);
+    std::erase_if(participants, [&](const SeenParticipant& participant) { return participant.gid == gid; });
   }
   void add(SeenEndpoint endpoint) {
     // DDS tells of the participant's own endpoints, too.

@@ -36,7 +36,7 @@ class EndpointWatcher {
   EndpointWatcher& operator=(const EndpointWatcher&) = delete;
 
   std::vector<SeenEndpoint> endpoints() const;
-  std::vector<SeenParticipant> participants() const;
+  std::vector<SeenParticipant> participants() const;  ///< those that are still there
   std::optional<SeenEndpoint> writer(const std::string& topic) const;
   std::optional<SeenEndpoint> reader(const std::string& topic) const;
 

@@ -81,7 +81,7 @@ TEST(Wire, ParticipantIsARos2Node) {
   ChildProcess echo(kEcho, {"--namespace", "robot1"});
   ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
   ASSERT_TRUE(probe.wait_until([&] { return !graph.empty() && watcher.endpoints().size() >= 10; }));
-  ASSERT_EQ(watcher.participants().size(), 1u);
+  ASSERT_TRUE(probe.wait_until([&] { return watcher.participants().size() == 1u; }));
   EXPECT_EQ(watcher.participants()[0].user_data, "enclave=/;");
   EXPECT_EQ(graph.back().gid().data(), watcher.participants()[0].gid);
   ASSERT_EQ(graph.back().node_entities_info_seq().size(), 1u);

@@ -1,6 +1,6 @@
 #pragma once
 
-// The topic table: every name, type and QoS that Lapis's processes promise each other (design section 4).
+// The topic table: every name, type and QoS that Lapis's processes promise each other.
 // docs/topics.md is printed from it.
 
 #include "common/dds/topic.hpp"

@@ -4,7 +4,7 @@
 
 namespace lapis::dds {
 
-/// What a topic needs of DDS. Everything is RELIABLE and KEEP_LAST (design section 5).
+/// What a topic needs of DDS. Everything is RELIABLE and KEEP_LAST (docs/topics.md).
 struct Qos {
   int depth = 10;
   bool latched = false;  ///< TRANSIENT_LOCAL: a late joiner gets the last samples

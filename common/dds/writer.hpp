@@ -23,7 +23,7 @@ class Writer : private compat::fdds::DataWriterListener {
   /// Writes one sample; a refusal by DDS is counted and returned.
   bool write(const void* sample, compat::rtps::WriteParams& params);
   bool write(const void* sample);
-  /// Ends a key without leaving a sample behind (never dispose: design section 5).
+  /// Ends a key without leaving a sample behind (never dispose: late joiners would get the disposed keys, too).
   bool unregister(const void* sample);
 
   /// Waits until every matched reader has acknowledged all samples; false when that takes longer. Only for the end of

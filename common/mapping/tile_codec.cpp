@@ -26,6 +26,13 @@ void read_blocks(files::ByteReader& in, const TileIndex& index, DecodedTile& til
   if (in.remaining() > 0) in.fail();
 }
 
+/// Whoever keeps the map in an array of its extent would need memory without end.
+bool is_within_reach(const TileIndex& index, const DecodedTile& tile) {
+  const double edge_m = tile.blocks_per_edge * kBlockEdge * tile.resolution_m;
+  const auto is_near = [&](std::int32_t i) { return std::abs(static_cast<double>(i)) * edge_m <= kMaxReach_m; };
+  return is_near(index.x) && is_near(index.y) && is_near(index.z);
+}
+
 }  // namespace
 
 int blocks_per_tile_edge(double resolution_m, double tile_edge_m) {
@@ -84,7 +91,7 @@ std::optional<DecodedTile> decode_tile(std::span<const std::uint8_t> bytes, cons
   const bool is_sane = tile.blocks_per_edge >= 1 && tile.blocks_per_edge <= kMaxBlocksPerTileEdge &&
                        flags <= kCompressed && tile.resolution_m >= kMinResolution_m &&
                        tile.resolution_m <= kMaxResolution_m;
-  if (!in.is_good() || !is_known || !is_sane) return std::nullopt;
+  if (!in.is_good() || !is_known || !is_sane || !is_within_reach(index, tile)) return std::nullopt;
   if (flags & kCompressed) {
     const auto body = zstd_decompress(in.raw(in.remaining()), kMaxBodyBytes);
     if (!body) return std::nullopt;

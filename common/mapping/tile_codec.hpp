@@ -38,8 +38,11 @@ struct DecodedTile {
 /// then it exceeds kMaxTileBytes, which takes several classes in nearly every voxel of a tile of 64,000.
 std::optional<std::vector<std::uint8_t>> encode_tile(const VoxelMap& map, const TileIndex& tile, int blocks_per_edge);
 
-/// Inverse of encode_tile for the tile at `tile`. Nothing when the bytes are not exactly what an encoder writes: any
-/// input is safe.
+/// Tiles farther from the origin of the map frame are not believed [m].
+inline constexpr double kMaxReach_m = 1000.0;
+
+/// Inverse of encode_tile for the tile at `index`. Nothing when the bytes are not exactly what an encoder writes, or
+/// when the tile is beyond kMaxReach_m: any input is safe.
 std::optional<DecodedTile> decode_tile(std::span<const std::uint8_t> bytes, const TileIndex& index);
 
 /// Hash of a tile at a map version; the checksum of a map state is the sum over its tiles modulo 2^64.

@@ -10,7 +10,7 @@
 
 namespace lapis::runtime {
 
-/// Whether what others say that they have published has been received (design section 6).
+/// Whether what others say that they have published has been received (docs/architecture.md).
 class CountedInputs {
  public:
   using Counts = std::vector<lapis_msgs::msg::TopicCount>;

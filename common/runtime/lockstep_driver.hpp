@@ -31,9 +31,9 @@ void describe(Field& field, LockstepConfig& c) {
         "end the run, wait for a restart (at most 60 s), or go on without it");
 }
 
-/// The clock's side of lock-step (design section 6). Its owner publishes frame and /clock, calls begin(), and publishes
-/// the next frame when the driver is idle again; in between the tick is released to one stage after another. Idle
-/// means, too, that all samples which participants published for the owner (commands) have been received.
+/// The clock's side of lock-step (docs/architecture.md). Its owner publishes frame and /clock, calls begin(), and
+/// publishes the next frame when the driver is idle again; in between the tick is released to one stage after another.
+/// Idle means, too, that all samples which participants published for the owner (commands) have been received.
 class LockstepDriver {
  public:
   enum class State { kJoining, kIdle, kWaiting, kFailed };

@@ -13,7 +13,7 @@ namespace lapis::runtime {
 
 class Context;
 
-/// A component's side of lock-step (design section 6): waits until the counted inputs of a tick have been received,
+/// A component's side of lock-step (docs/architecture.md): waits until the counted inputs of a tick have been received,
 /// lets the component work, and answers with the counts of its outputs. Outside lock-step it just passes cycles on.
 class LockstepParticipant {
  public:

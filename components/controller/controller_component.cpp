@@ -110,7 +110,9 @@ void ControllerComponent::see(const Image& depth, const Info& info, time::Time n
 void ControllerComponent::take_map(time::Time now) {
   const auto convert = [this](std::optional<OccupancyGrid>& message) -> std::optional<Grid> {
     if (!message) return std::nullopt;
-    auto grid = to_core(*message);
+    auto grid = message->header().frame_id() == map_frame_
+                    ? to_core(*message)
+                    : messages::Converted<Grid>::refused("it is not in " + map_frame_);
     if (!grid) drop("grid", grid.reason);
     return std::move(grid.value);
   };

@@ -154,7 +154,7 @@ messages::Converted<GraphMessage> to_core(const lapis_msgs::msg::PoseGraph& mess
   graph.version = message.version();
   for (const auto& node : message.nodes()) {
     const auto T = near_pose(node.pose());
-    if (!T) return Result::refused("key-frame " + std::to_string(node.id()) + ": " + T.reason);
+    if (!T) return Result::refused("a key-frame's " + T.reason);
     graph.keyframes.push_back({node.id(), *T});
   }
   std::sort(graph.keyframes.begin(), graph.keyframes.end(),

@@ -33,16 +33,16 @@ DecisionLog::DecisionLog(const std::string& path, const std::vector<double>& com
   if (!file_.flush()) throw std::runtime_error(path + " cannot be written");
 }
 
-bool DecisionLog::write(const Decision& decision, std::uint64_t id, const std::string& method, double time_s) {
+bool DecisionLog::write(const Decision& decision, std::uint64_t id, const std::string& method, time::Time stamp) {
   for (std::size_t i = 0; i < decision.candidates.size(); ++i) {
     const Candidate& c = decision.candidates[i];
-    file_ << std::setprecision(9) << id << ',' << time_s << ',' << method << ',' << i << ',' << name_of(c.kind) << ','
-          << c.frontier << ',' << c.goal.p_map.x() << ',' << c.goal.p_map.y() << ',' << c.goal.yaw_rad << ','
-          << c.value.cost_m << ',' << c.value.path_information << ',' << c.value.goal_information << ','
-          << c.loops.size() << ',' << c.value.loop_gain << ',' << c.gain.fixed_n_change << ','
-          << c.gain.end_sigma_without_loops_m << ',' << c.gain.end_sigma_m << ',' << c.value.d_optimality << ','
-          << c.utility << ',' << (decision.chosen == i) << ',' << (decision.by_mi_only == i) << ','
-          << decision.agrees_with_mi_only() << ',';
+    file_ << std::setprecision(9) << id << ',' << to_string(stamp) << ',' << method << ',' << i << ','
+          << name_of(c.kind) << ',' << c.frontier << ',' << c.goal.p_map.x() << ',' << c.goal.p_map.y() << ','
+          << c.goal.yaw_rad << ',' << c.value.cost_m << ',' << c.value.path_information << ','
+          << c.value.goal_information << ',' << c.loops.size() << ',' << c.value.loop_gain << ','
+          << c.gain.fixed_n_change << ',' << c.gain.end_sigma_without_loops_m << ',' << c.gain.end_sigma_m << ','
+          << c.value.d_optimality << ',' << c.utility << ',' << (decision.chosen == i) << ','
+          << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only() << ',';
     for (const auto& chosen : decision.by_compared_fields) file_ << (chosen == i) << ',';
     file_ << quoted(c.rejection) << '\n';
   }

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "common/time/time.hpp"
 #include "planner/core/decision/decision.hpp"
 
 namespace lapis::planner {
@@ -15,7 +16,7 @@ class DecisionLog {
   /// @param compared_priors of the fields that decisions are compared with; a column each
   explicit DecisionLog(const std::string& path, const std::vector<double>& compared_priors = {});
   /// False when the disk refuses.
-  bool write(const Decision& decision, std::uint64_t id, const std::string& method, double time_s);
+  bool write(const Decision& decision, std::uint64_t id, const std::string& method, time::Time stamp);
 
  private:
   std::ofstream file_;

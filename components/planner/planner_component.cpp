@@ -1,6 +1,7 @@
 #include "planner/planner_component.hpp"
 
 #include <filesystem>
+#include <stdexcept>
 #include <utility>
 
 #include "common/files/atomic_file.hpp"
@@ -31,6 +32,28 @@ Sparsifier sparsifier_of(const std::string& name) {
   return name == "log_det" ? Sparsifier::kLogTrees : Sparsifier::kNone;
 }
 
+void require(bool is_met, const std::string& what) {
+  if (!is_met) throw std::runtime_error(what);
+}
+
+/// What keys have to be to each other; without it the planner would find nothing to do, or loops everywhere.
+void check(const PlannerComponentConfig& config) {
+  const ViewpointConfig& viewpoints = config.decision.viewpoints;
+  const HallucinationConfig& hallucination = config.decision.hallucination;
+  const GridConfig& grid = config.surroundings.grid;
+  const double least_clearance_m = grid.footprint_radius_m + grid.margin_m;
+  require(viewpoints.min_distance_m < viewpoints.max_distance_m,
+          "planner.viewpoints.min_distance_m has to be less than planner.viewpoints.max_distance_m");
+  require(hallucination.impossible_landmarks < hallucination.certain_landmarks,
+          "planner.hallucination.impossible_landmarks has to be less than planner.hallucination.certain_landmarks");
+  require(grid.band.min_height_m < grid.band.max_height_m,
+          "planner.grid.min_height_m has to be less than planner.grid.max_height_m");
+  require(config.decision.path.comfort_m > least_clearance_m,
+          "planner.path.comfort_m has to be more than robot.radius_m and planner.grid.margin_m together");
+  require(config.decision.path.comfort_m <= grid.max_clearance_m,
+          "planner.path.comfort_m has to be at most planner.grid.max_clearance_m");
+}
+
 PlannerComponentConfig completed(PlannerComponentConfig config) {
   config.decision.method = *method_of(config.method == "lapis" ? kLapisMethod : config.method);
   config.surroundings.measure = measure_of(config.measure);
@@ -39,6 +62,7 @@ PlannerComponentConfig completed(PlannerComponentConfig config) {
   config.surroundings.grid.footprint_radius_m = config.robot.radius_m;
   config.decision.hallucination.covisibility.max_range_m = config.robot.sensing_range_m;
   config.explorer.path = config.decision.path;
+  check(config);
   return config;
 }
 
@@ -73,7 +97,7 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { add_tile(m); });
   context.subscribe(topics::kMapState, [this](const auto& m) { set_map_state(m); });
-  context.subscribe(topics::kObstacles, [this](nav_msgs::msg::OccupancyGrid& m) { obstacles_ = std::move(m); });
+  context.subscribe(topics::kObstacles, [this](nav_msgs::msg::OccupancyGrid& m) { set_obstacles(std::move(m)); });
   context.subscribe(topics::kPoseGraph, [this](const auto& m) { set_graph(m); });
   context.subscribe(topics::kLandmarks, [this](const auto& m) { add_landmarks(m); });
   context.subscribe(topics::kLandmarkState,
@@ -134,6 +158,11 @@ void PlannerComponent::set_graph(const lapis_msgs::msg::PoseGraph& message) {
   graph_ = std::move(*graph);
 }
 
+void PlannerComponent::set_obstacles(nav_msgs::msg::OccupancyGrid message) {
+  if (message.header().frame_id() != map_frame_) return drop("obstacles", "they are not in " + map_frame_);
+  obstacles_ = std::move(message);
+}
+
 /// Nothing that is known is in the map frame of the new session.
 void PlannerComponent::begin_session(std::int64_t session) {
   session_ = session;
@@ -192,9 +221,9 @@ void PlannerComponent::take_decision(bool waits) {
   context_.status().value("decisions", decisions_);
   context_.status().value("decisions_unlike_mi_only", disagreements_);
   if (!decision.problem.empty()) drop("pose graph", decision.problem);
-  explorer_.take(decision, stamp_);
+  explorer_.take(decision, report());
   candidates_.publish(to_message(decision, decisions_, config_.method, header()));
-  if (log_ && !log_->write(decision, decisions_, config_.method, stamp_.seconds())) {
+  if (log_ && !log_->write(decision, decisions_, config_.method, stamp_)) {
     spdlog::error("{}/{} cannot be written; exploration goes on without it", config_.output_dir, kLogFile);
     log_.reset();
   }
@@ -290,6 +319,7 @@ void PlannerComponent::publish_status() {
   status_.publish(message);
 }
 
+/// @param reason one of a few: each is a counter
 void PlannerComponent::drop(const std::string& what, const std::string& reason) {
   context_.status().count(what + " dropped: " + reason);
   if (context_.rate_limit().pass(what + reason)) spdlog::warn("{} dropped: {}", what, reason);

@@ -38,6 +38,7 @@ class PlannerComponent {
   void set_map_state(const lapis_msgs::msg::MapState& message);
   void add_landmarks(const lapis_msgs::msg::LandmarkTile& message);
   void set_graph(const lapis_msgs::msg::PoseGraph& message);
+  void set_obstacles(nav_msgs::msg::OccupancyGrid message);
   void begin_session(std::int64_t session);
   void note_frame(const Tracked& frame);
   void set_pose(const nav_msgs::msg::Odometry& message);
@@ -92,8 +93,8 @@ class PlannerComponent {
   std::uint64_t decisions_ = 0, disagreements_ = 0, shown_decision_ = 0;
   std::size_t marker_readers_ = 0;
   double decision_time_s_ = 0.0;
-  std::uint64_t published_path_ = 0;
-  time::Time path_stamp_;  // of the frame with which it was published
+  std::optional<std::uint64_t> published_path_;  // the first one is empty: a controller may follow one from before
+  time::Time path_stamp_;                        // of the frame with which it was published
   std::optional<time::Time> reported_at_;
   State reported_state_ = State::kIdle;
   std::string reported_reason_;

@@ -142,6 +142,8 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "what thins a large pose graph out: for connectivity, or for its log-determinant (README)");
   field("max_graph_edges", c.decision.graph.max_edges, config::in_range(1, 10'000'000),
         "what the sparsifier leaves, but for a spanning tree");
+  field("closer_look_length_m", c.decision.closer_look_length_m, config::in_range(0.1, 1000.0),
+        "when nothing else is left, frontiers so long are looked at from nearby, whatever seems to hide them [m]");
   field("keep_factor", c.decision.keep_factor, config::in_range(1.0, 10.0),
         "another goal must be so much better than the one being driven to");
   field("grid", c.surroundings.grid);
@@ -154,7 +156,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.5, 60.0),
         "between decisions while a goal is being driven to [s]");
   field("goal_tolerance_m", c.explorer.goal_tolerance_m, config::in_range(0.05, 2.0), "at a goal [m]");
-  field("goal_tolerance_rad", c.explorer.goal_tolerance_rad, config::in_range(0.05, 3.2), "at a goal [rad]");
+  field("goal_tolerance_rad", c.explorer.goal_tolerance_rad, config::in_range(0.05, 0.5), "at a goal [rad]");
   field("progress_timeout_s", c.explorer.progress_timeout_s, config::in_range(1.0, 600.0),
         "without moving a goal has failed [s]");
   field("slowest_m_s", c.explorer.slowest_m_s, config::in_range(0.01, 5.0),
@@ -164,7 +166,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),
         "without tracking, exploration has failed [s]");
   field("path_spacing_m", c.explorer.path_spacing_m, config::in_range(0.02, 1.0), "between poses of /planner/path [m]");
-  field("confirmations", c.explorer.confirmations, config::in_range(1, 100),
+  field("confirmations", c.explorer.confirmations, config::in_range(2, 12),
         "looks around, a full turn in all, that find nothing before exploration is over");
   field("patience_s", c.explorer.patience_s, config::in_range(0.0, 600.0),
         "for obstacles that may go away before exploration is over [s]");

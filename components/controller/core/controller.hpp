@@ -25,7 +25,7 @@ struct ControllerConfig {
   double back_up_m = 0.3;              ///< in [0, 2]
   double back_up_speed_m_s = 0.15;     ///< in [0.01, 1]
   double recovery_turn_rad = 1.6;      ///< in [0, 3]
-  double progress_timeout_s = 10.0;    ///< in [1, 600]
+  double progress_timeout_s = 6.0;     ///< in [1, 600]
   double lost_turn_rate_rad_s = 0.0;   ///< on the spot, without a pose; in [0, 2]
 };
 

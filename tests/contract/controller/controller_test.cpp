@@ -154,6 +154,11 @@ TEST_F(LockstepController, RefusesWhatIsOfAnotherFrame) {
     EXPECT_TRUE(is_zero(commands.back()));
   }
   EXPECT_TRUE(wait_until([&] { return count_of("pose dropped: it is not of base_link in map") > 0; }));
+  world.spoil_pose = nullptr;
+  world.spoil_map = [](auto& m) { m.header().frame_id("odom"); };
+  for (int i = 0; i < 10; ++i) ASSERT_TRUE(tick());
+  EXPECT_TRUE(is_zero(commands.back())) << "a map in another frame is none";
+  EXPECT_TRUE(wait_until([&] { return count_of("grid dropped: it is not in map") > 0; }));
 }
 
 TEST_F(LockstepController, LastWordAfterSigtermIsZero) {

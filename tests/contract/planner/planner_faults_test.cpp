@@ -137,12 +137,13 @@ TEST_F(PlannerGraphFaults, NewestKeyframeInNoEdge) {
 
 TEST_F(PlannerGraphFaults, NumbersThatAreNone) {
   expect_explained([](Graph& m) { m.edges()[1].information()[3] = kNaN; }, "the information of an edge is not finite");
-  expect_explained([](Graph& m) { m.nodes()[2].pose().position().z(kNaN); }, "key-frame 2: pose has numbers");
-  expect_explained([](Graph& m) { m.nodes()[2].pose().position().z(1e200); }, "key-frame 2: pose is more than 10 km");
+  expect_explained([](Graph& m) { m.nodes()[2].pose().position().z(kNaN); }, "a key-frame's pose has numbers");
+  expect_explained([](Graph& m) { m.nodes()[2].pose().position().z(1e200); }, "a key-frame's pose is more than 10 km");
 }
 
 TEST_F(PlannerGraphFaults, InformationThatIsNone) {
-  expect_explained([](Graph& m) { m.edges()[1].information()[0] = -1e4; }, "the information of edge 1-2");
+  expect_explained([](Graph& m) { m.edges()[1].information()[0] = -1e4; },
+                   "the information of an edge is not positive definite");
 }
 
 TEST_F(PlannerGraphFaults, LostPieceOfTheGraphIsLeftOut) {

@@ -107,7 +107,7 @@ TEST(TileCodec, DamagedBytesNeverCrashAndTruncationIsAlwaysRefused) {
   for (int trial = 0; trial < 20'000; ++trial) {
     std::vector<std::uint8_t> bad = good;
     for (int i = 0; i < 1 + trial % 8; ++i) bad[random() % bad.size()] = static_cast<std::uint8_t>(random());
-    const auto decoded = decode_tile(bad, {static_cast<std::int32_t>(random()), 0, -2'000'000'000});
+    const auto decoded = decode_tile(bad, {static_cast<std::int32_t>(random() % 1000), 0, -300});
     EXPECT_LE(decoded ? decoded->blocks.size() : 0u, 4096u);
   }
   for (int trial = 0; trial < 2'000; ++trial) {
@@ -116,6 +116,16 @@ TEST(TileCodec, DamagedBytesNeverCrashAndTruncationIsAlwaysRefused) {
     if (trial % 2 == 0 && garbage.size() > 3) garbage[0] = 'L', garbage[1] = 1, garbage[2] %= 17, garbage[3] %= 2;
     decode_tile(garbage, tile);
   }
+}
+
+TEST(TileCodec, TilesBeyondAKilometreAreRefused) {
+  const VoxelMap map = test::random_map(9);
+  const std::vector<std::uint8_t> bytes = *encode_tile(map, *tiles_of(map, 2).begin(), 2);
+  const auto farthest = static_cast<std::int32_t>(kMaxReach_m / (2 * kBlockEdge * map.resolution_m()));
+  constexpr std::int32_t kLeast = std::numeric_limits<std::int32_t>::min();
+  EXPECT_TRUE(decode_tile(bytes, {farthest, -farthest, 0}));
+  for (const TileIndex& far : {TileIndex{farthest + 1, 0, 0}, TileIndex{0, -farthest - 1, 0}, TileIndex{0, 0, kLeast}})
+    EXPECT_FALSE(decode_tile(bytes, far)) << far.x << " " << far.y << " " << far.z;
 }
 
 TEST(TileHash, DependsOnEveryPart) {

@@ -110,6 +110,27 @@ std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, Met
   return best;
 }
 
+/// What the pose graph would gain by each. Without a graph that can be judged, by none of them: all have the same D
+/// then.
+std::string add_gains(const Situation& s, const DecisionConfig& config, const std::vector<Candidate*>& open) {
+  std::string problem;
+  const bool has_graph = s.graph != nullptr && s.landmarks != nullptr;
+  for (std::size_t i = 0; has_graph && problem.empty() && i < open.size(); ++i) problem = add_gain(s, config, *open[i]);
+  const bool is_judged = has_graph && problem.empty();
+  for (Candidate* candidate : open) {
+    if (!is_judged) {
+      candidate->gain = {};
+      candidate->nodes_map.clear();
+      candidate->loops.clear();
+      candidate->value.loop_gain = 0.0;
+      candidate->value.d_optimality = 1.0;
+    } else if (config.information_discount_sigma_m > 0.0) {
+      discount_information(s, config.information_discount_sigma_m, *candidate);
+    }
+  }
+  return problem;
+}
+
 /// What the map and the pose graph would gain by each proposal, and the best one.
 Decision choose(const Situation& s, std::vector<Candidate> proposals, const Memory& memory,
                 const DecisionConfig& config) {
@@ -117,14 +138,7 @@ Decision choose(const Situation& s, std::vector<Candidate> proposals, const Memo
   decision.candidates = std::move(proposals);
   const std::vector<Candidate*> open = open_ones(decision.candidates);
   add_information(s, open);
-  for (Candidate* candidate : open) {
-    if (s.graph == nullptr || s.landmarks == nullptr) continue;
-    if (std::string problem = add_gain(s, config, *candidate); !problem.empty()) {
-      decision.problem = std::move(problem);
-    } else if (config.information_discount_sigma_m > 0.0) {
-      discount_information(s, config.information_discount_sigma_m, *candidate);
-    }
-  }
+  decision.problem = add_gains(s, config, open);
   for (Candidate* candidate : open) candidate->utility = utility(config.method, candidate->value, config.utility);
   decision.chosen = best_by(decision.candidates, config.method, memory, config);
   decision.by_mi_only = best_by(decision.candidates, Method::kMiOnly, memory, config);

@@ -33,6 +33,9 @@ struct DecisionConfig {
   double revisit_sigma_m = 0.0;
   /// The information of a view from a position with sigma s counts 1 / (1 + (s / this)^2) [m]; 0: all of it.
   double information_discount_sigma_m = 0.0;
+  /// When no candidate is left, frontiers of at least this length are looked at from nearby although something seems to
+  /// hide them, in [0.1, 1000] [m].
+  double closer_look_length_m = 1.0;
   double keep_factor = 1.2;  ///< another goal must be so much better than the one being driven to, in [1, 10]
 };
 
@@ -62,6 +65,9 @@ struct ExpectedLoop {
   Eigen::Vector3d keyframe_map{0, 0, 0};  ///< of the place [m]
   double probability = 0.0;
 };
+
+/// Reason why a candidate was not judged, although it can be driven to.
+inline constexpr const char* kOutranked = "others come before it (planner.max_candidates)";
 
 /// A way to a place from which there is something to see.
 struct Candidate {

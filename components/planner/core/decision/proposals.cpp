@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <string>
 #include <utility>
 
@@ -26,8 +25,6 @@ Candidate rejected(const Frontier& frontier, std::string reason) {
   candidate.rejection = std::move(reason);
   return candidate;
 }
-
-double turn_between(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi)); }
 
 // Turning at both ends of a way; corners in between are driven through.
 double turning(const Pose2& robot, const std::vector<Pose2>& way) {
@@ -66,12 +63,15 @@ bool is_looked_at(const Candidate& candidate, const Memory& memory) {
   });
 }
 
+/// @param is_last_chance a frontier that is long enough need not be in sight
 std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tree, const Memory& memory,
-                                         const DecisionConfig& config) {
+                                         const DecisionConfig& config, bool is_last_chance) {
   std::vector<Candidate> candidates;
   for (const auto& entry : s.frontiers.frontiers()) {
     const Frontier& frontier = entry.second;
-    const ViewpointResult found = sample_viewpoints(s.grid, tree, frontier, config.viewpoints);
+    const bool is_room = frontier.length_m >= config.closer_look_length_m;
+    const Sight sight = is_last_chance && is_room ? Sight::kNotNeeded : Sight::kNeeded;
+    const ViewpointResult found = sample_viewpoints(s.grid, tree, frontier, config.viewpoints, sight);
     if (found.status != ViewpointStatus::kFound) candidates.push_back(rejected(frontier, reason_of(found.status)));
     for (const Viewpoint& viewpoint : found.viewpoints) {
       Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
@@ -95,8 +95,7 @@ std::vector<Candidate> propose_tour(const Situation& s, const CostTree& tree, co
   for (const TourStop& stop : tour.stops) {
     Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, stop.frontier, stop.viewpoint, config));
     candidate.value.tour_place = static_cast<int>(candidates.size());
-    if (candidate.value.tour_place > config.max_candidates)
-      candidate.rejection = "more than " + std::to_string(config.max_candidates) + " others come before";
+    if (candidate.value.tour_place > config.max_candidates) candidate.rejection = kOutranked;
   }
   for (const auto& [id, reason] : tour.missed) candidates.push_back(rejected(s.frontiers.frontiers().at(id), reason));
   return candidates;
@@ -117,8 +116,7 @@ void reject_far_ones(std::vector<Candidate>& candidates, int most) {
     }
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
-  for (auto k = static_cast<std::size_t>(most); k < order.size(); ++k)
-    candidates[order[k]].rejection = "more than " + std::to_string(most) + " others are nearer";
+  for (auto k = static_cast<std::size_t>(most); k < order.size(); ++k) candidates[order[k]].rejection = kOutranked;
 }
 
 // Where the robot stood when it made an old key-frame that shares many landmarks with others.
@@ -169,6 +167,7 @@ bool is_open_line(const PlanningGrid& grid, Cell from, Cell to) {
 /// so that the camera sees what the key-frame saw.
 std::optional<Path> path_past(const Situation& s, const CostTree& tree, const std::vector<OldPlace>& places,
                               const DecisionConfig& config, const Candidate& candidate, double direct_m) {
+  if (places.empty()) return std::nullopt;
   const CostTree from_goal = grow_cost_tree(s.grid, config.path, {s.grid.cell_of(candidate.goal.p_map)});
   for (const OldPlace& place : places) {
     if (passes(candidate.way, place.pose, config.path.min_apart_m)) continue;
@@ -236,8 +235,13 @@ void add_revisits(const Situation& s, const CostTree& tree, std::vector<OldPlace
 
 std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const Memory& memory,
                                const DecisionConfig& config) {
-  if (config.method == Method::kTare) return propose_tour(s, tree, memory, config);
-  std::vector<Candidate> candidates = propose_frontiers(s, tree, memory, config);
+  const bool is_tour = config.method == Method::kTare;
+  std::vector<Candidate> candidates =
+      is_tour ? propose_tour(s, tree, memory, config) : propose_frontiers(s, tree, memory, config, false);
+  const bool is_any_open = std::any_of(candidates.begin(), candidates.end(),
+                                       [](const Candidate& candidate) { return candidate.rejection.empty(); });
+  if (!is_any_open) candidates = propose_frontiers(s, tree, memory, config, true);
+  if (is_tour) return candidates;
   reject_far_ones(candidates, config.max_candidates);
   const bool may_revisit = config.revisit_sigma_m > 0.0 && counts_loops(config.method);
   if (config.alternatives == 0 && !may_revisit) return candidates;

@@ -40,7 +40,7 @@ struct PathValue {
   double path_information = 0.0;  ///< of its views, each cell once
   double goal_information = 0.0;  ///< of the last view, every ray for itself
   double loop_gain = 0.0;         ///< expected change of the log-determinant by loops, saturated
-  double d_optimality = 0.0;      ///< of the graph with the path, by the method's form of it
+  double d_optimality = 0.0;      ///< of the graph with the path, by the method's form of it; 1: no graph to judge
   int tour_place = 0;             ///< of the goal in TARE's tour, from 1
 };
 

@@ -12,14 +12,18 @@ namespace {
 
 constexpr double kMotion_m = 0.3, kMotion_rad = 0.3;  // less is standing still
 constexpr double kAhead_m = 0.35;                     // what stops the robot is about there
+constexpr double kBlockedRadius_m = 0.2;              // what stops it nearer to each other is one
 constexpr double kNearEnough_m = 1.0;                 // to a place that itself cannot be reached
 constexpr std::size_t kTrailPoses = 50;               // that are remembered
-constexpr double kPathTolerance_m = 1.0;              // of the path that has been driven already
+constexpr double kPathTolerance_m = 1.0;              // around the robot what the path crosses does not matter
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
 
-double turn(const Pose2& a, const Pose2& b) {
-  return std::abs(std::remainder(a.yaw_rad - b.yaw_rad, 2.0 * std::numbers::pi));
+double turn(const Pose2& a, const Pose2& b) { return turn_between(a.yaw_rad, b.yaw_rad); }
+
+GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
+  config.radius_m = kBlockedRadius_m;
+  return config;
 }
 
 // Of the cells that can be reached; the robot may have started where it cannot get back to, as beside a wall.
@@ -47,7 +51,11 @@ bool has_frontier_at(const Surroundings& surroundings, const Eigen::Vector2d& ta
 
 }  // namespace
 
+Explorer::Explorer(const ExplorerConfig& config)
+    : config_(config), memory_(config.memory), blocked_(memory_of_blocked(config.memory)) {}
+
 void Explorer::start() {
+  if (state_ != State::kExploring) drop_goal();
   if (state_ == State::kDone || state_ == State::kFailed || state_ == State::kIdle) {
     memory_.clear();
     blocked_.clear();
@@ -56,7 +64,6 @@ void Explorer::start() {
   }
   empty_decisions_ = 0;
   nothing_since_.reset();
-  decided_at_.reset();
   lost_at_.reset();
   enter(State::kExploring, "started");
 }
@@ -93,7 +100,9 @@ void Explorer::forget_map() {
   if (state_ == State::kReturning) enter(State::kFailed, "the map in which it started is gone");
 }
 
+/// What is to be done is decided anew.
 void Explorer::enter(State state, std::string reason) {
+  decided_at_.reset();
   state_ = state;
   reason_ = std::move(reason);
 }
@@ -122,9 +131,10 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
     return false;
   }
   if (surroundings == nullptr || !report.robot) {
-    reason_ = "waits for the map";
+    reason_ = surroundings == nullptr ? "waits for the map" : "waits for the pose";
     return false;
   }
+  surroundings->set_blocked(blocked_.left_alone(report.now));
   if (state_ == State::kReturning) {
     go_home(report, *surroundings);
     return false;
@@ -133,11 +143,9 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
 }
 
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
-  surroundings.set_blocked(blocked_.left_alone(report.now));
   judge_looks(surroundings, report.now);
   may_change_ = surroundings.grid().has_passing_obstacles();
-  const bool is_due = !decided_at_ || (report.now - *decided_at_).seconds() >= config_.replan_period_s;
-  if (!goal_) return is_due;
+  if (!goal_) return is_due(report.now);
   if (is_at(goal_->pose, *report.robot)) {
     note_arrival(report.now);
     drop_goal();
@@ -145,13 +153,16 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   }
   const bool is_late = goal_->deadline && report.now > *goal_->deadline;
   if (report.is_blocked || is_late || stands_still(report)) {
-    note_failure(report);
+    note_failure(report, surroundings);
     reason_ = report.is_blocked ? "the way was blocked" : is_late ? "the way took too long" : "it did not get on";
     drop_goal();
     return true;
   }
-  if (!is_path_free(*report.robot, surroundings.grid())) return true;
-  return is_due;
+  return is_due(report.now) || !is_path_free(*report.robot, surroundings.grid());
+}
+
+bool Explorer::is_due(time::Time now) const {
+  return !decided_at_ || (now - *decided_at_).seconds() >= config_.replan_period_s;
 }
 
 void Explorer::note_arrival(time::Time now) {
@@ -165,7 +176,8 @@ void Explorer::note_arrival(time::Time now) {
 void Explorer::note_vanished(const Decision& decision, time::Time now) {
   if (!goal_ || !goal_->target_map || goal_->kind == CandidateKind::kRevisit) return;
   const bool is_there = std::any_of(decision.candidates.begin(), decision.candidates.end(), [&](const Candidate& c) {
-    return c.rejection.empty() && (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
+    return (c.rejection.empty() || c.rejection == kOutranked) &&
+           (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
   });
   if (!is_there) await({*goal_->target_map, last_tracked_->p_map}, now, config_.memory.expiry_s);
 }
@@ -193,16 +205,18 @@ bool Explorer::stands_still(const Report& report) {
 }
 
 // The target is left alone, and ways no longer lead through what stopped the robot.
-void Explorer::note_failure(const Report& report) {
+void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
   if (goal_->target_map) memory_.add_failure(*goal_->target_map, report.now);
   auto pose = std::min_element(path_.begin(), path_.end(), [&](const Pose2& a, const Pose2& b) {
     return distance(*report.robot, a) < distance(*report.robot, b);
   });
   while (pose != path_.end() && distance(*report.robot, *pose) < kAhead_m) ++pose;
-  if (pose != path_.end()) blocked_.add_failure(pose->p_map, report.now);
+  if (pose == path_.end()) return;
+  blocked_.add_failure(pose->p_map, report.now);
+  surroundings.set_blocked(blocked_.left_alone(report.now));
 }
 
-// From the robot on; cells that it stands in or has behind it do not matter.
+// From the robot on; what it stands in or has behind it does not matter, and what lies just ahead the controller sees.
 bool Explorer::is_path_free(const Pose2& robot, const PlanningGrid& grid) const {
   const auto nearest = std::min_element(path_.begin(), path_.end(), [&](const Pose2& a, const Pose2& b) {
     return distance(robot, a) < distance(robot, b);
@@ -233,8 +247,9 @@ Memory Explorer::memory(time::Time now) const {
   return memory;
 }
 
-void Explorer::take(const Decision& decision, time::Time now) {
-  if (state_ != State::kExploring) return;
+void Explorer::take(const Decision& decision, const Report& report) {
+  if (state_ != State::kExploring || (goal_ && report.is_blocked)) return;
+  const time::Time now = report.now;
   decided_at_ = now;
   note_vanished(decision, now);
   if (!decision.chosen) return end_or_look_around(decision, now);
@@ -244,12 +259,13 @@ void Explorer::take(const Decision& decision, time::Time now) {
 }
 
 void Explorer::follow(const Candidate& chosen, time::Time now) {
+  if (!goal_) goal_ = Goal{.moved_from = chosen.way.front(), .moved_at = now};
   const bool is_new =
-      !goal_ || !goal_->target_map || (*goal_->target_map - chosen.target_map).norm() > config_.memory.radius_m;
-  if (is_new) {
+      !goal_->deadline_of_map || (*goal_->deadline_of_map - chosen.target_map).norm() > config_.memory.radius_m;
+  if (is_new) {  // or crept forward by so much
     const double longest_s = config_.progress_timeout_s + chosen.value.cost_m / config_.slowest_m_s;
-    if (!goal_) goal_ = Goal{.moved_from = chosen.way.front(), .moved_at = now};
     goal_->deadline = now + time::Duration::from_seconds(longest_s);
+    goal_->deadline_of_map = chosen.target_map;
   }
   goal_->pose = chosen.goal;
   goal_->target_map = chosen.target_map;
@@ -326,10 +342,10 @@ void Explorer::note_tracked(const Pose2& robot) {
 void Explorer::retrace(const Report& report, const Surroundings& surroundings) {
   const bool goes_on = is_at(trail_.back(), *report.robot) && trail_.size() > 1;
   if (goes_on) trail_.pop_back();
-  if (goes_on || path_.empty()) drive_to(trail_.back(), report, surroundings);
+  if (goes_on || (path_.empty() && is_due(report.now))) drive_to(trail_.back(), report, surroundings);
 }
 
-void Explorer::go_home(const Report& report, const Surroundings& surroundings) {
+void Explorer::go_home(const Report& report, Surroundings& surroundings) {
   if (!goal_) goal_ = Goal{.pose = *home_, .moved_from = *report.robot, .moved_at = report.now};
   const bool is_there = !path_.empty() && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m;
   if (is_there || stands_still(report)) {
@@ -337,14 +353,13 @@ void Explorer::go_home(const Report& report, const Surroundings& surroundings) {
     drop_goal();
     return is_there ? enter(State::kDone, "is back where it started") : enter(State::kFailed, trouble);
   }
-  const bool is_due = !decided_at_ || (report.now - *decided_at_).seconds() >= config_.replan_period_s;
-  if (!is_due) return;
-  decided_at_ = report.now;
-  if (path_.empty() || report.is_blocked || !is_path_free(*report.robot, surroundings.grid()))
-    drive_to(*home_, report, surroundings);
+  if (report.is_blocked) note_failure(report, surroundings);
+  const bool is_wanted = path_.empty() || !is_path_free(*report.robot, surroundings.grid());
+  if (report.is_blocked || (is_wanted && is_due(report.now))) drive_to(*home_, report, surroundings);
 }
 
 void Explorer::drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings) {
+  decided_at_ = report.now;
   const PlanningGrid& grid = surroundings.grid();
   const CostTree tree = grow_cost_tree(grid, config_.path, {grid.cell_of(report.robot->p_map)});
   const auto end = nearest_reached(grid, tree, to.p_map);

@@ -27,13 +27,13 @@ struct ExplorerConfig {
   PathConfig path = {};
   double replan_period_s = 1.0;     ///< between decisions while a goal is being driven to, in [0.5, 60]
   double goal_tolerance_m = 0.3;    ///< in [0.05, 2]
-  double goal_tolerance_rad = 0.3;  ///< in [0.05, 3.2]
+  double goal_tolerance_rad = 0.3;  ///< in [0.05, 0.5]
   double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
   double slowest_m_s = 0.15;        ///< a way that takes longer than at this speed has failed, in [0.01, 5]
   double settle_s = 1.5;            ///< after arriving, until the map tells whether the look was in vain, in [0, 60]
   double lost_timeout_s = 60.0;     ///< without tracking, exploration has failed, in [1, 3600]
   double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
-  int confirmations = 3;      ///< looks around, a full turn in all, that find nothing before it is over, in [1, 100]
+  int confirmations = 3;      ///< looks around, a full turn in all, that find nothing before it is over, in [2, 12]
   double patience_s = 20.0;   ///< for obstacles that may go away before it is over, in [0, 600]
   bool returns_home = false;  ///< when nothing is left
 };
@@ -51,7 +51,7 @@ struct Report {
 /// The mission: when to decide, what to do with the decision, and when it is over.
 class Explorer {
  public:
-  explicit Explorer(const ExplorerConfig& config) : config_(config), memory_(config.memory), blocked_(config.memory) {}
+  explicit Explorer(const ExplorerConfig& config);
 
   void start();
   void stop();
@@ -64,8 +64,9 @@ class Explorer {
   bool step(const Report& report, Surroundings* surroundings);
   /// What decide() has to leave alone, and what is being driven to.
   Memory memory(time::Time now) const;
-  /// Acts on a decision that was wanted; one that came too late changes nothing.
-  void take(const Decision& decision, time::Time now);
+  /// Acts on a decision that was wanted. One that came too late changes nothing, nor does one that was made before the
+  /// way was found blocked: the goal that it did not know to have failed is judged first.
+  void take(const Decision& decision, const Report& report);
 
   State state() const { return state_; }
   const std::string& reason() const { return reason_; }
@@ -80,7 +81,8 @@ class Explorer {
     std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< none: a look around, or the way home
     CandidateKind kind = CandidateKind::kFrontier;
     std::optional<time::Time> deadline = std::nullopt;
-    Pose2 moved_from;  ///< where the robot was when it last had moved
+    std::optional<Eigen::Vector2d> deadline_of_map = std::nullopt;  ///< the target at which it was set
+    Pose2 moved_from;                                               ///< where the robot was when it last had moved
     time::Time moved_at;
   };
 
@@ -94,14 +96,15 @@ class Explorer {
   void note_loss(time::Time now);
   void note_tracked(const Pose2& robot);
   void retrace(const Report& report, const Surroundings& surroundings);
-  void go_home(const Report& report, const Surroundings& surroundings);
+  void go_home(const Report& report, Surroundings& surroundings);
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
   void note_arrival(time::Time now);
   void note_vanished(const Decision& decision, time::Time now);
   void await(const VainLook& look, time::Time now, double seconds);
   bool is_at(const Pose2& place, const Pose2& robot) const;
   bool stands_still(const Report& report);
-  void note_failure(const Report& report);
+  bool is_due(time::Time now) const;
+  void note_failure(const Report& report, Surroundings& surroundings);
   bool is_path_free(const Pose2& robot, const PlanningGrid& grid) const;
   void judge_looks(const Surroundings& surroundings, time::Time now);
 

@@ -42,7 +42,6 @@ bool Surroundings::update_obstacles(const ObstacleGrid& grid, time::Time stamp) 
   const auto changed = grid_.update_obstacles(grid, stamp);
   if (!changed) return false;
   frontiers_.update(grid_, *changed);
-  frontiers_.update(grid_, grid_.expire_obstacles(stamp));
   return true;
 }
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <compare>
 #include <cstdint>
-#include <vector>
+#include <numbers>
 
 #include <Eigen/Core>
 
@@ -42,7 +42,12 @@ inline constexpr std::size_t kStraightSteps = 4;
 /// Position and heading in the map frame.
 struct Pose2 {
   Eigen::Vector2d p_map{0, 0};  ///< [m]
-  double yaw_rad = 0.0;         ///< counter-clockwise from the x axis, in (-pi, pi]
+  double yaw_rad = 0.0;         ///< counter-clockwise from the x axis
 };
+
+/// Angle between two headings, in [0, pi] [rad].
+inline double turn_between(double yaw_rad, double other_rad) {
+  return std::abs(std::remainder(yaw_rad - other_rad, 2.0 * std::numbers::pi));
+}
 
 }  // namespace lapis::planner

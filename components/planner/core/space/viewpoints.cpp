@@ -46,13 +46,13 @@ std::vector<Candidate> reachable_ring(const PlanningGrid& grid, const CostTree& 
 }
 
 std::vector<Viewpoint> one_per_sector(const PlanningGrid& grid, const CostTree& paths, Cell target,
-                                      const std::vector<Candidate>& ring, int sectors) {
+                                      const std::vector<Candidate>& ring, int sectors, Sight sight) {
   std::vector<bool> is_filled(static_cast<std::size_t>(sectors), false);
   std::vector<Viewpoint> viewpoints;
   for (const Candidate& candidate : ring) {
     const Cell c = candidate.cell;
     const std::size_t sector = sector_of(c, target, is_filled.size());
-    if (is_filled[sector] || !is_in_sight(grid, c, target)) continue;
+    if (is_filled[sector] || (sight == Sight::kNeeded && !is_in_sight(grid, c, target))) continue;
     is_filled[sector] = true;
     const double yaw_rad = std::atan2(target.y - c.y, target.x - c.x);
     viewpoints.push_back({c, {grid.center_of(c), yaw_rad}, target, *paths.cost_m(c)});
@@ -77,13 +77,13 @@ bool is_in_sight(const PlanningGrid& grid, Cell from, Cell to) {
 }
 
 ViewpointResult sample_viewpoints(const PlanningGrid& grid, const CostTree& paths, const Frontier& frontier,
-                                  const ViewpointConfig& config) {
+                                  const ViewpointConfig& config, Sight sight) {
   ViewpointResult result;
   for (const Cell& target : frontier.representatives) {
     const std::vector<Candidate> ring = reachable_ring(grid, paths, target, config, result.status);
     if (ring.empty()) continue;
     result.status = ViewpointStatus::kNoLineOfSight;
-    result.viewpoints = one_per_sector(grid, paths, target, ring, config.max_per_frontier);
+    result.viewpoints = one_per_sector(grid, paths, target, ring, config.max_per_frontier, sight);
     if (result.viewpoints.empty()) continue;
     result.status = ViewpointStatus::kFound;
     break;

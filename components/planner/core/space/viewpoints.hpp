@@ -38,6 +38,11 @@ std::string reason_of(ViewpointStatus status);
 /// No occupied cell lies between; unknown ones may.
 bool is_in_sight(const PlanningGrid& grid, Cell from, Cell to);
 
+enum class Sight {
+  kNeeded,     ///< of the target
+  kNotNeeded,  ///< what hides it may not be there: a door can look closed from afar
+};
+
 struct ViewpointResult {
   ViewpointStatus status = ViewpointStatus::kNoRoom;
   std::vector<Viewpoint> viewpoints;  ///< empty unless found
@@ -45,8 +50,9 @@ struct ViewpointResult {
 
 /// Viewpoints in the ring around the first representative of the frontier that has any: at most one in each of
 /// max_per_frontier equal sectors, drawn at random (seeded) from all cells of the sector that are traversable, reached
-/// by `paths`, and see the target through free and unknown cells. All cells of the ring are tried before one gives up.
+/// by `paths`, and see the target through free and unknown cells, if that is needed. All cells of the ring are tried
+/// before one gives up.
 ViewpointResult sample_viewpoints(const PlanningGrid& grid, const CostTree& paths, const Frontier& frontier,
-                                  const ViewpointConfig& config);
+                                  const ViewpointConfig& config, Sight sight = Sight::kNeeded);
 
 }  // namespace lapis::planner

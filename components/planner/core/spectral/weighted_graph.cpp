@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <sstream>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -106,15 +105,9 @@ std::optional<GraphError> edge_error(int node_count, const WeightedEdge& edge) {
   const bool has_nodes = std::min(edge.a, edge.b) >= 0 && std::max(edge.a, edge.b) < node_count;
   const bool has_weight = edge.weight > 0.0 && std::isfinite(edge.weight);
   if (has_nodes && has_weight && edge.a != edge.b) return std::nullopt;
-  std::ostringstream text;
-  text << "edge " << edge.a << "-" << edge.b;
-  if (!has_nodes)
-    text << " names a node beyond 0.." << node_count - 1;
-  else if (edge.a == edge.b)
-    text << " joins a node to itself";
-  else
-    text << " has weight " << edge.weight << "; a weight is positive and finite";
-  return GraphError{text.str()};
+  if (!has_nodes) return GraphError{"an edge names a node that is not there"};
+  if (edge.a == edge.b) return GraphError{"an edge joins a node to itself"};
+  return GraphError{"the weight of an edge is not positive and finite"};
 }
 
 std::variant<WeightedGraph, GraphError> WeightedGraph::make(int node_count, std::vector<WeightedEdge> edges) {
@@ -125,9 +118,7 @@ std::variant<WeightedGraph, GraphError> WeightedGraph::make(int node_count, std:
     components.join(index(edge.a), index(edge.b));
   }
   for (int node = 1; node < node_count; ++node) {
-    if (components.of(index(node)) != components.of(0)) {
-      return GraphError{"node " + std::to_string(node) + " is not connected to node 0"};
-    }
+    if (components.of(index(node)) != components.of(0)) return GraphError{"the graph is not connected"};
   }
   return WeightedGraph(node_count, merged(std::move(edges)));
 }
@@ -145,10 +136,7 @@ std::variant<KeyframeGraph, GraphError> component_of(std::uint64_t keyframe, std
   for (const KeyframeEdge& edge : edges) {
     if (!std::binary_search(ids.begin(), ids.end(), edge.from)) continue;
     const auto weight = edge_weight(edge.information, criterion);
-    if (!weight) {
-      return GraphError{"the information of edge " + std::to_string(edge.from) + "-" + std::to_string(edge.to) +
-                        " is not positive definite"};
-    }
+    if (!weight) return GraphError{"the information of an edge is not positive definite"};
     const auto from = place_of(ids, edge.from), to = place_of(ids, edge.to);
     weighted.push_back({static_cast<int>(from), static_cast<int>(to), *weight});
   }

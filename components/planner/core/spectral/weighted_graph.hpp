@@ -27,7 +27,7 @@ using Information = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen:
 /// and positive definite. Only kD does not depend on the frame of the tangent.
 std::optional<double> edge_weight(const Information& information, Criterion criterion);
 
-/// Why a graph cannot be analysed: "edge 3-7 has weight 0; a weight is positive and finite".
+/// Why a graph cannot be analysed, in one of a few sentences: users count them.
 struct GraphError {
   std::string message;
 };

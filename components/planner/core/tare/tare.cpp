@@ -21,8 +21,6 @@ constexpr std::size_t kMostSubSpaces = 30;    // in the coarse tour
 constexpr double kSameGoal_m = 0.5, kSameGoal_rad = 0.5;
 constexpr double kForbidden_m = 1e6;
 
-double turn_between(double a, double b) { return std::abs(std::remainder(a - b, 2.0 * std::numbers::pi)); }
-
 bool is_goal(const Pose2& pose, const std::optional<Pose2>& goal) {
   return goal && (goal->p_map - pose.p_map).norm() < kSameGoal_m &&
          turn_between(goal->yaw_rad, pose.yaw_rad) < kSameGoal_rad;

@@ -46,7 +46,7 @@ struct Tour {
   std::vector<std::pair<std::uint32_t, std::string>> missed;  ///< frontiers that it leaves out, and why
 };
 
-/// Reason why a frontier is left out: it was looked at in vain.
+/// Reason why a frontier is left out: it was driven to or looked at in vain, or a look is being judged.
 inline constexpr const char* kLeftAlone = "left alone for now";
 
 /// Exploration in two levels [Cao, Zhu, Choset & Zhang 2021, TARE], for a camera with a heading where TARE has a lidar

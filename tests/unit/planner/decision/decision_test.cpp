@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <limits>
 #include <set>
 #include <utility>
 
@@ -174,7 +175,7 @@ TEST(Decide, ComputesOnlyTheNearestButOneOfEachFrontierFirst) {
   int too_far = 0;
   for (const Candidate& candidate : decision.candidates) {
     if (candidate.rejection.empty()) open.insert(candidate.frontier);
-    too_far += candidate.rejection == "more than 2 others are nearer" ? 1 : 0;
+    too_far += candidate.rejection == kOutranked ? 1 : 0;
   }
   EXPECT_EQ(open.size(), 2u);
   EXPECT_GT(too_far, 0);
@@ -215,6 +216,30 @@ TEST(Decide, LoopsDrawTheJointUtilityToOldPlaces) {
   EXPECT_LT(joint.gain.end_sigma_m, joint.gain.end_sigma_without_loops_m);
   explorer.config.utility.beta = 0.0;
   EXPECT_TRUE(explorer.is_left(explorer.chosen())) << "without loops the near end is worth more per metre";
+}
+
+// Before slam has two key-frames, and when its graph cannot be judged.
+TEST(Decide, WithoutAGraphThePaperComparesInformationPerMetre) {
+  Explorer explorer;
+  test::Chain broken({camera_at(0.5, 0.5, 0.0), camera_at(1.5, 0.5, 0.0)});
+  AnalysedGraph graph = broken.graph();
+  const LandmarkIndex landmarks({}, graph, 0.25);
+  graph.odometry_weight_metres = std::numeric_limits<double>::quiet_NaN();
+  for (const Method method : {Method::kPaper, Method::kFixedN}) {
+    explorer.config.method = method;
+    for (const bool has_graph : {false, true}) {
+      explorer.graph = has_graph ? &graph : nullptr;
+      explorer.landmarks = has_graph ? &landmarks : nullptr;
+      const Decision decision = explorer.choose();
+      EXPECT_EQ(decision.problem.empty(), !has_graph);
+      EXPECT_TRUE(decision.chosen && decision.agrees_with_mi_only());
+      for (const Candidate& candidate : decision.candidates) {
+        if (!candidate.rejection.empty()) continue;
+        EXPECT_DOUBLE_EQ(candidate.utility, 1.0 + candidate.value.path_information / candidate.value.cost_m);
+        EXPECT_TRUE(candidate.loops.empty());
+      }
+    }
+  }
 }
 
 // A corridor round a block; the robot stands west of it, what is unknown lies east. 8 by 4 m.

@@ -18,6 +18,8 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using Row = std::vector<std::string>;
 
+constexpr time::Time kStamp{1'000'000'000};
+
 /// RFC 4180, without line breaks inside of cells.
 Row cells_of(const std::string& line) {
   Row cells{""};
@@ -67,14 +69,14 @@ class DecisionLogTest : public ::testing::Test {
 
 TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
   DecisionLog log(file_.string());
-  ASSERT_TRUE(log.write(decision(), 4, "joint", 12.066666666));
+  ASSERT_TRUE(log.write(decision(), 4, "joint", time::Time{1'700'000'012'066'666'666}));
   const auto rows = read(file_);
   ASSERT_EQ(rows.size(), 3U);
   for (const Row& row : rows) ASSERT_EQ(row.size(), rows[0].size());
   std::map<std::string, std::string> chosen;
   for (std::size_t i = 0; i < rows[0].size(); ++i) chosen[rows[0][i]] = rows[1][i];
   const std::map<std::string, std::string> expected{{"decision", "4"},
-                                                    {"time_s", "12.0666667"},
+                                                    {"time_s", "1700000012.066666666"},
                                                     {"method", "joint"},
                                                     {"candidate", "0"},
                                                     {"kind", "alternative"},
@@ -101,7 +103,7 @@ TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
 
 TEST_F(DecisionLogTest, RejectionIsTheLastColumnAlsoWithACommaInIt) {
   DecisionLog log(file_.string());
-  ASSERT_TRUE(log.write(decision(), 1, "joint", 1.0));
+  ASSERT_TRUE(log.write(decision(), 1, "joint", kStamp));
   const auto rows = read(file_);
   EXPECT_EQ(rows[2].back(), "cannot be reached, not even by a detour");
   EXPECT_EQ(rows[2][rows[2].size() - 4], "0") << "not chosen";
@@ -112,7 +114,7 @@ TEST_F(DecisionLogTest, SaysWhereMiOnlyWouldHaveGone) {
   differs.candidates[1].rejection.clear();
   differs.by_mi_only = 1;
   DecisionLog log(file_.string());
-  ASSERT_TRUE(log.write(differs, 1, "joint", 1.0));
+  ASSERT_TRUE(log.write(differs, 1, "joint", kStamp));
   const auto rows = read(file_);
   EXPECT_THAT(Row(rows[1].end() - 4, rows[1].end()), ElementsAre("1", "0", "0", ""));
   EXPECT_THAT(Row(rows[2].end() - 4, rows[2].end()), ElementsAre("0", "1", "0", ""));
@@ -122,7 +124,7 @@ TEST_F(DecisionLogTest, HasAColumnForEachPriorThatIsCompared) {
   Decision compared = decision();
   compared.by_compared_fields = {0, 1, std::nullopt};
   DecisionLog log(file_.string(), {0.05, 0.1, 0.5});
-  ASSERT_TRUE(log.write(compared, 1, "joint", 1.0));
+  ASSERT_TRUE(log.write(compared, 1, "joint", kStamp));
   const auto rows = read(file_);
   const auto last_of = [](const Row& row) { return Row(row.end() - 4, row.end() - 1); };
   EXPECT_THAT(last_of(rows[0]),
@@ -133,14 +135,14 @@ TEST_F(DecisionLogTest, HasAColumnForEachPriorThatIsCompared) {
 
 TEST_F(DecisionLogTest, DecisionWithoutCandidatesHasNoRow) {
   DecisionLog log(file_.string());
-  ASSERT_TRUE(log.write({}, 1, "joint", 1.0));
+  ASSERT_TRUE(log.write({}, 1, "joint", kStamp));
   EXPECT_EQ(read(file_).size(), 1U);
 }
 
 TEST_F(DecisionLogTest, SetsAnOlderFileAside) {
   {
     DecisionLog log(file_.string());
-    ASSERT_TRUE(log.write(decision(), 1, "joint", 1.0));
+    ASSERT_TRUE(log.write(decision(), 1, "joint", kStamp));
   }
   DecisionLog log(file_.string());
   EXPECT_EQ(read(file_).size(), 1U);

@@ -230,6 +230,126 @@ TEST(Explorer, ThereIsNoWayHomeIntoAMapThatIsGone) {
   EXPECT_TRUE(world.explorer.path().empty());
 }
 
+TEST(Explorer, StartingOnTheWayHomeStopsTheWayHome) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.run(10.0);
+  world.explorer.return_home();
+  world.run(1.0);
+  ASSERT_FALSE(world.explorer.path().empty());
+  world.explorer.start();
+  EXPECT_TRUE(world.explorer.path().empty());
+  EXPECT_EQ(world.explorer.state(), State::kExploring);
+}
+
+TEST(Explorer, ReturnsAlsoWhenItPlansSeldom) {
+  WalkWorld world(closed(kThreeRooms), {.replan_period_s = 20.0});
+  world.explorer.start();
+  world.run(10.0);
+  world.explorer.return_home();
+  world.run(60.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  EXPECT_EQ(world.explorer.reason(), "is back where it started");
+}
+
+/// An explorer on a wide floor, driven by decisions and reports of the test.
+class ExplorerByHand : public ::testing::Test {
+ protected:
+  static Candidate candidate(Eigen::Vector2d goal_map, std::string rejection = "") {
+    Candidate candidate;
+    candidate.frontier = 1;
+    candidate.goal.p_map = candidate.target_map = goal_map;
+    candidate.points = {{0.0, 0.0}, goal_map};
+    candidate.way = {{{0.0, 0.0}, 0.0}, {goal_map, 0.0}};
+    candidate.value.cost_m = goal_map.norm();
+    candidate.rejection = std::move(rejection);
+    return candidate;
+  }
+  static Decision towards(const Candidate& chosen) {
+    Decision decision;
+    decision.candidates = {chosen};
+    decision.chosen = 0;
+    return decision;
+  }
+  Report report(bool is_blocked = false) const { return {now_, robot_, Tracking::kTracking, is_blocked}; }
+  bool step(bool is_blocked = false) {
+    now_ = now_ + time::Duration::from_seconds(0.1);
+    return explorer_.step(report(is_blocked), &surroundings_);
+  }
+  bool is_occupied(Eigen::Vector2d p_map) const {
+    return surroundings_.grid().state(surroundings_.grid().cell_of(p_map)) == mapping::kOccupied;
+  }
+  /// Drives along y = `y_m` and is blocked at once.
+  void be_blocked_at(double y_m) {
+    robot_.p_map = {0.0, y_m};
+    step();
+    Candidate ahead = candidate({4.0, y_m});
+    ahead.points.front() = ahead.way.front().p_map = robot_.p_map;
+    explorer_.take(towards(ahead), report());
+    EXPECT_TRUE(step(true));
+    EXPECT_EQ(explorer_.reason(), "the way was blocked");
+  }
+
+  Surroundings surroundings_{{}, mapping::SensorModel{}, 0.25};
+  Explorer explorer_{{}};
+  Pose2 robot_;
+  time::Time now_;
+};
+
+TEST_F(ExplorerByHand, ADecisionFromBeforeTheWayWasBlockedChangesNothing) {
+  explorer_.start();
+  ASSERT_TRUE(step());
+  explorer_.take(towards(candidate({4.0, 0.0})), report());
+  const std::uint64_t path = explorer_.path_number();
+  explorer_.take(towards(candidate({0.0, 4.0})), report(true));
+  EXPECT_EQ(explorer_.path_number(), path);
+  EXPECT_TRUE(step(true));
+  const auto left_alone = explorer_.memory(now_).left_alone;
+  ASSERT_EQ(left_alone.size(), 1U);
+  EXPECT_EQ(left_alone.front(), Eigen::Vector2d(4.0, 0.0)) << "the target of the way that was blocked";
+}
+
+TEST_F(ExplorerByHand, ATargetThatOthersComeBeforeHasNotVanished) {
+  explorer_.start();
+  ASSERT_TRUE(step());
+  explorer_.take(towards(candidate({9.0, 0.0})), report());
+  Decision nearer = towards(candidate({2.0, 0.0}));
+  nearer.candidates.push_back(candidate({9.0, 0.0}, kOutranked));
+  explorer_.take(nearer, report());
+  EXPECT_TRUE(explorer_.memory(now_).left_alone.empty());
+  explorer_.take(towards(candidate({0.0, 5.0})), report());
+  EXPECT_EQ(explorer_.memory(now_).left_alone.size(), 1U) << "the one before is not there any more";
+}
+
+TEST_F(ExplorerByHand, AFrontierThatCreepsAheadIsNotLate) {
+  explorer_.start();
+  for (int i = 0; i < 1500; ++i) {
+    robot_.p_map.x() = 0.05 * i;  // 0.5 m/s
+    const bool is_wanted = step();
+    ASSERT_NE(explorer_.reason(), "the way took too long") << robot_.p_map.x();
+    if (is_wanted) explorer_.take(towards(candidate(robot_.p_map + Eigen::Vector2d(3.0, 0.0))), report());
+  }
+}
+
+TEST_F(ExplorerByHand, PlacesSideBySideThatStoppedItAreAllAvoidedAtOnce) {
+  explorer_.start();
+  be_blocked_at(0.1);
+  EXPECT_TRUE(is_occupied({0.4, 0.1}));
+  be_blocked_at(0.6);
+  EXPECT_TRUE(is_occupied({0.4, 0.1}));
+  EXPECT_TRUE(is_occupied({0.4, 0.6}));
+}
+
+TEST_F(ExplorerByHand, WhatStoppedItIsForgottenOnTheWayHome) {
+  explorer_.start();
+  be_blocked_at(0.1);
+  explorer_.return_home();
+  now_ = now_ + time::Duration::from_seconds(GoalMemoryConfig{}.expiry_s);
+  step();
+  EXPECT_EQ(explorer_.state(), State::kReturning) << explorer_.reason();
+  EXPECT_FALSE(is_occupied({0.4, 0.1}));
+}
+
 TEST(Explorer, IdlesUntilItIsStarted) {
   WalkWorld world(closed(kThreeRooms));
   world.run(5.0);

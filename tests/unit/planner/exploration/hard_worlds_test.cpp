@@ -50,6 +50,29 @@ TEST_F(HardWorld, ARoomThatCannotBeEntered) {
   EXPECT_LE(world.most_failures(), 3);
 }
 
+TEST_F(HardWorld, ADoorThatLooksClosedFromAfar) {
+  const std::vector<std::string> lines{
+      "###################################",  //
+      "#...............#.................#",  //
+      "#...............#.................#",  //
+      "#...............#.................#",  //
+      "#...............D.................#",  //
+      "#..R............D.................#",  //
+      "#...............D.................#",  //
+      "#...............#.................#",  //
+      "#...............#.................#",  //
+      "#...............#.................#",  //
+      "###################################",
+  };
+  WalkWorld world(lines);
+  explore(world, 0.98);
+  EXPECT_LE(world.most_failures(), 3);
+  WalkWorld careless(lines);
+  careless.decision_config.closer_look_length_m = 1000.0;
+  explore(careless, 0.4);
+  EXPECT_LT(careless.explored_share(), 0.8) << "it does find the door without a closer look";
+}
+
 TEST_F(HardWorld, FreeSpaceBehindAGlassWall) {
   WalkWorld world({
       "#########################",  //

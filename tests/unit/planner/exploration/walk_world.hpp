@@ -15,8 +15,9 @@ namespace lapis::planner::test {
 
 /// A building drawn as text ('#' wall, '.' floor, 'G' a wall that is not seen, 'W' a window: seen through, not passed,
 /// 'O' an obstacle that only the obstacle layer knows, 'N' one that it knows only while the robot is near and that
-/// hides what is there from the map, 'R' where the robot starts), a robot that follows paths exactly, and a camera that
-/// sees 90 degrees and 5 m of it. Ideal, but for what a test spoils.
+/// hides what is there from the map, 'D' a door that looks closed from farther than a metre, though there is a view of
+/// what lies behind, 'R' where the robot starts), a robot that follows paths exactly, and a camera that sees 90 degrees
+/// and 5 m of it. Ideal, but for what a test spoils.
 class WalkWorld {
  public:
   explicit WalkWorld(std::vector<std::string> lines, const ExplorerConfig& explorer_config = {})
@@ -40,9 +41,8 @@ class WalkWorld {
     look();
     surroundings.update_map(known_.map(), known_.flush());
     surroundings.update_obstacles(obstacles(), now);
-    const Report report{now, tracking == Tracking::kLost ? std::nullopt : std::optional(robot), tracking, is_blocked};
     const bool had_goal = explorer.memory(now).goal.has_value();
-    const bool is_decision_wanted = explorer.step(report, &surroundings);
+    const bool is_decision_wanted = explorer.step(report(), &surroundings);
     if (had_goal && !explorer.memory(now).goal && is_failure(explorer.reason())) count_failure();
     if (is_decision_wanted) decide_now();
     const Pose2 before = robot;
@@ -96,6 +96,7 @@ class WalkWorld {
 
   static constexpr double kResolution_m = 0.25;
   static constexpr double kTick_s = 0.2;
+  static constexpr double kNearDoor_m = 1.0;
 
  private:
   int height() const { return static_cast<int>(lines_.size()); }
@@ -112,17 +113,21 @@ class WalkWorld {
   }
   bool see(Cell c) {
     const char what = at(c);
-    if (what == '#') known_.set(c, mapping::kOccupied);
-    const bool is_seen_through = what == '.' || what == 'R' || what == 'W';
-    if (is_seen_through) known_.set(c, mapping::kFree);
+    const bool looks_closed = what == 'D' && (center(c - offset_) - robot.p_map).norm() > kNearDoor_m;
+    if (what == '#' || looks_closed) known_.set(c, mapping::kOccupied);
+    const bool is_seen_through = what == '.' || what == 'R' || what == 'W' || what == 'D';
+    if (is_seen_through && !looks_closed) known_.set(c, mapping::kFree);
     return is_seen_through;
+  }
+  Report report() const {
+    return {now, tracking == Tracking::kLost ? std::nullopt : std::optional(robot), tracking, is_blocked};
   }
   void decide_now() {
     ++decisions;
     const Decision decision = decide({surroundings.grid(), surroundings.frontiers(), surroundings.field(), view_,
                                       geometry::T_base_camera({1.0, 0.0}), nullptr, nullptr, robot},
                                      explorer.memory(now), decision_config);
-    explorer.take(decision, now);
+    explorer.take(decision, report());
     if (decision.chosen) target_ = decision.candidates[*decision.chosen].target_map;
   }
   static bool is_failure(const std::string& reason) {

@@ -110,8 +110,8 @@ TEST(CandidateGain, StartsAtAGraphOfOneNode) {
 TEST(CandidateGain, NamesWhatIsWrong) {
   EXPECT_EQ(error_of({0, {}}), "");
   EXPECT_EQ(error_of({1, {{{2, 3, 1.0}}}}), "");
-  EXPECT_EQ(error_of({1, {{{2, 3, 0.0}}}}), "edge 2-3 has weight 0; a weight is positive and finite");
-  EXPECT_EQ(error_of({1, {{{2, 4, 1.0}}}}), "edge 2-4 names a node beyond 0..3");
+  EXPECT_EQ(error_of({1, {{{2, 3, 0.0}}}}), "the weight of an edge is not positive and finite");
+  EXPECT_EQ(error_of({1, {{{2, 4, 1.0}}}}), "an edge names a node that is not there");
   EXPECT_EQ(error_of({1, {{{2, 3, 1.0}, 64}}}), "place 64 of a loop edge is beyond 0..63");
   const std::string loose = "new nodes are not connected to the graph by certain edges";
   EXPECT_EQ(error_of({1, {{{2, 3, 1.0}, 0}}}), loose);

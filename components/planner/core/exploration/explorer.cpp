@@ -5,48 +5,18 @@
 #include <numbers>
 #include <utility>
 
-#include "planner/core/space/path_planner.hpp"
+#include "planner/core/space/pose_path.hpp"
 
 namespace lapis::planner {
 namespace {
 
-constexpr double kMotion_m = 0.3, kMotion_rad = 0.3;  // less is standing still
-constexpr double kAhead_m = 0.35;                     // what stops the robot is about there
-constexpr double kBlockedRadius_m = 0.2;              // what stops it nearer to each other is one
-constexpr double kNearEnough_m = 1.0;                 // to a place that itself cannot be reached
-constexpr std::size_t kTrailPoses = 50;               // that are remembered
-constexpr double kPathTolerance_m = 1.0;              // around the robot what the path crosses does not matter
+constexpr double kBlockedRadius_m = 0.2;  // what stops the robot nearer to each other is one
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
-
-double turn(const Pose2& a, const Pose2& b) { return turn_between(a.yaw_rad, b.yaw_rad); }
 
 GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
   config.radius_m = kBlockedRadius_m;
   return config;
-}
-
-// Of the cells that can be reached; the robot may have started where it cannot get back to, as beside a wall.
-std::optional<Cell> nearest_reached(const PlanningGrid& grid, const CostTree& tree, const Eigen::Vector2d& place_map) {
-  const Cell middle = grid.cell_of(place_map);
-  const int reach = static_cast<int>(kNearEnough_m / grid.resolution_m());
-  std::optional<Cell> nearest;
-  for (Cell step{0, -reach}; step.y <= reach; ++step.y) {
-    for (step.x = -reach; step.x <= reach; ++step.x) {
-      const Cell c = middle + step;
-      if (tree.cost_m(c) && (!nearest || distance(c, middle) < distance(*nearest, middle))) nearest = c;
-    }
-  }
-  return nearest;
-}
-
-bool has_frontier_at(const Surroundings& surroundings, const Eigen::Vector2d& target_map, double radius_m) {
-  const auto& frontiers = surroundings.frontiers().frontiers();
-  return std::any_of(frontiers.begin(), frontiers.end(), [&](const auto& entry) {
-    const auto& cells = entry.second.cells;
-    return std::any_of(cells.begin(), cells.end(),
-                       [&](Cell c) { return (surroundings.grid().center_of(c) - target_map).norm() <= radius_m; });
-  });
 }
 
 }  // namespace
@@ -59,7 +29,7 @@ void Explorer::start() {
   if (state_ == State::kDone || state_ == State::kFailed || state_ == State::kIdle) {
     memory_.clear();
     blocked_.clear();
-    vain_looks_.clear();
+    looks_.forgive();
     losses_.clear();
   }
   empty_decisions_ = 0;
@@ -89,10 +59,8 @@ void Explorer::forget_map() {
   blocked_.clear();
   nothing_since_.reset();
   looks_.clear();
-  vain_looks_.clear();
   losses_.clear();
   home_.reset();
-  last_tracked_.reset();
   trail_.clear();
   decided_at_.reset();
   empty_decisions_ = 0;
@@ -119,7 +87,7 @@ void Explorer::drop_goal() {
 
 bool Explorer::step(const Report& report, Surroundings* surroundings) {
   if (report.robot && !home_) home_ = report.robot;
-  if (report.robot && report.tracking == Tracking::kTracking) note_tracked(*report.robot);
+  if (report.robot && report.tracking == Tracking::kTracking) trail_.add(*report.robot);
   const bool is_active = state_ == State::kExploring || state_ == State::kReturning || state_ == State::kRecovering;
   if (!is_active) return false;
   if (!home_) {
@@ -143,7 +111,7 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
 }
 
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
-  judge_looks(surroundings, report.now);
+  for (const VainLook& look : looks_.judge(surroundings, report.now)) memory_.add_failure(look.target_map, report.now);
   may_change_ = surroundings.grid().has_passing_obstacles();
   if (!goal_) return is_due(report.now);
   if (is_at(goal_->pose, *report.robot)) {
@@ -158,7 +126,7 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
     drop_goal();
     return true;
   }
-  return is_due(report.now) || !is_path_free(*report.robot, surroundings.grid());
+  return is_due(report.now) || !is_way_free(path_, *report.robot, surroundings.grid());
 }
 
 bool Explorer::is_due(time::Time now) const {
@@ -179,25 +147,23 @@ void Explorer::note_vanished(const Decision& decision, time::Time now) {
     return (c.rejection.empty() || c.rejection == kOutranked) &&
            (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
   });
-  if (!is_there) await({*goal_->target_map, last_tracked_->p_map}, now, config_.memory.expiry_s);
+  if (!is_there) await({*goal_->target_map, trail_.newest()->p_map}, now, config_.memory.expiry_s);
 }
 
 /// Leaves the target alone until then, when it is judged whether the look was in vain.
 void Explorer::await(const VainLook& look, time::Time now, double seconds) {
   const time::Time due = now + time::Duration::from_seconds(seconds);
-  const auto later = std::find_if(looks_.begin(), looks_.end(), [&](const Look& other) { return other.due > due; });
-  looks_.insert(later, {look, due});
+  looks_.await(look, due);
   memory_.leave_alone(look.target_map, due);
 }
 
 bool Explorer::is_at(const Pose2& place, const Pose2& robot) const {
-  return distance(robot, place) <= config_.goal_tolerance_m && turn(robot, place) <= config_.goal_tolerance_rad;
+  return distance(robot, place) <= config_.goal_tolerance_m &&
+         turn_between(robot.yaw_rad, place.yaw_rad) <= config_.goal_tolerance_rad;
 }
 
 bool Explorer::stands_still(const Report& report) {
-  const bool has_moved =
-      distance(*report.robot, goal_->moved_from) > kMotion_m || turn(*report.robot, goal_->moved_from) > kMotion_rad;
-  if (has_moved) {
+  if (has_moved(goal_->moved_from, *report.robot)) {
     goal_->moved_from = *report.robot;
     goal_->moved_at = report.now;
   }
@@ -207,41 +173,16 @@ bool Explorer::stands_still(const Report& report) {
 // The target is left alone, and ways no longer lead through what stopped the robot.
 void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
   if (goal_->target_map) memory_.add_failure(*goal_->target_map, report.now);
-  auto pose = std::min_element(path_.begin(), path_.end(), [&](const Pose2& a, const Pose2& b) {
-    return distance(*report.robot, a) < distance(*report.robot, b);
-  });
-  while (pose != path_.end() && distance(*report.robot, *pose) < kAhead_m) ++pose;
-  if (pose == path_.end()) return;
-  blocked_.add_failure(pose->p_map, report.now);
+  const auto place = place_ahead(path_, *report.robot);
+  if (!place) return;
+  blocked_.add_failure(*place, report.now);
   surroundings.set_blocked(blocked_.left_alone(report.now));
-}
-
-// From the robot on; what it stands in or has behind it does not matter, and what lies just ahead the controller sees.
-bool Explorer::is_path_free(const Pose2& robot, const PlanningGrid& grid) const {
-  const auto nearest = std::min_element(path_.begin(), path_.end(), [&](const Pose2& a, const Pose2& b) {
-    return distance(robot, a) < distance(robot, b);
-  });
-  return std::all_of(nearest, path_.end(), [&](const Pose2& pose) {
-    return distance(robot, pose) < kPathTolerance_m || grid.is_traversable(grid.cell_of(pose.p_map));
-  });
-}
-
-// A frontier that is still there after it has been looked at is glass, or noise.
-void Explorer::judge_looks(const Surroundings& surroundings, time::Time now) {
-  while (!looks_.empty() && looks_.front().due <= now) {
-    const VainLook& look = looks_.front().look;
-    if (has_frontier_at(surroundings, look.target_map, surroundings.grid().resolution_m())) {
-      memory_.add_failure(look.target_map, now);
-      vain_looks_.push_back(look);
-    }
-    looks_.erase(looks_.begin());
-  }
 }
 
 Memory Explorer::memory(time::Time now) const {
   Memory memory;
   memory.left_alone = memory_.left_alone(now);
-  memory.vain_looks = vain_looks_;
+  memory.vain_looks = looks_.in_vain();
   memory.radius_m = config_.memory.radius_m;
   if (goal_) memory.goal = goal_->pose;
   return memory;
@@ -277,14 +218,14 @@ void Explorer::follow(const Candidate& chosen, time::Time now) {
 
 // A turn in all directions may show what has been missed. After it what has failed gets another chance.
 void Explorer::end_or_look_around(const Decision& decision, time::Time now) {
-  const bool turns = goal_ && !goal_->target_map && distance(*last_tracked_, goal_->pose) <= config_.goal_tolerance_m;
+  const bool turns = goal_ && !goal_->target_map && distance(*trail_.newest(), goal_->pose) <= config_.goal_tolerance_m;
   if (turns) return;
   drop_goal();
   if (!nothing_since_) nothing_since_ = now;
   const bool is_worth_waiting = may_change_ && (now - *nothing_since_).seconds() < config_.patience_s;
   if (empty_decisions_ < config_.confirmations || is_worth_waiting) {
     ++empty_decisions_;
-    goal_ = Goal{.pose = *last_tracked_, .moved_from = *last_tracked_, .moved_at = now};
+    goal_ = Goal{.pose = *trail_.newest(), .moved_from = *trail_.newest(), .moved_at = now};
     goal_->pose.yaw_rad += 2.0 * std::numbers::pi / config_.confirmations;
     reason_ = "looks around: no frontier can be driven to";
     return set_path({goal_->pose});
@@ -308,7 +249,7 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
     drop_goal();
     interrupted_ = state_;
     lost_at_ = report.now;
-    if (last_tracked_) trail_.push_back(*last_tracked_);
+    trail_.turn_back();
     enter(State::kRecovering, report.tracking == Tracking::kLost ? "slam is lost" : "slam reckons by wheels alone");
   }
   if ((report.now - *lost_at_).seconds() > config_.lost_timeout_s) {
@@ -316,7 +257,7 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
     return enter(State::kFailed,
                  "slam has not tracked for " + std::to_string(std::lround(config_.lost_timeout_s)) + " s");
   }
-  const bool can_drive = report.tracking == Tracking::kDeadReckoning && report.robot && !trail_.empty();
+  const bool can_drive = report.tracking == Tracking::kDeadReckoning && report.robot && !trail_.is_empty();
   if (can_drive && surroundings != nullptr) retrace(report, *surroundings);
 }
 
@@ -330,19 +271,10 @@ void Explorer::note_loss(time::Time now) {
   losses_.push_back(*goal_->target_map);
 }
 
-void Explorer::note_tracked(const Pose2& robot) {
-  last_tracked_ = robot;
-  const bool is_elsewhere =
-      trail_.empty() || distance(robot, trail_.back()) > kMotion_m || turn(robot, trail_.back()) > kMotion_rad;
-  if (is_elsewhere) trail_.push_back(robot);
-  if (trail_.size() > kTrailPoses) trail_.pop_front();
-}
-
 // Back along the way that was tracked, as far as need be: at its end is what slam lost itself in.
 void Explorer::retrace(const Report& report, const Surroundings& surroundings) {
-  const bool goes_on = is_at(trail_.back(), *report.robot) && trail_.size() > 1;
-  if (goes_on) trail_.pop_back();
-  if (goes_on || (path_.empty() && is_due(report.now))) drive_to(trail_.back(), report, surroundings);
+  const bool goes_on = is_at(trail_.next_back(), *report.robot) && trail_.step_back();
+  if (goes_on || (path_.empty() && is_due(report.now))) drive_to(trail_.next_back(), report, surroundings);
 }
 
 void Explorer::go_home(const Report& report, Surroundings& surroundings) {
@@ -354,24 +286,15 @@ void Explorer::go_home(const Report& report, Surroundings& surroundings) {
     return is_there ? enter(State::kDone, "is back where it started") : enter(State::kFailed, trouble);
   }
   if (report.is_blocked) note_failure(report, surroundings);
-  const bool is_wanted = path_.empty() || !is_path_free(*report.robot, surroundings.grid());
+  const bool is_wanted = path_.empty() || !is_way_free(path_, *report.robot, surroundings.grid());
   if (report.is_blocked || (is_wanted && is_due(report.now))) drive_to(*home_, report, surroundings);
 }
 
 void Explorer::drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings) {
   decided_at_ = report.now;
-  const PlanningGrid& grid = surroundings.grid();
-  const CostTree tree = grow_cost_tree(grid, config_.path, {grid.cell_of(report.robot->p_map)});
-  const auto end = nearest_reached(grid, tree, to.p_map);
-  if (!end) {
-    reason_ = "no way back is known";
-    if (!path_.empty()) set_path({});
-    return;
-  }
-  std::vector<Eigen::Vector2d> points = points_of(grid, straightened(grid, config_.path, tree.path_to(*end)));
-  points.front() = report.robot->p_map;
-  if (*end == grid.cell_of(to.p_map)) points.back() = to.p_map;
-  set_path(poses_along(points, config_.path_spacing_m, to.yaw_rad));
+  std::vector<Pose2> way = way_to(to, *report.robot, surroundings.grid(), config_.path, config_.path_spacing_m);
+  if (way.empty()) reason_ = "no way back is known";
+  if (!way.empty() || !path_.empty()) set_path(std::move(way));
 }
 
 }  // namespace lapis::planner

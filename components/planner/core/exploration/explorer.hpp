@@ -1,14 +1,15 @@
 #pragma once
 
 #include <cstdint>
-#include <deque>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "planner/core/decision/decision.hpp"
 #include "planner/core/exploration/goal_memory.hpp"
+#include "planner/core/exploration/looks.hpp"
 #include "planner/core/exploration/surroundings.hpp"
+#include "planner/core/exploration/trail.hpp"
 
 namespace lapis::planner {
 
@@ -94,7 +95,6 @@ class Explorer {
   void end_or_look_around(const Decision& decision, time::Time now);
   void recover(const Report& report, const Surroundings* surroundings);
   void note_loss(time::Time now);
-  void note_tracked(const Pose2& robot);
   void retrace(const Report& report, const Surroundings& surroundings);
   void go_home(const Report& report, Surroundings& surroundings);
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
@@ -105,8 +105,6 @@ class Explorer {
   bool stands_still(const Report& report);
   bool is_due(time::Time now) const;
   void note_failure(const Report& report, Surroundings& surroundings);
-  bool is_path_free(const Pose2& robot, const PlanningGrid& grid) const;
-  void judge_looks(const Surroundings& surroundings, time::Time now);
 
   ExplorerConfig config_;
   GoalMemory memory_;   ///< targets
@@ -117,15 +115,10 @@ class Explorer {
   std::vector<Pose2> path_;
   std::uint64_t path_number_ = 0;
   std::optional<Goal> goal_;
-  struct Look {
-    VainLook look;  ///< if it is in vain
-    time::Time due;
-  };
-  std::vector<Look> looks_;  ///< whose effect on the map is awaited, the first due first
-  std::vector<VainLook> vain_looks_;
+  Looks looks_;
   std::vector<Eigen::Vector2d> losses_;  ///< targets on the way to which slam stopped tracking [m, map]
-  std::optional<Pose2> home_, last_tracked_;
-  std::deque<Pose2> trail_;  ///< tracked, each somewhere else than the one before
+  std::optional<Pose2> home_;
+  Trail trail_;
   std::optional<time::Time> decided_at_, lost_at_, nothing_since_;
   int empty_decisions_ = 0;
   bool may_change_ = false;  ///< obstacles stand where there may soon be none

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "planner/core/space/cell.hpp"
+
+namespace lapis::planner {
+
+inline constexpr double kMotion_m = 0.3, kMotion_rad = 0.3;  ///< less is standing still
+
+inline bool has_moved(const Pose2& from, const Pose2& to) {
+  return (to.p_map - from.p_map).norm() > kMotion_m || turn_between(to.yaw_rad, from.yaw_rad) > kMotion_rad;
+}
+
+/// Poses at which slam tracked, the newest ones: the way back from where it stopped to.
+class Trail {
+ public:
+  void add(const Pose2& tracked);
+  /// Slam stopped tracking: the way back begins with the pose at which it last did.
+  void turn_back();
+  bool is_empty() const { return poses_.empty(); }
+  /// Next one on the way back; there is one.
+  const Pose2& next_back() const { return poses_.back(); }
+  /// That one has been reached. False when there is none before it.
+  bool step_back();
+  /// Where slam tracked last.
+  const std::optional<Pose2>& newest() const { return newest_; }
+  void clear();
+
+ private:
+  std::deque<Pose2> poses_;  ///< each somewhere else than the one before
+  std::optional<Pose2> newest_;
+};
+
+}  // namespace lapis::planner

@@ -17,8 +17,6 @@ constexpr double kLeastLength_m = 0.02;         // of an edge whose weight is sc
 constexpr double kFirstLoopLength_m = 0.5;      // a loop is worth an odometry edge of this length before there is any
 constexpr std::size_t kNewestNeighbours = 100;  // pairs of key-frames from which odometry is calibrated
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());

@@ -9,8 +9,6 @@ namespace {
 
 constexpr double kLeastLength_m = 0.02;  // of a hallucinated odometry edge
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 // Finds, pose by pose, the old places that a path sees again.
 class PlaceFinder {
  public:
@@ -29,7 +27,7 @@ class PlaceFinder {
   std::vector<Place> most_probable() {
     std::stable_sort(places_.begin(), places_.end(),
                      [](const Place& a, const Place& b) { return a.probability > b.probability; });
-    places_.resize(std::min(places_.size(), index(config_.max_places)));
+    places_.resize(std::min(places_.size(), static_cast<std::size_t>(config_.max_places)));
     return places_;
   }
 

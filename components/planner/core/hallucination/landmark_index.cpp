@@ -8,8 +8,6 @@
 namespace lapis::planner {
 namespace {
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 mapping::VoxelIndex voxel_of(const Eigen::Vector3d& p, double resolution_m) {
   const auto cell = [&](double x) { return static_cast<std::int32_t>(std::floor(x / resolution_m)); };
   return {cell(p.x()), cell(p.y()), cell(p.z())};

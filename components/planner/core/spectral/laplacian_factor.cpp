@@ -13,8 +13,6 @@ namespace {
 // Least square of a pivot, of the node's degree: below, rounding has eaten the digits.
 constexpr double kLeastPivot = 1e-12;
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 // The lower triangle of the reduced Laplacian by columns, as CHOLMOD reads it.
 struct ReducedLaplacian {
   explicit ReducedLaplacian(const WeightedGraph& graph);

@@ -22,8 +22,6 @@ constexpr double kRelaxedTolerance = 1e-6;
 // Picks between two factorisations: each costs a product with the vectors of all picks since.
 constexpr int kPicksPerFactor = 64;
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 std::optional<GraphError> problem_error(const SparsificationProblem& problem) {
   for (const WeightedEdge& edge : problem.candidates) {
     if (auto error = edge_error(problem.node_count, edge)) return error;

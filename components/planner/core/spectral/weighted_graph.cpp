@@ -14,8 +14,6 @@ namespace {
 
 constexpr double kSymmetry = 1e-9;  // of the matrix' norm
 
-std::size_t index(int i) { return static_cast<std::size_t>(i); }
-
 double mean_eigenvalue(const Information& information, const Eigen::LLT<Information>& factor, Criterion criterion) {
   switch (criterion) {
     case Criterion::kD: return std::exp(2.0 * factor.matrixLLT().diagonal().array().log().mean());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <optional>
 #include <span>
@@ -31,6 +32,9 @@ std::optional<double> edge_weight(const Information& information, Criterion crit
 struct GraphError {
   std::string message;
 };
+
+/// Of a node, in a container.
+inline std::size_t index(int node) { return static_cast<std::size_t>(node); }
 
 struct WeightedEdge {
   int a = 0, b = 0;

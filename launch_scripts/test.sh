@@ -39,7 +39,7 @@ echo "test data: ${LAPIS_TEST_DATA:-none, tests that need it are skipped}"
 failed=() skipped="" log=build/release/Testing/Temporary/LastTest.log
 for tier in "${tiers[@]}"; do
   echo "== $tier"
-  ctest --preset release -L "^$tier\$" || failed+=("$tier")
+  ctest --preset release -L "^$tier\$" --parallel "$(nproc)" || failed+=("$tier")
   # GoogleTest's own skips count as passed for ctest; its log has them.
   skipped+="$(grep -Eh '^\[  SKIPPED \] [^ ]+ \(|^SKIPPED( \[|:)|\*\*\*Skipped' "$log" || true)"$'\n'
 done

@@ -102,6 +102,7 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
     reason_ = surroundings == nullptr ? "waits for the map" : "waits for the pose";
     return false;
   }
+  surroundings->mark_driven(report.robot->p_map);
   surroundings->set_blocked(blocked_.left_alone(report.now));
   if (state_ == State::kReturning) {
     go_home(report, *surroundings);

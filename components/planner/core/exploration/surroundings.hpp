@@ -35,6 +35,8 @@ class Surroundings {
   void update_map(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed);
   /// False when the grid is malformed.
   bool update_obstacles(const ObstacleGrid& grid, time::Time stamp);
+  /// The robot is there [m, map]: it can pass.
+  void mark_driven(const Eigen::Vector2d& robot_map) { grid_.mark_driven(robot_map); }
   /// Places that the robot found it cannot pass, whatever the map says [m, map]; all others are as the map says.
   void set_blocked(std::span<const Eigen::Vector2d> places_map);
 

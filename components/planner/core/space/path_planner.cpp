@@ -16,7 +16,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 double line_cost(const PlanningGrid& grid, const PathConfig& config, Cell from, Cell to) {
   double rate = 0.0;  // mean along the line
   const bool is_open = walk_line(from, to, [&](Cell c, double share) {
-    if (!grid.is_traversable(c)) return false;
+    if (!grid.is_passable(c)) return false;
     rate += share * cost_per_metre(grid, config, c);
     return true;
   });

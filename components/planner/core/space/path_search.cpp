@@ -70,7 +70,7 @@ class PathSearch {
   }
 
   bool may_enter(Cell from, Cell to) const {
-    if (grid_.is_traversable(to)) return true;
+    if (grid_.is_passable(to)) return true;
     return !grid_.is_traversable(from) && grid_.state(to) != mapping::kOccupied &&
            distance(to, query_.from) * grid_.resolution_m() <= config_.escape_m &&
            (grid_.has_room(to) || grid_.clearance_m(to) >= grid_.clearance_m(from));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <numbers>
 #include <set>
 #include <utility>
 
@@ -141,6 +142,17 @@ std::vector<Cell> PlanningGrid::set_blocked(std::set<Cell> cells) {
   return renew(touched);
 }
 
+/// All cells whose centre is within half a diagonal: consecutive ones share an edge, as steps of paths do.
+void PlanningGrid::mark_driven(const Eigen::Vector2d& robot_map) {
+  const Cell middle = cell_of(robot_map);
+  for (Cell step{0, -1}; step.y <= 1; ++step.y) {
+    for (step.x = -1; step.x <= 1; ++step.x) {
+      const Cell c = middle + step;
+      if ((center_of(c) - robot_map).norm() <= 0.5 * std::numbers::sqrt2 * resolution_m_) driven_.set(c, true);
+    }
+  }
+}
+
 bool PlanningGrid::has_passing_obstacles() const {
   return std::any_of(obstacles_.begin(), obstacles_.end(),
                      [&](const auto& entry) { return mapped_.at(entry.first) == mapping::kFree; });
@@ -171,7 +183,7 @@ Cell PlanningGrid::cell_of(const Eigen::Vector2d& p_map) const {
 }
 
 std::size_t PlanningGrid::bytes() const {
-  return mapped_.bytes() + state_.bytes() + to_occupied_.bytes() + to_unknown_.bytes();
+  return mapped_.bytes() + state_.bytes() + driven_.bytes() + to_occupied_.bytes() + to_unknown_.bytes();
 }
 
 }  // namespace lapis::planner

@@ -49,7 +49,9 @@ inline constexpr double kMaxReach_m = 1000.0;
 ///
 /// Clearance is measured from centre to centre: walls are taken to be in the middle of their cells. A cell is
 /// traversable when it is free and its clearance is at least footprint radius + margin (and it is
-/// `unknown_clearance_m` from unknown cells).
+/// `unknown_clearance_m` from unknown cells). Passable are these and, unless something is seen there, cells on which
+/// the robot has stood: under and just around itself its camera does not see the floor, and without them there may be
+/// no way back.
 class PlanningGrid {
  public:
   /// @param resolution_m edge of a cell: that of the map.
@@ -65,6 +67,8 @@ class PlanningGrid {
   std::optional<std::vector<Cell>> update_obstacles(const ObstacleGrid& grid, time::Time stamp);
   /// Cells that the robot found it cannot pass, whatever is seen there: occupied until they are left out here.
   std::vector<Cell> set_blocked(std::set<Cell> cells);
+  /// The robot is there [m, map]. A later correction of the map does not move such places.
+  void mark_driven(const Eigen::Vector2d& robot_map);
   /// Forgets obstacles that were last seen more than `obstacle_expiry_s` before `now`.
   std::vector<Cell> expire_obstacles(time::Time now);
 
@@ -80,6 +84,8 @@ class PlanningGrid {
     return state(c) == mapping::kFree && has_room(c) &&
            (unknown_squared_ == 0 || to_unknown_.squared(c) >= unknown_squared_);
   }
+  /// Ways may lead there; goals are traversable.
+  bool is_passable(Cell c) const { return is_traversable(c) || (driven_.at(c) && state(c) == mapping::kUnknown); }
 
   const GridConfig& config() const { return config_; }
   double resolution_m() const { return resolution_m_; }
@@ -106,6 +112,7 @@ class PlanningGrid {
   std::map<Cell, time::Time> obstacles_;       ///< when last seen
   std::set<Cell> blocked_;
   SparseGrid<std::int8_t> state_;  ///< all together
+  SparseGrid<bool> driven_;
   DistanceField to_occupied_;
   DistanceField to_unknown_;
 };

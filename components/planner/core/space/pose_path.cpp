@@ -45,7 +45,7 @@ std::vector<Pose2> way_to(const Pose2& place, const Pose2& robot, const Planning
 
 bool is_way_free(std::span<const Pose2> path, const Pose2& robot, const PlanningGrid& grid) {
   return std::all_of(nearest_pose(path, robot), path.end(), [&](const Pose2& pose) {
-    return distance(robot, pose) < kPathTolerance_m || grid.is_traversable(grid.cell_of(pose.p_map));
+    return distance(robot, pose) < kPathTolerance_m || grid.is_passable(grid.cell_of(pose.p_map));
   });
 }
 

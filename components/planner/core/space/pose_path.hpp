@@ -14,7 +14,7 @@ namespace lapis::planner {
 std::vector<Pose2> way_to(const Pose2& place, const Pose2& robot, const PlanningGrid& grid, const PathConfig& config,
                           double spacing_m);
 
-/// Whether what is left of the path leads over traversable cells. The first metre from the robot does not matter: it
+/// Whether what is left of the path leads over passable cells. The first metre from the robot does not matter: it
 /// may stand in what the map takes for an obstacle, and the controller sees what lies just ahead.
 bool is_way_free(std::span<const Pose2> path, const Pose2& robot, const PlanningGrid& grid);
 

@@ -243,6 +243,17 @@ TEST(FindPath, LeavesUnknownAndOccupiedCells) {
   EXPECT_EQ(find_path(lost.grid, {}, {6, 1}, {0, 0}).status, PathStatus::kFound) << "0.5 m";
 }
 
+TEST(FindPath, LeadsBackOverWhatWasDrivenButNeverSeen) {
+  TextWorld world(
+      {"######           ######", "A....#           #....B", "......           ......", "######           ######"});
+  const Cell a = world.places.at('A'), b = world.places.at('B');
+  EXPECT_EQ(find_path(world.grid, {}, b, a).status, PathStatus::kNoPath);
+  for (double x_m = 1.0; x_m < 5.0; x_m += 0.05) world.grid.mark_driven({x_m, 0.25 + 0.05 * x_m});
+  const PathResult result = find_path(world.grid, {}, b, a);
+  ASSERT_EQ(result.status, PathStatus::kFound);
+  EXPECT_EQ(result.path.cells.back(), a);
+}
+
 TEST(FindPath, NeverLeavesThroughAWall) {
   // The robot stands too near to a thin wall; the goal is beyond it, within the distance of an escape.
   const std::string open(40, '.'), wall(40, '#');

@@ -93,6 +93,19 @@ TEST(PlanningGrid, TraversableIsFreeAndFarEnough) {
   EXPECT_TRUE(careful.grid.is_traversable({3, 2})) << "0.2 m";
 }
 
+TEST(PlanningGrid, WhereTheRobotHasStoodIsPassableUnlessSomethingIsSeenThere) {
+  TextWorld world({".. .."});
+  const Cell unseen{2, 0};
+  EXPECT_FALSE(world.grid.is_passable(unseen));
+  world.grid.mark_driven(world.grid.center_of(unseen));
+  EXPECT_TRUE(world.grid.is_passable(unseen));
+  EXPECT_FALSE(world.grid.is_traversable(unseen)) << "no place to look from";
+  EXPECT_EQ(world.grid.state(unseen), kUnknown) << "it may be a frontier's other side";
+  EXPECT_FALSE(world.grid.is_passable({2, 1})) << "beside";
+  world.grid.update_obstacles(one_cell(world.grid, unseen, 100), {0});
+  EXPECT_FALSE(world.grid.is_passable(unseen));
+}
+
 TEST(PlanningGrid, ObstaclesBlockAndFreeAgain) {
   TextWorld world({".....", ".....", "..#.."});
   const Cell c{1, 1};

@@ -29,7 +29,7 @@ struct PathResult {
 PathResult find_path(const PlanningGrid& grid, const PathConfig& config, Cell from, Cell to);
 
 /// Path along cells that a CostTree gave, with straight lines wherever a line costs no more than the cells it replaces
-/// (0.1 % allowed) and touches traversable cells only. The first cells of a robot that leaves a place that is not
+/// (0.1 % allowed) and touches passable cells only. The first cells of a robot that leaves a place that is not
 /// traversable stay as they are.
 Path straightened(const PlanningGrid& grid, const PathConfig& config, std::span<const Cell> cells);
 

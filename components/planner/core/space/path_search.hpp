@@ -52,7 +52,7 @@ class CostTree {
 /// Dijkstra's algorithm from the root, or A* with the octile distance when the query names a goal. Equal costs are
 /// visited in the order of cells, so that paths are reproducible.
 ///
-/// Open are traversable cells. A robot that stands where it should not (beside a wall, in unknown space, in a cell that
+/// Open are passable cells. A robot that stands where it should not (beside a wall, in unknown space, in a cell that
 /// turned occupied) may still leave: until the path has come to its first traversable cell, it may enter any cell
 /// within escape_m of the start that is not occupied and has room for the robot, or at least as much clearance as the
 /// cell it comes from; so it never gets nearer to a wall that it touches, and never through one.

@@ -8,7 +8,8 @@ add_library(lapis_warnings INTERFACE)
 target_compile_options(lapis_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
 
 # lapis_library(<name> SOURCES <file>... [HEADERS <file>...] [LINK <target>...] [PRIVATE_LINK <target>...])
-# A static library of our own code. HEADERS are also compiled alone (header verification).
+# A static library of our own code. Every header stands alone: a source includes its own header first (.ci/run checks it),
+# and HEADERS without a source are compiled by themselves (target all_verify_interface_header_sets).
 function(lapis_library name)
   cmake_parse_arguments(A "" "" "SOURCES;HEADERS;LINK;PRIVATE_LINK" ${ARGN})
   add_library(${name} STATIC ${A_SOURCES})
@@ -17,7 +18,10 @@ function(lapis_library name)
   if(position EQUAL 0)
     set(base ${LAPIS_SOURCE_DIR}/components)
   endif()
-  target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${base} FILES ${A_HEADERS})
+  set(headers_only ${A_HEADERS})
+  list(TRANSFORM A_SOURCES REPLACE "\\.cpp$" ".hpp" OUTPUT_VARIABLE headers_of_sources)
+  list(REMOVE_ITEM headers_only ${headers_of_sources})
+  target_sources(${name} PUBLIC FILE_SET HEADERS BASE_DIRS ${base} FILES ${headers_only})
   target_include_directories(${name} PUBLIC ${LAPIS_SOURCE_DIR} ${LAPIS_SOURCE_DIR}/components)
   set_target_properties(${name} PROPERTIES VERIFY_INTERFACE_HEADER_SETS ON LINKER_LANGUAGE CXX)
   target_link_libraries(${name} PUBLIC ${A_LINK} PRIVATE ${A_PRIVATE_LINK} lapis_warnings)

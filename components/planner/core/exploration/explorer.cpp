@@ -94,6 +94,7 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
     reason_ = "waits for slam's first pose";
     return false;
   }
+  if (is_briefly_untracked(report)) return false;
   if (report.tracking != Tracking::kTracking || state_ == State::kRecovering) {
     recover(report, surroundings);
     return false;
@@ -237,6 +238,17 @@ void Explorer::end_or_look_around(const Decision& decision, time::Time now) {
   const bool has_forgiven = is_any_left_alone && memory_.forgive(now), has_unblocked = blocked_.forgive(now);
   if (has_forgiven || has_unblocked) return;
   enter(config_.returns_home ? State::kReturning : State::kDone, "nothing is left that can be reached");
+}
+
+// By wheels it goes on for a moment: where it would turn back at once, it would never get past a view of a blank wall.
+bool Explorer::is_briefly_untracked(const Report& report) {
+  if (report.tracking == Tracking::kTracking) {
+    untracked_since_.reset();
+    return false;
+  }
+  if (!untracked_since_) untracked_since_ = report.now;
+  return state_ != State::kRecovering && report.tracking == Tracking::kDeadReckoning &&
+         (report.now - *untracked_since_).seconds() < config_.dead_reckoning_s;
 }
 
 void Explorer::recover(const Report& report, const Surroundings* surroundings) {

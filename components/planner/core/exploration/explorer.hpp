@@ -32,6 +32,7 @@ struct ExplorerConfig {
   double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
   double slowest_m_s = 0.15;        ///< a way that takes longer than at this speed has failed, in [0.01, 5]
   double settle_s = 1.5;            ///< after arriving, until the map tells whether the look was in vain, in [0, 60]
+  double dead_reckoning_s = 2.0;    ///< by wheels alone, before it drives back: a turn past a blank wall, in [0, 10]
   double lost_timeout_s = 60.0;     ///< without tracking, exploration has failed, in [1, 3600]
   double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
   int confirmations = 3;      ///< looks around, a full turn in all, that find nothing before it is over, in [2, 12]
@@ -93,6 +94,7 @@ class Explorer {
   bool explore(const Report& report, Surroundings& surroundings);
   void follow(const Candidate& chosen, time::Time now);
   void end_or_look_around(const Decision& decision, time::Time now);
+  bool is_briefly_untracked(const Report& report);
   void recover(const Report& report, const Surroundings* surroundings);
   void note_loss(time::Time now);
   void retrace(const Report& report, const Surroundings& surroundings);
@@ -119,7 +121,7 @@ class Explorer {
   std::vector<Eigen::Vector2d> losses_;  ///< targets on the way to which slam stopped tracking [m, map]
   std::optional<Pose2> home_;
   Trail trail_;
-  std::optional<time::Time> decided_at_, lost_at_, nothing_since_;
+  std::optional<time::Time> decided_at_, untracked_since_, lost_at_, nothing_since_;
   int empty_decisions_ = 0;
   bool may_change_ = false;  ///< obstacles stand where there may soon be none
 };

@@ -122,8 +122,30 @@ TEST(Explorer, StandsStillWhileLostAndFailsInTheEnd) {
   EXPECT_TRUE(world.explorer.path().empty());
 }
 
+TEST(Explorer, GoesOnByWheelsForAMoment) {
+  WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 2.0});
+  world.explorer.start();
+  world.run(5.0);
+  double blind_m = 0.0;
+  for (int moment = 0; moment < 3; ++moment) {  // each for itself
+    const double travelled_m = world.travelled_m;
+    const auto number = world.explorer.path_number();
+    world.tracking = Tracking::kDeadReckoning;
+    world.run(1.8);
+    EXPECT_EQ(world.explorer.state(), State::kExploring);
+    EXPECT_EQ(world.explorer.path_number(), number) << "along the path that it had";
+    blind_m += world.travelled_m - travelled_m;
+    world.tracking = Tracking::kTracking;
+    world.run(1.0);
+  }
+  EXPECT_GT(blind_m, 1.0);
+  world.tracking = Tracking::kDeadReckoning;
+  world.run(2.4);
+  EXPECT_EQ(world.explorer.state(), State::kRecovering);
+}
+
 TEST(Explorer, DrivesBackToWhereItWasTrackedWhenWheelsLead) {
-  WalkWorld world(closed(kThreeRooms));
+  WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 0.0});
   world.explorer.start();
   world.run(5.0);
   const Eigen::Vector2d place = world.robot.p_map;
@@ -138,7 +160,7 @@ TEST(Explorer, DrivesBackToWhereItWasTrackedWhenWheelsLead) {
 
 // In a view that tells slam nothing the robot is where it was tracked last.
 TEST(Explorer, GoesBackFartherWhereItIsStillNotTracked) {
-  WalkWorld world(closed(kThreeRooms));
+  WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 0.0});
   world.explorer.start();
   world.run(5.0);
   const double travelled_m = world.travelled_m;

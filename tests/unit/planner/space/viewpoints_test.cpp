@@ -58,7 +58,7 @@ TEST(Viewpoints, SeeTheFrontierFromTheRing) {
 
 TEST(Viewpoints, AreReproducibleAndMoveWithTheSeed) {
   const TextWorld world(kRoom);
-  const auto cells = [&](std::uint64_t seed) {
+  const auto cells = [&](std::int64_t seed) {
     ViewpointConfig config = kConfig;
     config.seed = seed;
     std::vector<Cell> cells_of;

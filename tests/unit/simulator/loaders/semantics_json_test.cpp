@@ -86,7 +86,7 @@ TEST(Semantics, UpIsYUnlessTheFileSaysOtherwise) {
 }
 
 TEST(Semantics, LabelsComeFromTheFileElseTheOptionsElseTheNames) {
-  const json instances = {entry(1, "wall", "node", "wall")};
+  const json instances = json::array({entry(1, "wall", "node", "wall")});
   const json named{{"instances", instances}, {"labels", {"chair", "lamp", "wall"}}};
   EXPECT_EQ(load(test::labelled_gltf(), named).labels.name(3), "wall");
   const json numbered{{"instances", instances},

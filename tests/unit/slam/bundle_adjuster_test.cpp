@@ -59,22 +59,27 @@ void disturb(std::mt19937& random, BundleProblem& problem) {
 }
 
 TEST(AdjustBundle, RecoversDisturbedPosesAndPoints) {
-  std::mt19937 random(1);
   const NoiseConfig noise;
-  const BundleProblem truth = make_scene(random, noise);
-  BundleProblem problem = truth;
-  disturb(random, problem);
-  const double before = pose_error(truth, problem);
   BundleConfig config;
   config.max_iterations = 20;
-  const BundleReport report = adjust_bundle(config, noise, problem);
-  EXPECT_TRUE(report.is_usable);
-  EXPECT_LT(report.final_cost, 0.1 * report.initial_cost);
-  BundleProblem nearest = truth;  // the minimum that is found from the truth
-  ASSERT_TRUE(adjust_bundle(config, noise, nearest).is_usable);
-  EXPECT_LT(pose_error(nearest, problem), 0.01 * before);
-  EXPECT_LT(pose_error(truth, problem), 0.3 * before) << "what the noise leaves";
-  EXPECT_TRUE(problem.cameras[0].T_map_camera.matrix() == truth.cameras[0].T_map_camera.matrix());  // the gauge
+  double before = 0.0, after = 0.0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    std::mt19937 random(seed);
+    const BundleProblem truth = make_scene(random, noise);
+    BundleProblem problem = truth;
+    disturb(random, problem);
+    const double disturbed = pose_error(truth, problem);
+    const BundleReport report = adjust_bundle(config, noise, problem);
+    EXPECT_TRUE(report.is_usable);
+    EXPECT_LT(report.final_cost, 0.1 * report.initial_cost);
+    BundleProblem nearest = truth;  // the minimum that is found from the truth
+    ASSERT_TRUE(adjust_bundle(config, noise, nearest).is_usable);
+    EXPECT_LT(pose_error(nearest, problem), 0.01 * disturbed);
+    EXPECT_TRUE(problem.cameras[0].T_map_camera.matrix() == truth.cameras[0].T_map_camera.matrix());  // the gauge
+    before += disturbed;
+    after += pose_error(truth, problem);
+  }
+  EXPECT_LT(after, 0.15 * before) << "what the noise leaves";  // 0.12 and 0.13 with two compilers' draws
 }
 
 TEST(AdjustBundle, LinksHoldCamerasThatSeeNothing) {

@@ -111,6 +111,8 @@ TEST(RefinePose, SurvivesOutliers) {
     for (std::size_t i = 0; i < 60; ++i) EXPECT_FALSE(result.is_inlier[i]);
     EXPECT_GT(result.inliers, 100);
   }
+  EXPECT_LT(std::sqrt(squares.head<3>().sum() / 20), 0.004);
+  EXPECT_LT(std::sqrt(squares.tail<3>().sum() / 20), 0.002);
   EXPECT_LT(squares.head<3>().sum(), 1.1 * squares_without.head<3>().sum());
   EXPECT_LT(squares.tail<3>().sum(), 1.1 * squares_without.tail<3>().sum());
 }

@@ -131,6 +131,11 @@ messages::Converted<Pose2> to_core(const geometry_msgs::msg::Pose& message) {
   return Pose2{T->translation().head<2>(), std::atan2(forward.y(), forward.x())};
 }
 
+double position_variance_m2(const std::array<double, 36>& covariance) {
+  const double mean = (covariance[0] + covariance[7] + covariance[14]) / 3.0;
+  return std::isfinite(mean) ? std::max(mean, 0.0) : 0.0;
+}
+
 messages::Converted<ObstacleGrid> to_core(const nav_msgs::msg::OccupancyGrid& message) {
   using Result = messages::Converted<ObstacleGrid>;
   ObstacleGrid grid;

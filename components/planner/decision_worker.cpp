@@ -9,7 +9,8 @@ namespace {
 /// The knowledge that is to be used, and why there is none.
 std::pair<std::shared_ptr<const GraphKnowledge>, std::string> renew(DecisionInput& input) {
   if (!input.graph) return {input.knowledge, ""};
-  auto graph = analyse_graph(input.graph->keyframes, input.graph->edges, input.config.graph);
+  auto graph =
+      analyse_graph(input.graph->keyframes, input.graph->edges, input.config.graph, input.position_variance_m2);
   if (auto* error = std::get_if<GraphError>(&graph)) return {nullptr, error->message};
   const double resolution_m = input.surroundings->grid().resolution_m();
   LandmarkIndex landmarks(input.landmarks, std::get<AnalysedGraph>(graph), resolution_m);

@@ -26,6 +26,7 @@ struct DecisionInput {
   std::shared_ptr<const GraphKnowledge> knowledge;  ///< of an earlier decision
   /// When the graph or the landmarks are newer than `knowledge`.
   std::optional<GraphMessage> graph;
+  double position_variance_m2 = 0.0;  ///< of each axis, as slam says; 0: it does not
   std::map<mapping::TileIndex, mapping::LandmarkTile> landmarks;
 };
 

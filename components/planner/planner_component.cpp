@@ -46,6 +46,10 @@ void check(const PlannerComponentConfig& config) {
           "planner.viewpoints.min_distance_m has to be less than planner.viewpoints.max_distance_m");
   require(hallucination.impossible_landmarks < hallucination.certain_landmarks,
           "planner.hallucination.impossible_landmarks has to be less than planner.hallucination.certain_landmarks");
+  require(viewpoints.max_distance_m <= config.robot.sensing_range_m,
+          "planner.viewpoints.max_distance_m has to be at most robot.sensing_range_m");
+  require(config.explorer.slowest_m_s < config.robot.max_speed_m_s,
+          "planner.slowest_m_s has to be less than robot.max_speed_m_s");
   require(grid.band.min_height_m < grid.band.max_height_m,
           "planner.grid.min_height_m has to be less than planner.grid.max_height_m");
   require(config.decision.path.comfort_m > least_clearance_m,
@@ -111,19 +115,24 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
 }
 
 void PlannerComponent::serve() {
-  const auto on = [this](const auto& service, void (Explorer::*action)(), const std::string& answer) {
-    context_.serve(service, [this, action, answer](const auto&) {
+  const auto answer = [](bool is_done, const std::string& message) {
+    std_srvs::srv::Trigger_Response response;
+    response.success(is_done);
+    response.message(message);
+    return response;
+  };
+  const auto on = [this, answer](const auto& service, void (Explorer::*action)(), const std::string& message) {
+    context_.serve(service, [this, answer, action, message](const auto&) {
       (explorer_.*action)();
-      std_srvs::srv::Trigger_Response response;
-      response.success(true);
-      response.message(answer);
-      return response;
+      return answer(true, message);
     });
   };
   on(topics::kStartExploring, &Explorer::start, "exploring");
   on(topics::kStopExploring, &Explorer::stop, "stopped");
-  on(topics::kPauseExploring, &Explorer::pause, "paused");
   on(topics::kReturnHome, &Explorer::return_home, "returning");
+  context_.serve(topics::kPauseExploring, [this, answer](const auto&) {
+    return explorer_.pause() ? answer(true, "paused") : answer(false, "nothing to pause: " + explorer_.reason());
+  });
 }
 
 void PlannerComponent::set_labels(const vision_msgs::msg::LabelInfo& message) {
@@ -191,6 +200,7 @@ void PlannerComponent::set_pose(const nav_msgs::msg::Odometry& message) {
   auto pose = to_core(message.pose().pose());
   if (!pose) return drop("pose", pose.reason);
   robot_ = *pose;
+  position_variance_m2_ = position_variance_m2(message.pose().covariance());
 }
 
 void PlannerComponent::note_controller(const lapis_msgs::msg::ControllerStatus& message) {
@@ -273,6 +283,7 @@ void PlannerComponent::begin_decision() {
   const bool has_edges = graph_ && graph_->session == session_ && !graph_->edges.empty();
   if (has_edges && versions_of_graph() != known_graph_) {
     input.graph = graph_;
+    input.position_variance_m2 = position_variance_m2_;
     if (landmarks_.state() && landmarks_.state()->session == graph_->session) input.landmarks = landmarks_.tiles();
     known_graph_ = versions_of_graph();
   }
@@ -333,10 +344,11 @@ mapping::SensorModel PlannerComponent::sensor_model() const {
 
 std_msgs::msg::Header PlannerComponent::header() const { return messages::header(stamp_, map_frame_); }
 
+/// The robot first: a decision may take long.
 void PlannerComponent::finish() {
-  worker_.discard();
   path_.publish(to_message(std::vector<Pose2>{}, header()));
   path_.wait_until_acknowledged(kFarewell_s);
+  worker_.discard();
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
 }
 

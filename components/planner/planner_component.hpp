@@ -79,6 +79,7 @@ class PlannerComponent {
   time::Time stamp_;  // of the newest frame
   Tracking tracking_ = Tracking::kLost;
   std::optional<Pose2> robot_;
+  double position_variance_m2_ = 0.0;  // of robot_, each axis, as slam says; 0: it does not
   bool is_blocked_ = false;
 
   // What the planner makes of it.

@@ -138,6 +138,8 @@ class Peers {
     message.child_frame_id("base_link");
     message.pose().pose(messages::to_message(geometry::make_pose(
         {position.x(), position.y(), 0.0}, Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())))));
+    for (const std::size_t axis : {0U, 7U, 14U})
+      message.pose().covariance()[axis] = position_sigma_m * position_sigma_m;
     return message;
   }
   void say_blocked() {
@@ -178,6 +180,7 @@ class Peers {
   time::Time stamp{1'000'000'000};
   Eigen::Vector2d position{2.0, 2.0};
   double yaw_rad = 0.0;
+  double position_sigma_m = 0.0;  ///< that slam tells, each axis
   bool drives = false;
 
  private:

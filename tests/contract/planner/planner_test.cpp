@@ -61,6 +61,27 @@ TEST_F(PlannerContract, SaysWhatEveryCandidateIsWorthOrWhyItIsRejected) {
   EXPECT_GT(unreachable, 0);
 }
 
+TEST_F(PlannerContract, InformationFromWhereSlamIsUnsureCountsLess) {
+  const auto most_information = [this] {
+    double most = 0.0;
+    for (const auto& candidate : candidates.back().candidates())
+      most = std::max(most, candidate.mutual_information_nats());
+    return most;
+  };
+  ASSERT_TRUE(start({"information_discount_sigma_m=0.3"})) << planner->log();
+  peers.pose_graph.publish(peers.graph());
+  peers.draw(kRoomWithDoor);
+  ASSERT_TRUE(ticks_until([this] { return !candidates.empty(); })) << reason() << planner->log();
+  const double sure = most_information();
+  peers.position_sigma_m = 0.3;
+  ASSERT_TRUE(tick());
+  peers.pose_graph.publish(peers.graph());
+  const std::size_t so_far = candidates.size();
+  ASSERT_TRUE(ticks_until([&] { return candidates.size() > so_far + 1; })) << reason() << planner->log();
+  EXPECT_GT(most_information(), 0.0);
+  EXPECT_LT(most_information(), 0.51 * sure);
+}
+
 TEST_F(PlannerContract, LateJoinerIsToldPathCandidatesAndStatus) {
   get_going();
   TopicProbe late("late");
@@ -220,6 +241,8 @@ TEST(PlannerSetUp, KeysThatContradictEachOtherAreNamed) {
       {"planner.viewpoints.min_distance_m=2.5", "planner.viewpoints.max_distance_m"},
       {"planner.hallucination.impossible_landmarks=100", "planner.hallucination.certain_landmarks"},
       {"planner.grid.min_height_m=2", "planner.grid.max_height_m"},
+      {"planner.viewpoints.max_distance_m=6", "robot.sensing_range_m"},
+      {"planner.slowest_m_s=0.6", "robot.max_speed_m_s"},
       {"robot.radius_m=0.45", "planner.path.comfort_m"},
       {"planner.path.comfort_m=2", "planner.grid.max_clearance_m"}};
   for (const auto& [setting, key] : contradictions) {

@@ -119,6 +119,18 @@ void reject_far_ones(std::vector<Candidate>& candidates, int most) {
   for (auto k = static_cast<std::size_t>(most); k < order.size(); ++k) candidates[order[k]].rejection = kOutranked;
 }
 
+// As a tour: what is left when TARE has no stop any more.
+std::vector<Candidate> nearest_first(std::vector<Candidate> candidates) {
+  std::vector<Candidate*> open;
+  for (Candidate& candidate : candidates) {
+    if (candidate.rejection.empty()) open.push_back(&candidate);
+  }
+  std::stable_sort(open.begin(), open.end(),
+                   [](const Candidate* a, const Candidate* b) { return a->value.cost_m < b->value.cost_m; });
+  for (std::size_t i = 0; i < open.size(); ++i) open[i]->value.tour_place = static_cast<int>(i) + 1;
+  return candidates;
+}
+
 // Where the robot stood when it made an old key-frame that shares many landmarks with others.
 struct OldPlace {
   Pose2 pose;
@@ -240,9 +252,10 @@ std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const M
       is_tour ? propose_tour(s, tree, memory, config) : propose_frontiers(s, tree, memory, config, false);
   const bool is_any_open = std::any_of(candidates.begin(), candidates.end(),
                                        [](const Candidate& candidate) { return candidate.rejection.empty(); });
+  if (is_tour && is_any_open) return candidates;
   if (!is_any_open) candidates = propose_frontiers(s, tree, memory, config, true);
-  if (is_tour) return candidates;
   reject_far_ones(candidates, config.max_candidates);
+  if (is_tour) return nearest_first(std::move(candidates));
   const bool may_revisit = config.revisit_sigma_m > 0.0 && counts_loops(config.method);
   if (config.alternatives == 0 && !may_revisit) return candidates;
   std::vector<OldPlace> places;

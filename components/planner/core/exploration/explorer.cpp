@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -10,12 +11,15 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kBlockedRadius_m = 0.2;  // what stops the robot nearer to each other is one
+constexpr double kBlockedRadius_m = 0.2;      // what stops the robot nearer to each other is one
+constexpr double kLeastDecisionTime_s = 0.5;  // from one decision to the next, whatever happens
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
 
+// Who stands in a way may go, however often that happens.
 GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
   config.radius_m = kBlockedRadius_m;
+  config.max_failures = std::numeric_limits<int>::max();
   return config;
 }
 
@@ -43,9 +47,11 @@ void Explorer::stop() {
   enter(State::kIdle, "stopped");
 }
 
-void Explorer::pause() {
+bool Explorer::pause() {
+  if (!is_active()) return false;
   drop_goal();
   enter(State::kPaused, "paused");
+  return true;
 }
 
 void Explorer::return_home() {
@@ -85,11 +91,14 @@ void Explorer::drop_goal() {
   if (!path_.empty()) set_path({});
 }
 
+bool Explorer::is_active() const {
+  return state_ == State::kExploring || state_ == State::kReturning || state_ == State::kRecovering;
+}
+
 bool Explorer::step(const Report& report, Surroundings* surroundings) {
   if (report.robot && !home_) home_ = report.robot;
   if (report.robot && report.tracking == Tracking::kTracking) trail_.add(*report.robot);
-  const bool is_active = state_ == State::kExploring || state_ == State::kReturning || state_ == State::kRecovering;
-  if (!is_active) return false;
+  if (!is_active()) return false;
   if (!home_) {
     reason_ = "waits for slam's first pose";
     return false;
@@ -115,20 +124,21 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   for (const VainLook& look : looks_.judge(surroundings, report.now)) memory_.add_failure(look.target_map, report.now);
   may_change_ = surroundings.grid().has_passing_obstacles();
-  if (!goal_) return is_due(report.now);
+  const bool may_decide = !decided_at_ || (report.now - *decided_at_).seconds() >= kLeastDecisionTime_s;
+  if (!goal_) return may_decide;
   if (is_at(goal_->pose, *report.robot)) {
     note_arrival(report.now);
     drop_goal();
-    return true;
+    return may_decide;
   }
   const bool is_late = goal_->deadline && report.now > *goal_->deadline;
   if (report.is_blocked || is_late || stands_still(report)) {
     note_failure(report, surroundings);
     reason_ = report.is_blocked ? "the way was blocked" : is_late ? "the way took too long" : "it did not get on";
     drop_goal();
-    return true;
+    return may_decide;
   }
-  return is_due(report.now) || !is_way_free(path_, *report.robot, surroundings.grid());
+  return is_due(report.now) || (may_decide && !is_way_free(path_, *report.robot, surroundings.grid()));
 }
 
 bool Explorer::is_due(time::Time now) const {
@@ -284,23 +294,43 @@ void Explorer::note_loss(time::Time now) {
   losses_.push_back(*goal_->target_map);
 }
 
-// Back along the way that was tracked, as far as need be: at its end is what slam lost itself in.
+// Back along the way that was tracked, as far as need be: at its end is what slam lost itself in. A place to which no
+// way leads, or none the whole way, is passed over.
 void Explorer::retrace(const Report& report, const Surroundings& surroundings) {
-  const bool goes_on = is_at(trail_.next_back(), *report.robot) && trail_.step_back();
-  if (goes_on || (path_.empty() && is_due(report.now))) drive_to(trail_.next_back(), report, surroundings);
+  const bool is_there = is_at(trail_.next_back(), *report.robot);
+  const bool is_at_end = !path_.empty() && is_at(path_.back(), *report.robot);
+  const bool is_out_of_reach = path_.empty() && decided_at_ && is_due(report.now);
+  const bool goes_on = (is_there || is_at_end || is_out_of_reach || report.is_blocked) && trail_.step_back();
+  const bool has_way = !path_.empty() && is_way_free(path_, *report.robot, surroundings.grid());
+  if (goes_on || (!has_way && is_due(report.now))) drive_to(trail_.next_back(), report, surroundings);
+}
+
+// Who stood in the way may have gone, or may go.
+bool Explorer::may_yet_return(const Report& report, Surroundings& surroundings) {
+  if (blocked_.forgive(report.now)) {
+    surroundings.set_blocked(blocked_.left_alone(report.now));
+    goal_->moved_at = report.now;
+    return true;
+  }
+  return surroundings.grid().has_passing_obstacles() && (report.now - goal_->moved_at).seconds() < config_.patience_s;
 }
 
 void Explorer::go_home(const Report& report, Surroundings& surroundings) {
   if (!goal_) goal_ = Goal{.pose = *home_, .moved_from = *report.robot, .moved_at = report.now};
-  const bool is_there = !path_.empty() && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m;
-  if (is_there || stands_still(report)) {
-    const std::string trouble = path_.empty() ? "no way back is known" : "it does not get on to where it started";
+  const bool has_way = !path_.empty();
+  if (has_way && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m) {
     drop_goal();
-    return is_there ? enter(State::kDone, "is back where it started") : enter(State::kFailed, trouble);
+    return enter(State::kDone, "is back where it started");
   }
   if (report.is_blocked) note_failure(report, surroundings);
-  const bool is_wanted = path_.empty() || !is_way_free(path_, *report.robot, surroundings.grid());
+  const bool is_wanted = !has_way || !is_way_free(path_, *report.robot, surroundings.grid());
   if (report.is_blocked || (is_wanted && is_due(report.now))) drive_to(*home_, report, surroundings);
+  if (!path_.empty()) reason_ = "drives back to where it started";
+  if (!has_way && !path_.empty()) goal_->moved_at = report.now;  // a way has opened
+  if (!stands_still(report) || may_yet_return(report, surroundings)) return;
+  const std::string trouble = path_.empty() ? "no way back is known" : "it does not get on to where it started";
+  drop_goal();
+  enter(State::kFailed, trouble);
 }
 
 void Explorer::drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings) {

@@ -57,7 +57,8 @@ class Explorer {
 
   void start();
   void stop();
-  void pause();
+  /// False when there is nothing to pause.
+  bool pause();
   void return_home();
   /// Places are of a map that is gone: none is known any more, not even where it started.
   void forget_map();
@@ -103,6 +104,8 @@ class Explorer {
   void note_arrival(time::Time now);
   void note_vanished(const Decision& decision, time::Time now);
   void await(const VainLook& look, time::Time now, double seconds);
+  bool is_active() const;
+  bool may_yet_return(const Report& report, Surroundings& surroundings);
   bool is_at(const Pose2& place, const Pose2& robot) const;
   bool stands_still(const Report& report);
   bool is_due(time::Time now) const;

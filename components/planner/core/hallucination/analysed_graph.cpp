@@ -84,7 +84,7 @@ double calibrate_odometry(const LaplacianFactor& factor, const std::vector<Keyfr
   return median(std::move(values));
 }
 
-double calibrate_position(std::span<const KeyframeEdge> edges, Criterion criterion) {
+double variance_of_edges(std::span<const KeyframeEdge> edges, Criterion criterion) {
   std::vector<double> values;
   for (const KeyframeEdge& edge : edges) {
     const auto weight = edge_weight(edge.information, criterion);
@@ -93,6 +93,10 @@ double calibrate_position(std::span<const KeyframeEdge> edges, Criterion criteri
     values.push_back(*weight * covariance.topLeftCorner<3, 3>().trace() / 3.0);
   }
   return median(std::move(values));
+}
+
+double newest_resistance(const LaplacianFactor& factor) {
+  return factor.covariance(std::array{factor.node_count() - 1})(0, 0);
 }
 
 std::vector<LoopClosure> loops_of(const AnalysedGraph& graph, std::span<const KeyframeEdge> edges,
@@ -128,12 +132,12 @@ std::optional<int> AnalysedGraph::node_of(std::uint64_t keyframe) const {
 }
 
 double position_sigma_m(const AnalysedGraph& graph) {
-  const int newest = graph.factor.node_count() - 1;
-  return std::sqrt(graph.factor.covariance(std::array{newest})(0, 0) * graph.position_variance_per_resistance);
+  return std::sqrt(newest_resistance(graph.factor) * graph.position_variance_per_resistance);
 }
 
 std::variant<AnalysedGraph, GraphError> analyse_graph(std::span<const Keyframe> keyframes,
-                                                      std::span<const KeyframeEdge> edges, const GraphConfig& config) {
+                                                      std::span<const KeyframeEdge> edges, const GraphConfig& config,
+                                                      double newest_variance_m2) {
   if (keyframes.empty()) return GraphError{"the pose graph has no key-frame"};
   auto component = component_of(keyframes.back().id, edges, config.criterion);
   if (auto* error = std::get_if<GraphError>(&component)) return *error;
@@ -153,7 +157,8 @@ std::variant<AnalysedGraph, GraphError> analyse_graph(std::span<const Keyframe> 
   graph.travelled_m = travelled(graph.keyframes);
   graph.odometry_weight_metres = calibrate_odometry(graph.factor, graph.keyframes);
   graph.loop_weight = calibrate_loops(graph);
-  graph.position_variance_per_resistance = calibrate_position(edges, config.criterion);
+  graph.position_variance_per_resistance =
+      std::max(variance_of_edges(edges, config.criterion), newest_variance_m2 / newest_resistance(graph.factor));
   return graph;
 }
 

@@ -49,7 +49,9 @@ struct AnalysedGraph {
   double odometry_weight_metres = 0.0;
   /// Median of the loop closures' weights; without any, that of an odometry edge of half a metre.
   double loop_weight = 0.0;
-  /// Mean variance of an axis of the position, times the weight: the median over all edges [m^2].
+  /// Variance of an axis of the position for each unit of effective resistance to the first key-frame [m^2]. Resistance
+  /// knows no heading, whose error moves what is far away; so this is what makes the newest key-frame as unsure as slam
+  /// says, but at least the median over all edges of their own.
   double position_variance_per_resistance = 0.0;
 
   /// Nothing for a key-frame outside of the part.
@@ -59,10 +61,12 @@ struct AnalysedGraph {
 /// Standard deviation of the newest key-frame's position, each axis, from the first one [m].
 double position_sigma_m(const AnalysedGraph& graph);
 
-/// @param keyframes by ascending id. The error says which edge has no weight or names a key-frame that is not there, or
-/// that there are fewer than two connected key-frames.
+/// @param keyframes by ascending id
+/// @param newest_variance_m2 of an axis of the newest key-frame's position, from the first one, as slam says; 0: it
+/// does not. The error says which edge has no weight or names a key-frame that is not there, or that there are fewer
+/// than two connected key-frames.
 std::variant<AnalysedGraph, GraphError> analyse_graph(std::span<const Keyframe> keyframes,
                                                       std::span<const KeyframeEdge> edges,
-                                                      const GraphConfig& config = {});
+                                                      const GraphConfig& config = {}, double newest_variance_m2 = 0.0);
 
 }  // namespace lapis::planner

@@ -255,6 +255,16 @@ std::vector<TourStop> sub_spaces(const TourProblem& problem, const TareConfig& c
   return stops;
 }
 
+/// Frontiers that a stop at another one covers, or that are in the same sub-space as one.
+void name_the_rest(const TourProblem& problem, Tour& tour) {
+  std::set<std::uint32_t> named;
+  for (const TourStop& stop : tour.stops) named.insert(stop.frontier);
+  for (const auto& entry : tour.missed) named.insert(entry.first);
+  for (const auto& entry : problem.frontiers.frontiers()) {
+    if (!named.contains(entry.first)) tour.missed.emplace_back(entry.first, "the tour stops at others near it");
+  }
+}
+
 }  // namespace
 
 Tour plan_tour(const TourProblem& problem, const TareConfig& config) {
@@ -277,6 +287,7 @@ Tour plan_tour(const TourProblem& problem, const TareConfig& config) {
   if (local && !global.stops.empty()) tour.stops.pop_back();  // where it ends towards
   tour.local_stops = tour.stops.size();
   tour.stops.insert(tour.stops.end(), global.stops.begin(), global.stops.end());
+  name_the_rest(problem, tour);
   return tour;
 }
 

@@ -105,6 +105,20 @@ TEST(PlannerConversions, PosesThatAreNoneAreRefused) {
   for (const double far : {1.1e4, 1e300}) EXPECT_THAT(to_core(pose(0.0, far, 0.0)).reason, HasSubstr("10 km"));
 }
 
+TEST(PlannerConversions, PositionVarianceIsTheMeanOfTheAxesOrNotTold) {
+  std::array<double, 36> covariance{};
+  EXPECT_EQ(position_variance_m2(covariance), 0.0);
+  covariance[0] = 0.01;
+  covariance[7] = 0.04;
+  covariance[14] = 0.01;
+  covariance[21] = 7.0;
+  EXPECT_NEAR(position_variance_m2(covariance), 0.02, 1e-12);
+  for (const double wrong : {-1.0, kNaN, std::numeric_limits<double>::infinity()}) {
+    covariance[7] = wrong;
+    EXPECT_EQ(position_variance_m2(covariance), 0.0) << wrong;
+  }
+}
+
 TEST(PlannerConversions, PathComesBackAsItWas) {
   const std::vector<Pose2> path{{{0.0, 0.0}, 0.1}, {{1.0, 2.0}, -3.0}};
   const auto header = messages::header(time::Time{5'000'000'007}, "robot1/map");

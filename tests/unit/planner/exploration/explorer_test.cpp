@@ -38,6 +38,9 @@ TEST(Explorer, ExploresThreeRoomsAndIsDone) {
   EXPECT_GT(world.explored_share(), 0.98);
   EXPECT_TRUE(world.explorer.path().empty());
   EXPECT_LT(world.decisions, 400);
+  EXPECT_GE(world.least_decision_time_s, 0.5 - 1e-9) << "twice a second at most";
+  EXPECT_FALSE(world.explorer.pause()) << "there is nothing to pause";
+  EXPECT_EQ(world.explorer.state(), State::kDone);
 }
 
 TEST(Explorer, EveryMethodEnds) {
@@ -92,7 +95,7 @@ TEST(Explorer, PausesAndGoesOn) {
   WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
   world.run(10.0);
-  world.explorer.pause();
+  EXPECT_TRUE(world.explorer.pause());
   const Eigen::Vector2d place = world.robot.p_map;
   world.run(10.0);
   EXPECT_EQ(world.explorer.state(), State::kPaused);
@@ -172,6 +175,22 @@ TEST(Explorer, GoesBackFartherWhereItIsStillNotTracked) {
   EXPECT_LT(world.travelled_m, 2.0 * travelled_m + 0.5) << "along the way it came";
 }
 
+TEST(Explorer, GoesBackPastAPlaceThatItCannotGetTo) {
+  WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 0.0});
+  world.explorer.start();
+  world.run(5.0);
+  world.tracking = Tracking::kDeadReckoning;
+  world.tick();
+  ASSERT_FALSE(world.explorer.path().empty());
+  const Eigen::Vector2d place = world.explorer.path().back().p_map;
+  world.is_blocked = true;
+  world.run(0.8);
+  world.is_blocked = false;
+  ASSERT_EQ(world.explorer.state(), State::kRecovering);
+  ASSERT_FALSE(world.explorer.path().empty());
+  EXPECT_GT((world.explorer.path().back().p_map - place).norm(), 0.3) << "an earlier one";
+}
+
 TEST(Explorer, GivesUpARoomInWhichSlamDoesNotTrack) {
   WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
@@ -208,6 +227,37 @@ TEST(Explorer, SaysThatNoWayLeadsHome) {
   EXPECT_EQ(world.explorer.state(), State::kFailed);
   EXPECT_THAT(world.explorer.reason(), AnyOf("no way back is known", "it does not get on to where it started"));
   EXPECT_TRUE(world.explorer.path().empty());
+}
+
+/// On its way back from the second room, whose door is three cells wide.
+WalkWorld returning_world() {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  while (world.robot.p_map.x() < 4.0 && world.explorer.state() == State::kExploring) world.run(0.2);
+  world.explorer.return_home();
+  return world;
+}
+
+TEST(Explorer, SomebodyInTheDoorIsWaitedForOnTheWayHome) {
+  WalkWorld world = returning_world();
+  for (int y = 3; y <= 5; ++y) world.set({11, y}, 'O');
+  world.run(15.0);
+  EXPECT_EQ(world.explorer.state(), State::kReturning) << world.explorer.reason();
+  for (int y = 3; y <= 5; ++y) world.set({11, y}, '.');
+  world.run(60.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone);
+  EXPECT_EQ(world.explorer.reason(), "is back where it started");
+}
+
+TEST(Explorer, ABlockedWayHomeIsTriedAgain) {
+  WalkWorld world = returning_world();
+  while (world.robot.p_map.x() > 3.2 && world.explorer.state() == State::kReturning) world.run(0.2);
+  world.is_blocked = true;  // by people who are gone at once
+  for (int i = 0; i < 10 && !world.explorer.path().empty(); ++i) world.tick();
+  world.is_blocked = false;
+  ASSERT_TRUE(world.explorer.path().empty());
+  world.run(60.0);
+  EXPECT_EQ(world.explorer.reason(), "is back where it started");
 }
 
 // It began nearer to a wall than a planned way leads.
@@ -294,8 +344,8 @@ class ExplorerByHand : public ::testing::Test {
     return decision;
   }
   Report report(bool is_blocked = false) const { return {now_, robot_, Tracking::kTracking, is_blocked}; }
-  bool step(bool is_blocked = false) {
-    now_ = now_ + time::Duration::from_seconds(0.1);
+  bool step(bool is_blocked = false, double elapsed_s = 0.1) {
+    now_ = now_ + time::Duration::from_seconds(elapsed_s);
     return explorer_.step(report(is_blocked), &surroundings_);
   }
   bool is_occupied(Eigen::Vector2d p_map) const {
@@ -308,7 +358,7 @@ class ExplorerByHand : public ::testing::Test {
     Candidate ahead = candidate({4.0, y_m});
     ahead.points.front() = ahead.way.front().p_map = robot_.p_map;
     explorer_.take(towards(ahead), report());
-    EXPECT_TRUE(step(true));
+    EXPECT_TRUE(step(true, 0.5));
     EXPECT_EQ(explorer_.reason(), "the way was blocked");
   }
 
@@ -325,7 +375,7 @@ TEST_F(ExplorerByHand, ADecisionFromBeforeTheWayWasBlockedChangesNothing) {
   const std::uint64_t path = explorer_.path_number();
   explorer_.take(towards(candidate({0.0, 4.0})), report(true));
   EXPECT_EQ(explorer_.path_number(), path);
-  EXPECT_TRUE(step(true));
+  EXPECT_TRUE(step(true, 0.5));
   const auto left_alone = explorer_.memory(now_).left_alone;
   ASSERT_EQ(left_alone.size(), 1U);
   EXPECT_EQ(left_alone.front(), Eigen::Vector2d(4.0, 0.0)) << "the target of the way that was blocked";
@@ -360,6 +410,16 @@ TEST_F(ExplorerByHand, PlacesSideBySideThatStoppedItAreAllAvoidedAtOnce) {
   be_blocked_at(0.6);
   EXPECT_TRUE(is_occupied({0.4, 0.1}));
   EXPECT_TRUE(is_occupied({0.4, 0.6}));
+}
+
+TEST_F(ExplorerByHand, AWayThatWasBlockedNowAndThenIsNotClosedForGood) {
+  explorer_.start();
+  for (int i = 0; i < 5; ++i) {
+    be_blocked_at(0.1);
+    EXPECT_TRUE(is_occupied({0.4, 0.1}));
+    step(false, GoalMemoryConfig{}.expiry_s + 1.0);
+    EXPECT_FALSE(is_occupied({0.4, 0.1})) << "whoever stood there may have gone";
+  }
 }
 
 TEST_F(ExplorerByHand, WhatStoppedItIsForgottenOnTheWayHome) {

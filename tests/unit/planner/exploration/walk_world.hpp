@@ -1,8 +1,13 @@
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
+#include <optional>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -16,8 +21,9 @@ namespace lapis::planner::test {
 /// A building drawn as text ('#' wall, '.' floor, 'G' a wall that is not seen, 'W' a window: seen through, not passed,
 /// 'O' an obstacle that only the obstacle layer knows, 'N' one that it knows only while the robot is near and that
 /// hides what is there from the map, 'D' a door that looks closed from farther than a metre, though there is a view of
-/// what lies behind, 'R' where the robot starts), a robot that follows paths exactly, and a camera that sees 90 degrees
-/// and 5 m of it. Ideal, but for what a test spoils.
+/// what lies behind, 'F' one of a place behind glass that each look tells something else of, 'R' where the robot
+/// starts), a robot that follows paths exactly, and a camera that sees 90 degrees and 5 m of it. Ideal, but for what a
+/// test spoils.
 class WalkWorld {
  public:
   explicit WalkWorld(std::vector<std::string> lines, const ExplorerConfig& explorer_config = {})
@@ -113,17 +119,25 @@ class WalkWorld {
   }
   bool see(Cell c) {
     const char what = at(c);
+    if (what == 'F') return see_noise(c);
     const bool looks_closed = what == 'D' && (center(c - offset_) - robot.p_map).norm() > kNearDoor_m;
     if (what == '#' || looks_closed) known_.set(c, mapping::kOccupied);
     const bool is_seen_through = what == '.' || what == 'R' || what == 'W' || what == 'D';
     if (is_seen_through && !looks_closed) known_.set(c, mapping::kFree);
     return is_seen_through;
   }
+  bool see_noise(Cell c) {
+    constexpr std::array<std::int8_t, 3> kStates{mapping::kFree, mapping::kUnknown, mapping::kOccupied};
+    known_.set(c, kStates[noise_() % kStates.size()]);
+    return true;
+  }
   Report report() const {
     return {now, tracking == Tracking::kLost ? std::nullopt : std::optional(robot), tracking, is_blocked};
   }
   void decide_now() {
     ++decisions;
+    if (decided_at_) least_decision_time_s = std::min(least_decision_time_s, (now - *decided_at_).seconds());
+    decided_at_ = now;
     const Decision decision = decide({surroundings.grid(), surroundings.frontiers(), surroundings.field(), view_,
                                       geometry::T_base_camera({1.0, 0.0}), nullptr, nullptr, robot},
                                      explorer.memory(now), decision_config);
@@ -189,6 +203,7 @@ class WalkWorld {
   int decisions = 0;
   double travelled_m = 0.0;
   double longest_idle_s = 0.0;  ///< without moving or turning while it explored
+  double least_decision_time_s = std::numeric_limits<double>::infinity();  ///< from one to the next
 
  private:
   View view_;
@@ -196,6 +211,8 @@ class WalkWorld {
   std::size_t next_ = 0;
   Cell offset_{0, 0};
   double idle_s_ = 0.0;
+  std::optional<time::Time> decided_at_;
+  std::mt19937 noise_{1};
   Eigen::Vector2d target_{0, 0};
   std::vector<std::pair<Eigen::Vector2d, int>> failures_;
 };

@@ -67,6 +67,25 @@ TEST(AnalysedGraph, TheNewestPositionIsAsSureAsItsChain) {
   EXPECT_NEAR(position_sigma_m(graph), 0.01 * std::sqrt(4.0), 1e-9) << "four edges of 1 cm";
 }
 
+TEST(AnalysedGraph, TheNewestPositionIsAsUnsureAsSlamSays) {
+  // A heading that is off by 0.01 rad after each of ten edges moves the end of a chain of 40 m by far more than the
+  // errors of the edges' own lengths do.
+  std::vector<geometry::Pose> poses;
+  for (int i = 0; i <= 10; ++i) poses.push_back(camera_at(4.0 * i, 0, 0));
+  const Chain chain(poses);
+  double variance = 0.0;
+  for (int i = 0; i < 10; ++i) variance += 0.01 * 0.01 * (1.0 + std::pow(4.0 * (10 - i), 2)) / 3.0;
+  const auto told = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, {}, variance));
+  EXPECT_NEAR(position_sigma_m(told), std::sqrt(variance), 1e-9);
+  EXPECT_GT(position_sigma_m(told), 10.0 * position_sigma_m(chain.graph()));
+}
+
+TEST(AnalysedGraph, EdgesOfItsOwnAreTheLeastUncertainty) {
+  const Chain chain(std::vector<geometry::Pose>(5, camera_at(0, 0, 0)));
+  const auto told = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, {}, 1e-8));
+  EXPECT_EQ(position_sigma_m(told), position_sigma_m(chain.graph()));
+}
+
 TEST(AnalysedGraph, WaysGoAlongEdgesAndTurnsCount) {
   Chain chain({camera_at(0, 0, 0), camera_at(4, 0, 0), camera_at(4, 4, 0), camera_at(0, 4, std::numbers::pi)});
   const AnalysedGraph open = chain.graph();

@@ -25,7 +25,7 @@ struct RobotDescription {
   double max_acceleration_m_s2 = 1.5;
   double max_turn_acceleration_rad_s2 = 4.0;
   double drive_lag_s = 0.15;
-  double command_timeout_s = 0.5;
+  double command_timeout_s = 0.2;
   double sensing_range_m = 5.0;
   CameraDescription camera;
 };

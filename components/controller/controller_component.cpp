@@ -1,6 +1,9 @@
 #include "controller/controller_component.hpp"
 
 #include <chrono>
+#include <numbers>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 #include "common/messages/time.hpp"
@@ -22,6 +25,25 @@ RobotLimits limits_of(const robot::RobotDescription& robot) {
           robot.drive_lag_s + kTickLatencies / robot.camera.rate_hz};
 }
 
+void require(bool is_met, const std::string& what) {
+  if (!is_met) throw std::runtime_error(what);
+}
+
+/// What keys have to be to each other; without it the robot would not see what it drives into, or be blocked by
+/// turning.
+const ControllerComponentConfig& checked(const ControllerComponentConfig& config) {
+  const LocalMapConfig& map = config.method.local_map;
+  const FanConfig& fan = config.method.fan;
+  require(map.min_height_m < map.max_height_m,
+          "controller.local_map.min_height_m has to be less than controller.local_map.max_height_m");
+  require(map.range_m >= fan.length_m + config.robot.radius_m + fan.margin_m,
+          "controller.local_map.range_m has to be at least controller.fan.length_m, robot.radius_m and "
+          "controller.fan.margin_m together");
+  require(config.method.progress_timeout_s > std::numbers::pi / config.robot.max_turn_rate_rad_s,
+          "controller.progress_timeout_s has to be longer than half a turn at robot.max_turn_rate_rad_s takes");
+  return config;
+}
+
 time::Time steady_now() {
   const auto since_boot = std::chrono::steady_clock::now().time_since_epoch();
   return {std::chrono::duration_cast<std::chrono::nanoseconds>(since_boot).count()};
@@ -30,9 +52,10 @@ time::Time steady_now() {
 }  // namespace
 
 ControllerComponent::ControllerComponent(const Config& config, runtime::Context& context)
-    : config_(config), context_(context), map_frame_(context.frame("map")), base_frame_(context.frame("base_link")),
-      controller_(config.method, limits_of(config.robot)), command_(context.advertise(topics::kCommand)),
-      local_path_(context.advertise(topics::kLocalPath)), status_(context.advertise(topics::kControllerStatus)),
+    : config_(checked(config)), context_(context), map_frame_(context.frame("map")),
+      base_frame_(context.frame("base_link")), controller_(config.method, limits_of(config.robot)),
+      command_(context.advertise(topics::kCommand)), local_path_(context.advertise(topics::kLocalPath)),
+      status_(context.advertise(topics::kControllerStatus)),
       pose_(context, topics::kSlamOdometry, "pose", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       info_(context, topics::kDepthInfo, "camera info", kWaitingFrames) {

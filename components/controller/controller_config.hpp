@@ -31,7 +31,8 @@ void describe(Field& field, LocalMapConfig& c) {
   field("min_height_m", c.min_height_m, config::in_range(-1.0, 10.0),
         "above base_link: what is lower is driven over [m]");
   field("max_height_m", c.max_height_m, config::in_range(-1.0, 10.0), "what is higher is passed under [m]");
-  field("memory_s", c.memory_s, config::in_range(0.1, 600.0), "what was seen longer ago is forgotten [s]");
+  field("memory_s", c.memory_s, config::in_range(0.1, 600.0),
+        "what was seen longer ago is forgotten; time without a path does not count while the robot stands [s]");
   field("stride", c.stride, config::in_range(1, 32), "every stride-th pixel of every stride-th row is used");
   field("passes_to_clear", c.passes_to_clear, config::in_range(1, 100),
         "images that must look through an obstacle before it is gone");

@@ -17,6 +17,7 @@ constexpr double kAside_rad = 0.2;       // off the goal: who is blocked turns t
 constexpr double kCreep_m_s = 0.08;
 constexpr double kJump_m = 0.15;  // a pose that is farther from the last one than the robot can have driven
 constexpr double kJump_rad = 0.15;
+constexpr double kLongestBlind_s = 1.0;   // for which the robot may have moved without a pose; then it stands
 constexpr double kMoved_m = 0.3;          // less is no progress
 constexpr double kRearRoom_m = 0.15;      // that has to be free to back up
 constexpr double kLostPause_s = 1.0;      // before the robot turns to find its pose
@@ -52,10 +53,10 @@ void Controller::set_pose(const PlanarPose& T_map_base, time::Time stamp, time::
   watchdog_.note(Input::kPose, now, stamp);
   if (pose_stamp_) {
     const PlanarPose T_last_base = T_map_base_.inverse() * T_map_base;
-    const double elapsed_s = abs(stamp - *pose_stamp_).seconds();
+    const double elapsed_s = std::min(abs(stamp - *pose_stamp_).seconds(), kLongestBlind_s);
     const bool is_jump = T_last_base.translation().norm() > limits_.max_speed_m_s * elapsed_s + kJump_m ||
                          std::abs(yaw_of(T_last_base)) > limits_.max_turn_rate_rad_s * elapsed_s + kJump_rad;
-    if (is_jump) map_.forget_points();
+    if (is_jump) map_.move_points(T_map_base * T_map_base_.inverse());
   }
   pose_stamp_ = stamp;
   T_map_base_ = T_map_base;
@@ -63,7 +64,7 @@ void Controller::set_pose(const PlanarPose& T_map_base, time::Time stamp, time::
 
 void Controller::see(const DepthView& view, time::Time stamp, time::Time now) {
   watchdog_.note(Input::kView, now, stamp);
-  map_.add(view, T_map_base_, stamp);
+  map_.add(view, T_map_base_, stamp, track_.has_value());
 }
 
 void Controller::set_obstacles(Grid grid, time::Time stamp, time::Time now) {
@@ -235,7 +236,7 @@ Velocity Controller::recovery_velocity() const {
   const double aside_rad = bearing(goal_ahead(config_.look_ahead_m));
   switch (recovery_) {
     case Recovery::kTurning: return {0.0, turns_left_ ? limits_.max_turn_rate_rad_s : -limits_.max_turn_rate_rad_s};
-    case Recovery::kBackingUp: return {-config_.back_up_speed_m_s, 0.0};
+    case Recovery::kBackingUp: return {-std::min(config_.back_up_speed_m_s, stopping_speed(kRearRoom_m, limits_)), 0.0};
     case Recovery::kNoWay: return {0.0, std::abs(aside_rad) > kAside_rad ? turn_rate(aside_rad) : 0.0};
     default: return {};
   }

@@ -14,6 +14,7 @@ constexpr double kBehind_m = 0.15;  // a surface is looked through when the imag
 constexpr double kBehind = 0.02;    // and this share of the depth, at it
 constexpr int kAround_px = 2;       // and at the pixels so far around it: edges are ragged
 constexpr double kTouch_m = 0.05;   // a point this near to a cell explains it
+constexpr double kStands_m_s = 0.03, kStands_rad_s = 0.05;  // poses of a robot that stands differ by less
 
 mapping::VoxelIndex voxel_of(const Eigen::Vector2d& p_map, double height_m) {
   const auto index = [](double metres) { return static_cast<std::int32_t>(std::floor(metres / kEdge_m)); };
@@ -51,18 +52,42 @@ std::int8_t Grid::at(const Eigen::Vector2d& p_map) const {
                static_cast<std::size_t>(cell.x())];
 }
 
-void LocalMap::add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp) {
-  forget(T_map_base, stamp);
+void LocalMap::add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp, bool has_path) {
+  pass_time(T_map_base, stamp, has_path);
+  forget(T_map_base);
   look_through(view, T_map_base);
-  add_hits(view, T_map_base, stamp);
+  add_hits(view, T_map_base);
 }
 
-void LocalMap::forget(const PlanarPose& T_map_base, time::Time stamp) {
-  const double memory_ns = config_.memory_s * 1e9;
+/// Where time begins again, nothing is known.
+void LocalMap::pass_time(const PlanarPose& T_map_base, time::Time stamp, bool has_path) {
+  if (last_) {
+    const PlanarPose T_last_base = last_->T_map_base.inverse() * T_map_base;
+    const double elapsed_s = (stamp - last_->stamp).seconds();
+    if (elapsed_s < 0.0) points_.clear();
+    const bool moves = T_last_base.translation().norm() > kStands_m_s * elapsed_s ||
+                       std::abs(yaw_of(T_last_base)) > kStands_rad_s * elapsed_s;
+    if (moves || has_path) time_s_ += std::max(elapsed_s, 0.0);
+  }
+  last_ = {T_map_base, stamp};
+}
+
+void LocalMap::move_points(const PlanarPose& T_new_old) {
+  Points moved;
+  for (const auto& [voxel, point] : points_) {
+    Point& there =
+        moved.try_emplace(voxel_of(T_new_old * center_of(voxel), (voxel.z + 0.5) * kEdge_m), point).first->second;
+    if (point.seen_s > there.seen_s) there = point;
+  }
+  points_ = std::move(moved);
+  last_.reset();
+}
+
+void LocalMap::forget(const PlanarPose& T_map_base) {
   const double kept_m = config_.range_m + 1.0;
   std::erase_if(points_, [&](const auto& entry) {
     const auto& [voxel, point] = entry;
-    const bool is_old = std::abs(static_cast<double>(stamp.nanoseconds - point.seen)) > memory_ns;
+    const bool is_old = time_s_ - point.seen_s > config_.memory_s;
     return is_old || (center_of(voxel) - T_map_base.translation()).norm() > kept_m;
   });
 }
@@ -78,14 +103,14 @@ void LocalMap::look_through(const DepthView& view, const PlanarPose& T_map_base)
   std::erase_if(points_, [this](const auto& entry) { return entry.second.passes >= config_.passes_to_clear; });
 }
 
-void LocalMap::add_hits(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp) {
+void LocalMap::add_hits(const DepthView& view, const PlanarPose& T_map_base) {
   for (int row = 0; row < view.depth.height; row += config_.stride) {
     for (int column = 0; column < view.depth.width; column += config_.stride) {
       const auto depth_m = static_cast<double>(view.depth(column, row));
       if (depth_m < kNearest_m || depth_m > config_.range_m) continue;
       const Eigen::Vector3d p_base = view.T_base_camera * view.camera.unproject(column, row, depth_m);
       if (p_base.z() < config_.min_height_m || p_base.z() > config_.max_height_m) continue;
-      points_[voxel_of(T_map_base * p_base.head<2>(), p_base.z())] = {stamp.nanoseconds, 0};
+      points_[voxel_of(T_map_base * p_base.head<2>(), p_base.z())] = {time_s_, 0};
     }
   }
 }

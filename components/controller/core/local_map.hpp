@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <unordered_map>
 #include <vector>
 
@@ -48,12 +49,14 @@ class LocalMap {
  public:
   explicit LocalMap(const LocalMapConfig& config) : config_(config) {}
 
-  void add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp);
+  /// @param has_path a robot that stands without one forgets nothing: what is below its image is still there when it is
+  /// sent on. With one, what it waits for may have gone unseen.
+  void add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp, bool has_path);
   /// The map's floor plan, and what stood in the way lately, which overrules it where it knows anything.
   void set_plan(Grid grid) { plan_ = std::move(grid); }
   void set_obstacles(Grid grid) { obstacles_ = std::move(grid); }
-  /// The map frame has jumped: remembered points are no longer where they are.
-  void forget_points() { points_.clear(); }
+  /// The map frame has jumped: remembered points are where they were from the robot.
+  void move_points(const PlanarPose& T_new_old);
 
   /// Obstacle points in base_link, within a distance of the robot. An occupied cell of a grid is its centre, unless
   /// points tell what in it stands where.
@@ -63,20 +66,27 @@ class LocalMap {
 
  private:
   struct Point {
-    std::int64_t seen = 0;  ///< stamp of the last hit [ns]
-    int passes = 0;         ///< images that looked through it since
+    double seen_s = 0.0;  ///< time that counts of the last hit
+    int passes = 0;       ///< images that looked through it since
+  };
+  struct Look {
+    PlanarPose T_map_base;
+    time::Time stamp;
   };
   using Points = std::unordered_map<mapping::VoxelIndex, Point, mapping::GridIndexHash>;
 
+  void pass_time(const PlanarPose& T_map_base, time::Time stamp, bool has_path);
   void look_through(const DepthView& view, const PlanarPose& T_map_base);
-  void add_hits(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp);
-  void forget(const PlanarPose& T_map_base, time::Time stamp);
+  void add_hits(const DepthView& view, const PlanarPose& T_map_base);
+  void forget(const PlanarPose& T_map_base);
   std::vector<Eigen::Vector2d> columns_near(const Eigen::Vector2d& p_map, double distance_m) const;
   void add_occupied(const Grid& grid, const PlanarPose& T_map_base, double distance_m,
                     const std::vector<Eigen::Vector2d>& columns, std::vector<Eigen::Vector2d>& points) const;
 
   LocalMapConfig config_;
   Points points_;
+  std::optional<Look> last_;
+  double time_s_ = 0.0;  // that counts so far
   Grid plan_;
   Grid obstacles_;
 };

@@ -284,6 +284,31 @@ TEST(Controller, LooksAroundOnceForItsPoseWhenConfigured) {
   EXPECT_NEAR(turned_rad, 6.28, 0.1);
 }
 
+// A box that is below the image is known by memory alone.
+TEST(Controller, WhatIsRememberedStaysInFrontOfItWhenTheMapJumps) {
+  const Box low{{2.0, -3.0, 0.0}, {2.4, 3.0, 0.3}, 9};
+  KinematicWorld world(with(hall(), {low}));
+  world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");
+  ASSERT_LT(world.run_until([&](const Decision&) { return world.T_map_base.translation().x() > 1.1; }, 20.0), 20.0);
+  world.T_told_map = planar_pose({0.5, 0.4}, 0.3);
+  Path path = straight(world.T_map_base.translation(), {4, 0}, 0.0);
+  for (PlanarPose& pose : path) pose = world.T_told_map * pose;
+  world.controller.set_path(path, "");
+  world.run_until([](const Decision&) { return false; }, 10.0);
+  EXPECT_GT(world.least_room_m, 0.0);
+}
+
+TEST(Controller, StopsForAWallAlsoWhenSlamIsSlow) {
+  for (const std::size_t frames : {1U, 2U, 3U}) {  // 0.07 to 0.2 s
+    KinematicWorld world(with(hall(), {wall(3.0, -8, 3.2, 8)}));
+    world.late_frames = frames;
+    world.controller.set_path(straight({0, 0}, {6, 0}, 0.0), "");
+    world.run_until([](const Decision&) { return false; }, 12.0);
+    EXPECT_GT(world.T_map_base.translation().x(), 1.5) << "it has driven";
+    EXPECT_GT(world.least_room_m, 0.0) << frames << ": touched";
+  }
+}
+
 TEST(Controller, TheSameInputGivesTheSameCommands) {
   std::vector<Velocity> commands[2];
   for (auto& run : commands) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <deque>
 #include <functional>
 #include <limits>
 #include <string>
@@ -31,8 +32,13 @@ class KinematicWorld {
     now = now + time::Duration::from_seconds(1.0 / kRate_hz);
     controller.note_camera(now, now);
     controller.note_planner(now);
-    if (has_pose) controller.set_pose(T_map_base, now, now);
-    if (has_pose) controller.see({image(), camera, T_base_camera()}, now, now);
+    frames_.push_back({T_told_map * T_map_base, {image(), camera, T_base_camera()}, now});
+    if (frames_.size() > late_frames) {
+      const Frame& frame = frames_.front();
+      if (has_pose) controller.set_pose(frame.T_map_base, frame.stamp, now);
+      if (has_pose) controller.see(frame.view, frame.stamp, now);
+      frames_.pop_front();
+    }
     controller.set_obstacles(grid(), now, now);
     Decision decision = controller.step(now);
     acting_ = commanded_;
@@ -67,7 +73,9 @@ class KinematicWorld {
   RobotLimits limits;
   geometry::PinholeCamera camera{160, 90, 80, 80, 79.5, 44.5};
   PlanarPose T_map_base = PlanarPose::Identity();
-  Velocity velocity;  ///< of the drives
+  PlanarPose T_told_map = PlanarPose::Identity();  ///< error of the poses that slam tells
+  std::size_t late_frames = 0;                     ///< so late come pose and depth image; the camera's stamp does not
+  Velocity velocity;                               ///< of the drives
   time::Time now{1'000'000'000};
   bool has_pose = true;
   bool knows_floor = false;  ///< the mapper's grid says that all but boxes is free; else it knows nothing
@@ -75,6 +83,12 @@ class KinematicWorld {
   double least_room_m = std::numeric_limits<double>::infinity();
 
  private:
+  struct Frame {
+    PlanarPose T_map_base;
+    DepthView view;
+    time::Time stamp;
+  };
+
   static geometry::Pose T_base_camera() { return geometry::T_base_camera({1.0, 0.0}); }
   geometry::DepthImage image() const {
     std::vector<Box> visible{{{-20, -20, -0.3}, {20, 20, 0}, 2}};
@@ -119,6 +133,7 @@ class KinematicWorld {
 
   std::vector<Box> boxes_;
   Velocity commanded_, acting_;
+  std::deque<Frame> frames_;
 
  public:
   Controller controller;  ///< uses the limits

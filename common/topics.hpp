@@ -103,8 +103,9 @@ inline constexpr Topic<lapis_msgs::msg::VoxelTile> kVoxelTiles{
 inline constexpr Topic<lapis_msgs::msg::MapState> kMapState{"/semantic_mapper/map_state", dds::kLatched,
                                                             "semantic_mapper", "after the tiles of a version",
                                                             "version and checksum of the map"};
-inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kObstacles{
-    "/semantic_mapper/obstacles", dds::kLatched, "semantic_mapper", "each frame", "from the last 10 s of frames"};
+inline constexpr Topic<nav_msgs::msg::OccupancyGrid> kObstacles{"/semantic_mapper/obstacles", dds::kLatched,
+                                                                "semantic_mapper", "each frame, at most 17 Hz",
+                                                                "from the last 10 s of frames"};
 inline constexpr Topic<octomap_msgs::msg::Octomap> kOctomap{"/semantic_mapper/octomap", dds::kLatched,
                                                             "semantic_mapper", "at most 1 Hz",
                                                             "ColorOcTree in class colours; made only for readers"};

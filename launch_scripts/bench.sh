@@ -9,7 +9,8 @@ usage() {
 usage: bench.sh [DATASET] [--runs N] [--out DIR]
   DATASET    recorded RGB-D; default: rgbd/aws_small_house_loop in LAPIS_TEST_DATA
   --runs N   lock-step replays of which the median is printed; default 3; 0: kernels only
-  --out DIR  keeps results as JSON, and decision_time.png; default: out/bench
+  --out DIR  keeps results as JSON, and decision_time.png; default: out/bench. All *.json files that are in it
+             are removed first
 Run it on a machine that has nothing else to do: the table names the load it found. What needs data that is not there
 is skipped, and told at the end. Exit status 1 when a benchmark failed, 2 when a replay did.
 TEXT

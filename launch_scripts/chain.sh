@@ -11,9 +11,10 @@ play=() # arguments of the source
 settings=() # component, KEY=VALUE, component, KEY=VALUE, ...
 robots=("$repository/config/robot.yaml") # files of the robot's description
 subject="" # line of the manifest that says what is played
-resumed="" # map that slam goes on with
+declare -A resumed=() # maps of earlier runs that are gone on with, by component
 shown="" view=cat # component whose log is shown while the run goes on (default: the source), and how
 max_restarts=0 # of each component that dies
+commit="" # of the repository when the run began
 declare -A restarts=() # by component, so far
 command_line="$*"
 
@@ -30,7 +31,7 @@ give() { ! is_in_run "$1" || settings+=("$1" "$2"); }
 # a reference for it, how frames enter it.
 route() {
   local name=${1%%.*} rest=${1#*.} other
-  [[ $1 != slam.resume_from=* ]] || resumed=${1#*=}
+  [[ $1 != @(slam|semantic_mapper).resume_from=* ]] || resumed[$name]=${1#*=}
   case $1 in
     dds.*=*) for other in "${components[@]}"; do give "$other" "$1"; done ;;
     robot.*=*) for other in "${components[@]}"; do ! knows_robot "$other" || give "$other" "$1"; done ;;
@@ -49,7 +50,16 @@ route() {
   esac
 }
 
-# make_run_folder: $out, without results of an earlier run, but for the map that slam goes on with.
+# is_resumed FILE: whether the run goes on with this map.
+is_resumed() {
+  local map
+  for map in "${resumed[@]}"; do
+    if [ "$1" -ef "$map" ]; then return 0; fi
+  done
+  return 1
+}
+
+# make_run_folder: $out, without results of an earlier run, but for the maps that are gone on with.
 make_run_folder() {
   local file
   mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another with --out DIR"
@@ -57,13 +67,13 @@ make_run_folder() {
     cd "$out" || exit
     rm -f manifest.yaml simulation.yaml metrics.json timeline.csv decisions?(.+([0-9])).csv \
       trajectory_{estimate,ground_truth}.txt reference_map.lapis \
-      {keyframes,pose_graph,map}?(.+([0-9])).{txt,g2o,lapis,ot,ply} \
+      {keyframes,pose_graph,map}?(.+([0-9])).{txt,g2o,ot,ply} \
       ground_truth/{mesh,flood,ideal}.lapis ground_truth/{classes,rooms}.json ground_truth/navmap.{png,yaml} \
       figures/{map,trajectory,pose_graph,coverage,errors,class_iou,decision}.png \
       logs/{slam,semantic_mapper,planner,controller,evaluator,sensor_replay,simulator}.log
   )
-  for file in "$out"/slam?(.+([0-9])).lapis; do
-    [ "$file" -ef "$resumed" ] || rm -f "$file"
+  for file in "$out"/{slam,map}?(.+([0-9])).lapis; do
+    is_resumed "$file" || rm -f "$file"
   done
 }
 
@@ -87,7 +97,7 @@ write_manifest() {
   local name
   {
     printf 'version: "%s"\ncommit: "%s"\ncommand: |-\n  %s %s\n%s\nexit_status:\n' "$("$bin/lapis_slam" --version)" \
-      "$(git -C "$repository" describe --always --dirty 2>/dev/null)" "${0##*/}" "$command_line" "$subject"
+      "$commit" "${0##*/}" "$command_line" "$subject"
     for name in "${names[@]}"; do echo "  $name: ${statuses[$name]:-null}"; done
     if [ "$max_restarts" -gt 0 ]; then
       echo "restarts:"
@@ -153,6 +163,7 @@ restart() {
 run_chain() {
   local source name early
   source=$(source_of_frames)
+  commit=$(git -C "$repository" describe --always --dirty 2>/dev/null || true)
   trap end_all EXIT
   trap 'interrupted SIGINT 130' INT
   trap 'interrupted SIGTERM 143' TERM

@@ -22,6 +22,8 @@ A run that DIR has already from the same programs and settings is not repeated.
 
 Example: launch_scripts/compare.sh --scenes apartment --variant on --variant 'off semantic_mapper.re_anchor=false'
 docs/scenes.md has one that shows what forced revisits of old places are worth.
+Exit status: 0 all runs succeeded, 1 a run failed (the table has - for it, and it is repeated the next time), 2 bad
+set-up, 130 and 143 interrupted.
 TEXT
 }
 

@@ -24,8 +24,9 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
                    with it: docs/architecture.md
   --set KEY=VALUE  configuration, as for replay.sh; planner. and controller. are components, too
 
-Results of an earlier run in DIR are removed. Exit status: 0 ran to the end, 1 a process failed or no frame came,
-2 bad set-up, 130 and 143 interrupted; then, too, everything up to there is in DIR.
+Results of an earlier run in DIR are removed, but for the maps that slam.resume_from and semantic_mapper.resume_from
+name. Exit status: 0 ran to the end, 1 a process failed or no frame came, 2 bad set-up, 130 and 143 interrupted; then,
+too, everything up to there is in DIR.
 TEXT
 }
 

@@ -3,6 +3,7 @@
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bin=${LAPIS_BIN:-$repository/build/release/bin}
+programs=(simulator sensor_replay slam semantic_mapper planner controller evaluator)
 out="" # run folder, set by the script
 names=() # of the processes, in the order of their start
 declare -A pids=() statuses=() # by name; statuses of those that have ended
@@ -14,16 +15,19 @@ die() {
   exit 2
 }
 
-# Builds release when there is none yet.
+# Builds release when there is none yet; a build that lacks a program is bad set-up.
 require_build() {
+  local program
   [ -x "$bin/lapis_slam" ] || "$repository/launch_scripts/setup.sh"
+  for program in "${programs[@]}"; do
+    [ -x "$bin/lapis_$program" ] || die "no program $bin/lapis_$program; launch_scripts/setup.sh builds build/release/bin"
+  done
 }
 
 # identity_of SCENE WORD...: what the results of a scene depend on; other programs, settings or scenes give another.
 identity_of() {
   {
-    cat "$bin"/lapis_{simulator,sensor_replay,slam,semantic_mapper,planner,controller,evaluator} \
-      "$repository"/config/{robot.yaml,scenes/*,labels/*}
+    cat "${programs[@]/#/$bin/lapis_}" "$repository"/config/{robot.yaml,scenes/*,labels/*}
     if [ -f "$1" ]; then cat "$1"; fi
     ls -l /usr/share/sweethome3d/furniture 2>/dev/null || echo "parametric furniture"
     echo "${@:2}"

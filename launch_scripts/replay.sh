@@ -27,8 +27,8 @@ a simulated building, and leaves a run folder with trajectory, pose graph, seman
                    What describes the map and how frames enter it goes from semantic_mapper to the references of evaluator
                    and simulator, too. --print-config of each process lists the keys
 
-Results of an earlier run in DIR are removed, but for the map that slam.resume_from names. Exit status: 0 played to the
-end, 1 a process failed or no frame came, 2 bad set-up, 130 and 143 interrupted.
+Results of an earlier run in DIR are removed, but for the maps that slam.resume_from and semantic_mapper.resume_from
+name. Exit status: 0 played to the end, 1 a process failed or no frame came, 2 bad set-up, 130 and 143 interrupted.
 TEXT
 }
 

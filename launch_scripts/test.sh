@@ -6,8 +6,8 @@ tiers=(unit contract integration interop)
 
 usage() {
   cat <<TEXT
-usage: launch_scripts/test.sh [--tier ${tiers[*]}]
-  --tier NAME  only this tier
+usage: launch_scripts/test.sh [--tier unit|contract|integration|interop]
+  --tier NAME  only this tier; default: all of them
 Environment: LAPIS_TEST_DATA, the folder of recorded test data (default ../shared/data beside the repository, when it
 exists); tests that need it are skipped without it.
 TEXT

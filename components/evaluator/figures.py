@@ -238,17 +238,28 @@ def draw_coverage(run):
     return figure
 
 
+def loop_closures(run):
+    """Their number by metrics.json; None where that does not tell."""
+    try:
+        return json.loads((run / "metrics.json").read_text())["loop_closures"]
+    except (OSError, ValueError, KeyError, TypeError):
+        return None
+
+
 def draw_pose_graph(run):
-    """Key-frames that follow each other are joined by odometry; every other edge is a loop closure."""
+    """Edges between key-frames that follow each other, and others. The file has no types of edges: others are loop
+    closures, and odometry of key-frames that were tracked from an older one than the last."""
     positions, edges = read_pose_graph(run / "pose_graph.g2o")
-    is_loop = np.abs(edges[:, 1] - edges[:, 0]) > 1
+    is_other = np.abs(edges[:, 1] - edges[:, 0]) > 1
     figure, axes = plt.subplots(figsize=(10, 7.5))
-    for kind, colour in ((~is_loop, BLUE), (is_loop, ORANGE)):
+    for kind, colour in ((~is_other, BLUE), (is_other, ORANGE)):
         axes.add_collection(LineCollection(positions[edges[kind], :2], colors=colour, linewidths=1.0))
     nodes, = axes.plot(*positions[:, :2].T, ".", color=BLUE, markersize=4)
-    odometry, loops = (plt.Line2D([], [], color=colour) for colour in (BLUE, ORANGE))
-    axes.legend([nodes, odometry, loops],
-                [f"{len(positions)} key-frames", "odometry", f"{is_loop.sum()} loop closures"],
+    following, others = (plt.Line2D([], [], color=colour) for colour in (BLUE, ORANGE))
+    loops = loop_closures(run)
+    axes.legend([nodes, following, others],
+                [f"{len(positions)} key-frames", f"{(~is_other).sum()} edges between neighbours in time",
+                 f"{is_other.sum()} other edges" + ("" if loops is None else f"\n(loop closures: {loops})")],
                 loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
     finish_plan(axes, f"Pose graph, optimised: {run.resolve().name}", has_map=False)
     return figure

@@ -137,7 +137,7 @@ void add_map_tools(CLI::App& app, std::ostream& out) {
   const auto map_options = add_options(*map, true);
   map->footer(
       "No registration is done. Example:\n"
-      "  lapis_evaluator map --reference run/reference.lapis --estimate run/map.lapis");
+      "  lapis_evaluator map --reference run/reference_map.lapis --estimate run/map.lapis");
   map->callback([map_options, &out] { run_map(*map_options, out); });
 
   CLI::App* iou = app.add_subcommand("iou", "intersection over union of each class of two maps");
@@ -148,7 +148,7 @@ void add_map_tools(CLI::App& app, std::ostream& out) {
   iou->footer(
       "Counted are voxels occupied in either map; for observed_iou_*, of these, the voxels that both maps have\n"
       "observed. Unlabelled is no class. Example:\n"
-      "  lapis_evaluator iou --reference run/reference.lapis --estimate run/map.lapis --json");
+      "  lapis_evaluator iou --reference run/reference_map.lapis --estimate run/map.lapis --json");
   iou->callback([iou_options, &out] { run_iou(*iou_options, out); });
 
   CLI::App* volume = app.add_subcommand("coverage", "explored volume, and its share of a reference's");

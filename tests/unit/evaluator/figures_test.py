@@ -1,5 +1,6 @@
 #!/usr/bin/python3
 """figures.py on made-up runs: all figures, and a clear word about each missing file."""
+import importlib.util
 import json
 import math
 import shutil
@@ -41,7 +42,7 @@ def write_metrics(path):
     names = ["wall", "floor", "cabinet", "chair", "sofa", "table", "bed", "window", "door", "picture"]
     classes = {n: {"iou": max(0.0, 0.9 - 0.09 * i), "tolerant_iou": 0.9, "reference_voxels": 5000 // (i + 1),
                    "estimate_voxels": 10, "top8": i < 8} for i, n in enumerate(names)}
-    path.write_text(json.dumps({"iou_top8_mean": 0.585, "iou_by_class": classes}))
+    path.write_text(json.dumps({"iou_top8_mean": 0.585, "loop_closures": 1, "iou_by_class": classes}))
 
 
 def write_pose_graph(path):
@@ -110,6 +111,25 @@ class Figures(unittest.TestCase):
                 self.assertEqual((result.returncode, drawn), (0, kept))
                 for name in names:
                     self.assertIn(f"{name} is missing", result.stderr)
+
+    def test_pose_graph_counts_as_loops_what_the_metrics_call_loops(self):
+        description = importlib.util.spec_from_file_location("figures", SCRIPT)
+        figures = importlib.util.module_from_spec(description)
+        description.loader.exec_module(figures)
+
+        def legend():
+            figure = figures.draw_pose_graph(self.run_folder)
+            texts = [text.get_text() for text in figure.axes[0].get_legend().get_texts()]
+            figures.plt.close(figure)
+            return texts
+
+        nodes, neighbours = "30 key-frames", "29 edges between neighbours in time"
+        self.assertEqual(legend(), [nodes, neighbours, "2 other edges\n(loop closures: 1)"])
+        for text in ('{"loop_closures": null}', "{}", "[]", "{"):
+            (self.run_folder / "metrics.json").write_text(text)
+            self.assertEqual(legend(), [nodes, neighbours, "2 other edges"])
+        (self.run_folder / "metrics.json").unlink()
+        self.assertEqual(legend(), [nodes, neighbours, "2 other edges"])
 
     def test_a_run_without_a_planner_has_no_figure_of_a_decision(self):
         (self.run_folder / "decisions.csv").unlink()

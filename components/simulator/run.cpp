@@ -1,6 +1,9 @@
 #include "simulator/run.hpp"
 
+#include <algorithm>
 #include <utility>
+
+#include <spdlog/spdlog.h>
 
 #include "simulator/run_files.hpp"
 #include "simulator/set_up.hpp"
@@ -26,11 +29,19 @@ void Run::advance() {
   step_ = next_.get();
   const SensorFrame& frame = step_->frame;
   has_contact_changed_ = frame.tick == 1 || frame.is_in_contact != was_in_contact;
-  if (frame.is_in_contact && !was_in_contact) ++collisions_;
+  if (frame.is_in_contact && !was_in_contact) note_collision(frame);
+  hardest_push_m_s_ = std::max(hardest_push_m_s_, frame.push_m_s);
   if (tour_) command_ = tour_->command(frame.robot);
   is_over_ =
       (tour_ && tour_->is_finished()) || (config_.duration_s > 0.0 && frame.stamp.seconds() >= config_.duration_s);
   if (!is_over_) begin_next();
+}
+
+void Run::note_collision(const SensorFrame& frame) {
+  ++collisions_;
+  spdlog::warn(
+      "the robot touches something at {:.1f} s, x {:.2f} m, y {:.2f} m of the scene, driving at it with {:.2f} m/s",
+      frame.stamp.seconds(), frame.robot.position.x(), frame.robot.position.y(), frame.push_m_s);
 }
 
 void Run::begin_next() {

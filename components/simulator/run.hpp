@@ -41,6 +41,8 @@ class Run {
   bool has_contact_changed() const { return has_contact_changed_; }
   /// Contacts so far.
   std::uint64_t collisions() const { return collisions_; }
+  /// Greatest speed of the robot towards something that it touched [m/s].
+  double hardest_push_m_s() const { return hardest_push_m_s_; }
   /// Waits for what is being simulated. Commands that were not finite.
   std::uint64_t commands_refused();
   /// Waits for what is being simulated. What the mapper would make of the frames so far without noise.
@@ -51,6 +53,7 @@ class Run {
     SensorFrame frame;
     SensorMessages messages;
   };
+  void note_collision(const SensorFrame& frame);
   void begin_next();
   void add_to_ideal_map();
   void wait() const;
@@ -66,6 +69,7 @@ class Run {
   std::uint64_t frames_in_ideal_map_ = 0;
   std::optional<Step> step_;
   std::uint64_t collisions_ = 0;
+  double hardest_push_m_s_ = 0.0;
   bool is_over_ = false;
   bool has_contact_changed_ = false;
   std::future<Step> next_;  // last: its thread uses what is above, and ends before it does

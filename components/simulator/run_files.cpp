@@ -53,6 +53,7 @@ std::string to_yaml(const RunSummary& summary, const World& world, const StartPo
   text += "wall_s: " + number(summary.wall_s) + "\n";
   text += "real_time_factor: " + number(summary.simulated_s / std::max(summary.wall_s, 1e-3)) + "\n";
   text += "collisions: " + std::to_string(summary.collisions) + "\n";
+  text += "hardest_push_m_s: " + number(summary.hardest_push_m_s) + "  # speed towards what was touched\n";
   if (summary.planner) {
     text += "planner_state: " + summary.planner->state + "\n";
     text += "planner_reason: " + config::quoted(summary.planner->reason) + "\n";

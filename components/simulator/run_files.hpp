@@ -26,6 +26,7 @@ struct RunSummary {
   double simulated_s = 0.0;
   double wall_s = 0.0;
   std::uint64_t collisions = 0;
+  double hardest_push_m_s = 0.0;
   std::optional<PlannerEnd> planner;             ///< when the run waits for its end and it has spoken
   std::map<std::string, double> cpu_ms;          ///< by participant of lock-step
   std::map<std::string, std::uint64_t> demoted;  ///< participants without which the run went on, from which tick on

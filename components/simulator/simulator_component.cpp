@@ -243,6 +243,7 @@ void SimulatorComponent::write_files() {
   summary.simulated_s = run_->stamp().seconds();
   summary.wall_s = wall_s();
   summary.collisions = run_->collisions();
+  summary.hardest_push_m_s = run_->hardest_push_m_s();
   if (planner_) summary.planner = PlannerEnd{messages::state_name(*planner_), planner_->reason()};
   if (driver_) {
     summary.cpu_ms = driver_->cpu_ms();

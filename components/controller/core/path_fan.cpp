@@ -1,6 +1,7 @@
 #include "controller/core/path_fan.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -83,7 +84,7 @@ std::uint8_t PathFan::free_poses(const FanPath& path, const Eigen::Vector2d& obs
                                  double radius_m) const {
   const double now_m = obstacle.norm();
   for (std::size_t i = 1; i < path.poses.size(); ++i) {
-    const double ramp = std::min(1.0, static_cast<double>(i) * kStep_m / kRamp_m);
+    const double ramp = std::lerp(kLeastShare, 1.0, std::min(1.0, static_cast<double>(i) * kStep_m / kRamp_m));
     const double distance_m = (path.poses[i].translation() - obstacle).norm();
     const bool is_too_near = distance_m < radius_m + ramp * config.margin_m;
     if (is_too_near && distance_m < now_m - kNearer_m) return static_cast<std::uint8_t>(i);

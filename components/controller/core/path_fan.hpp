@@ -31,8 +31,9 @@ struct FanPath {
 /// two arcs; those that begin alike form a group.
 class PathFan {
  public:
-  static constexpr double kStep_m = 0.05;  ///< along paths, and edge of a cell
-  static constexpr double kRamp_m = 0.4;   ///< along a path until the whole margin is asked for
+  static constexpr double kStep_m = 0.05;     ///< along paths, and edge of a cell
+  static constexpr double kRamp_m = 0.4;      ///< along a path until the whole margin is asked for
+  static constexpr double kLeastShare = 0.5;  ///< of the margin, at its beginning: points and cells are 5 cm wide
   static constexpr double kNearer_m = 0.01;
 
   /// Throws std::runtime_error naming the value that is out of range.
@@ -43,8 +44,9 @@ class PathFan {
   /// Distance from the robot beyond which no obstacle matters [m].
   double reach_m() const { return reach_m_; }
   /// Number of poses of every path that are free when the robot first turns by `heading_rad`; points in base_link.
-  /// A pose is blocked by a point that is nearer than radius and margin. The margin grows from 0 along the first
-  /// kRamp_m, and a point that is too near already blocks only what brings it nearer still: so the robot gets away.
+  /// A pose is blocked by a point that is nearer than radius and margin. The margin grows from kLeastShare along the
+  /// first kRamp_m, and a point that is too near already blocks only what brings it nearer still: so the robot gets
+  /// away.
   std::vector<std::uint8_t> free_poses(std::span<const Eigen::Vector2d> obstacles, double heading_rad) const;
   /// The path whose curvature is nearest to this one, first at its start and then later.
   std::size_t path_along(double curvature_per_m) const;

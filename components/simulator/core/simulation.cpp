@@ -59,6 +59,7 @@ void Simulation::drive_to(time::Time stamp, SensorFrame& frame) {
     const time::Time until = std::min(stamp, config_.sensors.has_imu ? imu_due : next_multiple(now, kWheelPeriod));
     const Motion motion = robot_.advance(until);
     frame.is_in_contact |= motion.is_in_contact;
+    frame.push_m_s = std::max(frame.push_m_s, motion.push_m_s);
     frame.turn_rate_rad_s = motion.turn_rate_rad_s;
     sensors_.feel(motion);
     if (until == next_multiple(now, kWheelPeriod)) frame.wheels.push_back(sensors_.read_wheels(until, kWheelPeriod));

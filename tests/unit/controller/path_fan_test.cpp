@@ -59,8 +59,8 @@ TEST(PathFan, PathAlongACurvatureIsTheOneThatGoesOnWithIt) {
 /// The rule as it is written down, for a point that is known exactly. `slack_m` makes the robot larger.
 bool is_free(const FanPath& path, std::size_t poses, const Eigen::Vector2d& obstacle, double slack_m) {
   for (std::size_t i = 1; i < poses; ++i) {
-    const double margin =
-        kConfig.margin_m * std::min(1.0, static_cast<double>(i) * PathFan::kStep_m / PathFan::kRamp_m);
+    const double along = std::min(1.0, static_cast<double>(i) * PathFan::kStep_m / PathFan::kRamp_m);
+    const double margin = kConfig.margin_m * (0.5 + 0.5 * along);
     const double distance = (path.poses[i].translation() - obstacle).norm();
     if (distance < kRadius_m + margin + slack_m && distance < obstacle.norm() - PathFan::kNearer_m + slack_m)
       return false;

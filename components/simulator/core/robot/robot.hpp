@@ -43,6 +43,7 @@ struct Motion {
   Eigen::Vector2d acceleration{0, 0};  ///< mean, forwards and to the left at the middle of the turn [m/s2]
   double turn_rate_rad_s = 0.0;        ///< mean
   bool is_in_contact = false;          ///< at some time
+  double push_m_s = 0.0;               ///< then: greatest speed towards the obstacle
 };
 
 /// A disc with differential drive. Speed and turn rate follow commands with a first-order lag and limited

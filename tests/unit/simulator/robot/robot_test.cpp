@@ -187,15 +187,17 @@ TEST_P(Sliding, KeepsOffTheWallAndMovesAlongIt) {
   Robot robot(map, untimed(), start);
   ASSERT_TRUE(robot.command({0.5, 0.0}));
   bool touched = false;
-  double rolled = 0, slid = 0;
+  double rolled = 0, slid = 0, push = 0;
   for (int k = 1; k <= 200; ++k) {
     const Motion motion = robot.advance(Time{k * 20'000'000LL});
     touched |= motion.is_in_contact;
+    push = std::max(push, motion.push_m_s);
     rolled += motion.distance_m;
     slid += motion.slide_m;
     ASSERT_GE(map.distance_m(robot.state().position), 0.2) << k;
   }
   EXPECT_TRUE(touched);
+  EXPECT_NEAR(push, 0.5 * std::sin(angle), 0.005) << "the part towards the wall";
   EXPECT_NEAR(robot.state().position.x(), 1 + 4 * 0.5 * std::cos(angle), 0.01) << "the tangential part is kept";
   EXPECT_LT(robot.state().position.y(), 1.21);
   EXPECT_NEAR(rolled, 2 * std::cos(angle) * std::cos(angle), 0.01) << "wheels see the part along the heading";

@@ -103,8 +103,8 @@ bool Robot::move(const Roll& roll, double step_s, Motion& motion) {
   motion.slide_m += is_blocked ? moved.y() : 0.0;
   motion.turn_rad += roll.turn_rad;
   state_.velocity = Eigen::Vector2d(state_.drive.speed_m_s, 0.0);
-  if (is_blocked) state_.velocity = Eigen::Rotation2Dd(-0.5 * roll.turn_rad) * moved / step_s;
   if (is_blocked) {
+    state_.velocity = Eigen::Rotation2Dd(-0.5 * roll.turn_rad) * moved / step_s;
     const double towards_m = -roll.distance_m * direction(middle).dot(map_->gradient(wanted).stableNormalized());
     motion.push_m_s = std::max(motion.push_m_s, towards_m / step_s);
   }

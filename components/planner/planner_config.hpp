@@ -34,8 +34,6 @@ void describe(Field& field, GridConfig& c) {
   field("bottom_m", c.bottom_m, config::in_range(0.0, 10.0),
         "lowest part of what lies in between; a cell is free only where it has been seen [m]");
   field("margin_m", c.margin_m, config::in_range(0.0, 1.0), "kept between the robot's disc and obstacles [m]");
-  field("unknown_clearance_m", c.unknown_clearance_m, config::in_range(0.0, 2.0),
-        "kept from unknown cells; 0: the robot may touch them [m]");
   field("max_clearance_m", c.max_clearance_m, config::in_range(0.1, 5.0), "clearance is known up to here [m]");
   field("obstacle_expiry_s", c.obstacle_expiry_s, config::in_range(0.1, 600.0),
         "an obstacle that no grid shows any more is forgotten [s]");

@@ -23,7 +23,7 @@ int least_squared(double distance_m, double resolution_m) {
 
 int reach_cells(const GridConfig& config, double resolution_m) {
   const double reach_m = std::max(
-      {config.max_clearance_m, config.footprint_radius_m + config.margin_m, config.unknown_clearance_m, resolution_m});
+      {config.max_clearance_m, config.footprint_radius_m + config.margin_m, config.footprint_radius_m + resolution_m});
   return static_cast<int>(std::ceil(reach_m / resolution_m - kRounding_cells));
 }
 
@@ -39,8 +39,9 @@ bool is_well_formed(const ObstacleGrid& grid) {
 PlanningGrid::PlanningGrid(const GridConfig& config, double resolution_m)
     : config_(config), resolution_m_(resolution_m),
       required_squared_(least_squared(config.footprint_radius_m + config.margin_m, resolution_m)),
-      unknown_squared_(least_squared(config.unknown_clearance_m, resolution_m)), mapped_(mapping::kUnknown),
-      state_(mapping::kUnknown), to_occupied_(mapping::kOccupied, reach_cells(config, resolution_m)),
+      unknown_squared_(least_squared(config.footprint_radius_m + 0.5 * resolution_m, resolution_m)),
+      mapped_(mapping::kUnknown), state_(mapping::kUnknown),
+      to_occupied_(mapping::kOccupied, reach_cells(config, resolution_m)),
       to_unknown_(mapping::kUnknown, reach_cells(config, resolution_m)) {}
 
 /// Unknown where the bottom of a free column has not been seen.
@@ -169,7 +170,7 @@ std::vector<Cell> PlanningGrid::renew(std::span<const Cell> touched) {
     changed.push_back(c);
   }
   to_occupied_.update(state_, changed);
-  if (unknown_squared_ > 0) to_unknown_.update(state_, changed);
+  to_unknown_.update(state_, changed);
   return changed;
 }
 

@@ -21,7 +21,6 @@ struct GridConfig {
   double bottom_m = 0.25;            ///< lowest part of the band, which must have been seen in free cells, in [0, 10]
   double footprint_radius_m = 0.20;  ///< of the robot's disc, in [0.05, 2]
   double margin_m = 0.05;            ///< kept besides, in [0, 1]
-  double unknown_clearance_m = 0.0;  ///< kept from unknown cells; 0: the robot may touch them; in [0, 2]
   double max_clearance_m = 1.0;      ///< distances are known up to here, in [0.1, 5]
   double obstacle_expiry_s = 10.0;   ///< an obstacle that no grid shows any more is forgotten, in [0.1, 600]
 };
@@ -48,10 +47,10 @@ inline constexpr double kMaxReach_m = 1000.0;
 /// `obstacle_expiry_s`; what the map says is occupied stays so.
 ///
 /// Clearance is measured from centre to centre: walls are taken to be in the middle of their cells. A cell is
-/// traversable when it is free and its clearance is at least footprint radius + margin (and it is
-/// `unknown_clearance_m` from unknown cells). Passable are these and, unless something is seen there, cells on which
-/// the robot has stood: under and just around itself its camera does not see the floor, and without them there may be
-/// no way back.
+/// traversable when it is free, its clearance is at least footprint radius + margin, and unknown cells, whose edges
+/// count, are at least the footprint radius away: what stands there, nobody knows. Passable are these and, unless
+/// something is seen there, cells on which the robot has stood, with unknown ones beside them or themselves unknown:
+/// under and just around itself its camera does not see the floor, and without them there may be no way back.
 class PlanningGrid {
  public:
   /// @param resolution_m edge of a cell: that of the map.
@@ -81,11 +80,10 @@ class PlanningGrid {
   /// Far enough from what is occupied.
   bool has_room(Cell c) const { return to_occupied_.squared(c) >= required_squared_; }
   bool is_traversable(Cell c) const {
-    return state(c) == mapping::kFree && has_room(c) &&
-           (unknown_squared_ == 0 || to_unknown_.squared(c) >= unknown_squared_);
+    return state(c) == mapping::kFree && has_room(c) && to_unknown_.squared(c) >= unknown_squared_;
   }
   /// Ways may lead there; goals are traversable.
-  bool is_passable(Cell c) const { return is_traversable(c) || (driven_.at(c) && state(c) == mapping::kUnknown); }
+  bool is_passable(Cell c) const { return is_traversable(c) || (driven_.at(c) && is_unhindered(c)); }
 
   const GridConfig& config() const { return config_; }
   double resolution_m() const { return resolution_m_; }
@@ -99,6 +97,9 @@ class PlanningGrid {
  private:
   mapping::ColumnCells floor_plan(const mapping::BlockColumn& column, const mapping::VoxelMap& map,
                                   const mapping::BeliefReader& reader) const;
+  bool is_unhindered(Cell c) const {
+    return state(c) == mapping::kUnknown || (state(c) == mapping::kFree && has_room(c));
+  }
   void erase_freed(const ObstacleGrid& grid, std::vector<Cell>& touched);
   void mark_seen(const ObstacleGrid& grid, time::Time stamp, std::vector<Cell>& touched);
   std::vector<Cell> renew(std::span<const Cell> touched);
@@ -106,7 +107,7 @@ class PlanningGrid {
   GridConfig config_;
   double resolution_m_;
   int required_squared_;  ///< least squared distance to occupied cells of traversable ones [cells^2]
-  int unknown_squared_;   ///< to unknown cells [cells^2]
+  int unknown_squared_;   ///< least squared distance to unknown cells of traversable ones [cells^2]
   std::optional<mapping::SensorModel> model_;  ///< of the last update_map
   SparseGrid<std::int8_t> mapped_;             ///< the map's part
   std::map<Cell, time::Time> obstacles_;       ///< when last seen

@@ -219,7 +219,9 @@ TEST(FindPath, KeepsToTheMiddleOfACorridor) {
 }
 
 TEST(FindPath, LeavesAPlaceBesideAWall) {
-  const TextWorld world({"..........", "..........", "..........", "..........", "..........", "##########"}, 0.1);
+  const TextWorld world({"############", "............", "............", "............", "............", "............",
+                         "............", "............", "############"},
+                        0.1);
   const Cell start{4, 1}, goal{8, 5};
   ASSERT_FALSE(world.grid.is_traversable(start));
   const PathResult result = find_path(world.grid, {}, start, goal);
@@ -231,21 +233,23 @@ TEST(FindPath, LeavesAPlaceBesideAWall) {
 }
 
 TEST(FindPath, LeavesUnknownAndOccupiedCells) {
-  const TextWorld world({"........", "........", "...  ...", "...  ...", "......#."});
-  EXPECT_EQ(find_path(world.grid, {}, {3, 1}, {0, 0}).status, PathStatus::kFound) << "from an unknown cell";
-  EXPECT_EQ(find_path(world.grid, {}, {6, 0}, {0, 0}).status, PathStatus::kFound) << "from an occupied cell";
+  const TextWorld world(
+      {"##########", "#........#", "#........#", "#...  ...#", "#...  ...#", "#......#.#", "##########"});
+  EXPECT_EQ(find_path(world.grid, {}, {4, 2}, {1, 1}).status, PathStatus::kFound) << "from an unknown cell";
+  EXPECT_EQ(find_path(world.grid, {}, {7, 1}, {1, 1}).status, PathStatus::kFound) << "from an occupied cell";
   PathConfig rooted;
   rooted.escape_m = 0.0;
-  EXPECT_EQ(find_path(world.grid, rooted, {3, 1}, {0, 0}).status, PathStatus::kFound) << "a neighbour is traversable";
-  const TextWorld lost({"....       ....", "....       ....", "....       ...."});
-  EXPECT_EQ(find_path(lost.grid, {.escape_m = 0.5}, {7, 1}, {0, 0}).status, PathStatus::kNoPath)
-      << "0.75 m of unknown space";
-  EXPECT_EQ(find_path(lost.grid, {}, {6, 1}, {0, 0}).status, PathStatus::kFound) << "0.5 m";
+  EXPECT_EQ(find_path(world.grid, rooted, {3, 2}, {1, 1}).status, PathStatus::kFound) << "a neighbour is traversable";
+  const TextWorld lost(
+      {"#####       #####", "#....       ....#", "#....       ....#", "#....       ....#", "#####       #####"});
+  EXPECT_EQ(find_path(lost.grid, {.escape_m = 0.5}, {7, 2}, {1, 2}).status, PathStatus::kNoPath)
+      << "1 m to a traversable cell";
+  EXPECT_EQ(find_path(lost.grid, {}, {7, 2}, {1, 2}).status, PathStatus::kFound);
 }
 
 TEST(FindPath, LeadsBackOverWhatWasDrivenButNeverSeen) {
   TextWorld world(
-      {"######           ######", "A....#           #....B", "......           ......", "######           ######"});
+      {"######           ######", "#A...#           #...B#", "#.....           .....#", "######           ######"});
   const Cell a = world.places.at('A'), b = world.places.at('B');
   EXPECT_EQ(find_path(world.grid, {}, b, a).status, PathStatus::kNoPath);
   for (double x_m = 1.0; x_m < 5.0; x_m += 0.05) world.grid.mark_driven({x_m, 0.25 + 0.05 * x_m});

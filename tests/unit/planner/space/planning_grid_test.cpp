@@ -24,12 +24,6 @@ ObstacleGrid one_cell(const PlanningGrid& grid, Cell c, std::int8_t value) {
   return {grid.center_of(c) - 0.5 * grid.resolution_m() * Eigen::Vector2d::Ones(), grid.resolution_m(), 1, 1, {value}};
 }
 
-GridConfig keeping_from_unknown(double clearance_m) {
-  GridConfig config;
-  config.unknown_clearance_m = clearance_m;
-  return config;
-}
-
 TEST(PlanningGrid, FollowsTheMapAndNamesWhatChanged) {
   TextWorld world({"..#", "  ."});
   EXPECT_EQ(world.known.size(), 4u);
@@ -82,28 +76,35 @@ TEST(PlanningGrid, AnotherSensorModelLooksAtEverything) {
 }
 
 TEST(PlanningGrid, TraversableIsFreeAndFarEnough) {
-  TextWorld world({"......", "......", "......", "#....."}, 0.1);
-  EXPECT_NEAR(world.grid.clearance_m({2, 1}), 0.1 * std::sqrt(5.0), 1e-12);
-  EXPECT_FALSE(world.grid.is_traversable({2, 1})) << "0.22 m";
-  EXPECT_TRUE(world.grid.is_traversable({2, 2})) << "0.28 m";
-  EXPECT_FALSE(world.grid.is_traversable({2, 9})) << "unknown";
-  EXPECT_TRUE(world.grid.is_traversable({5, 3})) << "unknown cells may be touched";
-  TextWorld careful({"......", "......", "......", "#....."}, 0.1, keeping_from_unknown(0.2));
-  EXPECT_FALSE(careful.grid.is_traversable({5, 3}));
-  EXPECT_TRUE(careful.grid.is_traversable({3, 2})) << "0.2 m";
+  constexpr int kEdge = 12;
+  std::vector<std::string> rows(kEdge, std::string(kEdge, '.'));
+  rows[kEdge - 1 - 5][5] = '#';
+  TextWorld world(rows, 0.1);
+  EXPECT_NEAR(world.grid.clearance_m({7, 6}), 0.1 * std::sqrt(5.0), 1e-12);
+  EXPECT_FALSE(world.grid.is_traversable({7, 6})) << "0.22 m";
+  EXPECT_TRUE(world.grid.is_traversable({7, 7})) << "0.28 m";
+  EXPECT_FALSE(world.grid.is_traversable({kEdge, 8})) << "unknown";
+  EXPECT_FALSE(world.grid.is_traversable({kEdge - 2, 8})) << "0.15 m from unknown space: the disc would reach into it";
+  EXPECT_TRUE(world.grid.is_traversable({kEdge - 3, 8})) << "0.25 m";
 }
 
 TEST(PlanningGrid, WhereTheRobotHasStoodIsPassableUnlessSomethingIsSeenThere) {
   TextWorld world({".. .."});
-  const Cell unseen{2, 0};
+  const Cell unseen{2, 0}, beside{1, 0};
   EXPECT_FALSE(world.grid.is_passable(unseen));
   world.grid.mark_driven(world.grid.center_of(unseen));
   EXPECT_TRUE(world.grid.is_passable(unseen));
   EXPECT_FALSE(world.grid.is_traversable(unseen)) << "no place to look from";
   EXPECT_EQ(world.grid.state(unseen), kUnknown) << "it may be a frontier's other side";
   EXPECT_FALSE(world.grid.is_passable({2, 1})) << "beside";
+  EXPECT_FALSE(world.grid.is_passable(beside)) << "free, but the disc would reach into unknown space";
+  world.grid.mark_driven(world.grid.center_of(beside));
+  EXPECT_TRUE(world.grid.is_passable(beside)) << "it did";
   world.grid.update_obstacles(one_cell(world.grid, unseen, 100), {0});
   EXPECT_FALSE(world.grid.is_passable(unseen));
+  EXPECT_TRUE(world.grid.is_passable(beside)) << "0.25 m";
+  world.grid.update_obstacles(one_cell(world.grid, beside, 100), {0});
+  EXPECT_FALSE(world.grid.is_passable(beside));
 }
 
 TEST(PlanningGrid, ObstaclesBlockAndFreeAgain) {
@@ -183,8 +184,7 @@ double nearest_m(const World& world, Cell c, std::int8_t value, int reach) {
 class RandomDeltas : public testing::TestWithParam<unsigned> {};
 
 TEST_P(RandomDeltas, StateChangesAndDistancesEqualThoseFromScratch) {
-  const GridConfig config = keeping_from_unknown(0.3);
-  World world(0.1, config);
+  World world(0.1);
   std::mt19937 random(GetParam());
   const auto number = [&random](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
   constexpr int kEdge = 70;
@@ -201,7 +201,7 @@ TEST_P(RandomDeltas, StateChangesAndDistancesEqualThoseFromScratch) {
     std::map<Cell, std::int8_t> named;
     for (const Cell& c : changed) EXPECT_TRUE(named.emplace(c, world.grid.state(c)).second) << "named twice";
     for (const Cell& c : *obstacles) named[c] = kOccupied;
-    World fresh(0.1, config);
+    World fresh(0.1);
     fresh.grid.update_map(world.map.map(), world.reader, {});
     for (Cell c{0, -kEdge - 15}; c.y <= kEdge + 35; ++c.y) {
       for (c.x = -kEdge - 15; c.x <= kEdge + 35; ++c.x) {
@@ -218,7 +218,7 @@ TEST_P(RandomDeltas, StateChangesAndDistancesEqualThoseFromScratch) {
       const double occupied_m = nearest_m(world, c, kOccupied, 10), unknown_m = nearest_m(world, c, kUnknown, 10);
       ASSERT_NEAR(world.grid.clearance_m(c), occupied_m, 1e-12) << c.x << ' ' << c.y;
       ASSERT_EQ(world.grid.is_traversable(c),
-                world.grid.state(c) == kFree && occupied_m > 0.25 - 1e-9 && unknown_m > 0.3 - 1e-9);
+                world.grid.state(c) == kFree && occupied_m > 0.25 - 1e-9 && unknown_m > 0.25 - 1e-9);
     }
   }
 }

@@ -10,8 +10,6 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kSameGoal_m = 0.5;  // goals nearer to each other are one
-
 geometry::Pose camera_pose(const Situation& s, const Pose2& pose) {
   geometry::Pose T_map_base = geometry::Pose::Identity();
   T_map_base.translate(Eigen::Vector3d(pose.p_map.x(), pose.p_map.y(), 0.0));
@@ -89,10 +87,6 @@ void discount_information(const Situation& s, double limit_m, Candidate& candida
   for (double i = 0.0; i <= last; i += 1.0) sum += 1.0 / (1.0 + std::lerp(robot, end, last > 0.0 ? i / last : 1.0));
   candidate.value.path_information *= sum / (last + 1.0);
   candidate.value.goal_information /= 1.0 + end;
-}
-
-bool is_current_goal(const Candidate& candidate, const Memory& memory) {
-  return memory.goal && (memory.goal->p_map - candidate.goal.p_map).norm() < kSameGoal_m;
 }
 
 std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, Method method, const Memory& memory,

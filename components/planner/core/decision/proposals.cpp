@@ -13,6 +13,7 @@
 namespace lapis::planner {
 namespace {
 
+constexpr double kSameGoal_m = 0.5;       // goals nearer to each other are one
 constexpr std::size_t kMostRevisits = 5;  // of a decision, the nearest
 constexpr double kPass_m = 0.75;          // way past an old place, in its direction
 constexpr double kSameHeading_rad = 0.5;
@@ -50,9 +51,10 @@ Candidate candidate_at(const Situation& s, const CostTree& tree, std::uint32_t f
   return candidate;
 }
 
-bool is_left_alone(const Eigen::Vector2d& target_map, const Memory& memory) {
-  return std::any_of(memory.left_alone.begin(), memory.left_alone.end(),
-                     [&](const Eigen::Vector2d& place) { return (place - target_map).norm() <= memory.radius_m; });
+bool is_one_of(const std::vector<Eigen::Vector2d>& left_alone, const Candidate& candidate, const Memory& memory) {
+  return std::any_of(left_alone.begin(), left_alone.end(), [&](const Eigen::Vector2d& place) {
+    return (place - candidate.target_map).norm() <= memory.radius_m;
+  });
 }
 
 /// Another look from about the same place shows no more; one from elsewhere may.
@@ -76,7 +78,7 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
     for (const Viewpoint& viewpoint : found.viewpoints) {
       Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
       if (is_looked_at(candidate, memory)) candidate.rejection = "was looked at from here in vain";
-      if (is_left_alone(candidate.target_map, memory)) candidate.rejection = kLeftAlone;
+      if (is_one_of(memory.left_alone, candidate, memory)) candidate.rejection = kLeftAlone;
     }
   }
   return candidates;
@@ -101,8 +103,9 @@ std::vector<Candidate> propose_tour(const Situation& s, const CostTree& tree, co
   return candidates;
 }
 
-// Keeps those with the shortest ways, but of every frontier the nearest one before the second of any.
-void reject_far_ones(std::vector<Candidate>& candidates, int most) {
+// Keeps what is being driven to and those with the shortest ways, but of every frontier the nearest one before the
+// second of any.
+void reject_far_ones(std::vector<Candidate>& candidates, const Memory& memory, int most) {
   std::vector<std::pair<int, double>> rank(candidates.size());  // place within the frontier, cost
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
@@ -114,6 +117,7 @@ void reject_far_ones(std::vector<Candidate>& candidates, int most) {
                              other.value.cost_m < candidates[i].value.cost_m;
       rank[i].first += is_before ? 1 : 0;
     }
+    if (is_current_goal(candidates[i], memory)) rank[i] = {-1, 0.0};
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
   for (auto k = static_cast<std::size_t>(most); k < order.size(); ++k) candidates[order[k]].rejection = kOutranked;
@@ -239,11 +243,15 @@ void add_revisits(const Situation& s, const CostTree& tree, std::vector<OldPlace
     const Viewpoint viewpoint{place.cell, {s.grid.center_of(place.cell), place.pose.yaw_rad}, place.cell, 0.0};
     Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, 0, viewpoint, config));
     candidate.kind = CandidateKind::kRevisit;
-    if (is_left_alone(candidate.target_map, memory)) candidate.rejection = kLeftAlone;
+    if (is_one_of(memory.revisited, candidate, memory)) candidate.rejection = kLeftAlone;
   }
 }
 
 }  // namespace
+
+bool is_current_goal(const Candidate& candidate, const Memory& memory) {
+  return memory.goal && (memory.goal->p_map - candidate.goal.p_map).norm() < kSameGoal_m;
+}
 
 std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const Memory& memory,
                                const DecisionConfig& config) {
@@ -254,7 +262,7 @@ std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const M
                                        [](const Candidate& candidate) { return candidate.rejection.empty(); });
   if (is_tour && is_any_open) return candidates;
   if (!is_any_open) candidates = propose_frontiers(s, tree, memory, config, true);
-  reject_far_ones(candidates, config.max_candidates);
+  reject_far_ones(candidates, memory, config.max_candidates);
   if (is_tour) return nearest_first(std::move(candidates));
   const bool may_revisit = config.revisit_sigma_m > 0.0 && counts_loops(config.method);
   if (config.alternatives == 0 && !may_revisit) return candidates;

@@ -26,12 +26,13 @@ GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
 }  // namespace
 
 Explorer::Explorer(const ExplorerConfig& config)
-    : config_(config), memory_(config.memory), blocked_(memory_of_blocked(config.memory)) {}
+    : config_(config), memory_(config.memory), revisited_(config.memory), blocked_(memory_of_blocked(config.memory)) {}
 
 void Explorer::start() {
   if (state_ != State::kExploring) drop_goal();
   if (state_ == State::kDone || state_ == State::kFailed || state_ == State::kIdle) {
     memory_.clear();
+    revisited_.clear();
     blocked_.clear();
     looks_.forgive();
     losses_.clear();
@@ -62,6 +63,7 @@ void Explorer::return_home() {
 void Explorer::forget_map() {
   drop_goal();
   memory_.clear();
+  revisited_.clear();
   blocked_.clear();
   nothing_since_.reset();
   looks_.clear();
@@ -69,6 +71,7 @@ void Explorer::forget_map() {
   home_.reset();
   trail_.clear();
   decided_at_.reset();
+  chosen_at_.reset();
   empty_decisions_ = 0;
   if (state_ == State::kRecovering) enter(interrupted_, "slam has begun another map");
   if (state_ == State::kReturning) enter(State::kFailed, "the map in which it started is gone");
@@ -124,7 +127,7 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   for (const VainLook& look : looks_.judge(surroundings, report.now)) memory_.add_failure(look.target_map, report.now);
   may_change_ = surroundings.grid().has_passing_obstacles();
-  const bool may_decide = !decided_at_ || (report.now - *decided_at_).seconds() >= kLeastDecisionTime_s;
+  const bool may_decide = !chosen_at_ || (report.now - *chosen_at_).seconds() >= kLeastDecisionTime_s;
   if (!goal_) return may_decide;
   if (is_at(goal_->pose, *report.robot)) {
     note_arrival(report.now);
@@ -138,7 +141,7 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
     drop_goal();
     return may_decide;
   }
-  return is_due(report.now) || (may_decide && !is_way_free(path_, *report.robot, surroundings.grid()));
+  return may_decide && (is_due(report.now) || !is_way_free(path_, *report.robot, surroundings.grid()));
 }
 
 bool Explorer::is_due(time::Time now) const {
@@ -147,7 +150,7 @@ bool Explorer::is_due(time::Time now) const {
 
 void Explorer::note_arrival(time::Time now) {
   if (!goal_->target_map) return;
-  if (goal_->kind == CandidateKind::kRevisit) return memory_.add_failure(*goal_->target_map, now);  // not for ever
+  if (goal_->kind == CandidateKind::kRevisit) return revisited_.add_failure(*goal_->target_map, now);  // not for ever
   await({*goal_->target_map, goal_->pose.p_map}, now, config_.settle_s);
 }
 
@@ -194,6 +197,7 @@ void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
 Memory Explorer::memory(time::Time now) const {
   Memory memory;
   memory.left_alone = memory_.left_alone(now);
+  memory.revisited = revisited_.left_alone(now);
   memory.vain_looks = looks_.in_vain();
   memory.radius_m = config_.memory.radius_m;
   if (goal_) memory.goal = goal_->pose;
@@ -203,7 +207,7 @@ Memory Explorer::memory(time::Time now) const {
 void Explorer::take(const Decision& decision, const Report& report) {
   if (state_ != State::kExploring || (goal_ && report.is_blocked)) return;
   const time::Time now = report.now;
-  decided_at_ = now;
+  decided_at_ = chosen_at_ = now;
   note_vanished(decision, now);
   if (!decision.chosen) return end_or_look_around(decision, now);
   empty_decisions_ = 0;

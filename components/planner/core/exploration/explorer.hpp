@@ -112,8 +112,9 @@ class Explorer {
   void note_failure(const Report& report, Surroundings& surroundings);
 
   ExplorerConfig config_;
-  GoalMemory memory_;   ///< targets
-  GoalMemory blocked_;  ///< places on the way
+  GoalMemory memory_;     ///< targets
+  GoalMemory revisited_;  ///< old places
+  GoalMemory blocked_;    ///< places on the way
   State state_ = State::kIdle;
   State interrupted_ = State::kExploring;  ///< what to go on with when slam tracks again
   std::string reason_ = "not started";
@@ -124,7 +125,9 @@ class Explorer {
   std::vector<Eigen::Vector2d> losses_;  ///< targets on the way to which slam stopped tracking [m, map]
   std::optional<Pose2> home_;
   Trail trail_;
-  std::optional<time::Time> decided_at_, untracked_since_, lost_at_, nothing_since_;
+  std::optional<time::Time> decided_at_;  ///< in this state
+  std::optional<time::Time> chosen_at_;   ///< the last decision took effect
+  std::optional<time::Time> untracked_since_, lost_at_, nothing_since_;
   int empty_decisions_ = 0;
   bool may_change_ = false;  ///< obstacles stand where there may soon be none
 };

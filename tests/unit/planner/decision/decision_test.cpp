@@ -140,6 +140,9 @@ TEST(Decide, KeepsItsGoalUnlessAnotherIsClearlyBetter) {
   ASSERT_TRUE(memory.goal);
   explorer.config.keep_factor = 10.0;
   EXPECT_FALSE(explorer.is_left(explorer.chosen(memory)));
+  explorer.config.max_candidates = 1;
+  EXPECT_FALSE(explorer.is_left(explorer.chosen(memory))) << "however many are nearer";
+  explorer.config.max_candidates = 20;
   explorer.config.keep_factor = 1.0;
   EXPECT_TRUE(explorer.is_left(explorer.chosen(memory)));
 }
@@ -299,6 +302,26 @@ struct LongAway : Explorer {
   LandmarkIndex of_landmarks;
 };
 
+// Of the three utilities, one counts nodes as the paper does, one compares graphs of equal size; both with the gain
+// that the candidate tells.
+TEST(Decide, EachMethodComparesItsOwnFormOfD) {
+  LongAway explorer;
+  const int nodes = explorer.of_graph.factor.node_count();
+  const double log_trees = explorer.of_graph.factor.log_trees();
+  for (const Method method : {Method::kPaper, Method::kFixedN}) {
+    explorer.config.method = method;
+    const Decision decision = explorer.choose();
+    ASSERT_EQ(decision.problem, "");
+    for (const Candidate& candidate : decision.candidates) {
+      if (!candidate.rejection.empty()) continue;
+      const double fixed_n = d_optimality(nodes, log_trees + candidate.gain.fixed_n_change);
+      EXPECT_EQ(std::abs(candidate.value.d_optimality / fixed_n - 1.0) < 1e-12, method == Method::kFixedN);
+      EXPECT_DOUBLE_EQ(candidate.utility, candidate.value.d_optimality *
+                                              (1.0 + candidate.value.path_information / candidate.value.cost_m));
+    }
+  }
+}
+
 TEST(Decide, RevisitsAnOldPlaceWhenItIsUnsure) {
   LongAway explorer;
   const double sigma_m = position_sigma_m(explorer.of_graph);
@@ -314,7 +337,7 @@ TEST(Decide, RevisitsAnOldPlaceWhenItIsUnsure) {
   EXPECT_NEAR(revisit.goal.yaw_rad, 1.57, 1e-6) << "the key-frame's own heading";
   EXPECT_GT(revisit.value.cost_m, 2.0);
   Memory memory;
-  memory.left_alone = {revisit.target_map};
+  memory.revisited = {revisit.target_map};
   EXPECT_EQ(explorer.choose(memory).candidates.back().rejection, kLeftAlone);
   explorer.config.method = Method::kNearest;
   EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "loops are worth nothing to it";

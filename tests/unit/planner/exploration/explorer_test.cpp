@@ -73,6 +73,19 @@ TEST(Explorer, GivesUpAFrontierBehindGlassAfterThreeTries) {
   world.explorer.start();
   world.run(600.0);
   EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  EXPECT_GE(world.most_failures() + world.most_vain_looks(), 1);
+  EXPECT_LE(world.most_failures() + world.most_vain_looks(), 3);
+}
+
+TEST(Explorer, DecidesTwiceASecondAtMostHoweverOftenItIsStarted) {
+  WalkWorld world(closed(kThreeRooms));
+  for (int i = 0; i < 100; ++i) {
+    world.explorer.start();
+    world.tick();
+    EXPECT_TRUE(world.explorer.pause());
+  }
+  EXPECT_GT(world.decisions, 5);
+  EXPECT_GE(world.least_decision_time_s, 0.5 - 1e-9);
 }
 
 TEST(Explorer, GivesUpAPlaceThatIsAlwaysBlocked) {

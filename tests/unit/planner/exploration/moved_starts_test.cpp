@@ -104,6 +104,7 @@ TEST_P(MovedStart, IsExploredToTheEnd) {
       << "from " << start.cell.x << ", " << start.cell.y;
   EXPECT_LE(world.longest_idle_s, kLongestIdle_s);
   EXPECT_LE(world.most_failures(), 3);
+  EXPECT_LE(world.most_vain_looks(), 3);
 }
 
 INSTANTIATE_TEST_SUITE_P(Seeds, MovedStart, testing::Range(1U, kSeeds + 1U));

@@ -49,7 +49,9 @@ class WalkWorld {
     surroundings.update_obstacles(obstacles(), now);
     const bool had_goal = explorer.memory(now).goal.has_value();
     const bool is_decision_wanted = explorer.step(report(), &surroundings);
-    if (had_goal && !explorer.memory(now).goal && is_failure(explorer.reason())) count_failure();
+    if (had_goal && !explorer.memory(now).goal && is_failure(explorer.reason()))
+      count(target_, GoalMemoryConfig{}.radius_m, failures_);
+    count_vain_looks();
     if (is_decision_wanted) decide_now();
     const Pose2 before = robot;
     move();
@@ -72,11 +74,9 @@ class WalkWorld {
     robot.p_map += kResolution_m * Eigen::Vector2d(by.x, by.y);
   }
   /// How often the robot set out in vain for the target for which it did so most.
-  int most_failures() const {
-    int most = 0;
-    for (const auto& failure : failures_) most = std::max(most, failure.second);
-    return most;
-  }
+  int most_failures() const { return most_of(failures_); }
+  /// How often it arrived, and looked in vain, at the target at which it did so most.
+  int most_vain_looks() const { return most_of(vain_looks_); }
 
   /// In the map.
   char at(Cell in_map) const {
@@ -147,13 +147,23 @@ class WalkWorld {
   static bool is_failure(const std::string& reason) {
     return reason == "the way was blocked" || reason == "the way took too long" || reason == "it did not get on";
   }
-  void count_failure() {
-    for (auto& [target, count] : failures_) {
-      if ((target - target_).norm() > GoalMemoryConfig{}.radius_m) continue;
+  using Counts = std::vector<std::pair<Eigen::Vector2d, int>>;
+  static void count(const Eigen::Vector2d& of, double radius_m, Counts& counts) {
+    for (auto& [target, count] : counts) {
+      if ((target - of).norm() > radius_m) continue;
       ++count;
       return;
     }
-    failures_.emplace_back(target_, 1);
+    counts.emplace_back(of, 1);
+  }
+  static int most_of(const Counts& counts) {
+    int most = 0;
+    for (const auto& entry : counts) most = std::max(most, entry.second);
+    return most;
+  }
+  void count_vain_looks() {
+    const std::vector<VainLook> looks = explorer.memory(now).vain_looks;
+    for (; judged_ < looks.size(); ++judged_) count(looks[judged_].target_map, 0.5 * kResolution_m, vain_looks_);
   }
   ObstacleGrid obstacles() const {
     ObstacleGrid grid{Eigen::Vector2d::Zero(), kResolution_m, width(0), height(), {}};
@@ -214,7 +224,8 @@ class WalkWorld {
   std::optional<time::Time> decided_at_;
   std::mt19937 noise_{1};
   Eigen::Vector2d target_{0, 0};
-  std::vector<std::pair<Eigen::Vector2d, int>> failures_;
+  std::size_t judged_ = 0;  ///< vain looks that have been counted
+  Counts failures_, vain_looks_;
 };
 
 }  // namespace lapis::planner::test

@@ -114,6 +114,28 @@ TEST(ExpectGain, EqualsTheMeanOverAllOutcomesOfWholeFactors) {
   EXPECT_NEAR(expected.end_sigma_without_loops_m, std::sqrt(variance), 1e-9);
 }
 
+TEST(ExpectGain, OfTwoPlacesCountsAllFourOutcomes) {
+  const Square world;
+  const AnalysedGraph graph = world.chain.graph();
+  Hallucination path = world.drive({camera_at(0, 3, -1.57), camera_at(0, 1, -1.57)});
+  path.places = {{.keyframe = 0, .node = 1, .probability = 0.3}, {.keyframe = 1, .node = 0, .probability = 0.6}};
+  path.graph.edges.push_back({{6, 0, 2e4}, 0});
+  path.graph.edges.push_back({{5, 1, 1e4}, 1});
+  const auto expected = std::get<ExpectedGain>(expect_gain(graph, path, kNoLimit_m));
+  const auto of_outcome = std::get<CandidateGain>(CandidateGain::make(graph.factor, path.graph));
+  const double none = log_trees(graph, world.chain.edges, path, kNoPlace);
+  double loop_gain = 0.0, fixed_n = 0.0, sigma_m = 0.0;
+  for (const auto& [places, probability] : std::initializer_list<std::pair<PlaceSet, double>>{
+           {kNoPlace, 0.7 * 0.4}, {only_place(0), 0.3 * 0.4}, {only_place(1), 0.7 * 0.6}, {kEveryPlace, 0.3 * 0.6}}) {
+    loop_gain += probability * (log_trees(graph, world.chain.edges, path, places) - none);
+    fixed_n += probability * of_outcome.fixed_n_change(places);
+    sigma_m += probability * std::sqrt(of_outcome.variance(6, places) * graph.position_variance_per_resistance);
+  }
+  EXPECT_NEAR(expected.saturated_loop_gain, loop_gain, 1e-9);
+  EXPECT_NEAR(expected.fixed_n_change, fixed_n, 1e-12);
+  EXPECT_NEAR(expected.end_sigma_m, sigma_m, 1e-12);
+}
+
 TEST(ExpectGain, LoopsBeyondTheLimitAreWorthNothing) {
   const Square world;
   const AnalysedGraph graph = world.chain.graph();
@@ -124,8 +146,13 @@ TEST(ExpectGain, LoopsBeyondTheLimitAreWorthNothing) {
   const double all = gain_at(kNoLimit_m);
   const auto expected = std::get<ExpectedGain>(expect_gain(graph, path, kNoLimit_m));
   EXPECT_EQ(gain_at(expected.end_sigma_without_loops_m), 0.0) << "the end is sure enough without";
-  EXPECT_GT(gain_at(0.9 * expected.end_sigma_without_loops_m), 0.0);
-  EXPECT_LT(gain_at(0.9 * expected.end_sigma_without_loops_m), all);
+  // Of the logarithm of the variance, the part above the limit counts.
+  const double probability = path.places[0].probability;
+  const double without_m = expected.end_sigma_without_loops_m;
+  const double with_m = (expected.end_sigma_m - (1.0 - probability) * without_m) / probability;
+  ASSERT_LT(with_m, 0.9 * without_m);
+  EXPECT_NEAR(gain_at(0.9 * without_m), all * std::log(1.0 / 0.9) / std::log(without_m / with_m), 1e-9);
+  EXPECT_NEAR(gain_at(0.5 * with_m), all, 1e-12);
 }
 
 TEST(LiteralDOptimality, WeighsLoopsByTheirProbability) {

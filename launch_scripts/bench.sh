@@ -80,7 +80,7 @@ for benchmark in "$bin"/lapis_*_benchmark; do
   if ! "$benchmark" --benchmark_list_tests >/dev/null 2>&1; then others+=("$name") && continue; fi
   echo "$name" >&2
   "$benchmark" --benchmark_min_time=0.2 --benchmark_out="$out/$name.json" >"$out/$name.log" 2>&1 ||
-    { tail -n 5 "$out/$name.log" >&2 && trouble "FAILED: $name"; }
+    { rm -f "$out/$name.json" && tail -n 5 "$out/$name.log" >&2 && trouble "FAILED: $name"; }
 done
 printf '\nkernels, load before: %s\n' "$load"
 "$repository/launch_scripts/bench_table.py" "$out"/*.json

@@ -17,7 +17,7 @@ import sys
 
 NEVER = math.inf  # the time to reach what was not reached
 
-COLUMNS = {  # of the table: format, and what it shows of metrics.json
+COLUMNS = {  # of the table: format, and what it shows of metrics.json and simulation.yaml
     "explored %": ("{:.1f}", lambda m: 100 * m["explored_share"]),
     "80 % s": ("{:.0f}", lambda m: time_to(m, "time_to_80_s")),
     "90 % s": ("{:.0f}", lambda m: time_to(m, "time_to_90_s")),
@@ -32,6 +32,7 @@ COLUMNS = {  # of the table: format, and what it shows of metrics.json
     "loops": ("{:.0f}", lambda m: m["loop_closures"]),
     "lost s": ("{:.1f}", lambda m: m["lost_time_s"]),
     "contacts": ("{:.0f}", lambda m: m["collisions"]),
+    "hardest push m/s": ("{:.2f}", lambda m: m["hardest_push_m_s"]),
     "decision p50 ms": ("{:.0f}", lambda m: 1e3 * m["decision_time_p50_s"]),
     "decision p95 ms": ("{:.0f}", lambda m: 1e3 * m["decision_time_p95_s"]),
     "unlike mi_only %": ("{:.0f}", lambda m: 100 * m["decisions_unlike_mi_only_share"]),
@@ -68,7 +69,11 @@ class FolderRun(Run):
             self.metrics = json.loads((folder / "metrics.json").read_text())
         except OSError:
             self.metrics = {}
-        super().__init__((*folder.parts[-3:-1], folder.name.removeprefix("seed_")), self._outcome(), self._commit(),
+        push = self._find("simulation.yaml", r"^hardest_push_m_s: (\S+)")
+        if push is not None:
+            self.metrics["hardest_push_m_s"] = float(push)
+        super().__init__((*folder.parts[-3:-1], folder.name.removeprefix("seed_")), self._outcome(),
+                         self._find("manifest.yaml", r'^commit: "(.*)"$'),
                          {name: self._value(function) for name, (_, function) in COLUMNS.items()})
 
     def _outcome(self):
@@ -84,9 +89,9 @@ class FolderRun(Run):
         except (KeyError, TypeError):  # null: not defined for this run
             return None
 
-    def _commit(self):
+    def _find(self, file, pattern):
         try:
-            found = re.search(r"^commit: \"(.*)\"$", (self.folder / "manifest.yaml").read_text(), re.MULTILINE)
+            found = re.search(pattern, (self.folder / file).read_text(), re.MULTILINE)
         except OSError:
             return None
         return found and found[1]

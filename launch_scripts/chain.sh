@@ -65,7 +65,7 @@ make_run_folder() {
   mkdir -p "$out/logs" || die "$out cannot be made a run folder; choose another with --out DIR"
   (
     cd "$out" || exit
-    rm -f manifest.yaml simulation.yaml metrics.json timeline.csv decisions?(.+([0-9])).csv \
+    rm -f identity manifest.yaml simulation.yaml metrics.json timeline.csv decisions?(.+([0-9])).csv \
       trajectory_{estimate,ground_truth}.txt reference_map.lapis \
       {keyframes,pose_graph,map}?(.+([0-9])).{txt,g2o,ot,ply} \
       ground_truth/{mesh,flood,ideal}.lapis ground_truth/{classes,rooms}.json ground_truth/navmap.{png,yaml} \
@@ -163,7 +163,7 @@ restart() {
 run_chain() {
   local source name early
   source=$(source_of_frames)
-  commit=$(git -C "$repository" describe --always --dirty 2>/dev/null || true)
+  commit=$(describe_commit)
   trap end_all EXIT
   trap 'interrupted SIGINT 130' INT
   trap 'interrupted SIGTERM 143' TERM

@@ -24,6 +24,21 @@ require_build() {
   done
 }
 
+# describe_commit: of the repository; with "-not-built" when a source is newer than every program.
+describe_commit() {
+  local program newest=$bin/lapis_slam commit source
+  commit=$(git -C "$repository" describe --always --dirty 2>/dev/null) || return 0
+  for program in "$bin"/lapis_*; do
+    if [ "$program" -nt "$newest" ]; then newest=$program; fi
+  done
+  source=$(find "$repository"/{common,components,idl} -type f \( -name '*.cpp' -o -name '*.hpp' -o -name '*.idl' \) -newer "$newest" -print -quit)
+  if [ -n "$source" ]; then
+    echo "${0##*/}: $source is newer than the programs in $bin: build them first to run them" >&2
+    commit+=-not-built
+  fi
+  echo "$commit"
+}
+
 # identity_of SCENE WORD...: what the results of a scene depend on; other programs, settings or scenes give another.
 identity_of() {
   {
@@ -81,10 +96,11 @@ show_progress() {
   [ -z "$text" ] || [ ! -t 1 ] || echo
 }
 
+# In a session of its own: Ctrl-C on the terminal is the launcher's, who ends its processes in their order.
 launch() {
   local name=$1
   shift
-  setpriv --pdeathsig TERM "$bin/lapis_$name" "$@" &
+  setsid setpriv --pdeathsig TERM "$bin/lapis_$name" "$@" &
   pids[$name]=$!
   [[ " ${names[*]} " == *" $name "* ]] || names+=("$name")
 }

@@ -75,7 +75,8 @@ class Process:
         words = ["setpriv", "--pdeathsig", "TERM", *map(str, command)]
         self._process = subprocess.Popen(words, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
                                          stderr=subprocess.STDOUT, text=True, errors="replace",
-                                         env={**os.environ, "LAPIS_BIN": str(BIN), "LAPIS_TEST_RUN": self.run})
+                                         env={**os.environ, "LAPIS_BIN": str(BIN), "LAPIS_TEST_RUN": self.run},
+                                         start_new_session=True)
         self.pid = self._process.pid
         self._reader = threading.Thread(target=self._read, daemon=True)
         self._reader.start()
@@ -131,6 +132,11 @@ class Process:
 
     def stop(self, number=signal.SIGTERM, seconds=20.0):
         self.send(number)
+        return self.wait(seconds)
+
+    def press_ctrl_c(self, seconds=20.0):
+        """As on its terminal: every process of the foreground's group gets the signal."""
+        os.killpg(self.pid, signal.SIGINT)
         return self.wait(seconds)
 
     def kill(self):

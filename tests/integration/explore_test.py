@@ -4,7 +4,6 @@ import collections
 import csv
 import math
 import re
-import signal
 import struct
 
 import chain
@@ -99,7 +98,7 @@ class ExploreTest(chain.ChainTest):
         self.addCleanup(run.kill)
         driven = re.compile(r" [1-9]\d*\.\d m driven, .* EXPLORING: ")
         self.assertTrue(run.wait_for(lambda lines: any(driven.search(line) for line in lines), 90), run.output())
-        self.assertEqual(run.stop(signal.SIGINT, 60), 130, run.output())
+        self.assertEqual(run.press_ctrl_c(60), 130, run.output())
         self.assert_no_orphan(run)
         self.assert_files(self.folder / "run")
         self.assertEqual(chain.metrics_of(self.folder / "run")["exit_reason"], "stopped")

@@ -122,7 +122,7 @@ class RestartTest(chain.ChainTest):
                 self.fail(f"commands come less than {1 / LONGEST_GAP_S} times a second: the machine is too busy")
             self.assertLessEqual(stopped_after_s, STOPS_WITHIN_S, run.output())
         self.wait_for_commands(lambda command: command.moves)
-        self.assertEqual(run.stop(signal.SIGINT, 60), 130, run.output())
+        self.assertEqual(run.press_ctrl_c(60), 130, run.output())
         self.assert_no_orphan(run)
 
     def arrivals(self, begin):

@@ -43,7 +43,7 @@ class SceneTest(chain.ChainTest):
         run = chain.replay(SCENE, self.folder / "run", *OPTIONS)
         self.addCleanup(run.kill)
         self.assertTrue(run.wait_for_text("real-time factor", 60), run.output())
-        self.assertEqual(run.stop(signal.SIGINT, 60), 130, run.output())
+        self.assertEqual(run.press_ctrl_c(60), 130, run.output())
         self.assert_no_orphan(run)
         metrics = chain.metrics_of(self.folder / "run")
         for key in ("frames_tracked", "map_error_mean_m", "ideal_map_error_mean_m", "explored_share"):

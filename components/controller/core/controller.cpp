@@ -32,6 +32,11 @@ double nearest_ahead(const Obstacles& obstacles) {
   return nearest;
 }
 
+bool is_same(const std::vector<PlanarPose>& a, const std::vector<PlanarPose>& b) {
+  return std::equal(a.begin(), a.end(), b.begin(), b.end(),
+                    [](const PlanarPose& x, const PlanarPose& y) { return x.matrix() == y.matrix(); });
+}
+
 }  // namespace
 
 Controller::Controller(const ControllerConfig& config, const RobotLimits& limits)
@@ -39,9 +44,10 @@ Controller::Controller(const ControllerConfig& config, const RobotLimits& limits
       planner_(PathFan(config.fan, limits.radius_m)) {}
 
 void Controller::set_path(std::vector<PlanarPose> path, const std::string& reason_if_empty) {
+  if (recovery_ == Recovery::kStuck) recovery_ = Recovery::kNone;
+  if (track_ && is_same(track_->poses(), path)) return;
   track_.reset();
   is_arrived_ = false;
-  if (recovery_ == Recovery::kStuck) recovery_ = Recovery::kNone;
   if (path.empty()) {
     idle_reason_ = reason_if_empty;
   } else {

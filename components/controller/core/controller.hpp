@@ -50,7 +50,8 @@ class Controller {
   /// Throws std::runtime_error naming the value that is out of range.
   Controller(const ControllerConfig& config, const RobotLimits& limits);
 
-  /// In the map frame. Empty: the robot stands still, for that reason.
+  /// In the map frame. Empty: the robot stands still, for that reason. The same path again: it goes on where it is;
+  /// when it was blocked, it tries again.
   void set_path(std::vector<PlanarPose> path, const std::string& reason_if_empty);
   void note_planner(time::Time now) { watchdog_.note(Input::kPlanner, now); }
   void note_camera(time::Time stamp, time::Time now) { watchdog_.note(Input::kCamera, now, stamp); }

@@ -20,6 +20,7 @@ class PathTrack {
   /// The point so far ahead on the path, or its end.
   Eigen::Vector2d ahead(double distance_m) const { return point_at(progress_m_ + distance_m); }
   const PlanarPose& end() const { return poses_.back(); }
+  const std::vector<PlanarPose>& poses() const { return poses_; }
 
  private:
   Eigen::Vector2d point_at(double along_m) const;

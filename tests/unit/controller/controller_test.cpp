@@ -230,6 +230,18 @@ TEST(Controller, PressedAgainstGlassItBacksUpAndThenReportsThatItIsStuck) {
   EXPECT_LT(world.run_until(State::kIdle, 20.0), 20.0) << "a new path is a new try: " << world.last.reason;
 }
 
+// A planner that repeats its path as a sign of life.
+TEST(Controller, TheSamePathAgainIsGoneOnWith) {
+  KinematicWorld world(hall());
+  const Path path = straight({0, 0}, {4, 0}, 0.0);
+  world.controller.set_path(path, "");
+  world.run_until([&](const Decision&) { return world.T_map_base.translation().x() > 2.5; }, 20.0);
+  for (int i = 0; i < 10; ++i) {
+    world.controller.set_path(path, "");
+    EXPECT_GT(world.step().command.forward_m_s, 0.3);
+  }
+}
+
 TEST(Controller, NewPathReplacesTheOldOneAndAnEmptyOneStops) {
   KinematicWorld world(hall());
   world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");

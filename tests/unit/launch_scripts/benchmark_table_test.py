@@ -23,6 +23,7 @@ class BenchmarkTableTest(unittest.TestCase):
         folder.mkdir(parents=True)
         (folder / "metrics.json").write_text(json.dumps(METRICS | changes))
         (folder / "manifest.yaml").write_text('version: "0.1.0"\ncommit: "abc123"\n')
+        (folder / "simulation.yaml").write_text("hardest_push_m_s: 0.25  # speed towards what was touched\n")
         if has_succeeded:
             (folder / "identity").write_text("0\n")
         return folder
@@ -44,6 +45,7 @@ class BenchmarkTableTest(unittest.TestCase):
         self.assertEqual([row["explored %"] for row in rows], ["90.0", "70.0", "95.0", "90.0"])
         self.assertEqual([row["80 % s"] for row in rows], ["50", "-", "50", "50"])
         self.assertEqual([row["90 % s"] for row in rows], ["-"] * 4)
+        self.assertEqual([row["hardest push m/s"] for row in rows], ["0.25"] * 4)
         self.assertEqual([row["commit"] for row in rows], ["abc123"] * 3 + ["-"])
 
     def test_a_run_that_failed_is_told_and_is_in_no_median(self):

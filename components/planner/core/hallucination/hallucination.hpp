@@ -14,7 +14,7 @@ struct HallucinationConfig {
   /// probability is linear in between. 1 <= impossible < certain.
   int impossible_landmarks = 10, certain_landmarks = 100;
   double max_probability = 0.6;     ///< of a loop closure, however many landmarks are seen again, in [0.05, 1]
-  double min_loop_way_m = 5.0;      ///< along the graph; nearer key-frames are seen by every path; in [0, 100]
+  double min_loop_way_m = 5.0;      ///< way_between() along the graph; nearer key-frames make no loop; in [0, 100]
   double place_radius_m = 2.0;      ///< key-frames nearer to each other are one place, in [0.1, 20]
   double revisit_spacing_m = 20.0;  ///< way after a loop closure before its place counts again, in [0, 1000]
   int max_places = 6;               ///< of a path; the most probable ones; in [1, 8]
@@ -38,8 +38,9 @@ struct Hallucination {
 };
 
 /// Nodes at camera poses along a path, joined to the newest key-frame and to each other by odometry whose weight falls
-/// with distance as that of the running graph does; and to old places by one loop edge each, from the node that sees
-/// most of it. Deterministic. At least one pose.
+/// with distance as that of the running graph does; and to old places by one loop edge each. A node counts with the
+/// place of which it sees most (slam closes a key-frame with one place), and of the nodes that count with a place the
+/// one that sees most of it makes the edge. Deterministic. At least one pose.
 Hallucination hallucinate(const AnalysedGraph& graph, const LandmarkIndex& landmarks, const InformationField& field,
                           const geometry::PinholeCamera& camera, std::span<const geometry::Pose> T_map_cameras,
                           const HallucinationConfig& config);

@@ -1,0 +1,45 @@
+#!/usr/bin/env python3
+"""benchmark.sh: a row for each run, what is done is not done again, and a run that fails is a row, too."""
+import csv
+
+import chain
+
+
+class BenchmarkTest(chain.ChainTest):
+    def benchmark(self, *options, status=0):
+        scene = self.folder / "flat.yaml"
+        scene.write_text(chain.FLAT)
+        command = [chain.REPOSITORY / "launch_scripts/benchmark.sh", "--scenes", f"{scene}:10", "--methods", "nearest",
+                   "--out", self.folder / "benchmark", *options]
+        run = chain.Process(command, self.folder / "benchmark.log")
+        self.addCleanup(run.kill)
+        self.assertEqual(run.wait(150), status, run.output())
+        with open(self.folder / "benchmark/runs.csv", newline="", encoding="utf-8") as table:
+            return run.output(), list(csv.DictReader(table))
+
+    def stamp_of(self, seed):
+        return (self.folder / f"benchmark/flat/nearest/seed_{seed}/metrics.json").stat().st_mtime_ns
+
+    def test_what_is_done_is_not_done_again(self):
+        _, rows = self.benchmark("--runs", "1")
+        self.assertEqual([(row["seed"], row["outcome"]) for row in rows], [("1", "time up")])
+        done = self.stamp_of(1)
+        metrics = chain.metrics_of(self.folder / "benchmark/flat/nearest/seed_1")
+        output, rows = self.benchmark("--runs", "2")
+        self.assertEqual([row["seed"] for row in rows], ["1", "2"], output)
+        self.assertEqual(self.stamp_of(1), done, "played again")
+        self.assertAlmostEqual(float(rows[0]["path m"]), metrics["path_length_m"], places=6)
+        self.assertIn("| flat | nearest | median of 2 | 2 time up |", output)
+        for name in ("boxes", "coverage"):
+            self.assertGreater((self.folder / f"benchmark/figures/flat_{name}.png").stat().st_size, 1000)
+
+    def test_a_run_that_fails_is_a_row_and_is_tried_again(self):
+        output, rows = self.benchmark("--runs", "1", "--set", "planner.method=no_such_method", status=1)
+        self.assertEqual([row["outcome"] for row in rows], ["FAILED"], output)
+        self.assertIn("planner.method", output)
+        _, rows = self.benchmark("--runs", "1")
+        self.assertEqual([row["outcome"] for row in rows], ["time up"])
+
+
+if __name__ == "__main__":
+    chain.main(needs_recordings=False)

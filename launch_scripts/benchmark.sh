@@ -20,8 +20,8 @@ benchmark that was interrupted goes on where it was.
   --out DIR              default: out/benchmark
   --set KEY=VALUE        as for explore.sh and replay.sh
 Real-time factors are those of a machine that has nothing else to do: the table names the load it found. Exit status:
-0 all runs succeeded, 1 a run failed (it is in the table as FAILED, and is repeated the next time), 2 bad set-up, 130
-and 143 interrupted.
+0 all runs succeeded, 1 a run failed (it is in the table as FAILED, and is repeated the next time), 2 bad options,
+130 and 143 interrupted.
 TEXT
 }
 

@@ -140,8 +140,10 @@ void decision(benchmark::State& state) {
   const DecisionConfig config = config_for(now);
   Decision made;
   for (auto _ : state) made = decide(now, {}, config);
-  state.counters["candidates"] = static_cast<double>(
+  const auto open = static_cast<std::size_t>(
       std::count_if(made.candidates.begin(), made.candidates.end(), [](const auto& c) { return c.rejection.empty(); }));
+  if (open < kCandidates || views_per_candidate(made) < kViewsPerPath) state.SkipWithError("fewer candidates or views");
+  state.counters["candidates"] = static_cast<double>(open);
   state.counters["views_per_candidate"] = views_per_candidate(made);
   state.counters["rays_per_view"] = static_cast<double>(world().view.directions().size());
   state.counters["landmarks"] = static_cast<double>(landmarks.size());

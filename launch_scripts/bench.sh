@@ -83,7 +83,7 @@ for benchmark in "$bin"/lapis_*_benchmark; do
     { rm -f "$out/$name.json" && tail -n 5 "$out/$name.log" >&2 && trouble "FAILED: $name"; }
 done
 printf '\nkernels, load before: %s\n' "$load"
-"$repository/launch_scripts/bench_table.py" "$out"/*.json
+"$repository/launch_scripts/bench_table.py" "$out"/*.json || trouble "FAILED: benchmarks that the table names"
 "$repository/launch_scripts/bench_figure.py" "$out/decision_time.png" "$out"/*.json || trouble "FAILED: bench_figure.py"
 for name in "${others[@]}"; do
   arguments=()

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Prints one table of Google Benchmark results, with ratios to the peers that are in it.
+"""Prints one table of Google Benchmark results, with ratios to the peers that are in it; fails when one has failed.
 
 usage: bench_table.py JSON_FILE...     as written by --benchmark_out
 """
@@ -58,12 +58,14 @@ def times(ratio):
 def main():
     print("| benchmark | kernel | time | peer | ratio |")
     print("| --- | --- | --- | --- | --- |")
+    has_failed = False
     for file in sys.argv[1:]:
         kernels = read(file)
         benchmark = pathlib.Path(file).stem.removeprefix("lapis_").removesuffix("_benchmark")
         for name, result in kernels.items():
             cells = ["-", "-"]
             if result.get("error_occurred"):
+                has_failed = True
                 print(f"| {benchmark} | {name} | {result['error_message']} | - | - |")
                 continue
             peer = peer_of(name, kernels)
@@ -73,7 +75,7 @@ def main():
             elif own:
                 cells = [f"{OWN_RATIO[own]}: {result[OWN_RATIO[own]]:.3g} ms", times(result[own])]
             print(f"| {benchmark} | {name} | {shown(time_ns(result))} | " + " | ".join(cells) + " |")
-    return 0
+    return 1 if has_failed else 0
 
 
 if __name__ == "__main__":

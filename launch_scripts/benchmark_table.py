@@ -103,12 +103,12 @@ def rows_of(file):
         sys.exit(f"{file}: no such file")
     with file.open(newline="") as stream:
         table = csv.DictReader(stream)
-        missing = {"scene", "method", "seed", "outcome", "commit", *COLUMNS} - set(table.fieldnames or ())
+        missing = {"scene", "method", "seed", "outcome", "commit"} - set(table.fieldnames or ())
         if missing:
             sys.exit(f"{file}: no table of benchmark.sh, the column {min(missing)} is not there")
         for row in table:
-            values = {name: NEVER if row[name] == "never" else float(row[name]) if row[name] else None
-                      for name in COLUMNS}
+            cells = {name: row.get(name) for name in COLUMNS}  # an older table has not all of them
+            values = {name: NEVER if cell == "never" else float(cell) if cell else None for name, cell in cells.items()}
             yield Run((row["scene"], row["method"], row["seed"]), row["outcome"], row["commit"] or None, values)
 
 

@@ -15,6 +15,7 @@ const char* name_of(CandidateKind kind) {
   switch (kind) {
     case CandidateKind::kFrontier: return "frontier";
     case CandidateKind::kAlternative: return "alternative";
+    case CandidateKind::kCloserLook: return "closer_look";
     case CandidateKind::kRevisit: return "revisit";
   }
   return "";

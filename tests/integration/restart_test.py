@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """explore.sh --restart: each process is killed in turn while the robot explores. In lock-step exploration completes; by
-the wall clock the robot also stands still within 300 ms of the last pose, map or path, and goes on afterwards."""
+the wall clock the robot is also told to stand still within 300 ms of the last pose, map or path, and goes on after."""
 import os
 import re
 import signal
@@ -107,7 +107,7 @@ class RestartTest(chain.ChainTest):
         self.assertIn("controller: ended early with status 137", run.output())
         self.assert_no_orphan(run)
 
-    def test_by_the_wall_clock_the_robot_stands_still_within_300_ms_and_goes_on(self):
+    def test_by_the_wall_clock_the_robot_is_stopped_within_300_ms_and_goes_on(self):
         self.start_probe()
         run = self.explore(*NO_FURNITURE, "--freerun")
         for victim, what in SPEAKS_FOR.items():

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """benchmark_table.py on made-up runs: outcomes, medians, and tables that are put together from earlier ones."""
+import csv
 import json
 import subprocess
 import sys
@@ -63,6 +64,19 @@ class BenchmarkTableTest(unittest.TestCase):
         self.assertEqual(self.table("joined.csv", self.folder / "first.csv", *runs[1:]), whole)
         self.assertEqual(self.table("again.csv", self.folder / "joined.csv"), whole)
         self.assertEqual((self.folder / "again.csv").read_text(), (self.folder / "whole.csv").read_text())
+
+    def test_a_table_from_before_a_column_was_there_can_be_read(self):
+        _, rows = self.table("whole.csv", self.run_folder("flat/lapis/seed_1"))
+        with (self.folder / "whole.csv").open(newline="") as stream:
+            table = csv.DictReader(stream)
+            older = [{name: value for name, value in row.items() if name != "hardest push m/s"} for row in table]
+        with (self.folder / "older.csv").open("w", newline="") as stream:
+            writer = csv.DictWriter(stream, older[0])
+            writer.writeheader()
+            writer.writerows(older)
+        status, joined = self.table("joined.csv", self.folder / "older.csv")
+        self.assertEqual(status, 0)
+        self.assertEqual(joined, [row | {"hardest push m/s": "-"} for row in rows])
 
     def test_what_is_no_table_is_refused(self):
         other = self.folder / "other.csv"

@@ -56,6 +56,7 @@ struct Situation {
 enum class CandidateKind {
   kFrontier,     ///< the best way to a place from which a frontier is seen
   kAlternative,  ///< another way to such a place
+  kCloserLook,   ///< the best way to a place near a frontier that cannot be seen from there, as the map is
   kRevisit,      ///< the best way to an old key-frame
 };
 

@@ -65,7 +65,7 @@ bool is_looked_at(const Candidate& candidate, const Memory& memory) {
   });
 }
 
-/// @param is_last_chance a frontier that is long enough need not be in sight
+/// @param is_last_chance a frontier that is long enough need not be in sight: closer looks
 std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tree, const Memory& memory,
                                          const DecisionConfig& config, bool is_last_chance) {
   std::vector<Candidate> candidates;
@@ -77,6 +77,7 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
     if (found.status != ViewpointStatus::kFound) candidates.push_back(rejected(frontier, reason_of(found.status)));
     for (const Viewpoint& viewpoint : found.viewpoints) {
       Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
+      if (sight == Sight::kNotNeeded) candidate.kind = CandidateKind::kCloserLook;
       if (is_looked_at(candidate, memory)) candidate.rejection = "was looked at from here in vain";
       if (is_one_of(memory.left_alone, candidate, memory)) candidate.rejection = kLeftAlone;
     }

@@ -150,14 +150,19 @@ bool Explorer::is_due(time::Time now) const {
 
 void Explorer::note_arrival(time::Time now) {
   if (!goal_->target_map) return;
-  if (goal_->kind == CandidateKind::kRevisit) return revisited_.add_failure(*goal_->target_map, now);  // not for ever
+  if (goal_->kind == CandidateKind::kRevisit) return add_failure(now);  // not for ever
   await({*goal_->target_map, goal_->pose.p_map}, now, config_.settle_s);
 }
 
 // What is seen from nearby only, such as an obstacle on a place that the map does not know, is forgotten when the robot
-// is away: without this it would come back for ever.
+// is away: without this it would come back for ever. A closer look only waits while another frontier is
+// in sight.
 void Explorer::note_vanished(const Decision& decision, time::Time now) {
   if (!goal_ || !goal_->target_map || goal_->kind == CandidateKind::kRevisit) return;
+  const bool is_in_sight = std::any_of(decision.candidates.begin(), decision.candidates.end(), [](const Candidate& c) {
+    return c.kind == CandidateKind::kFrontier && c.rejection.empty();
+  });
+  if (goal_->kind == CandidateKind::kCloserLook && is_in_sight) return;
   const bool is_there = std::any_of(decision.candidates.begin(), decision.candidates.end(), [&](const Candidate& c) {
     return (c.rejection.empty() || c.rejection == kOutranked) &&
            (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
@@ -187,11 +192,18 @@ bool Explorer::stands_still(const Report& report) {
 
 // The target is left alone, and ways no longer lead through what stopped the robot.
 void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
-  if (goal_->target_map) memory_.add_failure(*goal_->target_map, report.now);
+  add_failure(report.now);
   const auto place = place_ahead(path_, *report.robot);
   if (!place) return;
   blocked_.add_failure(*place, report.now);
   surroundings.set_blocked(blocked_.left_alone(report.now));
+}
+
+/// Of the goal. An old place that cannot be had says nothing of a frontier beside it.
+void Explorer::add_failure(time::Time now) {
+  if (!goal_->target_map) return;
+  GoalMemory& memory = goal_->kind == CandidateKind::kRevisit ? revisited_ : memory_;
+  memory.add_failure(*goal_->target_map, now);
 }
 
 Memory Explorer::memory(time::Time now) const {
@@ -294,7 +306,7 @@ void Explorer::note_loss(time::Time now) {
   const bool is_again = std::any_of(losses_.begin(), losses_.end(), [&](const Eigen::Vector2d& target_map) {
     return (target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
   });
-  if (is_again) memory_.add_failure(*goal_->target_map, now);
+  if (is_again) add_failure(now);
   losses_.push_back(*goal_->target_map);
 }
 

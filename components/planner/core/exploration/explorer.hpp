@@ -110,9 +110,10 @@ class Explorer {
   bool stands_still(const Report& report);
   bool is_due(time::Time now) const;
   void note_failure(const Report& report, Surroundings& surroundings);
+  void add_failure(time::Time now);
 
   ExplorerConfig config_;
-  GoalMemory memory_;     ///< targets
+  GoalMemory memory_;     ///< targets of frontiers
   GoalMemory revisited_;  ///< old places
   GoalMemory blocked_;    ///< places on the way
   State state_ = State::kIdle;

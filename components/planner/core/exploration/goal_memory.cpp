@@ -5,11 +5,9 @@
 namespace lapis::planner {
 
 GoalMemory::Place& GoalMemory::place_at(const Eigen::Vector2d& target_map) {
-  const auto found = std::find_if(places_.begin(), places_.end(), [&](const Place& place) {
-    return (place.target_map - target_map).norm() <= config_.radius_m;
-  });
-  if (found != places_.end()) return *found;
-  return places_.emplace_back(Place{.target_map = target_map});
+  const auto found = std::find_if(places_.begin(), places_.end(),
+                                  [&](const Place& place) { return place.target_map == target_map; });
+  return found != places_.end() ? *found : places_.emplace_back(Place{.target_map = target_map});
 }
 
 void GoalMemory::leave_alone(const Eigen::Vector2d& target_map, time::Time until) {
@@ -18,9 +16,10 @@ void GoalMemory::leave_alone(const Eigen::Vector2d& target_map, time::Time until
 }
 
 void GoalMemory::add_failure(const Eigen::Vector2d& target_map, time::Time now) {
-  Place& place = place_at(target_map);
-  ++place.failures;
-  place.until = std::max(place.until, now + time::Duration::from_seconds(config_.expiry_s));
+  leave_alone(target_map, now + time::Duration::from_seconds(config_.expiry_s));
+  for (Place& place : places_) {
+    if ((place.target_map - target_map).norm() <= config_.radius_m) ++place.failures;
+  }
 }
 
 std::vector<Eigen::Vector2d> GoalMemory::left_alone(time::Time now) const {

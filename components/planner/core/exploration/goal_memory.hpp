@@ -31,7 +31,7 @@ class GoalMemory {
  private:
   struct Place {
     Eigen::Vector2d target_map;
-    int failures = 0;
+    int failures = 0;  ///< here, and within the radius since
     time::Time until{};
   };
   Place& place_at(const Eigen::Vector2d& target_map);

@@ -416,6 +416,38 @@ TEST_F(ExplorerByHand, AFrontierThatCreepsAheadIsNotLate) {
   }
 }
 
+TEST_F(ExplorerByHand, ARevisitThatFailsIsGivenUpAndNoFrontierWithIt) {
+  explorer_.start();
+  Candidate revisit = candidate({4.0, 0.0});
+  revisit.kind = CandidateKind::kRevisit;
+  for (int i = 0; i < GoalMemoryConfig{}.max_failures; ++i) {
+    EXPECT_TRUE(explorer_.memory(now_).revisited.empty());
+    step(false, 0.5);
+    explorer_.take(towards(revisit), report());
+    EXPECT_TRUE(step(true, 0.5));
+    EXPECT_EQ(explorer_.reason(), "the way was blocked");
+    EXPECT_EQ(explorer_.memory(now_).revisited.size(), 1U);
+    now_ = now_ + time::Duration::from_seconds(GoalMemoryConfig{}.expiry_s + 1.0);
+  }
+  EXPECT_EQ(explorer_.memory(now_).revisited.size(), 1U) << "for good";
+  EXPECT_TRUE(explorer_.memory(now_).left_alone.empty());
+}
+
+TEST_F(ExplorerByHand, ACloserLookWaitsWhileAnotherFrontierIsInSight) {
+  explorer_.start();
+  ASSERT_TRUE(step());
+  Candidate look = candidate({9.0, 0.0});
+  look.kind = CandidateKind::kCloserLook;
+  explorer_.take(towards(look), report());
+  explorer_.take(towards(candidate({0.0, 5.0})), report());
+  EXPECT_TRUE(explorer_.memory(now_).left_alone.empty());
+  explorer_.take(towards(look), report());
+  Candidate other = candidate({-5.0, 0.0});
+  other.kind = CandidateKind::kCloserLook;
+  explorer_.take(towards(other), report());
+  EXPECT_EQ(explorer_.memory(now_).left_alone.size(), 2U) << "what was in sight, and what there was a look at";
+}
+
 TEST_F(ExplorerByHand, PlacesSideBySideThatStoppedItAreAllAvoidedAtOnce) {
   explorer_.start();
   be_blocked_at(0.1);

@@ -8,6 +8,7 @@ namespace {
 
 using ::testing::ElementsAre;
 using ::testing::IsEmpty;
+using ::testing::UnorderedElementsAre;
 
 const Eigen::Vector2d kTarget{3.0, -2.0};
 
@@ -43,8 +44,16 @@ TEST(GoalMemory, WhatLiesNearIsOneTarget) {
   memory.add_failure(kTarget, at(0.0));
   memory.add_failure(kTarget + Eigen::Vector2d(0.5, 0.5), at(0.0));
   EXPECT_THAT(memory.left_alone(at(1e6)), ElementsAre(kTarget));
-  memory.add_failure(kTarget + Eigen::Vector2d(0.6, 0.6), at(0.0));
+  memory.add_failure(kTarget + Eigen::Vector2d(0.0, -0.8), at(0.0));
   EXPECT_THAT(memory.left_alone(at(1e6)), ElementsAre(kTarget)) << "one failure elsewhere expires";
+}
+
+// Else it could fail as often again for each target beside it that has failed before.
+TEST(GoalMemory, AFailureCountsForAllTargetsThatAreNear) {
+  GoalMemory memory({.radius_m = 0.75, .max_failures = 3});
+  for (const double x_m : {-0.7, 0.7, 0.0, -0.1, 0.1}) memory.add_failure({x_m, 0.0}, at(0.0));
+  EXPECT_THAT(memory.left_alone(at(1e6)),
+              UnorderedElementsAre(Eigen::Vector2d{-0.7, 0.0}, Eigen::Vector2d{0.0, 0.0}, Eigen::Vector2d{0.7, 0.0}));
 }
 
 TEST(GoalMemory, LeavingAloneIsNoFailure) {

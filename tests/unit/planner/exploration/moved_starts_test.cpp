@@ -95,6 +95,7 @@ TEST_P(MovedStart, IsExploredToTheEnd) {
   const Start start(GetParam());
   WalkWorld world(start.lines);
   world.robot.yaw_rad = start.yaw_rad;
+  world.decision_config.method = Method::kJoint;
   world.explorer.start();
   world.run(kLongestRun_s);
   EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();

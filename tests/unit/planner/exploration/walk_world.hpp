@@ -13,7 +13,7 @@
 
 #include "planner/core/exploration/explorer.hpp"
 #include "planner/core/space/line.hpp"
-#include "tests/unit/planner/hallucination/small_world.hpp"
+#include "tests/unit/planner/exploration/walk_slam.hpp"
 #include "tests/unit/planner/space/flat_map.hpp"
 
 namespace lapis::planner::test {
@@ -44,6 +44,7 @@ class WalkWorld {
   }
   void tick() {
     now = now + time::Duration::from_seconds(kTick_s);
+    slam_.track(robot);
     look();
     surroundings.update_map(known_.map(), known_.flush());
     surroundings.update_obstacles(obstacles(), now);
@@ -72,6 +73,7 @@ class WalkWorld {
     for (const auto& [c, value] : moved) known_.set(c, value);
     offset_ = offset_ + by;
     robot.p_map += kResolution_m * Eigen::Vector2d(by.x, by.y);
+    slam_.move(kResolution_m * Eigen::Vector2d(by.x, by.y));
   }
   /// How often the robot set out in vain for the target for which it did so most.
   int most_failures() const { return most_of(failures_); }
@@ -138,8 +140,10 @@ class WalkWorld {
     ++decisions;
     if (decided_at_) least_decision_time_s = std::min(least_decision_time_s, (now - *decided_at_).seconds());
     decided_at_ = now;
+    const auto known = slam_.knowledge(kResolution_m);
     const Decision decision = decide({surroundings.grid(), surroundings.frontiers(), surroundings.field(), view_,
-                                      geometry::T_base_camera({1.0, 0.0}), nullptr, nullptr, robot},
+                                      geometry::T_base_camera({1.0, 0.0}), known ? &known->graph : nullptr,
+                                      known ? &known->landmarks : nullptr, robot},
                                      explorer.memory(now), decision_config);
     explorer.take(decision, report());
     if (decision.chosen) target_ = decision.candidates[*decision.chosen].target_map;
@@ -217,6 +221,7 @@ class WalkWorld {
 
  private:
   View view_;
+  WalkSlam slam_;
   std::uint64_t followed_ = 0;
   std::size_t next_ = 0;
   Cell offset_{0, 0};

@@ -155,8 +155,7 @@ void Explorer::note_arrival(time::Time now) {
 }
 
 // What is seen from nearby only, such as an obstacle on a place that the map does not know, is forgotten when the robot
-// is away: without this it would come back for ever. A closer look only waits while another frontier is
-// in sight.
+// is away: without this it would come back for ever. A closer look only waits while another frontier is in sight.
 void Explorer::note_vanished(const Decision& decision, time::Time now) {
   if (!goal_ || !goal_->target_map || goal_->kind == CandidateKind::kRevisit) return;
   const bool is_in_sight = std::any_of(decision.candidates.begin(), decision.candidates.end(), [](const Candidate& c) {

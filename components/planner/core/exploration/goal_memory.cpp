@@ -5,8 +5,8 @@
 namespace lapis::planner {
 
 GoalMemory::Place& GoalMemory::place_at(const Eigen::Vector2d& target_map) {
-  const auto found = std::find_if(places_.begin(), places_.end(),
-                                  [&](const Place& place) { return place.target_map == target_map; });
+  const auto found =
+      std::find_if(places_.begin(), places_.end(), [&](const Place& place) { return place.target_map == target_map; });
   return found != places_.end() ? *found : places_.emplace_back(Place{.target_map = target_map});
 }
 

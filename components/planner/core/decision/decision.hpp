@@ -96,11 +96,6 @@ struct Decision {
   bool agrees_with_mi_only() const { return chosen == by_mi_only; }
 };
 
-/// A target that is a frontier still, although it has been looked at from there [m, map].
-struct VainLook {
-  Eigen::Vector2d target_map, from_map;
-};
-
 /// What is not to be driven to, and what is being driven to.
 struct Memory {
   std::vector<Eigen::Vector2d> left_alone;  ///< targets [m, map]

@@ -57,14 +57,6 @@ bool is_one_of(const std::vector<Eigen::Vector2d>& left_alone, const Candidate& 
   });
 }
 
-/// Another look from about the same place shows no more; one from elsewhere may.
-bool is_looked_at(const Candidate& candidate, const Memory& memory) {
-  return std::any_of(memory.vain_looks.begin(), memory.vain_looks.end(), [&](const VainLook& look) {
-    return (look.target_map - candidate.target_map).norm() <= memory.radius_m &&
-           (look.from_map - candidate.goal.p_map).norm() <= memory.radius_m;
-  });
-}
-
 /// @param is_last_chance a frontier that is long enough need not be in sight: closer looks
 std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tree, const Memory& memory,
                                          const DecisionConfig& config, bool is_last_chance) {
@@ -78,7 +70,8 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
     for (const Viewpoint& viewpoint : found.viewpoints) {
       Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
       if (sight == Sight::kNotNeeded) candidate.kind = CandidateKind::kCloserLook;
-      if (is_looked_at(candidate, memory)) candidate.rejection = "was looked at from here in vain";
+      if (is_looked_at(memory.vain_looks, candidate.target_map, candidate.goal.p_map, memory.radius_m))
+        candidate.rejection = "was looked at from here in vain";
       if (is_one_of(memory.left_alone, candidate, memory)) candidate.rejection = kLeftAlone;
     }
   }
@@ -90,10 +83,10 @@ std::vector<Candidate> propose_tour(const Situation& s, const CostTree& tree, co
                                     const DecisionConfig& config) {
   const geometry::PinholeCamera& camera = s.view.config().camera;
   const double fov_rad = 2.0 * std::atan(0.5 * camera.width / camera.fx);
-  const Tour tour =
-      plan_tour({s.grid, s.frontiers, tree, s.robot, fov_rad, config.path, config.viewpoints,
-                 config.turn_cost_m_per_rad, memory.left_alone, memory.radius_m, memory.goal, config.keep_factor},
-                config.tare);
+  const Tour tour = plan_tour(
+      {s.grid, s.frontiers, tree, s.robot, fov_rad, config.path, config.viewpoints, config.turn_cost_m_per_rad,
+       memory.left_alone, memory.vain_looks, memory.radius_m, memory.goal, config.keep_factor},
+      config.tare);
   std::vector<Candidate> candidates;
   for (const TourStop& stop : tour.stops) {
     Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, stop.frontier, stop.viewpoint, config));

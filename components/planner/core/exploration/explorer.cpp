@@ -223,18 +223,35 @@ void Explorer::take(const Decision& decision, const Report& report) {
   if (!decision.chosen) return end_or_look_around(decision, now);
   empty_decisions_ = 0;
   nothing_since_.reset();
-  follow(decision.candidates[*decision.chosen], now);
+  follow(decision, now);
 }
 
-void Explorer::follow(const Candidate& chosen, time::Time now) {
-  if (!goal_) goal_ = Goal{.moved_from = chosen.way.front(), .moved_at = now};
+/// Goes elsewhere, though what it drove to is there still.
+bool Explorer::is_detour(const Decision& decision) const {
+  if (!goal_ || !goal_->target_map) return false;
+  const auto is_at_goal = [&](const Candidate& c) {
+    return c.rejection.empty() && (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
+  };
+  return !is_at_goal(decision.candidates[*decision.chosen]) &&
+         std::any_of(decision.candidates.begin(), decision.candidates.end(), is_at_goal);
+}
+
+// Going to and fro between goals without getting to any has to end, too.
+void Explorer::set_deadline(const Candidate& chosen, bool is_detour, time::Time now) {
   const bool is_new =
       !goal_->deadline_of_map || (*goal_->deadline_of_map - chosen.target_map).norm() > config_.memory.radius_m;
-  if (is_new) {  // or crept forward by so much
-    const double longest_s = config_.progress_timeout_s + chosen.value.cost_m / config_.slowest_m_s;
-    goal_->deadline = now + time::Duration::from_seconds(longest_s);
-    goal_->deadline_of_map = chosen.target_map;
-  }
+  if (!is_new) return;  // nor crept forward by so much
+  if (!is_detour) goal_->set_out_at = now;
+  const double longest_s = config_.progress_timeout_s + chosen.value.cost_m / config_.slowest_m_s;
+  const time::Time due = goal_->set_out_at + time::Duration::from_seconds(longest_s);
+  goal_->deadline = is_detour ? std::max(goal_->deadline.value_or(due), due) : due;
+  goal_->deadline_of_map = chosen.target_map;
+}
+
+void Explorer::follow(const Decision& decision, time::Time now) {
+  const Candidate& chosen = decision.candidates[*decision.chosen];
+  if (!goal_) goal_ = Goal{.moved_from = chosen.way.front(), .moved_at = now};
+  set_deadline(chosen, is_detour(decision), now);
   goal_->pose = chosen.goal;
   goal_->target_map = chosen.target_map;
   goal_->kind = chosen.kind;

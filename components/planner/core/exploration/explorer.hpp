@@ -83,6 +83,7 @@ class Explorer {
     Pose2 pose = {};
     std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< none: a look around, or the way home
     CandidateKind kind = CandidateKind::kFrontier;
+    time::Time set_out_at = {};  ///< from where none was left for another
     std::optional<time::Time> deadline = std::nullopt;
     std::optional<Eigen::Vector2d> deadline_of_map = std::nullopt;  ///< the target at which it was set
     Pose2 moved_from;                                               ///< where the robot was when it last had moved
@@ -93,7 +94,9 @@ class Explorer {
   void set_path(std::vector<Pose2> path);
   void drop_goal();
   bool explore(const Report& report, Surroundings& surroundings);
-  void follow(const Candidate& chosen, time::Time now);
+  void follow(const Decision& decision, time::Time now);
+  bool is_detour(const Decision& decision) const;
+  void set_deadline(const Candidate& chosen, bool is_detour, time::Time now);
   void end_or_look_around(const Decision& decision, time::Time now);
   bool is_briefly_untracked(const Report& report);
   void recover(const Report& report, const Surroundings* surroundings);

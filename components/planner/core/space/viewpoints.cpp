@@ -62,6 +62,13 @@ std::vector<Viewpoint> one_per_sector(const PlanningGrid& grid, const CostTree& 
 
 }  // namespace
 
+bool is_looked_at(std::span<const VainLook> vain_looks, const Eigen::Vector2d& target_map,
+                  const Eigen::Vector2d& from_map, double radius_m) {
+  return std::any_of(vain_looks.begin(), vain_looks.end(), [&](const VainLook& look) {
+    return (look.target_map - target_map).norm() <= radius_m && (look.from_map - from_map).norm() <= radius_m;
+  });
+}
+
 std::string reason_of(ViewpointStatus status) {
   switch (status) {
     case ViewpointStatus::kFound: return "";

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -23,6 +24,15 @@ struct Viewpoint {
   Cell target;          ///< one of the frontier's representatives
   double cost_m = 0.0;  ///< of the path to it
 };
+
+/// A target that is a frontier still, although it has been looked at from there [m, map].
+struct VainLook {
+  Eigen::Vector2d target_map, from_map;
+};
+
+/// Another look from about the same place shows no more; one from elsewhere may.
+bool is_looked_at(std::span<const VainLook> vain_looks, const Eigen::Vector2d& target_map,
+                  const Eigen::Vector2d& from_map, double radius_m);
 
 /// Why a frontier has no viewpoint: what the best candidates lacked.
 enum class ViewpointStatus {

@@ -16,6 +16,7 @@ namespace {
 constexpr int kHeadings = 8;
 constexpr std::size_t kChoices = 3;  // best viewpoints among which one is drawn
 constexpr int kTours = 10;
+constexpr double kSureView = 0.9;             // of the field of view: what is at its edge may be missed
 constexpr double kSubSpacesPerHorizon = 5.0;  // along an edge of the local area
 constexpr std::size_t kMostSubSpaces = 30;    // in the coarse tour
 constexpr double kSameGoal_m = 0.5, kSameGoal_rad = 0.5;
@@ -29,7 +30,12 @@ bool is_goal(const Pose2& pose, const std::optional<Pose2>& goal) {
 bool is_left_alone(const TourProblem& problem, Cell c) {
   const Eigen::Vector2d p = problem.grid.center_of(c);
   return std::any_of(problem.left_alone.begin(), problem.left_alone.end(),
-                     [&](const Eigen::Vector2d& place) { return (place - p).norm() <= problem.left_alone_radius_m; });
+                     [&](const Eigen::Vector2d& place) { return (place - p).norm() <= problem.radius_m; });
+}
+
+bool is_vain(const TourProblem& problem, Cell from, Cell target) {
+  const PlanningGrid& grid = problem.grid;
+  return is_looked_at(problem.vain_looks, grid.center_of(target), grid.center_of(from), problem.radius_m);
 }
 
 /// Cell of a frontier that is to be covered.
@@ -125,11 +131,11 @@ std::array<std::vector<std::size_t>, kHeadings> covered_from(const TourProblem& 
     const Cell to = targets[i].cell;
     const double range_m = distance(from, to) * problem.grid.resolution_m();
     if (range_m < problem.viewpoints.min_distance_m || range_m > config.range_m) continue;
-    if (!is_in_sight(problem.grid, from, to)) continue;
+    if (!is_in_sight(problem.grid, from, to) || is_vain(problem, from, to)) continue;
     const double bearing = std::atan2(to.y - from.y, to.x - from.x);
     for (std::size_t k = 0; k < kHeadings; ++k) {
       const double heading = 2.0 * std::numbers::pi / kHeadings * static_cast<double>(k);
-      if (turn_between(heading, bearing) <= 0.5 * problem.fov_rad) covered[k].push_back(i);
+      if (turn_between(heading, bearing) <= 0.5 * kSureView * problem.fov_rad) covered[k].push_back(i);
     }
   }
   for (auto& of_heading : covered) {
@@ -217,7 +223,7 @@ std::optional<TourStop> stop_at(const TourProblem& problem, const Frontier& fron
   std::optional<TourStop> best;
   const auto rank = [&](const Viewpoint& v) { return is_goal(v.pose, problem.goal) ? 0.0 : v.cost_m; };
   for (const Viewpoint& viewpoint : found.viewpoints) {
-    if (is_left_alone(problem, viewpoint.target)) continue;
+    if (is_left_alone(problem, viewpoint.target) || is_vain(problem, viewpoint.cell, viewpoint.target)) continue;
     if (!best || rank(viewpoint) < rank(best->viewpoint)) best = TourStop{frontier.id, viewpoint};
   }
   if (!best) tour.missed.emplace_back(frontier.id, found.viewpoints.empty() ? reason_of(found.status) : kLeftAlone);

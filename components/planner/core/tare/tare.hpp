@@ -30,9 +30,10 @@ struct TourProblem {
   ViewpointConfig viewpoints;
   double turn_cost_m_per_rad = 0.0;
   std::span<const Eigen::Vector2d> left_alone;  ///< frontiers near these are not to be looked at [m, map]
-  double left_alone_radius_m = 0.0;
-  std::optional<Pose2> goal;  ///< that is being driven to
-  double keep_factor = 1.0;   ///< it comes first unless another tour is so much shorter
+  std::span<const VainLook> vain_looks;         ///< not to be taken again
+  double radius_m = 0.0;                        ///< what lies nearer to such places is meant, too
+  std::optional<Pose2> goal;                    ///< that is being driven to
+  double keep_factor = 1.0;                     ///< it comes first unless another tour is so much shorter
 };
 
 struct TourStop {

@@ -1,5 +1,7 @@
 #include "planner/core/exploration/explorer.hpp"
 
+#include <array>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -414,6 +416,22 @@ TEST_F(ExplorerByHand, AFrontierThatCreepsAheadIsNotLate) {
     ASSERT_NE(explorer_.reason(), "the way took too long") << robot_.p_map.x();
     if (is_wanted) explorer_.take(towards(candidate(robot_.p_map + Eigen::Vector2d(3.0, 0.0))), report());
   }
+}
+
+TEST_F(ExplorerByHand, GoingToAndFroBetweenTwoGoalsEnds) {
+  const std::array<Candidate, 2> goals{candidate({3.0, 0.0}), candidate({-3.0, 0.0})};
+  explorer_.start();
+  for (int i = 0; explorer_.reason() != "the way took too long"; ++i) {
+    ASSERT_LT(i, 600) << "a minute";
+    robot_.p_map.x() = i / 10 % 2 == 0 ? 0.0 : 0.5;
+    if (!step()) continue;
+    const auto nearer = static_cast<std::size_t>(i / 10 % 2);
+    Decision decision;
+    decision.candidates = {goals.begin(), goals.end()};
+    decision.chosen = nearer;
+    explorer_.take(decision, report());
+  }
+  EXPECT_EQ(explorer_.memory(now_).left_alone.size(), 1U);
 }
 
 TEST_F(ExplorerByHand, ARevisitThatFailsIsGivenUpAndNoFrontierWithIt) {

@@ -89,13 +89,14 @@ struct Start {
   std::set<Cell> reachable;
 };
 
-class MovedStart : public testing::TestWithParam<unsigned> {};
+class MovedStart : public testing::TestWithParam<std::pair<Method, unsigned>> {};
 
 TEST_P(MovedStart, IsExploredToTheEnd) {
-  const Start start(GetParam());
+  const auto [method, seed] = GetParam();
+  const Start start(seed);
   WalkWorld world(start.lines);
   world.robot.yaw_rad = start.yaw_rad;
-  world.decision_config.method = Method::kJoint;
+  world.decision_config.method = method;
   world.explorer.start();
   world.run(kLongestRun_s);
   EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
@@ -108,7 +109,21 @@ TEST_P(MovedStart, IsExploredToTheEnd) {
   EXPECT_LE(world.most_vain_looks(), 3);
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, MovedStart, testing::Range(1U, kSeeds + 1U));
+std::vector<std::pair<Method, unsigned>> starts(unsigned seeds) {
+  std::vector<std::pair<Method, unsigned>> all;
+  for (unsigned seed = 1; seed <= seeds; ++seed) {
+    const auto other = static_cast<Method>(seed % method_names().size());  // all worlds with all methods
+    all.emplace_back(Method::kJoint, seed);
+    if (other != Method::kJoint) all.emplace_back(other, seed);
+  }
+  return all;
+}
+
+std::string name_of(const testing::TestParamInfo<std::pair<Method, unsigned>>& start) {
+  return method_names()[static_cast<std::size_t>(start.param.first)] + '_' + std::to_string(start.param.second);
+}
+
+INSTANTIATE_TEST_SUITE_P(Seeds, MovedStart, testing::ValuesIn(starts(kSeeds)), name_of);
 
 }  // namespace
 }  // namespace lapis::planner

@@ -40,9 +40,20 @@ struct Planner {
   }
   Tour plan() const {
     const CostTree paths = grow_cost_tree(world.grid, {}, {world.places.at('R')});
-    return plan_tour(
-        {world.grid, frontiers, paths, robot, std::numbers::pi / 2.0, {}, {}, 0.5, left_alone, 0.75, goal, 1.2},
-        config);
+    return plan_tour({world.grid,
+                      frontiers,
+                      paths,
+                      robot,
+                      std::numbers::pi / 2.0,
+                      {},
+                      {},
+                      0.5,
+                      left_alone,
+                      vain_looks,
+                      0.75,
+                      goal,
+                      1.2},
+                     config);
   }
   // Frontier cells that no stop's camera covers.
   int uncovered(const Tour& tour) const {
@@ -65,6 +76,7 @@ struct Planner {
   TareConfig config;
   Pose2 robot;
   std::vector<Eigen::Vector2d> left_alone;
+  std::vector<VainLook> vain_looks;
   std::optional<Pose2> goal;
 };
 
@@ -129,6 +141,21 @@ TEST(Tare, LeavesAloneWhatItIsTold) {
   EXPECT_EQ(tour.stops.size(), 1u);
   ASSERT_EQ(tour.missed.size(), 1u);
   EXPECT_EQ(tour.missed[0].second, kLeftAlone);
+}
+
+TEST(Tare, LooksFromElsewhereAtWhatItHasLookedAtInVain) {
+  for (const auto& lines : {kHall, kCorridor}) {
+    Planner planner(lines);
+    const TourStop first = planner.plan().stops[0];
+    const Eigen::Vector2d target_map = planner.world.grid.center_of(first.viewpoint.target);
+    planner.vain_looks = {{target_map, first.viewpoint.pose.p_map}};
+    const Tour tour = planner.plan();
+    EXPECT_FALSE(tour.stops.empty());
+    for (const TourStop& stop : tour.stops) {
+      const bool is_same_target = (planner.world.grid.center_of(stop.viewpoint.target) - target_map).norm() <= 0.75;
+      EXPECT_FALSE(is_same_target && (stop.viewpoint.pose.p_map - first.viewpoint.pose.p_map).norm() <= 0.75);
+    }
+  }
 }
 
 TEST(Tare, NamesWhatCannotBeReached) {

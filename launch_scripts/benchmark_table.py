@@ -116,6 +116,8 @@ def runs_of(paths):
     """Runs by (scene, method), in the order of the folders and CSV files."""
     groups = collections.defaultdict(list)
     for path in (pathlib.Path(path).absolute() for path in paths):
+        if path.suffix != ".csv" and path.is_file():
+            sys.exit(f"{path}: neither a run folder nor a CSV file")
         for run in rows_of(path) if path.suffix == ".csv" else [FolderRun(path)]:
             groups[run.scene, run.method].append(run)
     return groups

@@ -81,7 +81,10 @@ class BenchmarkTableTest(unittest.TestCase):
     def test_what_is_no_table_is_refused(self):
         other = self.folder / "other.csv"
         other.write_text("scene,method\n1,2\n")
-        for source, complaint in ((self.folder / "none.csv", "no such file"), (other, "no table of benchmark.sh")):
+        log = self.folder / "seed_1.log"
+        log.write_text("of a run")
+        for source, complaint in ((self.folder / "none.csv", "no such file"), (other, "no table of benchmark.sh"),
+                                  (log, "neither a run folder nor a CSV file")):
             result = subprocess.run([sys.executable, "-B", SCRIPT, self.folder / "runs.csv", source],
                                     capture_output=True, text=True)
             self.assertEqual(result.returncode, 1)

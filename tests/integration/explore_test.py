@@ -93,6 +93,14 @@ class ExploreTest(chain.ChainTest):
         self.assertGreater(metrics["explored_share"], 0.75)
         self.assertLess(metrics["duration_s"], 119.0)
 
+    def test_by_the_wall_clock_it_ends_when_the_time_is_up(self):
+        folder = self.explore("run", *NO_FURNITURE, "--freerun", "--duration", "20")
+        self.assert_files(folder)
+        metrics = chain.metrics_of(folder)
+        self.assertEqual((metrics["planner_state"], metrics["collisions"]), ("EXPLORING", 0))
+        self.assertGreater(metrics["duration_s"], 15.0)
+        self.assertGreater(metrics["decisions"], 0)
+
     def test_an_interrupted_run_has_all_that_a_whole_one_has(self):
         run = explore(self.folder / "run", *NO_FURNITURE, "--method", "mi_only")
         self.addCleanup(run.kill)

@@ -157,6 +157,12 @@ inline constexpr Topic<diagnostic_msgs::msg::DiagnosticArray> kDiagnostics{
     "1 Hz and on change",
     "health, counters, CPU time and memory of the process",
     true};
+inline constexpr Topic<lapis_msgs::msg::Heartbeat> kHeartbeat{"/heartbeat",
+                                                              dds::kLatchedByMany,
+                                                              "all",
+                                                              "2 Hz and before long work",
+                                                              "life, phase and activity, for the supervisor",
+                                                              true};
 
 /// Calls `visit` with every row of the table, in its order.
 template <class Visitor>
@@ -199,6 +205,7 @@ void for_each(Visitor&& visit) {
   visit(kLocalPath);
   visit(kControllerStatus);
   visit(kDiagnostics);
+  visit(kHeartbeat);
 }
 
 /// Calls `visit` with every service.

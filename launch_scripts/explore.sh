@@ -2,7 +2,7 @@
 # Explores a simulated building: the robot decides by itself where to go, and maps what it sees.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR
-source "$(dirname "$0")/chain.sh"
+source "$(dirname "$0")/lib.sh"
 
 usage() {
   cat <<'TEXT'
@@ -20,17 +20,17 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
   --out DIR        run folder; default: out/<name of scene>_<method>_<seed>
   --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml)
   --freerun        by the wall clock, frames may be lost; default: lock-step
-  --restart        a process that dies is started again, at most three times each, but for the simulator; what is lost
-                   with it: docs/architecture.md
+  --restart        a process that dies or hangs is started again, at most three times each, but for the simulator; what
+                   is lost with it: docs/architecture.md
   --set KEY=VALUE  configuration, as for replay.sh; planner. and controller. are components, too
 
 Results of an earlier run in DIR are removed, but for the maps that slam.resume_from and semantic_mapper.resume_from
 name. Exit status: 0 ran to the end, 1 a process failed or no frame came, 2 bad set-up, 130 and 143 interrupted; then,
-too, everything up to there is in DIR.
+too, everything up to there is in DIR, but for the figures.
 TEXT
 }
 
-scene=apartment method=lapis duration=300 seed=1 mode=lockstep restarting="" requests=()
+command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" options=()
 while [ $# -gt 0 ]; do
   case $1 in
     --scene | --method | --duration | --seed | --out | --robot | --set)
@@ -43,26 +43,16 @@ while [ $# -gt 0 ]; do
     --duration) duration=$2 && shift ;;
     --seed) seed=$2 && shift ;;
     --out) out=$2 && shift ;;
-    --robot) robots+=("$2") && shift ;;
-    --freerun) mode=freerun ;;
-    --restart) restarting=yes ;;
-    --set) requests+=("$2") && shift ;;
+    --robot) options+=(--config "$2") && shift ;;
+    --freerun) options+=(--variant freerun) ;;
+    --restart) options+=(--restart) ;;
+    --set) options+=(--set "$2") && shift ;;
     *) die "unknown argument $1 (see --help)" ;;
   esac
   shift
 done
 require_build
-components=(slam semantic_mapper planner controller evaluator simulator)
-give planner "planner.method=$method"
-give simulator "lockstep.stages=[slam, semantic_mapper, planner, controller, evaluator]"
-[ -z "$restarting" ] || allow_restarts
-for request in "${requests[@]}"; do route "$request"; done
 out=${out:-$repository/out/$(basename "$scene" .yaml)_${method}_$seed}
-make_run_folder
-play=("$scene" --seed "$seed" --duration "$duration" --mode "$mode" --set simulator.ends_when_explored=true
-  --set "simulator.output_dir=$out")
-[ "$mode" = lockstep ] || play+=(--set simulator.wait_for_readers=4)
-subject="scene: \"$scene\""
-shown=evaluator view=show_progress
 echo "explores $scene by method $method with seed $seed; logs: $out/logs"
-run_chain
+run_system explore "$command" --out "$out" --set "simulator.scene=$scene" --set "planner.method=$method" \
+  --set "simulator.seed=$seed" --set "simulator.duration_s=$duration" "${options[@]}"

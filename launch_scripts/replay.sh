@@ -2,7 +2,7 @@
 # Plays a recorded RGB-D data set, or a tour of a simulated building, through slam, semantic_mapper and evaluator.
 set -euo pipefail
 # shellcheck source-path=SCRIPTDIR
-source "$(dirname "$0")/chain.sh"
+source "$(dirname "$0")/lib.sh"
 
 usage() {
   cat <<'TEXT'
@@ -21,11 +21,9 @@ a simulated building, and leaves a run folder with trajectory, pose graph, seman
                    Default: lock-step, nothing is lost
   --start S        of a data set: skip S seconds;  --duration S  play S seconds
   --labels FILE    of a data set: CSV file class_id,class,... that names the labels
-  --restart        a process that dies is started again, as by explore.sh
-  --set KEY=VALUE  configuration, for example semantic_mapper.resolution_m=0.1 or dds.socket_buffer_bytes=212992;
-                   it goes to the component that KEY begins with (dds.: to all; robot.: to all that know the robot).
-                   What describes the map and how frames enter it goes from semantic_mapper to the references of evaluator
-                   and simulator, too. --print-config of each process lists the keys
+  --restart        a process that dies or hangs is started again, as by explore.sh
+  --set KEY=VALUE  configuration, for example semantic_mapper.resolution_m=0.1 or dds.socket_buffer_bytes=212992; it goes
+                   to every process that knows KEY. --print-config of each process lists its keys
 
 Results of an earlier run in DIR are removed, but for the maps that slam.resume_from and semantic_mapper.resume_from
 name. Exit status: 0 played to the end, 1 a process failed or no frame came, 2 bad set-up, 130 and 143 interrupted.
@@ -33,7 +31,7 @@ TEXT
 }
 
 of_data_set=() of_scene=() # options given that the other kind of source does not know
-dataset="" scene="" rate="" restarting="" requests=()
+command="${0##*/} $*" dataset="" scene="" rate="" out="" duration="" options=()
 while [ $# -gt 0 ]; do
   case $1 in
     --out | --rate | --start | --duration | --labels | --scene | --seed | --tour | --robot | --set)
@@ -44,12 +42,13 @@ while [ $# -gt 0 ]; do
     --out) out=$2 && shift ;;
     --rate) rate=$2 && shift ;;
     --scene) scene=$2 && shift ;;
-    --robot) robots+=("$2") of_scene+=("$1") && shift ;;
-    --duration) play+=("$1" "$2") && shift ;;
-    --start | --labels) play+=("$1" "$2") of_data_set+=("$1") && shift ;;
-    --seed | --tour) play+=("$1" "$2") of_scene+=("$1") && shift ;;
-    --restart) restarting=yes ;;
-    --set) requests+=("$2") && shift ;;
+    --duration) duration=$2 && shift ;;
+    --robot) options+=(--config "$2") of_scene+=("$1") && shift ;;
+    --start) options+=(--set "sensor_replay.start_s=$2") of_data_set+=("$1") && shift ;;
+    --labels) options+=(--set "sensor_replay.class_list=$2") of_data_set+=("$1") && shift ;;
+    --seed | --tour) options+=(--set "simulator.${1#--}=$2") of_scene+=("$1") && shift ;;
+    --restart) options+=(--restart) ;;
+    --set) options+=(--set "$2") && shift ;;
     -*) die "unknown option $1 (see --help)" ;;
     *) [ -z "$dataset" ] || die "two data sets given: $dataset and $1"; dataset=$1 ;;
   esac
@@ -63,20 +62,14 @@ done
 [ -n "$scene" ] || [ -d "$dataset" ] || die "$dataset: no such folder (wanted is a TUM RGB-D data set)"
 require_build
 
-components=(slam semantic_mapper evaluator "${scene:+simulator}${dataset:+sensor_replay}")
-if [ -z "$scene" ] && [ -d "$dataset/ground_truth" ]; then
-  give evaluator "evaluator.ground_truth_dir=$dataset/ground_truth"
-fi
-[ -z "$restarting" ] || allow_restarts
-for request in "${requests[@]}"; do route "$request"; done
 out=${out:-$repository/out/$(basename "${dataset:-$scene}" .yaml)}
-make_run_folder
 if [ -n "$scene" ]; then
-  play=("$scene" --set simulator.tour=bundled "${play[@]}" --set "simulator.output_dir=$out")
-  [ -z "$rate" ] || play+=(--mode freerun --set simulator.wait_for_readers=3)
+  system=tour source=simulator first=(--set "simulator.scene=$scene")
 else
-  play=("$dataset" "${play[@]}")
-  [ -z "$rate" ] || play+=(--rate "$rate" --set sensor_replay.wait_for_readers=3)
+  system=replay source=sensor_replay first=(--set "sensor_replay.dataset=$dataset")
+  [ -z "$rate" ] || first+=(--set "sensor_replay.rate=$rate")
+  [ ! -d "$dataset/ground_truth" ] || first+=(--set "evaluator.ground_truth_dir=$dataset/ground_truth")
 fi
-subject="${scene:+scene}${dataset:+data_set}: \"$dataset$scene\""
-run_chain
+[ -z "$rate" ] || first+=(--variant freerun)
+[ -z "$duration" ] || first+=(--set "$source.duration_s=$duration")
+run_system "$system" "$command" --out "$out" "${first[@]}" "${options[@]}"

@@ -65,7 +65,7 @@ class Schema {
   std::vector<Entry> entries_;
 };
 
-/// Text as a double-quoted YAML scalar.
+/// Text as a double-quoted YAML scalar; bytes that are not UTF-8 become the characters with their numbers.
 std::string quoted(const std::string& text);
 /// The entry's current value as YAML text.
 std::string to_text(const Entry& entry);

@@ -21,7 +21,7 @@ double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 *
 
 Context::Context(const ContextOptions& options)
     : options_(options), clock_(options.use_sim_time ? time::Clock::Kind::kSimulated : time::Clock::Kind::kSystem),
-      participant_(options.participant) {
+      participant_(options.participant), heart_(participant_, frame(options.name)) {
   diagnostics_ =
       std::make_unique<dds::Publisher<diagnostic_msgs::msg::DiagnosticArray>>(participant_, topics::kDiagnostics);
   if (options.use_sim_time) {
@@ -33,6 +33,7 @@ Context::Context(const ContextOptions& options)
   lockstep_ = std::make_unique<LockstepParticipant>(*this);
   executor_.set_cycle([this] { lockstep_->after_handlers(); });
   every(1.0, [this] { publish_diagnostics(); });
+  every(Heart::kPeriod_s, [this] { heart_.beat(); });
 }
 
 Context::~Context() = default;
@@ -58,10 +59,17 @@ void Context::fail(const std::string& reason) {
   executor_.stop();
 }
 
+void Context::stop(bool is_in_a_hurry) {
+  is_in_a_hurry_ = is_in_a_hurry;
+  executor_.stop();
+}
+
 void Context::run() {
   participant_.announce_graph();
+  heart_.enter(Heart::Phase::kRunning);
   spdlog::info("ready");
   executor_.spin();
+  heart_.enter(Heart::Phase::kEnding);
   publish_diagnostics();
   for (const auto& source : sources_) {
     if (source->missed() > 0) spdlog::warn("missed samples {}: {}", source->dds_name(), source->missed());

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 #include "common/dds/subscription.hpp"
 #include "common/logging/logging.hpp"
 #include "common/logging/rate_limit.hpp"
+#include "common/runtime/heart.hpp"
 #include "common/runtime/status.hpp"
 #include "common/time/clock.hpp"
 #include "common/topics.hpp"
@@ -75,6 +77,7 @@ class Context {
   void every(double period_s, std::function<void()> action);
 
   Status& status() { return status_; }
+  Heart& heart() { return heart_; }
   logging::RateLimit& rate_limit() { return rate_limit_; }
   time::Time now() const { return clock_.now(); }
   const std::string& name() const { return options_.name; }
@@ -89,9 +92,13 @@ class Context {
   void finish();
   void fail(const std::string& reason);
   int exit_status() const { return exit_status_; }
+  /// True when somebody waits at a terminal for the end (SIGINT): what can be made later is left out.
+  bool is_in_a_hurry() const { return is_in_a_hurry_; }
 
   /// Used by the runtime only: announces the endpoints, then handles events until the end.
   void run();
+  /// Used by the runtime only, from any thread: ends run().
+  void stop(bool is_in_a_hurry);
 
  private:
   friend class LockstepParticipant;
@@ -105,6 +112,7 @@ class Context {
   dds::Participant participant_;
   dds::Executor executor_;
   Status status_;
+  Heart heart_;
   logging::RateLimit rate_limit_;
   std::vector<std::unique_ptr<dds::Writer>> writers_;
   std::vector<std::unique_ptr<dds::Source>> sources_;
@@ -114,6 +122,7 @@ class Context {
   std::unique_ptr<LockstepParticipant> lockstep_;
   std::function<void(const Cycle&)> cycle_;
   int exit_status_ = 0;
+  std::atomic<bool> is_in_a_hurry_{false};
 };
 
 }  // namespace lapis::runtime

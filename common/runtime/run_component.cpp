@@ -75,15 +75,15 @@ void log_setup(const config::Schema& schema, const ContextOptions& options) {
   }
 }
 
-/// Receives SIGINT and SIGTERM in one thread and stops the executor. Every other thread has them blocked.
+/// Receives SIGINT and SIGTERM in one thread and ends the run. Every other thread has them blocked.
 class SignalWaiter {
  public:
-  explicit SignalWaiter(dds::Executor& executor) {
-    thread_ = std::thread([this, &executor] {
+  explicit SignalWaiter(Context& context) {
+    thread_ = std::thread([this, &context] {
       int signal = 0;
       do sigwait(&set(), &signal);
       while (signal == SIGUSR2 && !is_over_);  // somebody else's SIGUSR2 must not make us deaf
-      if (signal != SIGUSR2) executor.stop();
+      if (signal != SIGUSR2) context.stop(signal == SIGINT);
     });
   }
   ~SignalWaiter() {
@@ -113,7 +113,7 @@ class SignalWaiter {
 int spin(const ComponentFactory& factory, Context& context, const std::function<void()>& finish) {
   try {
     {
-      const SignalWaiter waiter(context.executor());
+      const SignalWaiter waiter(context);
       context.run();
     }
     finish();

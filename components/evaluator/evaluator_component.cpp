@@ -19,6 +19,7 @@ namespace {
 
 constexpr std::size_t kWaitingFrames = 30;
 constexpr std::chrono::seconds kProgressPeriod(2);
+constexpr double kLongestJudging_s = 900.0;  // maps compared, files written, figures drawn
 
 /// Root of the sum of the variances of x, y and z [m]; none when the covariance is none.
 std::optional<double> position_sigma_m(const nav_msgs::msg::Odometry& message) {
@@ -117,14 +118,17 @@ void EvaluatorComponent::work(const runtime::Cycle& cycle) {
   report_progress();
 }
 
-/// The line by which explore.sh shows how far the robot is.
+/// By which explore.sh shows how far the robot is.
 void EvaluatorComponent::report_progress() {
   find_truth();
   const TimelineRow& row = timeline_.back();
   const auto share = maps_.explored_share();
-  spdlog::info("progress: {:.0f} s, {:.0f} m3 explored{}, {:.1f} m driven, loops closed: {}, {}: {}", row.time_s,
-               row.explored_volume_m3.value_or(0.0), share ? fmt::format(" ({:.1f} %)", 100.0 * *share) : "",
-               row.path_length_m.value_or(0.0), loop_closures(), messages::state_name(*planner_), planner_->reason());
+  const std::string text = fmt::format(
+      "{:.0f} s, {:.0f} m3 explored{}, {:.1f} m driven, loops closed: {}, {}: {}", row.time_s,
+      row.explored_volume_m3.value_or(0.0), share ? fmt::format(" ({:.1f} %)", 100.0 * *share) : "",
+      row.path_length_m.value_or(0.0), loop_closures(), messages::state_name(*planner_), planner_->reason());
+  spdlog::info("progress: {}", text);
+  context_.heart().set_progress(text);
 }
 
 /// Joins and records the oldest tracked frame; false when its partners may still come.
@@ -267,6 +271,7 @@ void EvaluatorComponent::write_files(const RunMetrics& m) const {
                                "true camera optical frame, in the map by the first true pose");
   files::replace_text(folder / "timeline.csv", to_csv(timeline_));
   files::replace_text(folder / "metrics.json", to_json(m));
+  files::replace_text(folder / "metrics.txt", format_table(m));
   if (record_.T_map_world()) maps_.save_reference(folder / "reference_map.lapis");
 }
 
@@ -276,6 +281,7 @@ void EvaluatorComponent::finish() {
     spdlog::warn("no frame came; nothing is written");
     return;
   }
+  const runtime::LongWork work(context_.heart(), "judges the run", kLongestJudging_s);
   if (const auto problem = find_truth(); !problem.empty()) {
     spdlog::warn("ground truth of the scene is left out: {}", problem);
   }
@@ -283,7 +289,9 @@ void EvaluatorComponent::finish() {
   const RunMetrics m = metrics();
   write_files(m);
   std::cout << format_table(m) << std::flush;
-  if (config_.figures) draw_figures(config_.output_dir);
+  if (!config_.figures) return;
+  if (context_.is_in_a_hurry()) return spdlog::info("figures are left out; {}", figures_command(config_.output_dir));
+  draw_figures(config_.output_dir);
 }
 
 }  // namespace lapis::evaluator

@@ -10,9 +10,18 @@
 
 namespace lapis::evaluator {
 
+namespace {
+
+std::string figures_script() {
+  return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lapis_evaluator_figures.py").string();
+}
+
+}  // namespace
+
+std::string figures_command(const std::string& folder) { return "to draw them: " + figures_script() + " " + folder; }
+
 void draw_figures(std::string folder) {
-  const auto bin = std::filesystem::read_symlink("/proc/self/exe").parent_path();
-  std::string script = (bin / "lapis_evaluator_figures.py").string();
+  std::string script = figures_script();
   char* arguments[] = {script.data(), folder.data(), nullptr};
   pid_t child = 0;
   int status = 0;
@@ -25,7 +34,7 @@ void draw_figures(std::string folder) {
   const bool has_run = posix_spawn(&child, script.c_str(), nullptr, &attributes, arguments, environ) == 0 &&
                        waitpid(child, &status, 0) == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
   posix_spawnattr_destroy(&attributes);
-  if (!has_run) spdlog::warn("figures were not drawn; try: {} {}", script, folder);
+  if (!has_run) spdlog::warn("figures were not drawn; {}", figures_command(folder));
 }
 
 }  // namespace lapis::evaluator

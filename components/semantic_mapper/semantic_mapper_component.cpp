@@ -15,6 +15,9 @@ constexpr const char* kMapFile = "map.lapis";
 constexpr const char* kOctreeFile = "map.ot";
 constexpr const char* kPointsFile = "map.ply";
 constexpr double kFarewell_s = 1.0;
+constexpr double kLongestLoading_s = 300.0;
+constexpr double kLongestSave_s = 300.0;
+constexpr double kLongestFlush_s = 600.0;
 constexpr std::size_t kWaitingFrames = 30;  // images wait here for slam's pose: one second at 30 Hz
 
 double seconds_since(const std::optional<time::Time>& then, time::Time now) {
@@ -47,7 +50,10 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   if (config_.map.re_anchor) {
     files::require_writable_folder(config_.map.stored_frames.spill_dir, "semantic_mapper.stored_frames.spill_dir");
   }
-  if (!config_.resume_from.empty()) load_map();
+  if (!config_.resume_from.empty()) {
+    const runtime::LongWork work(context.heart(), "loads the map", kLongestLoading_s);
+    load_map();
+  }
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
@@ -100,7 +106,7 @@ void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
   if (graph_) follow_graph(*graph_);
   graph_.reset();
   if (cycle.is_final) {
-    mapper_->flush();
+    flush();
   } else {
     mapper_->re_anchor(static_cast<std::size_t>(config_.re_anchor_work_per_cycle));
   }
@@ -341,12 +347,18 @@ std_srvs::srv::Trigger_Response SemanticMapperComponent::save_on_request() {
   } else if (mapper_ == nullptr) {
     response.message("there is no map yet");
   } else {
-    mapper_->flush();
+    flush();
     const auto problem = save();
     response.success(!problem);
     response.message(problem ? *problem : "map saved in " + config_.output_dir);
   }
   return response;
+}
+
+/// All frames go to where the pose graph has them now.
+void SemanticMapperComponent::flush() {
+  const runtime::LongWork work(context_.heart(), "moves frames to corrected poses", kLongestFlush_s);
+  mapper_->flush();
 }
 
 /// Saves the map as it is, without moving frames to corrected poses first, which may take long. Nothing, or why it
@@ -359,6 +371,7 @@ std::optional<std::string> SemanticMapperComponent::save() {
 }
 
 std::optional<std::string> SemanticMapperComponent::write_files() {
+  const runtime::LongWork work(context_.heart(), "saves the map", kLongestSave_s);
   const auto reader = belief_reader();
   const std::filesystem::path folder(config_.output_dir);
   const mapping::MapFile file{mapper_->map(),
@@ -379,7 +392,7 @@ void SemanticMapperComponent::finish() {
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
   if (mapper_ == nullptr) return;
   if (graph_) follow_graph(*graph_);
-  mapper_->flush();
+  flush();
   publish_tiles();
   for (dds::Writer* writer : std::initializer_list<dds::Writer*>{&tiles_, &map_state_}) {
     writer->wait_until_acknowledged(kFarewell_s);

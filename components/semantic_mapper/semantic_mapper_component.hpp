@@ -52,6 +52,7 @@ class SemanticMapperComponent {
   bool wants_view(const dds::Writer& writer, bool is_due);
   std_srvs::srv::Trigger_Response save_on_request();
   /// Nothing on success; otherwise what failed, naming the file.
+  void flush();
   std::optional<std::string> save();
   std::optional<std::string> write_files();
   mapping::BeliefReader belief_reader() const;

@@ -1,5 +1,7 @@
 #include "sensor_replay/sensor_replay_component.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <iostream>
 
 #include "sensor_replay/camera_yaml.hpp"
@@ -143,7 +145,10 @@ void SensorReplayComponent::report_progress(bool is_last) {
   const double elapsed_s = seconds_between(*began_, now);
   const double rate = static_cast<double>(played_) / std::max(elapsed_s, 1e-3);
   const double left_s = static_cast<double>(range_.size() - played_) / std::max(rate, 1e-3);
-  spdlog::info("frame {} of {}, {:.1f} frames/s, {:.0f} s left", played_, range_.size(), rate, left_s);
+  const std::string text =
+      fmt::format("frame {} of {}, {:.1f} frames/s, {:.0f} s left", played_, range_.size(), rate, left_s);
+  spdlog::info(text);
+  context_.heart().set_progress(text);
 }
 
 void SensorReplayComponent::finish() {

@@ -1,5 +1,7 @@
 #include "simulator/simulator_component.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include "common/files/atomic_file.hpp"
 #include "common/messages/planner.hpp"
 #include "common/messages/time.hpp"
@@ -13,10 +15,17 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kProgressPeriod_s = 2.0;
+constexpr double kLongestLoading_s = 900.0;  // a large scan, light baked
+constexpr double kLongestTruth_s = 900.0;
 constexpr std::chrono::milliseconds kMatchingPeriod(50);
 
 double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
   return std::chrono::duration<double>(b - a).count();
+}
+
+World load_world(const SimulatorConfig& config, runtime::Context& context) {
+  const runtime::LongWork work(context.heart(), "loads the scene", kLongestLoading_s);
+  return open_world(config);
 }
 
 void describe_scene(const World& world) {
@@ -45,7 +54,7 @@ void SimulatorComponent::add_options(CLI::App& app, Config& config) {
 std::optional<int> SimulatorComponent::run_tool(const Config& config) { return run_scene_tool(config); }
 
 SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& context)
-    : config_(config), context_(context), world_(open_world(config)), start_(start_pose(world_, config)),
+    : config_(config), context_(context), world_(load_world(config, context)), start_(start_pose(world_, config)),
       tour_(plan_tour(world_, start_, config)), camera_(context, {.has_labels = true, .has_ground_truth = true}),
       wheels_(context.advertise(topics::kWheelOdometry)), transforms_(context.advertise(topics::kTransforms)),
       collision_(context.advertise(topics::kCollision)) {
@@ -212,7 +221,10 @@ void SimulatorComponent::report_progress(bool is_last) {
   if (!is_last && seconds_between(reported_, now) < kProgressPeriod_s) return;
   reported_ = now;
   const double simulated_s = run_->stamp().seconds();
-  spdlog::info("{:.1f} s simulated, real-time factor {:.2f}", simulated_s, simulated_s / std::max(wall_s(), 1e-3));
+  const std::string text =
+      fmt::format("{:.1f} s simulated, real-time factor {:.2f}", simulated_s, simulated_s / std::max(wall_s(), 1e-3));
+  spdlog::info(text);
+  context_.heart().set_progress(text);
 }
 
 /// The ground truth of the scene, in a thread of its own: the run does not wait for it.
@@ -227,6 +239,7 @@ void SimulatorComponent::finish() {
   if (const auto refused = run_->commands_refused(); refused > 0) {
     spdlog::warn("commands refused, because they are not finite: {}", refused);
   }
+  const runtime::LongWork work(context_.heart(), "makes the ground truth", kLongestTruth_s);
   try {
     if (truth_.valid()) truth_.get();
   } catch (const std::exception& error) {

@@ -14,6 +14,8 @@ namespace {
 
 constexpr std::size_t kEarlyReadings = 1000;
 constexpr double kFarewell_s = 1.0;
+constexpr double kLongestLoading_s = 300.0;
+constexpr double kLongestSave_s = 600.0;
 constexpr const char* kGraphFile = "pose_graph.g2o";
 constexpr const char* kKeyframesFile = "keyframes.txt";
 constexpr const char* kMapFile = "slam.lapis";
@@ -29,7 +31,10 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
       landmarks_(context, config.landmark_period_s), input_(config.input, context) {
   cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
   if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "slam.output_dir");
-  if (!config_.resume_from.empty()) load_map();
+  if (!config_.resume_from.empty()) {
+    const runtime::LongWork work(context.heart(), "loads the map", kLongestLoading_s);
+    load_map();
+  }
   input_.on_restart([this] { end_map(); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { add_mount(m); });
   context.subscribe(topics::kWheelOdometry, [this](const auto& m) { add_odometry(m); });
@@ -305,6 +310,7 @@ void SlamComponent::finish() {
   spdlog::info("{} of {} frames tracked, {} dropped", frames_tracked_, frames_total_, frames_dropped_);
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
   if (slam_ == nullptr) return;
+  const runtime::LongWork work(context_.heart(), "optimises and saves the map", kLongestSave_s);
   slam_->settle();
   publish_graph(true);
   publish_landmarks(true);

@@ -1,0 +1,29 @@
+#include "supervisor/core/system.hpp"
+
+#include <algorithm>
+
+namespace lapis::supervisor {
+
+std::optional<std::string> find_problem(const System& system) {
+  const auto& processes = system.processes;
+  const auto is_process = [&](const std::string& name) {
+    return std::find(processes.begin(), processes.end(), name) != processes.end();
+  };
+  if (processes.empty()) return "processes: name at least one";
+  for (const auto& name : processes) {
+    if (std::count(processes.begin(), processes.end(), name) > 1) return "processes: " + name + " is there twice";
+  }
+  if (processes.back() != system.source) return "source: has to be the last of the processes, which starts last";
+  for (const auto& stage : system.stages) {
+    if (!is_process(stage)) return "stages: " + stage + " is not one of the processes";
+  }
+  if (!system.shows.empty() && !is_process(system.shows))
+    return "shows: " + system.shows + " is not one of the processes";
+  for (const auto& [name, resume] : system.restart.resume) {
+    if (!is_process(name)) return "restart.resume: " + name + " is not one of the processes";
+  }
+  if (system.silence.empty()) return "silence_s: give seconds, or the key of a value in seconds";
+  return std::nullopt;
+}
+
+}  // namespace lapis::supervisor

@@ -1,0 +1,347 @@
+#include "supervisor/supervisor.hpp"
+
+#include <csignal>
+#include <ctime>
+#include <fstream>
+#include <iostream>
+#include <sstream>
+
+#include "common/files/atomic_file.hpp"
+
+namespace lapis::supervisor {
+namespace {
+
+constexpr std::chrono::milliseconds kTurn(50);
+constexpr double kAbsent_s = 1.0;          // a loop that took longer has not listened: the machine or we were stopped
+constexpr double kHurriedSilence_s = 2.0;  // in a hurry, for one that announces nothing
+constexpr double kHurry_s = 9.0;           // from Ctrl-C to the end of everything
+constexpr int kBadSetup = 2;
+
+const sigset_t& ending_signals() {
+  static const sigset_t signals = [] {
+    sigset_t set;
+    sigemptyset(&set);
+    sigaddset(&set, SIGINT);
+    sigaddset(&set, SIGTERM);
+    return set;
+  }();
+  return signals;
+}
+
+std::string read_text(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  std::ostringstream text;
+  text << in.rdbuf();
+  return text.str();
+}
+
+dds::ParticipantOptions participant_options() {
+  dds::ParticipantOptions options;
+  options.node_name = "supervisor";
+  options.discovery = dds::discovery_from_environment();
+  return options;
+}
+
+std::string seconds_text(double seconds) {
+  std::ostringstream out;
+  out.precision(2);
+  out << seconds << " s";
+  return out.str();
+}
+
+/// "{run_folder}" in a value of the description.
+Settings with_run_folder(Settings settings, const std::filesystem::path& folder) {
+  static const std::string place = "{run_folder}";
+  for (auto& [key, value] : settings) {
+    if (const auto at = value.find(place); at != std::string::npos) value.replace(at, place.size(), folder.string());
+  }
+  return settings;
+}
+
+void append(std::vector<std::string>& arguments, const Settings& settings) {
+  for (const auto& [key, value] : settings) arguments.insert(arguments.end(), {"--set", key + "=" + value});
+}
+
+}  // namespace
+
+void block_signals() { pthread_sigmask(SIG_BLOCK, &ending_signals(), nullptr); }
+
+Supervisor::Supervisor(System system, Request request)
+    : system_(std::move(system)), request_(std::move(request)),
+      title_(request_.command.substr(0, request_.command.find(' '))), folder_(request_.out),
+      participant_(participant_options()),
+      heartbeats_(participant_, topics::kHeartbeat, [this](const auto& heartbeat) { hear(heartbeat); }) {
+  executor_.add(heartbeats_);
+  for (const auto& name : system_.processes) processes_.emplace_back().name = name;
+  const Settings settings = all_settings();
+  collect_arguments(settings);
+  usual_silence_s_ = usual_silence();
+  std::vector<std::filesystem::path> kept;  // an earlier run's maps that this one resumes
+  for (const auto& setting : settings) kept.emplace_back(setting.value);
+  folder_.clear(system_.results, kept);
+}
+
+/// In the order in which they win.
+Settings Supervisor::all_settings() const {
+  Settings settings = system_.settings;
+  const auto add = [&](const Settings& more) { settings.insert(settings.end(), more.begin(), more.end()); };
+  for (const auto& name : request_.variants) {
+    const auto variant = system_.variants.find(name);
+    if (variant == system_.variants.end()) throw BadSetup("--variant " + name + ": " + system_.name + " has none");
+    add(variant->second.settings);
+  }
+  if (request_.may_restart) add(system_.restart.settings);
+  add(request_.settings);
+  return settings;
+}
+
+/// Of each process, from what it can be set to. Everybody who writes files gets the run folder.
+void Supervisor::collect_arguments(const Settings& settings) {
+  const auto program = [&](const std::string& name) { return request_.programs / ("lapis_" + name); };
+  Configurations known;
+  for (const auto& process : processes_) known[process.name] = print_configuration(program(process.name), {}).values;
+  const auto routed = route(known, settings);
+  auto files = system_.configuration;
+  files.insert(files.end(), request_.configuration.begin(), request_.configuration.end());
+  std::string stages;
+  for (const auto& stage : system_.stages) stages += (stages.empty() ? "[" : ", ") + stage;
+  for (auto& process : processes_) {
+    const Configuration& keys = known.at(process.name);
+    for (const auto& file : files) {
+      if (knows_sections(keys, sections_of(file)))
+        process.arguments.insert(process.arguments.end(), {"--config", file});
+    }
+    const std::string out_key = process.name + ".output_dir";
+    if (keys.contains(out_key)) append(process.arguments, {{out_key, folder_.path().string()}});
+    if (!stages.empty() && keys.contains("lockstep.stages"))
+      append(process.arguments, {{"lockstep.stages", stages + "]"}});
+    const auto own = routed.find(process.name);
+    if (own != routed.end()) append(process.arguments, own->second);
+    process.configuration = print_configuration(program(process.name), process.arguments);
+  }
+}
+
+/// Longest time without a heartbeat that is not announced [s]: a number, or the value of a key.
+double Supervisor::usual_silence() const {
+  std::string text = system_.silence;
+  for (const auto& name : request_.variants) {
+    if (const auto& silence = system_.variants.at(name).silence; !silence.empty()) text = silence;
+  }
+  for (const auto& process : processes_) {
+    const auto value = process.configuration.values.find(text);
+    if (value != process.configuration.values.end()) return std::stod(value->second);
+  }
+  try {
+    return std::stod(text);
+  } catch (const std::exception&) {
+    throw BadSetup(system_.name + ".yaml: silence_s: " + text + " is neither a number nor a key of a process");
+  }
+}
+
+std::map<std::string, std::string> Supervisor::facts() const {
+  std::map<std::string, std::string> facts = {{"system", system_.name}};
+  for (const auto& [name, key] : system_.facts) {
+    for (const auto& process : processes_) {
+      const auto value = process.configuration.values.find(key);
+      if (value != process.configuration.values.end()) facts[name] = value->second;
+    }
+  }
+  for (const auto& [name, value] : request_.facts) facts[name] = value;
+  return facts;
+}
+
+double Supervisor::now_s() const {
+  return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
+}
+
+int Supervisor::run() {
+  turned_s_ = now_s();
+  write_manifest();
+  if (start_all()) wait_until_over();
+  progress_.end();
+  end_all();
+  write_manifest();
+  add_facts_to_metrics();
+  return conclude();
+}
+
+void Supervisor::start(Process& process, const Settings& more) {
+  auto arguments = process.arguments;
+  append(arguments, more);
+  process.child =
+      std::make_unique<Child>(request_.programs / ("lapis_" + process.name), arguments, folder_.log(process.name));
+  process.pulse.emplace(now_s());
+}
+
+/// The source of frames last, when the others are ready. False when it did not come to that.
+bool Supervisor::start_all() {
+  for (auto& process : processes_) {
+    if (&process != &source()) start(process);
+  }
+  const auto is_ready = [this](const Process& process) { return &process == &source() || process.pulse->is_ready(); };
+  while (!is_over() && !std::all_of(processes_.begin(), processes_.end(), is_ready)) turn();
+  if (is_over()) return false;
+  start(source());
+  return true;
+}
+
+void Supervisor::wait_until_over() {
+  while (!is_over()) {
+    turn();
+    for (const auto& process : processes_) {
+      if (process.name == system_.shows && process.pulse) progress_.show(process.pulse->activity());
+    }
+  }
+}
+
+/// Some time of listening, and then a look at each process.
+void Supervisor::turn() {
+  executor_.spin_once(kTurn);
+  const double now = now_s();
+  if (now - turned_s_ > kAbsent_s) {
+    for (auto& process : processes_) {
+      if (process.pulse) process.pulse->forgive(now);
+    }
+  }
+  turned_s_ = now;
+  take_signals();
+  for (auto& process : processes_) {
+    if (!is_over()) look_after(process);
+  }
+}
+
+void Supervisor::hear(const lapis_msgs::msg::Heartbeat& heartbeat) {
+  for (auto& process : processes_) {
+    if (!process.child || process.child->pid() != heartbeat.pid() || !heartbeat.name().ends_with(process.name))
+      continue;
+    process.pulse->hear(now_s(), {static_cast<Phase>(heartbeat.phase()), heartbeat.activity(), heartbeat.silence_s()});
+  }
+}
+
+void Supervisor::take_signals() {
+  const timespec at_once{};
+  for (int signal = 0; (signal = sigtimedwait(&ending_signals(), nullptr, &at_once)) > 0;) {
+    is_impatient_ |= interrupt_ != 0;
+    if (interrupt_ == 0) interrupt_ = signal;
+    if (!hurried_s_) hurried_s_ = now_s();
+  }
+}
+
+/// Notes that a process has ended or hangs, and does what there is to do about it.
+void Supervisor::look_after(Process& process) {
+  if (!process.child || process.status) return;
+  const bool is_source = &process == &source();
+  if (const auto status = process.child->status()) {
+    if (is_source && *status == 0) {
+      process.status = status;
+      has_ended_ = true;
+      return;
+    }
+    const bool was_ready = process.pulse->is_ready();
+    if (restart(process, *status, "ended with status " + std::to_string(*status))) return;
+    process.status = status;
+    const std::string what = is_source ? "failed" : was_ready ? "ended early" : "ended before it was ready,";
+    return fail(process, what + " with status " + std::to_string(*status), *status);
+  }
+  if (!process.pulse->is_hung(now_s(), usual_silence_s_)) return;
+  const std::string silence = "was silent for " + seconds_text(process.pulse->silence_s(now_s()));
+  const std::string activity = process.pulse->activity();
+  const std::string what = silence + (activity.empty() ? "" : " (last: " + activity + ")");
+  process.child->kill();
+  if (restart(process, *process.child->status(), what)) return;
+  process.status = process.child->status();
+  hurried_s_ = now_s();
+  fail(process, what + " and was killed");
+}
+
+/// False when it must not be: not asked for, it has been often enough, its set-up is bad, or its state is the run.
+bool Supervisor::restart(Process& process, int status, const std::string& why) {
+  const int times = system_.restart.times;
+  if (!request_.may_restart || process.restarts >= times || &process == &source() || status == kBadSetup) return false;
+  ++process.restarts;
+  progress_.end();
+  const std::string line = title_ + ": " + process.name + " " + why + " and is started again (" +
+                           std::to_string(process.restarts) + " of " + std::to_string(times) + ")\n";
+  std::cerr << line << std::flush;
+  std::ofstream(folder_.log(process.name), std::ios::app) << line;
+  const auto resume = system_.restart.resume.find(process.name);
+  const bool resumes = resume != system_.restart.resume.end() && exists(folder_.path() / resume->second.file);
+  start(process, resumes ? with_run_folder(resume->second.settings, folder_.path()) : Settings{});
+  return true;
+}
+
+/// The source first; then in the order of the starts: who collects what others write at their end comes after them.
+void Supervisor::end_all() {
+  end(source());
+  for (auto& process : processes_) end(process);
+}
+
+void Supervisor::end(Process& process) {
+  if (!process.child || process.status) return;
+  process.child->send(is_in_a_hurry() ? SIGINT : SIGTERM);
+  process.pulse->ask_to_end(now_s());
+  bool was_hurried = is_in_a_hurry();
+  while (!(process.status = process.child->status())) {
+    executor_.spin_once(kTurn);
+    take_signals();
+    if (!was_hurried && is_in_a_hurry()) process.child->send(SIGINT);
+    was_hurried = is_in_a_hurry();
+    const bool has_no_time = is_impatient_ || (hurried_s_ && now_s() - *hurried_s_ > kHurry_s);
+    if (!has_no_time && !process.pulse->is_hung(now_s(), was_hurried ? kHurriedSilence_s : usual_silence_s_)) continue;
+    process.child->kill();
+    process.status = process.child->status();
+    std::cerr << title_ << ": " << process.name << " did not end and was killed\n";
+    return;
+  }
+}
+
+void Supervisor::fail(const Process& process, const std::string& what, int status) {
+  if (!failure_) failure_ = {process.name, what, status == kBadSetup ? kBadSetup : 1};
+}
+
+/// Says how the run went.
+int Supervisor::conclude() {
+  if (!failure_ && interrupt_ == 0) {
+    for (const auto& process : processes_) {
+      const int status = process.status.value_or(0);
+      if (status != 0) fail(process, "failed with status " + std::to_string(status), status);
+    }
+    if (!failure_ && !system_.result.empty() && !exists(folder_.path() / system_.result)) {
+      fail(processes_.front(), "no frame came; the reason may be here or in the other logs");
+    }
+  }
+  if (!failure_ || failure_->process == system_.source) print_report();
+  if (interrupt_ != 0) {
+    const std::string name = interrupt_ == SIGINT ? "SIGINT" : "SIGTERM";
+    std::cerr << title_ << ": interrupted by " << name << "; what was played is in " << folder_.path().string() << '\n';
+    return 128 + interrupt_;
+  }
+  if (failure_) {
+    std::cerr << title_ << ": " << failure_->process << ": " << failure_->what << "; the end of "
+              << folder_.log(failure_->process).string() << ":\n"
+              << folder_.end_of_log(failure_->process);
+    return failure_->status;
+  }
+  std::cout << "run folder: " << folder_.path().string() << std::endl;
+  return 0;
+}
+
+void Supervisor::write_manifest() const {
+  Manifest manifest{request_.command, facts(), {}};
+  for (const auto& process : processes_) {
+    manifest.processes.push_back({process.name, process.status, process.restarts, process.configuration.text});
+  }
+  files::replace_text(folder_.path() / "manifest.yaml",
+                      to_yaml(manifest, read_text(folder_.path() / "simulation.yaml")));
+}
+
+void Supervisor::add_facts_to_metrics() const {
+  const auto file = folder_.path() / "metrics.json";
+  if (exists(file)) files::replace_text(file, with_facts(read_text(file), facts()));
+}
+
+void Supervisor::print_report() const {
+  if (!system_.report.empty()) std::cout << read_text(folder_.path() / system_.report) << std::flush;
+}
+
+}  // namespace lapis::supervisor

@@ -1,0 +1,78 @@
+// Descriptions of systems: those that are shipped, and what is wrong with others.
+#include "supervisor/core/system.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "supervisor/program.hpp"
+#include "supervisor/system_yaml.hpp"
+#include "tests/support/temporary_folder.hpp"
+
+namespace lapis::supervisor {
+namespace {
+
+using ::testing::Contains;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+
+class SystemFile : public ::testing::Test {
+ protected:
+  System read(const std::string& text) {
+    const auto file = folder_.path() / "small.yaml";
+    std::ofstream(file) << text;
+    return read_system(file);
+  }
+  std::string problem(const std::string& text) {
+    try {
+      read(text);
+    } catch (const BadSetup& error) {
+      return error.what();
+    }
+    return "none";
+  }
+  test::TemporaryFolder folder_;
+};
+
+TEST_F(SystemFile, ShippedOnesAreGood) {
+  int count = 0;
+  for (const auto& entry : std::filesystem::directory_iterator(SYSTEMS_FOLDER)) {
+    if (entry.path().extension() != ".yaml") continue;
+    const System system = read_system(entry.path());
+    EXPECT_EQ(system.processes.back(), system.source) << entry.path();
+    EXPECT_THAT(system.results, Contains(system.result)) << entry.path();
+    EXPECT_THAT(system.results, Contains(system.report)) << entry.path();
+    for (const auto& file : system.configuration) EXPECT_TRUE(std::filesystem::exists(file)) << file;
+    ++count;
+  }
+  EXPECT_EQ(count, 3);
+}
+
+TEST_F(SystemFile, EverythingIsRead) {
+  const System system = read(
+      "processes: [mind, eye]\nsource: eye\nstages: [mind]\nsilence_s: 3\nshows: mind\n"
+      "settings: {eye.names: [a, b], mind.on: true}\n"
+      "variants: {fast: {silence_s: 1, settings: {eye.rate_hz: 30}}}\n"
+      "restart: {times: 2, resume: {mind: {file: x.map, settings: {mind.from: \"{run_folder}/x.map\"}}}}\n");
+  EXPECT_EQ(system.name, "small");
+  EXPECT_THAT(system.settings, ElementsAre(Setting{"eye.names", "[a, b]"}, Setting{"mind.on", "true"}));
+  EXPECT_EQ(system.variants.at("fast").silence, "1");
+  EXPECT_EQ(system.restart.times, 2);
+  EXPECT_EQ(system.restart.resume.at("mind").file, "x.map");
+}
+
+TEST_F(SystemFile, WhatIsWrongIsNamedWithFileLineAndRemedy) {
+  EXPECT_THAT(problem("processes: [a]\nsource: a\nsilence: 3\n"),
+              HasSubstr("small.yaml: line 3: unknown key silence;"));
+  EXPECT_THAT(problem("processes: a\n"), HasSubstr("line 1: a list such as"));
+  EXPECT_THAT(problem("processes: [a, b]\nsource: a\nsilence_s: 1\n"), HasSubstr("source: has to be the last"));
+  EXPECT_THAT(problem("processes: [a, a]\nsource: a\nsilence_s: 1\n"), HasSubstr("a is there twice"));
+  EXPECT_THAT(problem("processes: [a]\nsource: a\n"), HasSubstr("silence_s: give seconds"));
+  EXPECT_THAT(problem("processes: [a]\nsource: a\nsilence_s: 1\nstages: [b]\n"), HasSubstr("stages: b is not"));
+  EXPECT_THAT(problem("processes: [\n"), HasSubstr("small.yaml: "));
+  EXPECT_THROW(read_system(folder_.path() / "none.yaml"), BadSetup);
+}
+
+}  // namespace
+}  // namespace lapis::supervisor

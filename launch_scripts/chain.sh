@@ -22,27 +22,19 @@ source_of_frames() { echo "${components[-1]}"; }
 
 is_in_run() { [[ " ${components[*]} " == *" $1 "* ]]; }
 
-knows_robot() { [ "$1" != slam ] && [ "$1" != sensor_replay ]; }
+knows_robot() { [ "$1" != slam ] && [ "$1" != sensor_replay ] && [ "$1" != evaluator ]; }
 
 # give COMPONENT KEY=VALUE: when it is in this run.
 give() { ! is_in_run "$1" || settings+=("$1" "$2"); }
 
-# route KEY=VALUE: to the components that it concerns. Who reads the map needs the mapper's sensor model, and who makes
-# a reference for it, how frames enter it.
+# route KEY=VALUE: to the components that it concerns.
 route() {
-  local name=${1%%.*} rest=${1#*.} other
+  local name=${1%%.*} other
   [[ $1 != @(slam|semantic_mapper).resume_from=* ]] || resumed[$name]=${1#*=}
   case $1 in
     dds.*=*) for other in "${components[@]}"; do give "$other" "$1"; done ;;
     robot.*=*) for other in "${components[@]}"; do ! knows_robot "$other" || give "$other" "$1"; done ;;
     lockstep.*=*) give "$(source_of_frames)" "$1" ;;
-    semantic_mapper.sensor_model.*=*)
-      give "$name" "$1"
-      for other in evaluator planner; do give "$other" "$other.$rest"; done ;;
-    semantic_mapper.@(resolution_m|integration.*|frame.*)=*)
-      give "$name" "$1"
-      give evaluator "evaluator.$rest"
-      give simulator "simulator.truth.$rest" ;;
     @(slam|semantic_mapper|planner|controller|evaluator|sensor_replay|simulator).*=*)
       is_in_run "$name" || die "--set $1: no $name in this run"
       give "$name" "$1" ;;

@@ -97,6 +97,9 @@ inline constexpr Topic<lapis_msgs::msg::SlamStatus> kSlamStatus{"/slam/status", 
                                                                 "1 Hz and on change", "state, reason, counts"};
 
 // semantic_mapper.
+inline constexpr Topic<lapis_msgs::msg::MapDescription> kMapDescription{
+    "/semantic_mapper/map_description", dds::kLatched, "semantic_mapper", "at the start and on change",
+    "resolution, sensor model, settings of frames and labels of the map"};
 inline constexpr Topic<lapis_msgs::msg::VoxelTile> kVoxelTiles{
     "lapis/semantic_mapper/tiles", dds::kKeyedTiles, "semantic_mapper", "changed tiles, at most 2 Hz",
     "counts of the map by tile (common/mapping/tile_codec.hpp)"};
@@ -191,6 +194,7 @@ void for_each(Visitor&& visit) {
   visit(kLandmarks);
   visit(kLandmarkState);
   visit(kSlamStatus);
+  visit(kMapDescription);
   visit(kVoxelTiles);
   visit(kMapState);
   visit(kObstacles);

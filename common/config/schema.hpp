@@ -35,6 +35,13 @@ struct Entry {
   std::string meaning;
 };
 
+/// A key, or a section with all its keys, that configurations of before may hold.
+struct FormerKey {
+  std::string path;    ///< "planner.sensor_model"
+  std::string now;     ///< its full path today; empty: it is gone
+  std::string remark;  ///< why, or how what it said is known now; may be empty
+};
+
 /// Collects the entries of configuration structs. A struct takes part by a free function in its own namespace,
 ///
 ///   template <class Field> void describe(Field& field, TrackerConfig& c) {
@@ -58,11 +65,20 @@ class Schema {
     prefix_ = outer;
   }
 
+  /// A key or section of before: who still sets it is told its full path of today.
+  void moved(const std::string& former, std::string now, std::string remark = "") {
+    former_.push_back({prefix_ + former, std::move(now), std::move(remark)});
+  }
+  /// One that is gone, and why.
+  void removed(const std::string& former, std::string remark) { moved(former, "", std::move(remark)); }
+
   const std::vector<Entry>& entries() const { return entries_; }
+  const std::vector<FormerKey>& former() const { return former_; }
 
  private:
   std::string prefix_;
   std::vector<Entry> entries_;
+  std::vector<FormerKey> former_;
 };
 
 /// Text as a double-quoted YAML scalar; bytes that are not UTF-8 become the characters with their numbers.

@@ -109,14 +109,29 @@ std::string nearest_key(const Schema& schema, const std::string& path) {
   return best.empty() ? "" : " (did you mean '" + best + "'?)";
 }
 
+/// Where a key of before is today, said for the key that was given: it may be in a section that moved as a whole.
+std::optional<std::string> whereabouts(const Schema& schema, const std::string& path) {
+  for (const auto& former : schema.former()) {
+    const bool is_inside = path.compare(0, former.path.size() + 1, former.path + ".") == 0;
+    if (path != former.path && !is_inside) continue;
+    const std::string now =
+        former.now.empty() ? "is gone" : "is now '" + former.now + path.substr(former.path.size()) + "'";
+    return now + (former.remark.empty() ? "" : ": " + former.remark);
+  }
+  return std::nullopt;
+}
+
+[[noreturn]] void refuse_key(const Schema& schema, const std::string& path, const std::string& source) {
+  if (const auto now = whereabouts(schema, path)) fail(source, path, *now);
+  fail(source, path, "unknown key" + nearest_key(schema, path) + "; --print-config lists all keys");
+}
+
 void apply_node(const Schema& schema, const YAML::Node& node, const std::string& path, const std::string& source) {
   if (const Entry* entry = find(schema, path)) {
     std::visit(Store{*entry, node, source}, entry->value);
     return;
   }
-  if (!path.empty() && !is_section(schema, path)) {
-    fail(place(source, node), path, "unknown key" + nearest_key(schema, path) + "; --print-config lists all keys");
-  }
+  if (!path.empty() && !is_section(schema, path)) refuse_key(schema, path, place(source, node));
   if (node.IsNull()) return;
   if (!node.IsMap()) fail(place(source, node), path, "a section with keys is needed");
   std::set<std::string> seen;
@@ -161,9 +176,7 @@ void apply_override(const Schema& schema, const std::string& assignment) {
   if (equals == std::string::npos || equals == 0) throw Error(source + ": write it as path=value");
   const std::string path = assignment.substr(0, equals);
   const Entry* entry = find(schema, path);
-  if (entry == nullptr) {
-    fail(source, path, "unknown key" + nearest_key(schema, path) + "; --print-config lists all keys");
-  }
+  if (entry == nullptr) refuse_key(schema, path, source);
   const std::string value = assignment.substr(equals + 1);
   const bool is_text = std::holds_alternative<std::string*>(entry->value);
   const YAML::Node node = is_text ? YAML::Node(value) : parse(value, source);

@@ -14,7 +14,8 @@ class Error : public std::runtime_error {
 };
 
 /// Reads a YAML file into the structs behind `schema`. Keys that the file leaves out keep their value.
-/// Throws Error when the file cannot be read, holds an unknown or repeated key, or a value of wrong type or range.
+/// Throws Error when the file cannot be read, holds an unknown or repeated key, or a value of wrong type or range. A
+/// key of before (Schema::moved) is refused with its name of today.
 void apply_file(const Schema& schema, const std::string& file);
 /// The same for YAML text; `source` names it in messages.
 void apply_text(const Schema& schema, const std::string& text, const std::string& source);

@@ -1,10 +1,9 @@
 #pragma once
 
-// Configuration keys of the map's structs, for every process that builds or reads a map. The range is the robot's
-// (robot.sensing_range_m).
+// Configuration keys of the map's structs, for the process that builds it; others read them with the map. The range is
+// the robot's (robot.sensing_range_m).
 
 #include "common/config/schema.hpp"
-#include "common/mapping/column_projection.hpp"
 #include "common/mapping/compact_frame.hpp"
 #include "common/mapping/integration.hpp"
 #include "common/mapping/sensor_model.hpp"
@@ -23,14 +22,6 @@ void describe(Field& field, IntegrationConfig& c) {
   field("depth_noise_per_m", c.depth_noise_per_m, config::in_range(0.0, 0.05),
         "standard deviation of depth z is this times z^2; a hit weighs less where it is not small against a voxel, and "
         "passes keep two of them away from the surface [1/m]");
-}
-
-template <class Field>
-void describe(Field& field, HeightBand& c) {
-  field("min_height_m", c.min_height_m, config::in_range(-100.0, 100.0),
-        "voxels whose centre is below say nothing [m]");
-  field("max_height_m", c.max_height_m, config::in_range(-100.0, 100.0),
-        "voxels whose centre is above say nothing [m]");
 }
 
 template <class Field>

@@ -18,6 +18,8 @@ struct IntegrationConfig {
   double depth_noise_per_m = 0.0013;
   /// Length of the kernel by which hits vote for the voxels of other hits around them, in [1.5, 3]; 0: not at all.
   double kernel_length_voxels = 0.0;
+
+  bool operator==(const IntegrationConfig&) const = default;
 };
 
 /// So long that every hit votes for its own voxel, and so short that a frame's box stays bounded.

@@ -15,7 +15,8 @@ namespace lapis::mapping {
 namespace {
 
 constexpr std::string_view kMagic = "LAPISMAP";
-constexpr std::uint32_t kFormatVersion = 2;
+constexpr std::uint32_t kFormatVersion = 3;
+constexpr std::uint32_t kFormerVersion = 2;  // without the settings of frames
 constexpr int kCompressionLevel = 3;
 // A record (all before the blocks; a block) is at most so large: 20,000 classes in each voxel of a block.
 constexpr std::size_t kUsualRecordBytes = std::size_t{64} << 10;
@@ -80,6 +81,27 @@ std::vector<Label> read_labels(files::ByteReader& in) {
   return labels;
 }
 
+void write_frame_settings(const std::optional<FrameSettings>& frames, files::ByteWriter& out) {
+  out.u8(frames ? 1 : 0);
+  if (!frames) return;
+  const IntegrationConfig& c = frames->integration;
+  for (const double value : {c.min_range_m, c.max_range_m, c.min_height_m, c.max_height_m, c.end_margin_voxels,
+                             c.depth_noise_per_m, c.kernel_length_voxels})
+    out.f64(value);
+  out.u32(static_cast<std::uint32_t>(frames->stride));
+}
+
+std::optional<FrameSettings> read_frame_settings(files::ByteReader& in) {
+  if (in.u8() == 0) return std::nullopt;
+  FrameSettings frames;
+  IntegrationConfig& c = frames.integration;
+  for (double* value : {&c.min_range_m, &c.max_range_m, &c.min_height_m, &c.max_height_m, &c.end_margin_voxels,
+                        &c.depth_noise_per_m, &c.kernel_length_voxels})
+    *value = in.f64();
+  frames.stride = static_cast<int>(std::min<std::uint32_t>(in.u32(), 65536u));
+  return frames;
+}
+
 std::vector<std::uint8_t> encode_content(const MapFile& file) {
   files::ByteWriter out;
   out.f64(file.map.resolution_m());
@@ -90,6 +112,7 @@ std::vector<std::uint8_t> encode_content(const MapFile& file) {
     out.text(key);
     out.text(value);
   }
+  write_frame_settings(file.frames, out);
   const std::vector<BlockIndex> blocks = file.map.sorted_blocks();
   out.varint(blocks.size());
   for (const BlockIndex& index : blocks) {
@@ -107,7 +130,7 @@ std::string memory_limit(std::size_t max_map_bytes) {
 
 /// Everything before the blocks, with their number. Throws std::runtime_error for values out of range (the
 /// constructors' own checks).
-std::pair<MapFile, std::uint64_t> read_head(files::ByteReader& in) {
+std::pair<MapFile, std::uint64_t> read_head(files::ByteReader& in, std::uint32_t format_version) {
   MapFile file{VoxelMap(in.f64()), {}, {}, {}};
   file.sensor_model = read_sensor_model(in);
   std::vector<Label> labels = read_labels(in);
@@ -116,8 +139,10 @@ std::pair<MapFile, std::uint64_t> read_head(files::ByteReader& in) {
     std::string key = in.text();
     file.provenance[std::move(key)] = in.text();
   }
+  if (format_version > kFormerVersion) file.frames = read_frame_settings(in);
   const std::uint64_t blocks = in.varint();
   if (!in.is_good()) return {std::move(file), 0};
+  if (file.frames) validate(*file.frames, file.map.resolution_m());
   file.labels = LabelList(std::move(labels));
   static_cast<void>(BeliefReader(file.sensor_model));  // refuses a model that nobody could read the counts with
   return {std::move(file), blocks};
@@ -151,8 +176,8 @@ auto read_record(ZstdReader& content, Read&& read)
 }
 
 /// Throws std::runtime_error for values out of range.
-std::optional<MapFile> decode_content(ZstdReader& content, std::size_t max_map_bytes) {
-  auto head = read_record(content, read_head);
+std::optional<MapFile> decode_content(ZstdReader& content, std::uint32_t format_version, std::size_t max_map_bytes) {
+  auto head = read_record(content, [&](files::ByteReader& in) { return read_head(in, format_version); });
   if (!head) return std::nullopt;
   auto& [file, blocks] = *head;
   std::optional<BlockIndex> previous;
@@ -169,8 +194,13 @@ std::optional<MapFile> decode_content(ZstdReader& content, std::size_t max_map_b
   return std::move(file);
 }
 
+struct Payload {
+  std::uint32_t format_version = 0;
+  std::span<const std::uint8_t> bytes;
+};
+
 /// The payload after the header was checked; nothing with a reason otherwise.
-std::optional<std::span<const std::uint8_t>> check_header(std::span<const std::uint8_t> bytes, std::string& error) {
+std::optional<Payload> check_header(std::span<const std::uint8_t> bytes, std::string& error) {
   files::ByteReader in(bytes);
   const auto magic = in.raw(kMagic.size());
   if (!in.is_good() || !std::equal(magic.begin(), magic.end(), kMagic.begin())) {
@@ -178,8 +208,9 @@ std::optional<std::span<const std::uint8_t>> check_header(std::span<const std::u
     return std::nullopt;
   }
   const std::uint32_t version = in.u32();
-  if (in.is_good() && version != kFormatVersion) {
-    error = "has format version " + std::to_string(version) + ", this program reads " + std::to_string(kFormatVersion);
+  if (in.is_good() && version != kFormatVersion && version != kFormerVersion) {
+    error = "has format version " + std::to_string(version) + ", this program reads " + std::to_string(kFormerVersion) +
+            " and " + std::to_string(kFormatVersion);
     return std::nullopt;
   }
   const std::uint32_t crc = in.u32();
@@ -193,7 +224,7 @@ std::optional<std::span<const std::uint8_t>> check_header(std::span<const std::u
     error = "is damaged: the checksum differs";
     return std::nullopt;
   }
-  return in.raw(size);
+  return Payload{version, in.raw(size)};
 }
 
 }  // namespace
@@ -215,8 +246,8 @@ std::optional<MapFile> decode_map(std::span<const std::uint8_t> bytes, std::stri
   const auto payload = check_header(bytes, error);
   if (!payload) return std::nullopt;
   try {
-    ZstdReader content(*payload);
-    auto file = decode_content(content, max_map_bytes);
+    ZstdReader content(payload->bytes);
+    auto file = decode_content(content, payload->format_version, max_map_bytes);
     if (!file) error = "is damaged: the content is malformed";
     return file;
   } catch (const std::runtime_error& reason) {

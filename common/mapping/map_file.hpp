@@ -8,22 +8,29 @@
 #include <vector>
 
 #include "common/mapping/label_list.hpp"
+#include "common/mapping/map_description.hpp"
 #include "common/mapping/sensor_model.hpp"
 #include "common/mapping/voxel_map.hpp"
 
 namespace lapis::mapping {
 
-/// Everything in a map.lapis file: the counts, and what is needed to read them as probabilities, names and colours.
+/// Everything in a map.lapis file: the counts, what is needed to read them as probabilities, names and colours, and how
+/// frames became counts.
 struct MapFile {
   VoxelMap map;
   SensorModel sensor_model;
   LabelList labels;
   std::map<std::string, std::string> provenance;  ///< free notes: source, frames, graph version, ...
+  /// None: nobody knows (a file of format 2, a sum of maps that were built differently), or the map is not made of
+  /// frames.
+  std::optional<FrameSettings> frames = std::nullopt;
 };
 
 /// Bytes of a map file. Layout (little-endian): "LAPISMAP", format version (u32), CRC-32 of everything after it (u32),
-/// size of the payload (u64), payload: one zstd frame of resolution, sensor model, labels, provenance, number of
-/// blocks, blocks (index, block_codec.hpp) in canonical order. Equal content gives equal bytes.
+/// size of the payload (u64), payload: one zstd frame of resolution, sensor model, labels, provenance, settings of
+/// frames (one byte: whether they are known), number of blocks, blocks (index, block_codec.hpp) in canonical order.
+/// Equal content gives equal bytes. The format version is 3; in files of version 2, which can be read, the settings of
+/// frames are missing.
 std::vector<std::uint8_t> encode_map(const MapFile& file);
 
 /// Most memory of a map that is saved or loaded: half of that of the smallest machine, and 40 times what 10^8 voxels of

@@ -27,6 +27,8 @@ struct RobotDescription {
   double drive_lag_s = 0.15;
   double command_timeout_s = 0.2;
   double sensing_range_m = 5.0;
+  double obstacle_min_height_m = 0.2;
+  double obstacle_max_height_m = 1.2;
   CameraDescription camera;
 };
 
@@ -57,6 +59,10 @@ void describe(Field& field, RobotDescription& c) {
         "without /cmd_vel for so long the robot stops [s]");
   field("sensing_range_m", c.sensing_range_m, config::in_range(0.5, 20.0),
         "Euclidean; for map, information and explorable volume alike: returns beyond carve free space up to here [m]");
+  field("obstacle_min_height_m", c.obstacle_min_height_m, config::in_range(-100.0, 100.0),
+        "voxels whose centre is below are floor to the robot; z of the map frame [m]");
+  field("obstacle_max_height_m", c.obstacle_max_height_m, config::in_range(-100.0, 100.0),
+        "what is higher is passed under [m]");
   field("camera", c.camera);
 }
 

@@ -165,7 +165,7 @@ bool LockstepDriver::are_outputs_received() const {
 
 void LockstepDriver::advance() {
   if (state_ == State::kJoining) {
-    if (silent().empty() && is_everybody_matched()) {
+    if (silent().empty() && is_everybody_matched() && are_outputs_received()) {
       state_ = State::kIdle;
       spdlog::info("lock-step: {} joined after {:.1f} s", joined(config_.stages), seconds_since(tick_began_));
     }
@@ -270,7 +270,7 @@ std::string LockstepDriver::describe_silence(double silence_s) const {
 void LockstepDriver::give_up(double silence_s) {
   const auto participants = silent();
   if (participants.empty()) {  // while joining: all have answered, but not all endpoints are matched
-    return fail("lock-step: readers of " + joined(config_.stages) + " were not matched; is a QoS incompatible?");
+    return fail("lock-step: endpoints of " + joined(config_.stages) + " were not matched; is a QoS incompatible?");
   }
   const std::string reason = describe_silence(silence_s);
   if (config_.silent_participant != "demote") {

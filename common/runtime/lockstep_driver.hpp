@@ -33,7 +33,8 @@ void describe(Field& field, LockstepConfig& c) {
 
 /// The clock's side of lock-step (docs/architecture.md). Its owner publishes frame and /clock, calls begin(), and
 /// publishes the next frame when the driver is idle again; in between the tick is released to one stage after another.
-/// Idle means, too, that all samples which participants published for the owner (commands) have been received.
+/// Idle means, too, that all samples which participants published for the owner (commands) have been received; before
+/// the first frame, those that are latched.
 class LockstepDriver {
  public:
   enum class State { kJoining, kIdle, kWaiting, kFailed };

@@ -120,10 +120,10 @@ int spin(const ComponentFactory& factory, Context& context, const std::function<
     spdlog::info("stopped");
     return context.exit_status();
   } catch (const BadSetup& error) {
-    spdlog::error("{}", error.what());
+    context.fail(error.what());
     return kBadSetup;
   } catch (const std::exception& error) {
-    spdlog::error("{} failed: {}", factory.name, error.what());
+    context.fail(factory.name + " failed: " + error.what());
     return kFailedRunning;
   }
 }

@@ -31,11 +31,12 @@ void require(bool is_met, const std::string& what) {
 
 /// What keys have to be to each other; without it the robot would not see what it drives into, or be blocked by
 /// turning.
-const ControllerComponentConfig& checked(const ControllerComponentConfig& config) {
-  const LocalMapConfig& map = config.method.local_map;
+ControllerComponentConfig completed(ControllerComponentConfig config) {
+  LocalMapConfig& map = config.method.local_map;
+  map.max_height_m = config.robot.obstacle_max_height_m;
   const FanConfig& fan = config.method.fan;
   require(map.min_height_m < map.max_height_m,
-          "controller.local_map.min_height_m has to be less than controller.local_map.max_height_m");
+          "controller.local_map.min_height_m has to be less than robot.obstacle_max_height_m");
   require(map.range_m >= fan.length_m + config.robot.radius_m + fan.margin_m,
           "controller.local_map.range_m has to be at least controller.fan.length_m, robot.radius_m and "
           "controller.fan.margin_m together");
@@ -52,8 +53,8 @@ time::Time steady_now() {
 }  // namespace
 
 ControllerComponent::ControllerComponent(const Config& config, runtime::Context& context)
-    : config_(checked(config)), context_(context), map_frame_(context.frame("map")),
-      base_frame_(context.frame("base_link")), controller_(config.method, limits_of(config.robot)),
+    : config_(completed(config)), context_(context), map_frame_(context.frame("map")),
+      base_frame_(context.frame("base_link")), controller_(config_.method, limits_of(config_.robot)),
       command_(context.advertise(topics::kCommand)), local_path_(context.advertise(topics::kLocalPath)),
       status_(context.advertise(topics::kControllerStatus)),
       pose_(context, topics::kSlamOdometry, "pose", kWaitingFrames),

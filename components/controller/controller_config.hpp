@@ -22,7 +22,8 @@ void describe(Field& field, FanConfig& c) {
   field("branches", c.branches, config::in_range(1, 99), "curvatures after half of the length; odd");
   field("max_bearing_rad", c.max_bearing_rad, config::in_range(0.1, 3.0),
         "a path ends where it leaves what lies ahead by so much to either side [rad]");
-  field("margin_m", c.margin_m, config::in_range(0.0, 1.0), "kept between the robot's disc and obstacles [m]");
+  field("margin_m", c.margin_m, config::in_range(0.0, 1.0),
+        "of clearance besides the robot's disc, from 0.4 m ahead on; half of it nearer [m]");
 }
 
 template <class Field>
@@ -30,7 +31,7 @@ void describe(Field& field, LocalMapConfig& c) {
   field("range_m", c.range_m, config::in_range(0.5, 20.0), "of depth; obstacles farther away are not kept [m]");
   field("min_height_m", c.min_height_m, config::in_range(-1.0, 10.0),
         "above base_link: what is lower is driven over [m]");
-  field("max_height_m", c.max_height_m, config::in_range(-1.0, 10.0), "what is higher is passed under [m]");
+  field.moved("max_height_m", "robot.obstacle_max_height_m");
   field("memory_s", c.memory_s, config::in_range(0.1, 600.0),
         "what was seen longer ago is forgotten; time without a path does not count while the robot stands [s]");
   field("stride", c.stride, config::in_range(1, 32), "every stride-th pixel of every stride-th row is used");

@@ -9,7 +9,7 @@
 
 #include "common/files/atomic_file.hpp"
 #include "common/messages/camera.hpp"
-#include "common/messages/labels.hpp"
+#include "common/messages/map_description.hpp"
 #include "common/messages/planner.hpp"
 #include "common/messages/time.hpp"
 #include "evaluator/figures.hpp"
@@ -26,6 +26,11 @@ std::optional<double> position_sigma_m(const nav_msgs::msg::Odometry& message) {
   const auto& covariance = message.pose().covariance();  // 6x6, row by row
   const double sum = covariance[0] + covariance[7] + covariance[14];
   return sum >= 0.0 ? std::optional(std::sqrt(sum)) : std::nullopt;
+}
+
+std::filesystem::path truth_folder(const EvaluatorConfig& config) {
+  if (!config.ground_truth_dir.empty()) return config.ground_truth_dir;
+  return std::filesystem::path(config.output_dir) / "ground_truth";
 }
 
 Trajectory keyframes_of(const lapis_msgs::msg::PoseGraph& graph) {
@@ -47,7 +52,7 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
       truth_(context, topics::kGroundTruth, "ground truth", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
-      info_(context, topics::kDepthInfo, "camera info", kWaitingFrames), maps_(config) {
+      info_(context, topics::kDepthInfo, "camera info", kWaitingFrames), maps_(truth_folder(config)) {
   if (config_.output_dir.empty()) {
     throw std::runtime_error("evaluator.output_dir is not set; give --set evaluator.output_dir=FOLDER");
   }
@@ -59,14 +64,10 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
   });
   context.subscribe(topics::kSlamOdometry, [this](const auto& m) { position_sigma_m_ = position_sigma_m(m); });
   context.subscribe(topics::kPlannerStatus, [this](const auto& m) { on_planner_status(m); });
+  context.subscribe(topics::kMapDescription, [this](const auto& m) { on_map_description(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { on_tile(m); });
   context.subscribe(topics::kMapState, [this](const auto& m) { on_map_state(m); });
   context.subscribe(topics::kDiagnostics, [this](const auto& m) { on_diagnostics(m); });
-  context.subscribe(topics::kLabelInfo, [this](const vision_msgs::msg::LabelInfo& m) {
-    auto labels = messages::from_message(m);
-    if (!labels) return spdlog::warn("label list refused: {}", labels.reason);
-    maps_.set_labels(std::move(*labels));
-  });
   context.subscribe(topics::kCollision, [this](const std_msgs::msg::Bool& m) { count_contact(m.data()); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
@@ -81,6 +82,16 @@ void EvaluatorComponent::on_diagnostics(const diagnostic_msgs::msg::DiagnosticAr
     if (status.name() != context_.frame(status.hardware_id())) continue;  // another robot's, or no process of Lapis
     costs_.add(status);
   }
+}
+
+/// Ends the process when the map cannot be judged: the description makes no sense, or is of another map than the
+/// references are for.
+void EvaluatorComponent::on_map_description(const lapis_msgs::msg::MapDescription& message) {
+  const std::string topic = topics::kMapDescription.name;
+  auto description = messages::from_message(message);
+  if (!description) return context_.fail(topic + ": " + description.reason);
+  const std::string unlike = maps_.set_description(std::move(*description));
+  if (!unlike.empty()) context_.fail(topic + ": the map is another one than before in this run: " + unlike);
 }
 
 void EvaluatorComponent::on_tile(const lapis_msgs::msg::VoxelTile& message) {

@@ -36,6 +36,7 @@ class EvaluatorComponent {
 
   void count_contact(bool is_in_contact);
   void on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message);
+  void on_map_description(const lapis_msgs::msg::MapDescription& message);
   void on_tile(const lapis_msgs::msg::VoxelTile& message);
   void on_map_state(const lapis_msgs::msg::MapState& message);
   void on_planner_status(const lapis_msgs::msg::PlannerStatus& message);

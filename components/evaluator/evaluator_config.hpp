@@ -2,22 +2,16 @@
 
 #include <string>
 
-#include "common/mapping/describe.hpp"
-#include "common/robot/robot_description.hpp"
+#include "common/config/schema.hpp"
 
 namespace lapis::evaluator {
 
 struct EvaluatorConfig {
   std::string output_dir;
   std::string ground_truth_dir;
-  double resolution_m = 0.25;
-  mapping::IntegrationConfig integration;
-  mapping::CompactFrameConfig frame;
-  mapping::SensorModel sensor_model;
   double max_stamp_difference_s = 0.016;
   double timeline_period_s = 1.0;
   bool figures = true;
-  robot::RobotDescription robot;
 };
 
 template <class Field>
@@ -25,11 +19,10 @@ void describe(Field& field, EvaluatorConfig& c) {
   field("output_dir", c.output_dir, config::anything(), "run folder");
   field("ground_truth_dir", c.ground_truth_dir, config::anything(),
         "what the simulator knows of the scene (mesh.lapis, ideal.lapis, ...); empty: ground_truth in the run folder");
-  field("resolution_m", c.resolution_m, config::in_range(0.02, 0.5),
-        "edge of a voxel of the reference map; as semantic_mapper.resolution_m [m]");
-  field("integration", c.integration);
-  field("frame", c.frame);
-  field("sensor_model", c.sensor_model);
+  for (const char* former : {"resolution_m", "integration", "frame", "sensor_model"}) {
+    field.moved(former, std::string("semantic_mapper.") + former,
+                "the evaluator reads it on /semantic_mapper/map_description");
+  }
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
         "between pose, true pose, depth, labels and camera info of one frame [s]");
   field("timeline_period_s", c.timeline_period_s, config::in_range(0.1, 3600.0),

@@ -3,16 +3,16 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/map_description.hpp"
 #include "common/mapping/map_mirror.hpp"
 #include "evaluator/core/coverage.hpp"
 #include "evaluator/core/ground_truth.hpp"
 #include "evaluator/core/metrics.hpp"
 #include "evaluator/core/plain_fusion.hpp"
 #include "evaluator/core/timeline.hpp"
-#include "evaluator/evaluator_config.hpp"
 
 namespace lapis::evaluator {
 
@@ -20,14 +20,16 @@ namespace lapis::evaluator {
 /// the ground truth of a simulated scene. All are in the run's map frame.
 class MapJudge {
  public:
-  /// Throws std::runtime_error naming the value that is out of range.
-  explicit MapJudge(const EvaluatorConfig& config);
+  /// @param truth_folder where the simulator writes the ground truth of the scene, if there is one
+  explicit MapJudge(std::filesystem::path truth_folder) : truth_folder_(std::move(truth_folder)) {}
 
   mapping::MapMirror& mirror() { return mirror_; }
   /// Of slam: the one that the run is judged by, and the one that the newest map is of.
   void set_judged_session(std::int64_t session) { judged_session_ = session; }
   void set_map_session(std::int64_t session) { map_session_ = session; }
-  void set_labels(mapping::LabelList labels);
+  /// What the mapper says of its map; without it there are no references, and no map is read. Returns what of it
+  /// differs from what it said before, so that maps of one run could not be compared; else an empty text.
+  std::string set_description(mapping::MapDescription description);
 
   /// A frame that slam tracked, at its true pose: the references judge the map, so only what the map can hold is in
   /// them. Labels may be empty. Returns what is wrong with the frame, or an empty text.
@@ -50,17 +52,23 @@ class MapJudge {
   void save_reference(const std::filesystem::path& file) const;
 
  private:
-  mapping::BeliefReader belief_reader() const;
-  std::filesystem::path truth_folder() const;
+  /// What the run's own frames give at true poses.
+  struct References {
+    explicit References(const mapping::MapDescription& description);
+    mapping::VoxelMap map;
+    PlainFusion plain_fusion;
+  };
+
+  bool is_map_known() const { return description_ && mirror_.map() != nullptr; }
+  mapping::BeliefReader belief_reader() const { return mapping::BeliefReader(description_->sensor_model); }
   bool is_comparable(const KnownSpace& map) const;
   std::optional<LabelledVoxels> load_ideal() const;
 
-  EvaluatorConfig config_;
-  mapping::LabelList labels_;
+  std::filesystem::path truth_folder_;
+  std::optional<mapping::MapDescription> description_;
   mapping::MapMirror mirror_;
   std::optional<std::int64_t> judged_session_, map_session_;
-  mapping::VoxelMap reference_;
-  PlainFusion plain_fusion_;
+  std::optional<References> references_;
   std::optional<GroundTruth> truth_;  // of a simulated scene
   KnownHistory known_;                // of the rows that have a comparable map
 };

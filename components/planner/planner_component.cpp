@@ -5,8 +5,8 @@
 #include <utility>
 
 #include "common/files/atomic_file.hpp"
-#include "common/messages/labels.hpp"
 #include "common/messages/landmarks.hpp"
+#include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
 
 namespace lapis::planner {
@@ -51,7 +51,7 @@ void check(const PlannerComponentConfig& config) {
   require(config.explorer.slowest_m_s < config.robot.max_speed_m_s,
           "planner.slowest_m_s has to be less than robot.max_speed_m_s");
   require(grid.band.min_height_m < grid.band.max_height_m,
-          "planner.grid.min_height_m has to be less than planner.grid.max_height_m");
+          "robot.obstacle_min_height_m has to be less than robot.obstacle_max_height_m");
   require(config.decision.path.comfort_m > least_clearance_m,
           "planner.path.comfort_m has to be more than robot.radius_m and planner.grid.margin_m together");
   require(config.decision.path.comfort_m <= grid.max_clearance_m,
@@ -64,6 +64,7 @@ PlannerComponentConfig completed(PlannerComponentConfig config) {
   config.decision.graph.criterion = criterion_of(config.criterion);
   config.decision.graph.sparsifier = sparsifier_of(config.sparsifier);
   config.surroundings.grid.footprint_radius_m = config.robot.radius_m;
+  config.surroundings.grid.band = {config.robot.obstacle_min_height_m, config.robot.obstacle_max_height_m};
   config.decision.hallucination.covisibility.max_range_m = config.robot.sensing_range_m;
   config.explorer.path = config.decision.path;
   check(config);
@@ -98,7 +99,7 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
     files::require_writable_folder(config_.output_dir, "planner.output_dir");
     log_.emplace((std::filesystem::path(config_.output_dir) / kLogFile).string(), config_.surroundings.compared_priors);
   }
-  context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
+  context.subscribe(topics::kMapDescription, [this](const auto& m) { set_description(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { add_tile(m); });
   context.subscribe(topics::kMapState, [this](const auto& m) { set_map_state(m); });
   context.subscribe(topics::kObstacles, [this](nav_msgs::msg::OccupancyGrid& m) { set_obstacles(std::move(m)); });
@@ -135,12 +136,11 @@ void PlannerComponent::serve() {
   });
 }
 
-void PlannerComponent::set_labels(const vision_msgs::msg::LabelInfo& message) {
-  auto labels = messages::from_message(message);
-  if (!labels) return drop("label list", labels.reason);
-  if (*labels == labels_) return;
-  labels_ = std::move(*labels);
-  has_new_labels_ = true;
+/// The counts of a map that cannot be read are worth nothing.
+void PlannerComponent::set_description(const lapis_msgs::msg::MapDescription& message) {
+  auto description = messages::from_message(message);
+  if (!description) return context_.fail(std::string(topics::kMapDescription.name) + ": " + description.reason);
+  description_ = std::move(*description);
 }
 
 void PlannerComponent::add_tile(const lapis_msgs::msg::VoxelTile& message) {
@@ -241,18 +241,40 @@ void PlannerComponent::take_decision(bool waits) {
 
 /// Takes over what has changed. Not while a decision reads it.
 void PlannerComponent::refresh() {
-  if (map_.map() == nullptr || map_.state()->session != session_) return;
+  if (is_map_readable()) update_map();
+  if (surroundings_) update_obstacles();
+}
+
+/// True when what the mapper says of a map is said of the one that is there.
+bool PlannerComponent::is_map_readable() {
+  if (map_.map() == nullptr || map_.state()->session != session_) return false;
   const mapping::MapState& state = *map_.state();
+  if (!description_ || description_->epoch != state.epoch) return false;
+  if (description_->resolution_m == state.resolution_m) return true;
+  context_.fail(std::string(topics::kMapDescription.name) + ": resolution_m is " +
+                std::to_string(description_->resolution_m) + " there and " + std::to_string(state.resolution_m) +
+                " on " + topics::kMapState.name);
+  return false;
+}
+
+void PlannerComponent::update_map() {
+  const mapping::MapState& state = *map_.state();
+  const mapping::SensorModel& model = description_->sensor_model;
   const bool is_other_map = surroundings_state_ && surroundings_state_->resolution_m != state.resolution_m;
-  const bool has_other_classes = std::exchange(has_new_labels_, false);  // what a hit tells depends on their number
-  if (!surroundings_ || is_other_map || has_other_classes) {
-    surroundings_.emplace(config_.surroundings, sensor_model(), state.resolution_m);
+  if (!surroundings_ || is_other_map || surroundings_model_ != model) {
+    spdlog::info("map of {} m voxels: fusion {}, prior_occupied {}, {} classes", state.resolution_m, model.fusion,
+                 model.prior_occupied, model.class_count);
+    surroundings_.emplace(config_.surroundings, model, state.resolution_m);
+    surroundings_model_ = model;
     map_.take_changed_blocks();
     surroundings_->update_map(*map_.map(), map_.map()->sorted_blocks());
   } else if (surroundings_state_->version != state.version || surroundings_state_->epoch != state.epoch) {
     surroundings_->update_map(*map_.map(), map_.take_changed_blocks());
   }
   surroundings_state_ = state;
+}
+
+void PlannerComponent::update_obstacles() {
   if (!obstacles_) return;
   const auto grid = to_core(*obstacles_);
   const time::Time stamp = messages::from_message(obstacles_->header().stamp());
@@ -334,12 +356,6 @@ void PlannerComponent::publish_status() {
 void PlannerComponent::drop(const std::string& what, const std::string& reason) {
   context_.status().count(what + " dropped: " + reason);
   if (context_.rate_limit().pass(what + reason)) spdlog::warn("{} dropped: {}", what, reason);
-}
-
-mapping::SensorModel PlannerComponent::sensor_model() const {
-  auto model = config_.sensor_model;
-  if (labels_.max_id() > 1) model.class_count = labels_.max_id();
-  return model;
 }
 
 std_msgs::msg::Header PlannerComponent::header() const { return messages::header(stamp_, map_frame_); }

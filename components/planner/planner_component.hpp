@@ -6,8 +6,8 @@
 #include <tuple>
 #include <vector>
 
-#include "common/mapping/label_list.hpp"
 #include "common/mapping/landmark_mirror.hpp"
+#include "common/mapping/map_description.hpp"
 #include "common/mapping/map_mirror.hpp"
 #include "common/runtime/context.hpp"
 #include "planner/conversions.hpp"
@@ -33,7 +33,7 @@ class PlannerComponent {
   using GraphVersions = std::tuple<std::int64_t, std::uint64_t, std::int64_t, std::uint64_t>;
 
   void serve();
-  void set_labels(const vision_msgs::msg::LabelInfo& message);
+  void set_description(const lapis_msgs::msg::MapDescription& message);
   void add_tile(const lapis_msgs::msg::VoxelTile& message);
   void set_map_state(const lapis_msgs::msg::MapState& message);
   void add_landmarks(const lapis_msgs::msg::LandmarkTile& message);
@@ -47,6 +47,9 @@ class PlannerComponent {
   void work(const runtime::Cycle& cycle);
   void take_decision(bool waits);
   void refresh();
+  bool is_map_readable();
+  void update_map();
+  void update_obstacles();
   Report report() const;
   GraphVersions versions_of_graph() const;
   void begin_decision();
@@ -54,7 +57,6 @@ class PlannerComponent {
   void publish_markers();
   void publish_status();
   void drop(const std::string& what, const std::string& reason);
-  mapping::SensorModel sensor_model() const;
   std_msgs::msg::Header header() const;
 
   Config config_;
@@ -68,8 +70,7 @@ class PlannerComponent {
   dds::Publisher<lapis_msgs::msg::PlannerStatus>& status_;
 
   // What others say.
-  mapping::LabelList labels_;
-  bool has_new_labels_ = false;
+  std::optional<mapping::MapDescription> description_;  // newest
   mapping::MapMirror map_;
   mapping::LandmarkMirror landmarks_;
   std::optional<GraphMessage> graph_;
@@ -85,6 +86,7 @@ class PlannerComponent {
   // What the planner makes of it.
   std::optional<Surroundings> surroundings_;
   std::optional<mapping::MapState> surroundings_state_;
+  mapping::SensorModel surroundings_model_;  // by which the map was read
   std::shared_ptr<const GraphKnowledge> knowledge_;
   GraphVersions known_graph_;  // in knowledge_
   Explorer explorer_;

@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/mapping/describe.hpp"
+#include "common/config/schema.hpp"
 #include "common/robot/robot_description.hpp"
 #include "planner/core/exploration/explorer.hpp"
 
@@ -19,7 +19,6 @@ struct PlannerComponentConfig {
   DecisionConfig decision;
   ExplorerConfig explorer;
   int view_columns = 64, view_rows = 36;
-  mapping::SensorModel sensor_model;
   int decision_latency_frames = 3;
   std::string output_dir;
   robot::RobotDescription robot;
@@ -27,10 +26,8 @@ struct PlannerComponentConfig {
 
 template <class Field>
 void describe(Field& field, GridConfig& c) {
-  field("min_height_m", c.band.min_height_m, config::in_range(-100.0, 100.0),
-        "voxels whose centre is below say nothing [m]");
-  field("max_height_m", c.band.max_height_m, config::in_range(-100.0, 100.0),
-        "voxels whose centre is above say nothing [m]");
+  field.moved("min_height_m", "robot.obstacle_min_height_m");
+  field.moved("max_height_m", "robot.obstacle_max_height_m");
   field("bottom_m", c.bottom_m, config::in_range(0.0, 10.0),
         "lowest part of what lies in between; a cell is free only where it has been seen [m]");
   field("margin_m", c.margin_m, config::in_range(0.0, 1.0), "kept between the robot's disc and obstacles [m]");
@@ -171,9 +168,10 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("patience_s", c.explorer.patience_s, config::in_range(0.0, 600.0),
         "for obstacles that may go away before exploration is over [s]");
   field("returns_home", c.explorer.returns_home, config::anything(), "drives to where it started when nothing is left");
-  field("sensor_model", c.sensor_model);
+  field.moved("sensor_model", "semantic_mapper.sensor_model",
+              "the planner reads it on /semantic_mapper/map_description");
   field("compared_priors", c.surroundings.compared_priors, config::in_range(0.001, 0.999),
-        "of sensor_model.prior_occupied: decisions.csv tells what would have been chosen with each");
+        "instead of the prior of the mapper's sensor model: decisions.csv tells what would have been chosen with each");
   field("decision_latency_frames", c.decision_latency_frames, config::in_range(1, 100),
         "from the frame that a decision is made from to the one at which it takes effect");
   field("output_dir", c.output_dir, config::anything(), "folder for decisions.csv; empty: none");

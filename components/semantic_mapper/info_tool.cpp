@@ -70,6 +70,30 @@ MapSums sums_of(const mapping::MapFile& file) {
   return sums;
 }
 
+ordered_json describe(const mapping::SensorModel& model) {
+  return {{"fusion", model.fusion},
+          {"hit_gain", model.hit_gain},
+          {"pass_gain", model.pass_gain},
+          {"label_accuracy", model.label_accuracy},
+          {"prior_occupied", model.prior_occupied},
+          {"prior_votes", model.prior_votes},
+          {"class_count", model.class_count}};
+}
+
+/// Null when nobody knows, or when the map is not made of frames.
+ordered_json describe(const std::optional<mapping::FrameSettings>& frames) {
+  if (!frames) return nullptr;
+  const mapping::IntegrationConfig& c = frames->integration;
+  return {{"stride", frames->stride},
+          {"min_range_m", c.min_range_m},
+          {"max_range_m", c.max_range_m},
+          {"min_height_m", c.min_height_m},
+          {"max_height_m", c.max_height_m},
+          {"end_margin_voxels", c.end_margin_voxels},
+          {"depth_noise_per_m", c.depth_noise_per_m},
+          {"kernel_length_voxels", c.kernel_length_voxels}};
+}
+
 ordered_json describe(const mapping::MapFile& file) {
   const MapSums sums = sums_of(file);
   const double r = file.map.resolution_m();
@@ -84,6 +108,8 @@ ordered_json describe(const mapping::MapFile& file) {
                          {"free_volume_m3", volume_m3(sums.free, r)}};
   sums.extent.write(r, result);
   result["provenance"] = file.provenance;
+  result["sensor_model"] = describe(file.sensor_model);
+  result["frame_settings"] = describe(file.frames);
   result["classes"] = ordered_json::array();
   for (const auto& [id, sum] : sums.classes)
     result["classes"].push_back(
@@ -121,7 +147,7 @@ void add_info_tool(CLI::App& app, std::ostream& out) {
     bool as_json = false;
   };
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* tool = app.add_subcommand("info", "resolution, voxels, extent, classes and provenance of a map");
+  CLI::App* tool = app.add_subcommand("info", "resolution, voxels, extent, settings, classes and provenance of a map");
   tool->add_option("file", options->file, "map.lapis, or an OctoMap file (.ot, .bt)")->required();
   tool->add_flag("--json", options->as_json, "print JSON with all digits instead of text");
   tool->footer("Example:\n  lapis_semantic_mapper info run/map.lapis --json");

@@ -6,6 +6,7 @@
 #include "common/files/atomic_file.hpp"
 #include "common/mapping/map_file.hpp"
 #include "common/messages/labels.hpp"
+#include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
 
 namespace lapis::semantic_mapper {
@@ -33,10 +34,10 @@ std::uint64_t note(const mapping::MapFile& file, const char* key) {
 }  // namespace
 
 SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::Context& context)
-    : config_(config), context_(context), tiles_(context.advertise(topics::kVoxelTiles)),
-      map_state_(context.advertise(topics::kMapState)), obstacles_(context.advertise(topics::kObstacles)),
-      octomap_(context.advertise(topics::kOctomap)), points_(context.advertise(topics::kMapPoints)),
-      grid_(context.advertise(topics::kOccupancyGrid)),
+    : config_(config), context_(context), map_description_(context.advertise(topics::kMapDescription)),
+      tiles_(context.advertise(topics::kVoxelTiles)), map_state_(context.advertise(topics::kMapState)),
+      obstacles_(context.advertise(topics::kObstacles)), octomap_(context.advertise(topics::kOctomap)),
+      points_(context.advertise(topics::kMapPoints)), grid_(context.advertise(topics::kOccupancyGrid)),
       tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
@@ -59,6 +60,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
   tracked_.on_restart([this] { end_map(); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+  describe_map();
 }
 
 /// Reads the map to go on with; throws with file and remedy.
@@ -80,6 +82,10 @@ void SemanticMapperComponent::load_map() {
   resumed_labels_ = label_list_ = resumed_->labels;
   config_.frame.max_label = label_list_.largest_accepted_id();
   resumed_frames_ = note(*resumed_, "frames");
+  const auto unlike = resumed_->frames ? mapping::difference(*resumed_->frames, frame_settings()) : "";
+  if (!unlike.empty())
+    spdlog::warn("{}: its frames entered it otherwise than new ones: {}", config_.resume_from, unlike);
+  is_mixed_ = !resumed_->frames || !unlike.empty();
   spdlog::info("{}: {} frames, {} blocks", config_.resume_from, resumed_frames_, resumed_->map.block_count());
 }
 
@@ -99,9 +105,31 @@ void SemanticMapperComponent::set_labels(const vision_msgs::msg::LabelInfo& mess
   config_.frame.max_label = label_list_.largest_accepted_id();
 }
 
+mapping::FrameSettings SemanticMapperComponent::frame_settings() const {
+  return {config_.map.integration, config_.frame.stride};
+}
+
+/// Publishes what the map is when that is not what was published last: at the start, and then in cycles only, before
+/// the tiles that it is needed for, so that in lock-step each comes in a certain tick. Throws std::runtime_error naming
+/// what cannot be.
+void SemanticMapperComponent::describe_map() {
+  mapping::MapDescription now;
+  now.resolution_m = config_.map.resolution_m;
+  now.frames = frame_settings();
+  now.sensor_model = mapping::with_classes(config_.sensor_model, label_list_);
+  now.labels = label_list_;
+  now.epoch = epoch_;
+  now.session = session_;
+  if (described_ == now) return;
+  mapping::validate(now);
+  map_description_.publish(messages::to_message(now, header(told_stamp_)));
+  described_ = std::move(now);
+}
+
 void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
   while (next_frame(cycle)) {
   }
+  describe_map();
   if (mapper_ == nullptr) return;
   if (graph_) follow_graph(*graph_);
   graph_.reset();
@@ -196,6 +224,13 @@ void SemanticMapperComponent::drop(const std::string& reason) {
   if (context_.rate_limit().pass(reason)) spdlog::warn("frame dropped: {}", reason);
 }
 
+/// The map, if any, holds nothing of an earlier run.
+void SemanticMapperComponent::forget_resumed() {
+  resumed_labels_ = {};
+  resumed_frames_ = 0;
+  is_mixed_ = false;
+}
+
 /// The map of a session of slam is over; what there is of it stays on disk.
 void SemanticMapperComponent::end_map() {
   if (mapper_ == nullptr) return;
@@ -204,8 +239,7 @@ void SemanticMapperComponent::end_map() {
     if (const auto problem = save()) spdlog::error("map not saved: {}; mapping goes on", *problem);
   }
   mapper_.reset();
-  resumed_labels_ = {};
-  resumed_frames_ = 0;
+  forget_resumed();
 }
 
 /// The first map of the process goes on with the saved one, if there is one.
@@ -213,8 +247,7 @@ std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t 
   if (resumed_ && !config_.resume_any_session && session != static_cast<std::int64_t>(note(*resumed_, "session"))) {
     spdlog::warn("{} is of another session of slam; a new map begins", config_.resume_from);
     resumed_.reset();
-    resumed_labels_ = {};
-    resumed_frames_ = 0;
+    forget_resumed();
   }
   if (!resumed_) return std::make_unique<SemanticMapper>(config_.map);
   if (session < static_cast<std::int64_t>(note(*resumed_, "session"))) {
@@ -240,8 +273,9 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
   mapper_ = begin_map(session);
   if (!config_.output_dir.empty()) set_old_files_aside();
   resumed_.reset();
-  floor_plan_.emplace(config_.grid);
-  obstacle_layer_.emplace(config_.obstacles, config_.grid, config_.map.resolution_m);
+  const mapping::HeightBand band{config_.robot.obstacle_min_height_m, config_.robot.obstacle_max_height_m};
+  floor_plan_.emplace(band);
+  obstacle_layer_.emplace(config_.obstacles, band, config_.map.resolution_m);
   session_ = session;
   begin_epoch(stamp);
   tiles_stamp_.reset();
@@ -281,6 +315,7 @@ void SemanticMapperComponent::publish_tiles() {
   if (!mapper_->has_changes()) return;
   if (mapper_->enlarge_tiles()) {
     begin_epoch(stamp_);
+    describe_map();
     spdlog::info("large map: tiles of {} m from now on", mapper_->tile_edge_m());
   }
   floor_plan_->mark_changed(mapper_->changed_blocks());
@@ -379,7 +414,8 @@ std::optional<std::string> SemanticMapperComponent::write_files() {
                               label_list_,
                               {{"frames", std::to_string(resumed_frames_ + mapper_->frames_integrated())},
                                {"graph_version", std::to_string(mapper_->graph_version())},
-                               {"session", std::to_string(session_)}}};
+                               {"session", std::to_string(session_)}},
+                              is_mixed_ ? std::nullopt : std::optional(frame_settings())};
   if (auto problem = mapping::save_map((folder / kMapFile).string(), file)) return problem;
   const auto tree = encode_octree(file.map, reader, label_list_);
   if (auto problem = files::replace_file((folder / kOctreeFile).string(), tree.file)) return problem;
@@ -402,9 +438,7 @@ void SemanticMapperComponent::finish() {
 }
 
 mapping::BeliefReader SemanticMapperComponent::belief_reader() const {
-  auto model = config_.sensor_model;
-  if (label_list_.max_id() > 1) model.class_count = label_list_.max_id();
-  return mapping::BeliefReader(model);
+  return mapping::BeliefReader(mapping::with_classes(config_.sensor_model, label_list_));
 }
 
 std_msgs::msg::Header SemanticMapperComponent::header(time::Time stamp) const {

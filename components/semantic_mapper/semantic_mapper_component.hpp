@@ -32,6 +32,8 @@ class SemanticMapperComponent {
   using Graph = lapis_msgs::msg::PoseGraph;
 
   void load_map();
+  mapping::FrameSettings frame_settings() const;
+  void describe_map();
   void set_labels(const vision_msgs::msg::LabelInfo& message);
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
@@ -43,6 +45,7 @@ class SemanticMapperComponent {
   void start_new_map(std::int64_t session, time::Time stamp);
   void begin_epoch(time::Time stamp);
   void end_map();
+  void forget_resumed();
   std::unique_ptr<SemanticMapper> begin_map(std::int64_t session);
   void set_old_files_aside() const;
   void publish(bool is_final);
@@ -60,6 +63,7 @@ class SemanticMapperComponent {
 
   Config config_;
   runtime::Context& context_;
+  dds::Publisher<lapis_msgs::msg::MapDescription>& map_description_;
   dds::Publisher<lapis_msgs::msg::VoxelTile>& tiles_;
   dds::Publisher<lapis_msgs::msg::MapState>& map_state_;
   dds::Publisher<nav_msgs::msg::OccupancyGrid>& obstacles_;
@@ -74,10 +78,12 @@ class SemanticMapperComponent {
   runtime::StampedInput<Info> info_;
   std::optional<Graph> graph_;  // newest, not yet followed
   mapping::LabelList label_list_;
+  std::optional<mapping::MapDescription> described_;  // published last
 
   std::optional<mapping::MapFile> resumed_;  // until the first map begins with it
   mapping::LabelList resumed_labels_;
   std::uint64_t resumed_frames_ = 0;
+  bool is_mixed_ = false;  // the resumed map has counts of frames that entered it otherwise, or nobody knows how
 
   std::unique_ptr<SemanticMapper> mapper_;  // exists once slam tracks
   std::optional<FloorPlan> floor_plan_;     // of mapper_

@@ -16,7 +16,6 @@ struct SemanticMapperComponentConfig {
   mapping::CompactFrameConfig frame;
   mapping::SensorModel sensor_model;
   double kernel_length_voxels = 2.0;
-  mapping::HeightBand grid;
   ObstacleConfig obstacles;
   double max_stamp_difference_s = 0.016;
   double frame_interval_s = 0.0;
@@ -56,7 +55,8 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("kernel_length_voxels", c.kernel_length_voxels,
         config::in_range(mapping::kMinKernelLength_voxels, mapping::kMaxKernelLength_voxels),
         "of the kernel by which hits vote for the voxels of other hits around them, with sensor_model.fusion: bki");
-  field("grid", c.grid);
+  field.moved("grid.min_height_m", "robot.obstacle_min_height_m");
+  field.moved("grid.max_height_m", "robot.obstacle_max_height_m");
   field("obstacles", c.obstacles);
   field("re_anchor", c.map.re_anchor, config::anything(),
         "frames follow the pose graph; false: the paper's frozen map, no frames are stored");
@@ -76,8 +76,10 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
         "least time between obstacle grids, by the frames' stamps [s]");
   field("resume_from", c.resume_from, config::anything(),
         "map.lapis of an earlier run to go on with, beside slam.resume_from; empty: none");
-  field("resume_any_session", c.resume_any_session, config::anything(),
-        "as slam.resume_from makes one; false: a new map begins unless slam still runs that the map was made with");
+  field(
+      "resume_any_session", c.resume_any_session, config::anything(),
+      "with a session that slam.resume_from has made, too; false: a new map begins unless slam still runs that the map "
+      "was made with");
   field("output_dir", c.output_dir, config::anything(), "folder for map.lapis, map.ot and map.ply; empty: none");
   field("save_period_s", c.save_period_s, config::in_range(1.0, 86400.0),
         "time between saves, by the frames' stamps [s]");

@@ -13,8 +13,12 @@ namespace lapis::simulator {
 Run::Run(const World& world, const StartPose& start, const SimulatorConfig& config, std::optional<TourFollower> tour,
          SimulatorFrameIds ids)
     : world_(world), start_(start), config_(config), ids_(std::move(ids)),
-      simulation_(world, simulation_config(config), start), tour_(std::move(tour)), ideal_map_(truth_config(config)) {
+      simulation_(world, simulation_config(config), start), tour_(std::move(tour)) {
   begin_next();
+}
+
+void Run::keep_ideal_map(double resolution_m, const mapping::FrameSettings& frames) {
+  ideal_map_.emplace(resolution_m, frames);
 }
 
 void Run::command(const DriveCommand& command) {
@@ -55,8 +59,8 @@ void Run::begin_next() {
 }
 
 void Run::add_to_ideal_map() {
-  if (config_.output_dir.empty() || frames_in_ideal_map_ == frames()) return;
-  add_to(ideal_map_, step_->frame, world_, start_, config_);
+  if (frames_in_ideal_map_ == frames() || !ideal_map_) return;  // in this order: before the first frame it may change
+  add_to(*ideal_map_, step_->frame, world_, start_, config_);
   frames_in_ideal_map_ = frames();
 }
 
@@ -69,10 +73,10 @@ std::uint64_t Run::commands_refused() {
   return simulation_.commands_refused();
 }
 
-const IdealMap& Run::ideal_map() {
+const IdealMap* Run::ideal_map() {
   wait();
   add_to_ideal_map();
-  return ideal_map_;
+  return ideal_map_ ? &*ideal_map_ : nullptr;
 }
 
 }  // namespace lapis::simulator

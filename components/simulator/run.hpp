@@ -22,6 +22,8 @@ class Run {
   Run(const World& world, const StartPose& start, const SimulatorConfig& config, std::optional<TourFollower> tour,
       SimulatorFrameIds ids);
 
+  /// Before the first frame: keeps what a mapper with these settings would make of the frames without noise.
+  void keep_ideal_map(double resolution_m, const mapping::FrameSettings& frames);
   /// From the next frame but one on, because the next one is under way. Ignored on a tour, and before the first frame,
   /// which no command can be an answer to.
   void command(const DriveCommand& command);
@@ -45,8 +47,8 @@ class Run {
   double hardest_push_m_s() const { return hardest_push_m_s_; }
   /// Waits for what is being simulated. Commands that were not finite.
   std::uint64_t commands_refused();
-  /// Waits for what is being simulated. What the mapper would make of the frames so far without noise.
-  const IdealMap& ideal_map();
+  /// Waits for what is being simulated. The ideal map of the frames so far; null when none is kept.
+  const IdealMap* ideal_map();
 
  private:
   struct Step {
@@ -65,7 +67,7 @@ class Run {
   Simulation simulation_;
   std::optional<TourFollower> tour_;
   std::optional<DriveCommand> command_;  // newest, not yet obeyed
-  IdealMap ideal_map_;
+  std::optional<IdealMap> ideal_map_;
   std::uint64_t frames_in_ideal_map_ = 0;
   std::optional<Step> step_;
   std::uint64_t collisions_ = 0;

@@ -72,9 +72,9 @@ std::filesystem::path truth_folder(const SimulatorConfig& config) {
   return std::filesystem::path(config.output_dir) / "ground_truth";
 }
 
-IdealMapConfig truth_config(const SimulatorConfig& config) {
-  IdealMapConfig out = config.truth;
-  out.integration.max_range_m = config.robot.sensing_range_m;
+mapping::MapDescription default_map(const SimulatorConfig& config) {
+  mapping::MapDescription out;
+  out.frames.integration.max_range_m = config.robot.sensing_range_m;
   return out;
 }
 

@@ -37,8 +37,8 @@ std::string to_yaml(const RunSummary& summary, const World& world, const StartPo
                     const SimulatorConfig& config);
 
 std::filesystem::path truth_folder(const SimulatorConfig& config);
-/// The mapper's settings, for a map without errors.
-IdealMapConfig truth_config(const SimulatorConfig& config);
+/// The map of a mapper that nobody configured, on this robot: for ground truth where no mapper is.
+mapping::MapDescription default_map(const SimulatorConfig& config);
 void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const StartPose& start,
             const SimulatorConfig& config);
 /// Writes the ground truth of a scene, as far as it does not depend on the run's way, into a folder whose parent

@@ -3,6 +3,7 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "common/files/atomic_file.hpp"
+#include "common/messages/map_description.hpp"
 #include "common/messages/planner.hpp"
 #include "common/messages/time.hpp"
 #include "common/time/stamp_buffer.hpp"
@@ -58,7 +59,10 @@ SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& c
       tour_(plan_tour(world_, start_, config)), camera_(context, {.has_labels = true, .has_ground_truth = true}),
       wheels_(context.advertise(topics::kWheelOdometry)), transforms_(context.advertise(topics::kTransforms)),
       collision_(context.advertise(topics::kCollision)) {
-  if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "simulator.output_dir");
+  if (!config_.output_dir.empty()) {
+    files::require_writable_folder(config_.output_dir, "simulator.output_dir");
+    map_descriptions_ = &context.subscribe(topics::kMapDescription, [this](const auto& m) { note_map(m); });
+  }
   describe_scene(world_);
   if (config_.imu) imu_ = &context.advertise(topics::kImu);
   context.subscribe(topics::kCommand, [this](const auto& m) { run_->command(from_message(m)); });
@@ -71,7 +75,6 @@ SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& c
     driver_ = std::make_unique<runtime::LockstepDriver>(context, config_.lockstep, [this] { publish_again(); });
   }
   context.on_cycle([this](const runtime::Cycle&) { work(); });
-  if (!config_.output_dir.empty()) make_truth();
 }
 
 void SimulatorComponent::serve() {
@@ -104,6 +107,17 @@ void SimulatorComponent::serve() {
     if (driver_) driver_->restart();
     return answer("back at the start");
   });
+}
+
+/// The ground truth is for one map. A mapper that dies may come again, but not with other settings.
+void SimulatorComponent::note_map(const lapis_msgs::msg::MapDescription& message) {
+  const std::string topic = topics::kMapDescription.name;
+  auto map = messages::from_message(message);
+  if (!map) return fail(topic + ": " + map.reason);
+  const bool is_first = !map_ || !has_truth_begun_;
+  const std::string unlike = is_first ? "" : mapping::difference(*map_, *map);
+  if (!unlike.empty()) return fail(topic + ": the map is another one than ground truth was begun for: " + unlike);
+  map_ = std::move(*map);
 }
 
 /// What is latched from another run has a stamp that is not of this one.
@@ -153,19 +167,24 @@ void SimulatorComponent::work() {
     if (state == State::kFailed) throw std::runtime_error(driver_->failure());
     if (state == State::kIdle && may_tick()) tick();
   } catch (const std::exception& error) {
-    failure_ = error.what();
-    context_.fail(failure_);
+    fail(error.what());
   }
 }
 
-/// False while paused, while readers are awaited, or before the wall-clock time of the next tick, at which it wakes the
-/// executor.
+void SimulatorComponent::fail(const std::string& reason) {
+  failure_ = reason;
+  context_.fail(reason);
+}
+
+/// False while paused, while readers or the map's description are awaited, or before the wall-clock time of the next
+/// tick, at which it wakes the executor.
 bool SimulatorComponent::may_tick() {
   if (is_paused_ && steps_ == 0) return false;
   if (!driver_ && run_->frames() == 0 && !camera_.has_readers(static_cast<std::size_t>(config_.wait_for_readers))) {
     context_.executor().at(Clock::now() + kMatchingPeriod, [] {});
     return false;
   }
+  if (run_->frames() == 0 && !is_map_settled()) return false;
   const double pace = driver_ ? config_.max_real_time_factor : 1.0;
   if (pace > 0.0 && Clock::now() < due_) {
     context_.executor().at(due_, [] {});
@@ -179,6 +198,14 @@ bool SimulatorComponent::may_tick() {
   return true;
 }
 
+/// True when it is known for which map ground truth is wanted: of the mapper that is there, or of none.
+bool SimulatorComponent::is_map_settled() {
+  if (map_ || map_descriptions_ == nullptr || map_descriptions_->matched() == 0) return true;
+  context_.executor().at(Clock::now() + kMatchingPeriod, [] {});  // it may go again
+  if (context_.rate_limit().pass("map")) spdlog::info("waiting for {}", topics::kMapDescription.name);
+  return false;
+}
+
 /// Publishes a frame; after the last one a tick without any, in which others finish their work; and then ends.
 void SimulatorComponent::tick() {
   if (has_ended_) {
@@ -186,6 +213,7 @@ void SimulatorComponent::tick() {
     return context_.finish();
   }
   if (!is_paused_ && !running_since_) running_since_ = reported_ = Clock::now();
+  if (run_->frames() == 0 && map_descriptions_ != nullptr) begin_truth();
   has_ended_ = run_->is_over() || (planner_ && messages::has_ended(*planner_));
   if (!has_ended_) {
     run_->advance();
@@ -227,10 +255,20 @@ void SimulatorComponent::report_progress(bool is_last) {
   context_.heart().set_progress(text);
 }
 
+/// That of the scene once, that of a run for each.
+void SimulatorComponent::begin_truth() {
+  if (map_) run_->keep_ideal_map(map_->resolution_m, map_->frames);
+  if (std::exchange(has_truth_begun_, true)) return;
+  const double resolution_m = map_.value_or(default_map(config_)).resolution_m;
+  if (!map_)
+    spdlog::warn("no mapper is there: no ideal.lapis is made, and mesh.lapis has voxels of {} m", resolution_m);
+  make_truth(resolution_m);
+}
+
 /// The ground truth of the scene, in a thread of its own: the run does not wait for it.
-void SimulatorComponent::make_truth() {
-  truth_ = std::async(std::launch::async, [this] {
-    write_truth(world_, start_, config_, config_.truth.resolution_m, truth_folder(config_));
+void SimulatorComponent::make_truth(double resolution_m) {
+  truth_ = std::async(std::launch::async, [this, resolution_m] {
+    write_truth(world_, start_, config_, resolution_m, truth_folder(config_));
   });
 }
 
@@ -243,8 +281,7 @@ void SimulatorComponent::finish() {
   try {
     if (truth_.valid()) truth_.get();
   } catch (const std::exception& error) {
-    failure_ = error.what();
-    context_.fail(failure_);
+    fail(error.what());
   }
   if (!config_.output_dir.empty()) write_files();
 }
@@ -264,7 +301,7 @@ void SimulatorComponent::write_files() {
   }
   files::replace_text(std::filesystem::path(config_.output_dir) / "simulation.yaml",
                       to_yaml(summary, world_, start_, config_));
-  write_ideal_map(truth_folder(config_), world_.scene(), run_->ideal_map());
+  if (const IdealMap* ideal = run_->ideal_map()) write_ideal_map(truth_folder(config_), world_.scene(), *ideal);
 }
 
 }  // namespace lapis::simulator

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "common/mapping/map_description.hpp"
 #include "common/runtime/camera_publisher.hpp"
 #include "common/runtime/context.hpp"
 #include "common/runtime/lockstep_driver.hpp"
@@ -36,6 +37,7 @@ class SimulatorComponent {
   using Clock = std::chrono::steady_clock;
 
   void serve();
+  void note_map(const lapis_msgs::msg::MapDescription& message);
   void note_planner(const lapis_msgs::msg::PlannerStatus& message);
   void pause();
   void go_on();
@@ -43,11 +45,14 @@ class SimulatorComponent {
   void begin();
   void work();
   bool may_tick();
+  bool is_map_settled();
   void tick();
   void publish_again();
   void publish_contact();
   void report_progress(bool is_last);
-  void make_truth();
+  void begin_truth();
+  void make_truth(double resolution_m);
+  void fail(const std::string& reason);
   void write_files();
 
   const Config config_;
@@ -63,6 +68,9 @@ class SimulatorComponent {
   std::unique_ptr<runtime::LockstepDriver> driver_;
   std::unique_ptr<Run> run_;
   std::optional<lapis_msgs::msg::PlannerStatus> planner_;  // newest of this run
+  dds::Source* map_descriptions_ = nullptr;                // with a run folder only
+  std::optional<mapping::MapDescription> map_;             // newest
+  bool has_truth_begun_ = false;
   std::string failure_;
   bool has_ended_ = false;  // the tick after the last frame is out
   bool is_paused_ = false;

@@ -3,10 +3,9 @@
 #include <cstdint>
 #include <string>
 
-#include "common/mapping/describe.hpp"
+#include "common/config/schema.hpp"
 #include "common/robot/robot_description.hpp"
 #include "common/runtime/lockstep_driver.hpp"
-#include "simulator/core/truth/ideal_map.hpp"
 
 namespace lapis::simulator {
 
@@ -44,7 +43,6 @@ struct SimulatorConfig {
   bool imu = false;
   SceneConfig world;
   NoiseConfig noise;
-  IdealMapConfig truth;  ///< ground truth maps: as the mapper's, so that they can be compared
   robot::RobotDescription robot;
   runtime::LockstepConfig lockstep;
   // command line only
@@ -80,14 +78,6 @@ void describe(Field& field, SceneConfig& c) {
 }
 
 template <class Field>
-void describe(Field& field, IdealMapConfig& c) {
-  field("resolution_m", c.resolution_m, config::in_range(0.02, 0.5),
-        "edge of a voxel; as semantic_mapper.resolution_m [m]");
-  field("integration", c.integration);
-  field("frame", c.frame);
-}
-
-template <class Field>
 void describe(Field& field, SimulatorConfig& c) {
   field("scene", c.scene, config::anything(),
         "name of a bundled scene, a scene file (.yaml), or a file or folder of another format (docs/scenes.md)");
@@ -113,7 +103,7 @@ void describe(Field& field, SimulatorConfig& c) {
   field("imu", c.imu, config::anything(), "publish /imu at 200 Hz");
   field("world", c.world);
   field("noise", c.noise);
-  field("truth", c.truth);
+  field.moved("truth", "semantic_mapper", "ground truth is built as /semantic_mapper/map_description says");
 }
 
 }  // namespace lapis::simulator

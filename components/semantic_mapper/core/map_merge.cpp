@@ -125,6 +125,7 @@ void merge_into(mapping::MapFile& sum, const mapping::MapFile& other, const geom
   auto blocks = summed_blocks(sum.map, other.map, T_map_other);
   sum.labels = std::move(labels);
   sum.sensor_model = std::move(model);
+  if (sum.frames != other.frames) sum.frames.reset();
   for (auto& [index, block] : blocks) sum.map.set_block(index, std::move(block));
 }
 

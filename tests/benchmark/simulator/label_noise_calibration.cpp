@@ -23,7 +23,7 @@ constexpr double kTurnsOfError_rad_per_s = 0.1;  // the error changes its direct
 constexpr double kYawError_rad_per_m = 0.1;
 
 struct Maps {
-  explicit Maps(const IdealMapConfig& config) : true_labels(config), noisy_labels(config) {}
+  explicit Maps(const IdealMap& empty) : true_labels(empty), noisy_labels(empty) {}
   IdealMap true_labels;
   IdealMap noisy_labels;
 };
@@ -77,8 +77,9 @@ void calibrate(const std::string& scene) {
   Simulation simulation(world, simulation_config(config), start);
   const auto camera = pinhole_camera(config.robot.camera);
   const auto T_base_camera = geometry::T_base_camera(camera_mount(config.robot.camera));
-  IdealMap ideal(truth_config(config));
-  std::vector<Maps> maps(std::size(kPoseErrors_m), Maps(truth_config(config)));
+  const mapping::MapDescription map = default_map(config);
+  IdealMap ideal(map.resolution_m, map.frames);
+  std::vector<Maps> maps(std::size(kPoseErrors_m), Maps(ideal));
   std::optional<DriveCommand> command;
   double accuracy_sum = 0.0;
   int used = 0;

@@ -272,7 +272,7 @@ TEST_F(FreeController, StandsStillWhenTheStampsStandStill) {
 
 TEST(ControllerSetUp, KeysThatContradictEachOtherAreNamed) {
   const std::vector<std::pair<std::string, std::string>> contradictions{
-      {"controller.local_map.min_height_m=1.2", "controller.local_map.max_height_m"},
+      {"controller.local_map.min_height_m=1.2", "robot.obstacle_max_height_m"},
       {"controller.local_map.range_m=1.7", "controller.fan.length_m"},
       {"controller.progress_timeout_s=3.9", "robot.max_turn_rate_rad_s"}};
   for (const auto& [setting, key] : contradictions) {

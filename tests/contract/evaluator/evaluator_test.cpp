@@ -7,7 +7,10 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/mapping/map_file.hpp"
 #include "common/messages/geometry.hpp"
+#include "common/messages/labels.hpp"
+#include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
 #include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"
@@ -36,7 +39,8 @@ class EvaluatorContract : public ::testing::Test {
   void SetUp() override {
     ASSERT_TRUE(wait_until_ready(evaluator)) << evaluator.log();
     ASSERT_TRUE(probe.wait_until([&] {
-      return truth.matched() > 0 && slam.matched() > 0 && contact.matched() > 0 && feed.is_matched_by_evaluator();
+      return truth.matched() > 0 && slam.matched() > 0 && contact.matched() > 0 && map.matched() > 0 &&
+             feed.is_matched_by_evaluator();
     })) << evaluator.log();
   }
   nav_msgs::msg::Odometry true_pose(int index) const {
@@ -64,11 +68,29 @@ class EvaluatorContract : public ::testing::Test {
     slam.publish(tracked(index));
   }
 
+  /// As the mapper does; `resolution_m` of its map.
+  void describe_map(double resolution_m = 0.25) {
+    mapping::MapDescription description;
+    description.resolution_m = resolution_m;
+    description.sensor_model.prior_occupied = 0.1;
+    description.labels = *messages::from_message(feed.camera().label_info());
+    description.sensor_model = mapping::with_classes(description.sensor_model, description.labels);
+    map.publish(messages::to_message(description, {}));
+    map.wait_until_acknowledged(5.0);
+  }
+  mapping::MapFile reference_map() const {
+    std::string error;
+    auto file = mapping::load_map(folder + "/reference_map.lapis", error);
+    if (!file) throw std::runtime_error(error);
+    return std::move(*file);
+  }
+
   const std::string folder = fresh_folder();
   TopicProbe probe;
   CameraFeed feed{probe};
   dds::Publisher<nav_msgs::msg::Odometry>& truth = probe.advertise(topics::kGroundTruth);
   dds::Publisher<lapis_msgs::msg::TrackedFrame>& slam = probe.advertise(topics::kTrackedFrame);
+  dds::Publisher<lapis_msgs::msg::MapDescription>& map = probe.advertise(topics::kMapDescription);
   dds::Publisher<std_msgs::msg::Bool>& contact = probe.advertise(topics::kCollision);
   const std::vector<diagnostic_msgs::msg::DiagnosticArray>& diagnostics = probe.collect(topics::kDiagnostics);
   ChildProcess evaluator{kEvaluator, {"--set", "evaluator.output_dir=" + folder, "--set", "evaluator.figures=false"}};
@@ -88,6 +110,46 @@ TEST_F(EvaluatorContract, WritesTheRunFolderWhenItIsStopped) {
   for (const char* file : {"trajectory_estimate.txt", "trajectory_ground_truth.txt", "timeline.csv"}) {
     EXPECT_FALSE(read(std::filesystem::path(folder) / file).empty()) << file;
   }
+}
+
+TEST_F(EvaluatorContract, TheReferenceIsBuiltAsTheMapIs) {
+  describe_map(0.2);
+  for (int i = 0; i < 4; ++i) send(feed.frame(i), i);
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "4"; }))
+      << evaluator.log();
+  EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
+  const mapping::MapFile reference = reference_map();
+  EXPECT_EQ(reference.map.resolution_m(), 0.2);
+  EXPECT_GT(reference.map.block_count(), 0U);
+  EXPECT_EQ(reference.sensor_model.prior_occupied, 0.1);
+  EXPECT_EQ(reference.labels, *messages::from_message(feed.camera().label_info()));
+  EXPECT_EQ(reference.frames, mapping::FrameSettings{});
+}
+
+TEST_F(EvaluatorContract, WithoutAMapperThereIsNoReference) {
+  send(feed.frame(0), 0);
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "1"; }))
+      << evaluator.log();
+  EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
+  EXPECT_THAT(evaluator.log(), HasSubstr("no mapper has said how its map is built"));
+  EXPECT_FALSE(std::filesystem::exists(folder + "/reference_map.lapis"));
+}
+
+TEST_F(EvaluatorContract, AnotherMapInTheMiddleOfTheRunEndsIt) {
+  describe_map();
+  send(feed.frame(0), 0);
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "1"; }))
+      << evaluator.log();
+  describe_map(0.1);
+  EXPECT_EQ(evaluator.wait(Seconds(20)), 1) << evaluator.log();
+  EXPECT_THAT(evaluator.log(), HasSubstr("another one than before in this run: resolution_m 0.25 and 0.1"));
+  EXPECT_EQ(reference_map().map.resolution_m(), 0.25) << "what was judged so far is kept";
+}
+
+TEST_F(EvaluatorContract, DescriptionThatMakesNoSenseEndsIt) {
+  map.publish({});
+  EXPECT_EQ(evaluator.wait(Seconds(20)), 1) << evaluator.log();
+  EXPECT_THAT(evaluator.log(), HasSubstr("/semantic_mapper/map_description: "));
 }
 
 TEST_F(EvaluatorContract, ACollisionIsTheBeginningOfAContact) {
@@ -132,6 +194,7 @@ TEST_F(EvaluatorContract, ThePlannersDecisionsAndSlamsSigmaAreKept) {
 }
 
 TEST_F(EvaluatorContract, GarbageIsSurvived) {
+  describe_map();
   send(feed.frame(0), 0);
   auto wrong = feed.frame(1);
   wrong.depth->encoding("rgb8");
@@ -163,6 +226,12 @@ TEST_F(EvaluatorContract, SilenceWritesNothingAndIsNoFailure) {
   EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(10)), 0) << evaluator.log();
   EXPECT_THAT(evaluator.log(), HasSubstr("came; nothing is written"));
   EXPECT_FALSE(std::filesystem::exists(std::filesystem::path(folder) / "metrics.json"));
+}
+
+TEST(EvaluatorSetUp, TheMapsSettingsAreTheMappers) {
+  ChildProcess evaluator(kEvaluator, {"--set", "evaluator.integration.min_range_m=0.3"});
+  EXPECT_EQ(evaluator.wait(), 2) << evaluator.log();
+  EXPECT_THAT(evaluator.log(), HasSubstr("is now 'semantic_mapper.integration.min_range_m'"));
 }
 
 TEST(EvaluatorSetUp, FolderIsRequired) {

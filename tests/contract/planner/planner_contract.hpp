@@ -12,9 +12,11 @@
 #include <vector>
 
 #include "common/geometry/camera_mount.hpp"
+#include "common/mapping/map_description.hpp"
 #include "common/mapping/tile_codec.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/landmarks.hpp"
+#include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
 #include "common/runtime/lockstep_driver.hpp"
 #include "tests/contract/planner/drawn_map.hpp"
@@ -55,16 +57,24 @@ class Peers {
   using Tracked = lapis_msgs::msg::TrackedFrame;
 
   explicit Peers(runtime::Context& context)
-      : tiles(context.advertise(topics::kVoxelTiles)), map_state(context.advertise(topics::kMapState)),
-        obstacles(context.advertise(topics::kObstacles)), pose_graph(context.advertise(topics::kPoseGraph)),
-        landmarks(context.advertise(topics::kLandmarks)), landmark_state(context.advertise(topics::kLandmarkState)),
-        frames(context.advertise(topics::kTrackedFrame)), odometry(context.advertise(topics::kSlamOdometry)),
-        controller(context.advertise(topics::kControllerStatus)) {}
+      : map_description(context.advertise(topics::kMapDescription)), tiles(context.advertise(topics::kVoxelTiles)),
+        map_state(context.advertise(topics::kMapState)), obstacles(context.advertise(topics::kObstacles)),
+        pose_graph(context.advertise(topics::kPoseGraph)), landmarks(context.advertise(topics::kLandmarks)),
+        landmark_state(context.advertise(topics::kLandmarkState)), frames(context.advertise(topics::kTrackedFrame)),
+        odometry(context.advertise(topics::kSlamOdometry)), controller(context.advertise(topics::kControllerStatus)) {}
 
+  /// What the mapper says of the map of this epoch and session.
+  void describe_map() {
+    description.resolution_m = kResolution_m;
+    description.epoch = epoch;
+    description.session = session;
+    map_description.publish(messages::to_message(description, header()));
+  }
   /// A new version of the map, all of it.
   void draw(const Drawing& lines) {
     const mapping::VoxelMap map = drawn_map(lines, kResolution_m);
     ++map_version_;
+    if (!draws_without_description) describe_map();
     for (const auto& block : map.sorted_blocks()) tiles_.insert({block.x, block.y, block.z});  // 2 m: one block a tile
     for (const mapping::TileIndex& index : tiles_) tiles.publish(tile(map, index));
     map_state.publish(state());
@@ -164,6 +174,7 @@ class Peers {
     for (const auto& pose : path.poses()) way_.push_back(*messages::from_message(pose.pose()));
   }
 
+  dds::Publisher<lapis_msgs::msg::MapDescription>& map_description;
   dds::Publisher<lapis_msgs::msg::VoxelTile>& tiles;
   dds::Publisher<lapis_msgs::msg::MapState>& map_state;
   dds::Publisher<nav_msgs::msg::OccupancyGrid>& obstacles;
@@ -174,6 +185,8 @@ class Peers {
   dds::Publisher<nav_msgs::msg::Odometry>& odometry;
   dds::Publisher<lapis_msgs::msg::ControllerStatus>& controller;
 
+  mapping::MapDescription description;  ///< resolution, epoch and session are filled in
+  bool draws_without_description = false;
   std::int64_t session = 1;
   std::int64_t epoch = 5;
   int frames_so_far = 0;
@@ -272,6 +285,15 @@ class PlannerRun {
   }
   /// Diagnostics counters whose name contains `text`, summed.
   double count_of(const std::string& text) const { return sum_of(newest_values(diagnostics_, "planner"), text); }
+  /// What the planner gives on /diagnostics as the reason of an ERROR; empty: there was none.
+  std::string error() const {
+    for (const auto& array : diagnostics_) {
+      for (const auto& status : array.status()) {
+        if (status.hardware_id() == "planner" && status.level() == 2) return status.message();
+      }
+    }
+    return "";
+  }
   bool wait_for_count(const std::string& text) {
     return wait_until([&] { return count_of(text) > 0.0; }, Seconds(5));
   }

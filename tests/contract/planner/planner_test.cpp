@@ -240,7 +240,7 @@ TEST(PlannerSetUp, KeysThatContradictEachOtherAreNamed) {
   const std::vector<std::pair<std::string, std::string>> contradictions{
       {"planner.viewpoints.min_distance_m=2.5", "planner.viewpoints.max_distance_m"},
       {"planner.hallucination.impossible_landmarks=100", "planner.hallucination.certain_landmarks"},
-      {"planner.grid.min_height_m=2", "planner.grid.max_height_m"},
+      {"robot.obstacle_min_height_m=2", "robot.obstacle_max_height_m"},
       {"planner.viewpoints.max_distance_m=6", "robot.sensing_range_m"},
       {"planner.slowest_m_s=0.6", "robot.max_speed_m_s"},
       {"robot.radius_m=0.45", "planner.path.comfort_m"},

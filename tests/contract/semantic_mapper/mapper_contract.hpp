@@ -9,6 +9,8 @@
 
 #include "common/mapping/map_mirror.hpp"
 #include "common/messages/geometry.hpp"
+#include "common/messages/labels.hpp"
+#include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
 #include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"
@@ -21,6 +23,11 @@ inline constexpr const char* kMapper = "lapis_semantic_mapper";
 class MapClient {
  public:
   explicit MapClient(TopicProbe& probe) {
+    probe.listen<lapis_msgs::msg::MapDescription>(topics::kMapDescription, [this](auto& m) {
+      auto description = messages::from_message(m);
+      if (!description) throw std::runtime_error(description.reason);
+      descriptions.push_back(std::move(*description));
+    });
     probe.listen<lapis_msgs::msg::VoxelTile>(topics::kVoxelTiles, [this](auto& m) {
       const auto result = mirror.apply_tile(m.epoch(), {m.x(), m.y(), m.z()}, m.version(), m.data());
       damaged += result == mapping::TileResult::kDamaged ? 1 : 0;
@@ -33,6 +40,7 @@ class MapClient {
   bool has_map() const { return mirror.is_consistent() && mirror.newest_state()->tiles > 0; }
 
   mapping::MapMirror mirror;
+  std::vector<mapping::MapDescription> descriptions;
   std::vector<lapis_msgs::msg::MapState> states;
   int damaged = 0;
 };

@@ -30,6 +30,36 @@ TEST_F(MapperContract, TilesAndStateMakeAConsistentMirrorAlsoForALateJoiner) {
   EXPECT_EQ(late_client.mirror.state()->tiles, client.mirror.state()->tiles);
 }
 
+class MapperWithItsOwnSettings : public MapperContract {
+ protected:
+  MapperWithItsOwnSettings()
+      : MapperContract({"semantic_mapper.sensor_model.prior_occupied=0.1", "semantic_mapper.frame.stride=3",
+                        "robot.sensing_range_m=4"}) {}
+};
+
+TEST_F(MapperWithItsOwnSettings, SaysWhatItsMapIsBeforeTheFirstFrameAndBeforeEachMap) {
+  const auto& descriptions = client.descriptions;
+  ASSERT_TRUE(probe.wait_until([&] { return !descriptions.empty() && descriptions.back().labels.size() > 0; }))
+      << mapper.log();
+  mapping::MapDescription expected;
+  expected.sensor_model.prior_occupied = 0.1;
+  expected.frames.stride = 3;
+  expected.frames.integration.max_range_m = 4.0;
+  expected.labels = *messages::from_message(feed.camera().label_info());
+  expected.sensor_model = mapping::with_classes(expected.sensor_model, expected.labels);
+  EXPECT_EQ(descriptions.back(), expected) << "no map has begun";
+  for (const std::int64_t session : {1, 2}) {
+    ASSERT_TRUE(map_frame(static_cast<int>(session), session)) << mapper.log();
+    expected.epoch = client.states.back().epoch();
+    expected.session = session;
+    ASSERT_TRUE(probe.wait_until([&] { return descriptions.back().epoch == expected.epoch; })) << mapper.log();
+    EXPECT_EQ(descriptions.back(), expected);
+  }
+  const std::size_t so_far = descriptions.size();
+  ASSERT_TRUE(map_frame(3, 2)) << mapper.log();
+  EXPECT_EQ(descriptions.size(), so_far) << "only when it changes";
+}
+
 TEST_F(MapperContract, ViewsAreMadeForANewReaderAndAreFinite) {
   ASSERT_TRUE(map_frame(0)) << mapper.log();
   TopicProbe viewer("viewer");
@@ -146,6 +176,7 @@ TEST_F(MapperWithSmallTiles, TilesGrowWithTheMapAndNothingIsLost) {
     ASSERT_TRUE(map_frame(i)) << mapper.log();
   }
   EXPECT_NEAR(client.states.back().tile_edge_m(), 0.376, 1e-9);
+  EXPECT_TRUE(probe.wait_until([&] { return client.descriptions.back().epoch == client.states.back().epoch(); }));
   EXPECT_EQ(client.states.back().session(), first.session());
   EXPECT_LT(client.states.back().tiles(), first.tiles());
   EXPECT_GE(client.mirror.map()->block_count(), first.tiles()) << "the old part is there, too";

@@ -9,8 +9,10 @@
 #include <map>
 #include <set>
 
+#include "common/mapping/map_file.hpp"
 #include "common/messages/camera.hpp"
 #include "common/messages/geometry.hpp"
+#include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
 #include "common/topics.hpp"
 #include "tests/support/child_process.hpp"
@@ -284,6 +286,70 @@ TEST_F(SimulatorContract, SlowLateAndWrongAnswersDoNotMoveTheClock) {
   ASSERT_TRUE(slam.wait_for_tick(3));
   ASSERT_TRUE(probe.wait_until([&] { return stamps_of(truth).size() == 3; }));
   expect_every_frame_once(stamps_of(truth));
+}
+
+/// A mapper that the test plays: it says what its map is, and takes part in lock-step.
+struct PlayedMapper {
+  explicit PlayedMapper(TopicProbe& probe)
+      : participant(probe, "semantic_mapper"), map(probe.advertise(topics::kMapDescription)) {}
+  void describe_map(double resolution_m) {
+    mapping::MapDescription description;
+    description.resolution_m = resolution_m;
+    description.frames.stride = 3;
+    map.publish(messages::to_message(description, {}));
+  }
+
+  HandMadeParticipant participant;
+  dds::Publisher<lapis_msgs::msg::MapDescription>& map;
+};
+
+TEST_F(SimulatorContract, GroundTruthIsBuiltAsTheMapperSaysAndWaitsForThat) {
+  TopicProbe probe;
+  PlayedMapper mapper(probe);
+  ChildProcess simulator(kSimulator, with_stages("[semantic_mapper]"));
+  const auto is_waiting = [&] {
+    return simulator.log().find("waiting for /semantic_mapper/map_desc") != std::string::npos;
+  };
+  ASSERT_TRUE(probe.wait_until(is_waiting)) << simulator.log();
+  EXPECT_EQ(mapper.participant.ticks.empty() ? 0U : mapper.participant.ticks.back().tick(), 0U);
+  mapper.describe_map(0.2);
+  for (std::uint64_t tick = 1; tick < 4; ++tick) {
+    ASSERT_TRUE(mapper.participant.wait_for_tick(tick)) << simulator.log();
+    mapper.participant.answer(mapper.participant.ticks.back());
+  }
+  ASSERT_TRUE(mapper.participant.wait_for_tick(4)) << simulator.log();
+  EXPECT_EQ(simulator.stop(SIGTERM, Seconds(60)), 0) << simulator.log();
+  std::string problem;
+  const auto ideal = mapping::load_map((folder.path() / "ground_truth/ideal.lapis").string(), problem);
+  ASSERT_TRUE(ideal) << problem;
+  EXPECT_EQ(ideal->map.resolution_m(), 0.2);
+  EXPECT_GT(ideal->map.block_count(), 0U);
+  ASSERT_TRUE(ideal->frames);
+  EXPECT_EQ(ideal->frames->stride, 3);
+  const auto mesh = mapping::load_map((folder.path() / "ground_truth/mesh.lapis").string(), problem);
+  ASSERT_TRUE(mesh) << problem;
+  EXPECT_EQ(mesh->map.resolution_m(), 0.2);
+  EXPECT_FALSE(mesh->frames) << "it is not made of frames";
+}
+
+TEST_F(SimulatorContract, AnotherMapThanGroundTruthWasBegunForEndsTheRun) {
+  TopicProbe probe;
+  PlayedMapper mapper(probe);
+  mapper.describe_map(0.25);
+  ChildProcess simulator(kSimulator, with_stages("[semantic_mapper]"));
+  ASSERT_TRUE(mapper.participant.wait_for_tick(1)) << simulator.log();
+  mapper.describe_map(0.1);
+  EXPECT_EQ(simulator.wait(Seconds(60)), 1) << simulator.log();
+  EXPECT_THAT(simulator.log(), HasSubstr("resolution_m 0.25 and 0.1"));
+  EXPECT_THAT(summary(), HasSubstr("resolution_m 0.25 and 0.1"));
+}
+
+TEST_F(SimulatorContract, WithoutAMapperNoIdealMapIsMade) {
+  ChildProcess simulator(kSimulator, with_stages("[]", {"--duration", "0.5"}));
+  EXPECT_EQ(simulator.wait(Seconds(60)), 0) << simulator.log();
+  EXPECT_THAT(simulator.log(), HasSubstr("no mapper is there: no ideal.lapis is made"));
+  EXPECT_TRUE(std::filesystem::exists(folder.path() / "ground_truth/mesh.lapis"));
+  EXPECT_FALSE(std::filesystem::exists(folder.path() / "ground_truth/ideal.lapis"));
 }
 
 /// The simulator with an echo, and its services.

@@ -14,6 +14,7 @@ namespace {
 
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 
 struct Inner {
   double max_depth_m = 5.0;
@@ -41,6 +42,9 @@ void describe(Field& field, Outer& c) {
   field("seed", c.seed, at_least(0), "random seed");
   field("stages", c.stages, anything(), "order");
   field("limits", c.limits, in_range(0, 10), "of everything");
+  field.moved("depth_limit_m", "slam.tracker.max_depth_m");
+  field.moved("model", "mapper.model", "slam reads it in the map");
+  field.removed("colour", "nothing was drawn in it");
 }
 
 class ConfigTest : public ::testing::Test {
@@ -108,6 +112,18 @@ TEST_F(ConfigTest, UnknownKeyNamesFileLinePathAndNeighbour) {
                     HasSubstr("slam.tracker.max_depth_m")));
   EXPECT_THAT(error_of_set("slam.nothing=1"), AllOf(HasSubstr("slam.nothing"), HasSubstr("unknown key")));
   EXPECT_THAT(error_of_text("planner: {}\n"), HasSubstr("planner: unknown key"));
+}
+
+TEST_F(ConfigTest, AKeyOfBeforeIsRefusedWithItsNameOfToday) {
+  EXPECT_THAT(error_of_text("slam:\n  depth_limit_m: 4\n"),
+              AllOf(HasSubstr("robot.yaml:2"), HasSubstr("slam.depth_limit_m: is now 'slam.tracker.max_depth_m'")));
+  EXPECT_EQ(error_of_set("slam.depth_limit_m=4"),
+            "--set slam.depth_limit_m=4: slam.depth_limit_m: is now 'slam.tracker.max_depth_m'");
+  EXPECT_THAT(error_of_text("slam: {model: {gain: 1}}"), HasSubstr("slam.model: is now 'mapper.model': slam reads it"));
+  EXPECT_THAT(error_of_set("slam.model.gain=1"), HasSubstr("slam.model.gain: is now 'mapper.model.gain': slam reads"));
+  EXPECT_THAT(error_of_set("slam.colour=red"), HasSubstr("slam.colour: is gone: nothing was drawn in it"));
+  EXPECT_THAT(error_of_set("slam.models=1"), HasSubstr("unknown key")) << "begins like one of before";
+  EXPECT_THAT(to_yaml(schema_), Not(HasSubstr("depth_limit_m")));
 }
 
 TEST_F(ConfigTest, OutOfRangeNamesValueAndBound) {

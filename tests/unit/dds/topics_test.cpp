@@ -30,9 +30,9 @@ TEST(TopicTable, RowsAreSound) {
   expect_all_sound(kClock, kTick, kAck, kColor, kCompressedColor, kDepth, kColorInfo, kDepthInfo, kLabels,
                    kLabelConfidence, kLabelInfo, kWheelOdometry, kImu, kGroundTruth, kCollision, kTransforms,
                    kStaticTransforms, kSlamOdometry, kTrackedFrame, kKeyframePath, kPoseGraph, kLandmarks,
-                   kLandmarkState, kSlamStatus, kVoxelTiles, kMapState, kObstacles, kOctomap, kMapPoints,
-                   kOccupancyGrid, kPlannerPath, kCandidates, kPlannerMarkers, kPlannerStatus, kCommand, kLocalPath,
-                   kControllerStatus, kDiagnostics);
+                   kLandmarkState, kSlamStatus, kMapDescription, kVoxelTiles, kMapState, kObstacles, kOctomap,
+                   kMapPoints, kOccupancyGrid, kPlannerPath, kCandidates, kPlannerMarkers, kPlannerStatus, kCommand,
+                   kLocalPath, kControllerStatus, kDiagnostics);
 }
 
 TEST(TopicTable, LockStepTopicsRepairLossQuickly) {

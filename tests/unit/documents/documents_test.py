@@ -11,11 +11,43 @@ import unittest
 REPOSITORY = pathlib.Path(sys.argv.pop(1))
 BIN = pathlib.Path(sys.argv.pop(1))
 COMPONENTS = ["sensor_replay", "simulator", "slam", "semantic_mapper", "evaluator", "planner", "controller"]
-KNOW_THE_ROBOT = ["simulator", "semantic_mapper", "evaluator", "planner", "controller"]
+KNOW_THE_ROBOT = ["simulator", "semantic_mapper", "planner", "controller"]
 
 
 def output_of(*command):
     return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True).stdout
+
+
+SHARED = ("dds.", "robot.", "lockstep.")  # sections that whoever has them gets from one place
+
+
+def meanings_of(name):
+    """Path and meaning of every key of a component outside of the shared sections."""
+    rows = output_of(BIN / f"lapis_{name}", "--print-config-table").splitlines()[2:]
+    keys = {row.split("`")[1]: row.removesuffix(" |").rsplit(" | ", 1)[1] for row in rows}
+    return {path: meaning for path, meaning in keys.items() if not path.startswith(SHARED)}
+
+
+class Facts(unittest.TestCase):
+    """No fact is configured in two processes: what one has to know of another comes with the data.
+
+    A copy gives itself away: it has name and meaning of the other key, or its meaning says that it is as a key of another
+    component. Keys of one name that are about two things mean something else, and say so: max_stamp_difference_s is each
+    component's own tolerance between the streams that it joins.
+    """
+
+    def test_no_two_components_have_a_key_of_one_name_and_meaning(self):
+        first = {}
+        for name in COMPONENTS:
+            for path, meaning in meanings_of(name).items():
+                other = first.setdefault((path.rsplit(".", 1)[1], meaning), path)
+                self.assertEqual(other.split(".")[0], name, f"{path} and {other} say the same: {meaning}")
+
+    def test_no_key_is_said_to_be_as_another_components(self):
+        for name in COMPONENTS:
+            for path, meaning in meanings_of(name).items():
+                for other in set(COMPONENTS) - {name}:
+                    self.assertNotRegex(meaning, rf"\bas {other}\.", f"{path} is a copy")
 
 
 class Documents(unittest.TestCase):

@@ -43,6 +43,7 @@ MapFile example(unsigned seed = 1, int frames = 20) {
   file.sensor_model.fusion = "dirichlet";
   file.sensor_model.prior_votes = 7.0;
   file.provenance = {{"source", "test"}, {"frames", "20"}};
+  file.frames = FrameSettings{{0.3, 4.0, -2.0, 3.0, 1.0, 0.002, 2.5}, 3};
   return file;
 }
 
@@ -51,6 +52,7 @@ void expect_equal(const MapFile& a, const MapFile& b) {
   EXPECT_EQ(a.sensor_model, b.sensor_model);
   EXPECT_EQ(a.labels, b.labels);
   EXPECT_EQ(a.provenance, b.provenance);
+  EXPECT_EQ(a.frames, b.frames);
 }
 
 TEST_F(MapFileTest, LoadedEqualsSaved) {
@@ -98,8 +100,9 @@ TEST_F(MapFileTest, EveryFlippedBitAndEveryTruncationIsRefused) {
 }
 
 /// A file around a payload of any kind, with the right sums.
-std::vector<std::uint8_t> file_of(std::span<const std::uint8_t> payload) {
-  const std::vector<std::uint8_t> good = encode_map(example(1, 1));
+std::vector<std::uint8_t> file_of(std::span<const std::uint8_t> payload, std::uint8_t format_version = 3) {
+  std::vector<std::uint8_t> good = encode_map(example(1, 1));
+  good[8] = format_version;
   files::ByteWriter checked, file;
   checked.u64(payload.size());
   checked.raw(payload);
@@ -107,6 +110,25 @@ std::vector<std::uint8_t> file_of(std::span<const std::uint8_t> payload) {
   file.u32(files::crc32(checked.bytes()));
   file.raw(checked.bytes());
   return file.take();
+}
+
+TEST_F(MapFileTest, AFileOfTheFormerVersionSaysNothingOfFrames) {
+  MapFile file{VoxelMap(0.1), {}, LabelList::from_names({{1, "wall"}}), {{"source", "before"}}};
+  const std::vector<std::uint8_t> good = encode_map(file);
+  std::vector<std::uint8_t> content = *zstd_decompress(std::span(good).subspan(24), 1 << 20);
+  content.erase(content.end() - 2);  // whether the settings of frames are known; the last byte: no blocks
+  std::string error;
+  const auto loaded = decode_map(file_of(zstd_compress(content, 1), 2), error);
+  ASSERT_TRUE(loaded) << error;
+  expect_equal(*loaded, file);
+}
+
+TEST_F(MapFileTest, SettingsOfFramesOutOfRangeAreRefused) {
+  MapFile file = example(1, 1);
+  file.frames->integration.max_range_m = -1.0;
+  std::string error;
+  EXPECT_FALSE(decode_map(encode_map(file), error));
+  EXPECT_NE(error.find("max_range_m"), std::string::npos) << error;
 }
 
 /// A zstd frame of `begin` and then zeros, `size` bytes in all, that says so.

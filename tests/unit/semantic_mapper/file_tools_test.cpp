@@ -92,6 +92,20 @@ TEST_F(FileTools, InfoCountsWhatTheMapHolds) {
   EXPECT_THAT(out_.str(), HasSubstr("chair"));
 }
 
+TEST_F(FileTools, InfoSaysHowTheMapIsReadAndWasMade) {
+  mapping::MapFile file{mapping::VoxelMap(0.1), {}, {}, {}};
+  file.sensor_model.prior_occupied = 0.1;
+  ASSERT_EQ(mapping::save_map(path("unknown.lapis"), file), std::nullopt);
+  EXPECT_EQ(info(path("unknown.lapis"))["frame_settings"], nullptr);
+  file.frames.emplace().stride = 3;
+  ASSERT_EQ(mapping::save_map(path("map.lapis"), file), std::nullopt);
+  const auto result = info(path("map.lapis"));
+  EXPECT_EQ(result["sensor_model"]["prior_occupied"], 0.1);
+  EXPECT_EQ(result["sensor_model"]["class_count"], 40);
+  EXPECT_EQ(result["frame_settings"]["stride"], 3);
+  EXPECT_EQ(result["frame_settings"]["max_range_m"], 5.0);
+}
+
 TEST_F(FileTools, ConvertedOctreesHaveTheVoxelsOfTheMap) {
   const std::string map = save("map.lapis", mapping::test::random_map(1));
   const auto expected = info(map);

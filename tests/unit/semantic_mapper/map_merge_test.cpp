@@ -119,6 +119,16 @@ TEST(MapMerge, UnitesTheClasses) {
   EXPECT_EQ(sum.sensor_model.class_count, 50);
 }
 
+TEST(MapMerge, OfMapsMadeOtherwiseNobodyKnowsHowFramesEntered) {
+  MapFile sum = file_of(mapping::VoxelMap(0.1)), other = sum;
+  sum.frames = other.frames = mapping::FrameSettings{};
+  merge_into(sum, other, Pose::Identity());
+  EXPECT_EQ(sum.frames, other.frames);
+  other.frames->stride = 4;
+  merge_into(sum, other, Pose::Identity());
+  EXPECT_FALSE(sum.frames);
+}
+
 TEST(MapMerge, RefusesWhatDoesNotBelongTogether) {
   const MapFile a = file_of(mapping::test::random_map(1));
   EXPECT_THAT(reason_of_refusal(a, file_of(mapping::VoxelMap(0.2))), HasSubstr("build all maps at one resolution"));

@@ -3,24 +3,18 @@
 #include "common/geometry/image.hpp"
 #include "common/geometry/pinhole_camera.hpp"
 #include "common/geometry/se3.hpp"
-#include "common/mapping/integration.hpp"
+#include "common/mapping/map_description.hpp"
 #include "common/mapping/voxel_map.hpp"
 
 namespace lapis::simulator {
-
-/// How the mapper builds its map; the reference must be built alike.
-struct IdealMapConfig {
-  double resolution_m = 0.25;
-  mapping::IntegrationConfig integration;
-  mapping::CompactFrameConfig frame;
-};
 
 /// The map that the mapper would make of a run if depth and labels were exact and every pose true: the paper's
 /// reference.
 class IdealMap {
  public:
+  /// As the mapper builds its map, but for the kernel of "bki".
   /// @throws std::runtime_error naming the value that is out of range.
-  explicit IdealMap(const IdealMapConfig& config);
+  IdealMap(double resolution_m, const mapping::FrameSettings& frames);
 
   /// Adds a frame without noise. @param T_map_camera true pose of the optical frame in the run's map frame.
   /// @throws std::runtime_error when image sizes and camera disagree.
@@ -28,9 +22,10 @@ class IdealMap {
            const geometry::LabelImage& labels);
 
   const mapping::VoxelMap& map() const { return map_; }
+  const mapping::FrameSettings& frame_settings() const { return frames_; }
 
  private:
-  IdealMapConfig config_;
+  mapping::FrameSettings frames_;
   mapping::VoxelMap map_;
 };
 

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -17,10 +18,10 @@ namespace {
 using nlohmann::ordered_json;
 
 void save(const std::filesystem::path& file, const Scene& scene, const mapping::VoxelMap& map,
-          const std::string& source) {
+          const std::string& source, const std::optional<mapping::FrameSettings>& frames = std::nullopt) {
   mapping::SensorModel model;
   model.class_count = std::max<int>(scene.labels.max_id(), 1);
-  const mapping::MapFile content{map, model, scene.labels, {{"scene", scene.name}, {"source", source}}};
+  const mapping::MapFile content{map, model, scene.labels, {{"scene", scene.name}, {"source", source}}, frames};
   if (const auto problem = mapping::save_map(file.string(), content)) throw std::runtime_error(*problem);
 }
 
@@ -86,7 +87,7 @@ void write_scene_truth(const std::filesystem::path& folder, const Scene& scene, 
 }
 
 void write_ideal_map(const std::filesystem::path& folder, const Scene& scene, const IdealMap& ideal) {
-  save(folder / "ideal.lapis", scene, ideal.map(), "frames without noise at true poses");
+  save(folder / "ideal.lapis", scene, ideal.map(), "frames without noise at true poses", ideal.frame_settings());
 }
 
 }  // namespace lapis::simulator

@@ -6,6 +6,7 @@
 #include "common/geometry/camera_mount.hpp"
 #include "common/geometry/pinhole_camera.hpp"
 #include "common/geometry/se3.hpp"
+#include "common/mapping/map_description.hpp"
 #include "common/mapping/voxel_map.hpp"
 #include "simulator/core/render/raycaster.hpp"
 #include "simulator/core/robot/nav_map.hpp"
@@ -14,11 +15,11 @@
 namespace lapis::simulator {
 
 struct TruthConfig {
-  double resolution_m = 0.25;      ///< edge of a voxel; the mapper's, so that grids coincide
-  double sensing_range_m = 5.0;    ///< Euclidean
-  double robot_radius_m = 0.2;     ///< of the disc that has to fit
-  double view_spacing_m = 0.5;     ///< between the places that stand for all reachable ones
-  geometry::PinholeCamera camera;  ///< sees up and down; it turns to any heading
+  double resolution_m = mapping::kDefaultResolution_m;  ///< edge of a voxel; the mapper's, so that grids coincide
+  double sensing_range_m = 5.0;                         ///< Euclidean
+  double robot_radius_m = 0.2;                          ///< of the disc that has to fit
+  double view_spacing_m = 0.5;                          ///< between the places that stand for all reachable ones
+  geometry::PinholeCamera camera;                       ///< sees up and down; it turns to any heading
   geometry::CameraMount mount;
   int threads = 1;  ///< the result does not depend on it
 };

@@ -104,7 +104,8 @@ TEST_F(TruthFiles, AreEqualBytesEveryTime) {
 }
 
 TEST_F(TruthFiles, IdealMapIsAMapFile) {
-  IdealMap ideal(IdealMapConfig{});
+  const mapping::FrameSettings frames{{.max_range_m = 4.0, .kernel_length_voxels = 2.0}, 3};
+  IdealMap ideal(0.25, frames);
   const geometry::PinholeCamera camera{64, 36, 32.0, 32.0, 31.5, 17.5};
   ideal.add(camera, geometry::Pose::Identity(), geometry::DepthImage(64, 36, 2.0F), geometry::LabelImage(64, 36, 3));
   write_ideal_map(folder, scene, ideal);
@@ -112,6 +113,7 @@ TEST_F(TruthFiles, IdealMapIsAMapFile) {
   const auto file = mapping::load_map((folder / "ideal.lapis").string(), problem);
   ASSERT_TRUE(file) << problem;
   EXPECT_TRUE(file->map == ideal.map());
+  EXPECT_EQ(file->frames, mapping::of_reference(frames));
   EXPECT_THROW(write_ideal_map("/proc/nowhere", scene, ideal), std::runtime_error);
 }
 

@@ -152,7 +152,7 @@ TEST(IdealMapTest, OfAWholeTourIsTheTruthOfTheMesh) {
   const TruthConfig truth_config = config();
   const auto start = test::planar_pose(4.2, 3.1, 2.2);
   const auto truth = make_voxel_truth(scene, raycaster, build_nav_map(scene), start, truth_config);
-  IdealMap ideal(IdealMapConfig{});
+  IdealMap ideal(mapping::kDefaultResolution_m, {});
   for (const auto& [x, y] :
        {std::pair(0.5, 0.5), {3.0, 0.6}, {5.5, 0.6}, {0.5, 4.5}, {3.0, 4.4}, {5.5, 4.5}, {4.2, 2.2}}) {
     for (int i = 0; i < 12; ++i) {

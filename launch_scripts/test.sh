@@ -6,8 +6,9 @@ tiers=(unit contract integration interop)
 
 usage() {
   cat <<TEXT
-usage: launch_scripts/test.sh [--tier unit|contract|integration|interop]
-  --tier NAME  only this tier; default: all of them
+usage: launch_scripts/test.sh [--tier unit|contract|integration|interop|long]
+  --tier NAME  only this tier; default: all of them but long
+  long: tests that take over a minute, and clang-tidy on any number of changed files; docs/long_tests.md gets the results
 Environment: LAPIS_TEST_DATA, the folder of recorded test data (default ../shared/data beside the repository, when it
 exists); tests that need it are skipped without it.
 TEXT
@@ -15,7 +16,7 @@ TEXT
 while [[ $# -gt 0 ]]; do
   case "$1" in
     --tier)
-      [[ " ${tiers[*]} " == *" ${2:-} "* && -n "${2:-}" ]] || { usage >&2; exit 2; }
+      [[ " ${tiers[*]} long " == *" ${2:-} "* && -n "${2:-}" ]] || { usage >&2; exit 2; }
       tiers=("$2")
       shift 2 ;;
     --help | -h) usage; exit 0 ;;
@@ -36,14 +37,50 @@ if [[ -z "${LAPIS_TEST_DATA:-}" && -d ../shared/data ]]; then
 fi
 echo "test data: ${LAPIS_TEST_DATA:-none, tests that need it are skipped}"
 
-failed=() skipped="" log=build/release/Testing/Temporary/LastTest.log
-for tier in "${tiers[@]}"; do
-  echo "== $tier"
-  ctest --preset release -L "^$tier\$" --parallel "$(nproc)" || failed+=("$tier")
-  # GoogleTest's own skips count as passed for ctest; its log has them.
-  skipped+="$(grep -Eh '^\[  SKIPPED \] [^ ]+ \(|^SKIPPED( \[|:)|\*\*\*Skipped' "$log" || true)"$'\n'
-done
-skipped="$(sort -u <<<"$skipped" | sed '/^$/d')"
-if [[ -n "$skipped" ]]; then printf '== skipped (%s)\n%s\n' "$(wc -l <<<"$skipped")" "$skipped"; fi
+build=build/release failed=() summaries=() reasons="" rows=""
+
+# reasons_of_skips: one line for each test that the last ctest skipped. GoogleTest's own skips count as passed for ctest.
+reasons_of_skips() {
+  awk '/: Skipped$/ && getline > 0 { print } sub(/^SKIPPED: /, "") { print }' "$build/Testing/Temporary/LastTest.log" |
+    sed 's/ at .*; set \([A-Z_]*\).*/, set \1/; s/ *[;(].*//'
+}
+
+run_tier() {
+  local log="$build/Testing/$1.log"
+  echo "== $1"
+  ctest --test-dir "$build" --output-on-failure --no-tests=error -L "^$1\$" --parallel "$(nproc)" -O "$log" || failed+=("$1")
+  summaries+=("$1: $(grep 'tests passed' "$log" || echo 'no tests')")
+  reasons+="$(reasons_of_skips)"$'\n'
+  if [[ "$1" == long ]]; then
+    rows="$(sed -n 's/^.*Test *#[0-9]*: \([^ ]*\) [. *]*\([A-Za-z ]*[a-z]\) *\([0-9.]*\) sec.*/| \1 | \3 | \2 |/p' "$log")"
+  fi
+}
+
+check_statically() {
+  local result=Passed began=$SECONDS
+  echo "== clang-tidy"
+  .ci/tidy || { result=Failed && failed+=(clang-tidy); }
+  rows+=$'\n'"| clang-tidy on changed files | $((SECONDS - began)) | $result |"
+}
+
+write_results() {
+  cat >docs/long_tests.md <<TEXT
+# Long tests
+
+What takes over a minute is not part of \`.ci/run\`. \`launch_scripts/test.sh --tier long\` runs it and writes this page.
+
+Last run: commit $(git describe --always --dirty), $(date -u +%Y-%m-%d), $(nproc) cores.
+
+| what | seconds | result |
+| --- | --- | --- |
+$rows
+TEXT
+}
+
+for tier in "${tiers[@]}"; do run_tier "$tier"; done
+if [[ "${tiers[*]}" == long ]]; then check_statically && write_results; fi
+echo
+printf '%s\n' "${summaries[@]}"
+reasons="$(sed '/^$/d' <<<"$reasons" | sort | uniq -c | sed 's/^ *\([0-9]*\) /\1 x /' | paste -sd ';' | sed 's/;/; /g')"
+echo "skipped: ${reasons:-none}"
 if [[ ${#failed[@]} -gt 0 ]]; then echo "FAILED: ${failed[*]}"; exit 1; fi
-echo "passed: ${tiers[*]}"

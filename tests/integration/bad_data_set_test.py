@@ -9,22 +9,23 @@ from pathlib import Path
 import chain
 
 FRAMES = 30
-SIZE = (640, 360)  # of the recording
+SIZE = (640, 360)  # of the recording's images
+OTHER_SIZE = (640, 480)
 CLASS_ABOVE_THE_LIST = 200
 
 
-def png(value, bits):
-    """An image of the recording's size with the same value in each pixel."""
+def png(value, bits, size=SIZE):
+    """An image with the same value in each pixel."""
     def chunk(kind, data):
         return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
-    width, height = SIZE
+    width, height = size
     row = b"\0" + value.to_bytes(bits // 8, "big") * width
     return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", width, height, bits, 0, 0, 0, 0)) +
             chunk(b"IDAT", zlib.compress(row * height)) + chunk(b"IEND", b""))
 
 
 class Copy:
-    """Links to the first frames of a recording; what is replaced is replaced here only."""
+    """Links to the first frames of the recording; what is replaced is replaced here only."""
 
     def __init__(self, source, folder):
         self.source, self.folder = source, folder
@@ -34,23 +35,24 @@ class Copy:
             (folder / name).symlink_to(source / name)
         lines = (source / "associations.txt").read_text().splitlines()[:FRAMES]
         (folder / "associations.txt").write_text("\n".join(lines) + "\n")
-        for line in lines:
-            _, color, _, depth = line.split()
-            for file in (color, depth, f"label/{Path(color).stem}.png"):
-                (folder / file).symlink_to(source / file)
+        self.names = [Path(line.split()[1]).name for line in lines]
+        for name in self.names:
+            for part in ("rgb", "depth", "label"):
+                (folder / part / name).symlink_to(source / part / name)
 
-    def replace(self, file, content):
-        """New bytes; a path to link to; None: nothing."""
-        path = self.folder / file
+    def image(self, part, frame):
+        return f"{part}/{self.names[frame]}"
+
+    def replace(self, part, frame, content):
+        """New bytes; None: no file."""
+        path = self.folder / self.image(part, frame)
         path.unlink()
-        if isinstance(content, bytes):
+        if content is not None:
             path.write_bytes(content)
-        elif content is not None:
-            path.symlink_to(content)
 
-    def truncate(self, file):
-        content = (self.folder / file).read_bytes()
-        self.replace(file, content[:len(content) // 2])
+    def truncate(self, part, frame):
+        content = (self.folder / self.image(part, frame)).read_bytes()
+        self.replace(part, frame, content[:len(content) // 2])
 
 
 def numbers_of(text):
@@ -74,17 +76,17 @@ def floats_of_ply(content):
 
 class BadDataSetTest(chain.ChainTest):
     def make_data_set(self):
-        data = Copy(chain.AWS, self.folder / "damaged")
-        data.truncate("depth/00004.png")
-        data.replace("depth/00007.png", None)
-        data.replace("depth/00010.png", chain.REDWOOD / "depth/00010.png")
-        data.replace("rgb/00013.jpg", chain.REDWOOD / "rgb/00013.jpg")
-        data.replace("depth/00016.png", png(0, 16))
-        data.replace("depth/00019.png", png(65535, 16))
-        data.replace("label/00022.png", png(CLASS_ABOVE_THE_LIST, 8))
-        data.truncate("rgb/00025.jpg")
-        data.truncate("label/00028.png")
-        return data.folder
+        data = Copy(chain.recording(), self.folder / "damaged")
+        data.truncate("depth", 4)
+        data.replace("depth", 7, None)
+        data.replace("depth", 10, png(1500, 16, OTHER_SIZE))
+        data.replace("rgb", 13, png(128, 8, OTHER_SIZE))
+        data.replace("depth", 16, png(0, 16))
+        data.replace("depth", 19, png(65535, 16))
+        data.replace("label", 22, png(CLASS_ABOVE_THE_LIST, 8))
+        data.truncate("rgb", 25)
+        data.truncate("label", 28)
+        return data
 
     def assert_logged(self, name, *texts):
         log = (self.folder / "run/logs" / f"{name}.log").read_text()
@@ -105,15 +107,16 @@ class BadDataSetTest(chain.ChainTest):
         self.assertTrue(chain.is_map_whole(folder / "map.lapis"))
 
     def test_damaged_images(self):
-        run = self.play(self.make_data_set(), "run", "--labels", chain.AWS_CLASSES)
-        for file, problem, counted in (
-                ("depth/00004.png", "truncated or not an image", "depth images unusable"),
-                ("depth/00007.png", "file missing", "depth images unusable"),
-                ("depth/00010.png", "wrong size", "depth images unusable"),
-                ("rgb/00013.jpg", "wrong size", "frames skipped"),
-                ("rgb/00025.jpg", "truncated or not an image", "frames skipped"),
-                ("label/00028.png", "truncated or not an image", "label images unusable")):
-            self.assert_logged("sensor_replay", f"{file}: {problem}", f"{counted}: {problem}: 1")
+        data = self.make_data_set()
+        run = self.play(data.folder, "run", "--labels", chain.recording() / "classes.csv")
+        for part, frame, problem, counted in (
+                ("depth", 4, "truncated or not an image", "depth images unusable"),
+                ("depth", 7, "file missing", "depth images unusable"),
+                ("depth", 10, "wrong size", "depth images unusable"),
+                ("rgb", 13, "wrong size", "frames skipped"),
+                ("rgb", 25, "truncated or not an image", "frames skipped"),
+                ("label", 28, "truncated or not an image", "label images unusable")):
+            self.assert_logged("sensor_replay", f"{data.image(part, frame)}: {problem}", f"{counted}: {problem}: 1")
         self.assert_logged("sensor_replay", "frame 30 of 30")
         self.assert_logged("slam", "frames dropped: no depth image for a colour image: 3")
         self.assert_logged("semantic_mapper", "pixels unlabelled: label not in the list: ")

@@ -42,4 +42,4 @@ class BenchmarkTest(chain.ChainTest):
 
 
 if __name__ == "__main__":
-    chain.main(needs_recordings=False)
+    chain.main()

@@ -9,8 +9,7 @@ from pathlib import Path
 
 import chain
 
-PARAMETRIC = ("--set", "simulator.world.furniture_folder=/nowhere")
-FURNITURE = {"installed": (), "parametric": PARAMETRIC}
+FURNITURE = {"installed": (), "parametric": chain.NO_FURNITURE}
 IS_INSTALLED = Path("/usr/share/sweethome3d/furniture").is_dir()
 JOBS = (("large_building", "installed"), ("large_building", "parametric"), ("apartment", "installed"),
         ("apartment", "parametric"), ("blank_corridor", "installed"), ("blank_corridor", "parametric"))
@@ -65,4 +64,4 @@ class BundledScenesTest(chain.ChainTest):
 
 
 if __name__ == "__main__":
-    chain.main(needs_recordings=False)
+    chain.main()

@@ -1,9 +1,11 @@
-"""What the integration tests share: the launcher, single processes, recorded data and run folders.
+"""What the integration tests share: the launcher, single processes, a recording and run folders.
 
 Every process that a test starts carries the environment variable LAPIS_TEST_RUN with a value of its own, by which what
 was left behind is found, and only such processes are ever ended.
 """
 import contextlib
+import fcntl
+import functools
 import json
 import os
 import select
@@ -20,10 +22,6 @@ from pathlib import Path
 
 REPOSITORY = Path(__file__).resolve().parents[2]
 BIN = Path(os.environ.get("LAPIS_BIN", REPOSITORY / "build/release/bin"))
-DATA = Path(os.environ.get("LAPIS_TEST_DATA", REPOSITORY.parent / "shared/data"))
-REDWOOD = DATA / "rgbd/redwood_livingroom1"
-AWS = DATA / "rgbd/aws_small_house_loop"
-AWS_CLASSES = DATA / "environments/aws_small_house/classes.csv"
 COMPONENTS = ("slam", "semantic_mapper", "evaluator", "sensor_replay")
 # A scene file: two rooms that are quickly explored.
 FLAT = f"""labels: {REPOSITORY}/config/labels/mpcat40.yaml
@@ -40,6 +38,15 @@ pictures:
 starts:
   - {{at: [2, 1.2], yaw_deg: 90}}
 """
+# The same, furnished, and a tour that comes back to where it was: what `recording` is made of.
+FURNISHED_FLAT = FLAT + """furniture:
+  - {class: sofa, room: living, wall: north, x: 1.2}
+  - {id: table, class: table, size: [0.8, 0.5, 0.7], room: living, wall: west, y: 0.7}
+  - {class: plant, on: table}
+  - {class: chest_of_drawers, room: hall, wall: north, x: 5.1}
+tour: [[2.8, 1.2], [2.4, 1.8], [2, 1.2], [2.8, 1.2]]
+"""
+NO_FURNITURE = ("--set", "simulator.world.furniture_folder=/nowhere")  # simple shapes: the same on every machine
 # What a run folder has, and what of it is equal to the byte in a repeated run (docs/evaluation.md).
 FILES = ("trajectory_estimate.txt", "trajectory_ground_truth.txt", "keyframes.txt", "pose_graph.g2o", "slam.lapis",
          "map.lapis", "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "figures/map.png",
@@ -52,13 +59,36 @@ MEASURED_BY_THE_CLOCK = {"real_time_factor", "wall_time_s", "cpu_ms_per_frame", 
 SKIPPED = 77  # SKIP_RETURN_CODE of ctest
 
 
-def main(needs_recordings=True):
-    """Runs the tests of the calling module; skips them, loudly, where the recorded data is not there."""
-    missing = [str(folder) for folder in (REDWOOD, AWS) if needs_recordings and not folder.is_dir()]
+def main(needed=()):
+    """Runs the tests of the calling module; skips them, loudly, where a file or folder that they need is missing."""
+    missing = [str(folder) for folder in needed if not folder.exists()]
     if missing:
-        print(f"SKIPPED [integration] no recorded data at {', '.join(missing)}; set LAPIS_TEST_DATA")
+        print(f"SKIPPED: no recorded data at {', '.join(missing)}; set LAPIS_TEST_DATA to the folder that has it")
         sys.exit(SKIPPED)
     unittest.main(verbosity=2)
+
+
+@functools.cache
+def recording():
+    """Folder of a labelled recording with ground truth, in the layout of the TUM RGB-D benchmark: the tour of
+    FURNISHED_FLAT. It is kept beside the programs, and made when there is none yet or the simulator is newer."""
+    folder = BIN.parent / "recordings/flat"
+    folder.mkdir(parents=True, exist_ok=True)
+    scene, made = folder / "flat.yaml", folder / "flat_tour"
+    simulator = BIN / "lapis_simulator"
+    with open(folder / "lock", "w", encoding="utf-8") as lock:
+        fcntl.flock(lock, fcntl.LOCK_EX)  # tests may run at the same time
+        newest = max(file.stat().st_mtime for file in (simulator, Path(__file__)))
+        if not made.is_dir() or (made / "groundtruth.txt").stat().st_mtime < newest:
+            scene.write_text(FURNISHED_FLAT, encoding="utf-8")
+            part = folder / "part"
+            for old in (part, made):
+                shutil.rmtree(old, ignore_errors=True)
+            subprocess.run([simulator, scene, "--export-tum", part, *NO_FURNITURE,
+                            "--set", f"simulator.world.light_folder={folder / 'light'}"],
+                           check=True, stdout=subprocess.DEVNULL, timeout=150)
+            part.rename(made)
+    return made
 
 
 class Process:
@@ -186,6 +216,11 @@ def wait_until_gone(run, seconds=20.0):
 
 def metrics_of(folder):
     return json.loads((Path(folder) / "metrics.json").read_text(encoding="utf-8"))
+
+
+def print_figures(name, metrics):
+    for key, value in metrics.items():
+        print(f"{name:24}{key:34}{value:.4f}" if isinstance(value, float) else f"{name:24}{key:34}{value}")
 
 
 def is_map_whole(file):

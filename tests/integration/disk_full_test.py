@@ -43,8 +43,7 @@ class DiskFullTest(chain.ChainTest):
         self.disk = SmallDisk(self.folder / "disk", self.folder / "disk.log")
         self.addCleanup(self.disk.holder.kill)
         if not self.disk.is_mounted:
-            print("SKIPPED [integration] disk_full: a tmpfs cannot be mounted here (needs root):",
-                  self.disk.holder.output())
+            print("SKIPPED: a tmpfs cannot be mounted here (needs root):", self.disk.holder.output())
             raise unittest.SkipTest("a tmpfs cannot be mounted here (needs root)")
         self.probe = self.started(chain.Process([chain.BIN / "lapis_stamp_probe"], self.folder / "probe.log"))
         self.assertTrue(self.probe.wait_for_text("stamp_probe: ready"), self.probe.output())
@@ -63,8 +62,8 @@ class DiskFullTest(chain.ChainTest):
         return process
 
     def play(self, readers):
-        self.started(chain.start("sensor_replay", self.folder / "sensor_replay.log", chain.AWS, "--rate", "1",
-                                 "--set", f"sensor_replay.wait_for_readers={readers}"))
+        self.started(chain.start("sensor_replay", self.folder / "sensor_replay.log", chain.recording(),
+                                 "--rate", "1", "--set", f"sensor_replay.wait_for_readers={readers}"))
 
 
 class MapperDiskFullTest(DiskFullTest):

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""explore.sh in simulated buildings. Without the furniture package, so that it is the same everywhere."""
+"""explore.sh: in a flat of two rooms, and, as a test of its own that takes minutes, in a bundled building. Without the
+furniture package, so that it is the same everywhere."""
 import collections
 import csv
 import math
@@ -8,7 +9,6 @@ import struct
 
 import chain
 
-NO_FURNITURE = ("--set", "simulator.world.furniture_folder=/nowhere")
 COMPONENTS = ("slam", "semantic_mapper", "planner", "controller", "evaluator", "simulator")
 FILES = chain.FILES + chain.FILES_OF_LABELS + chain.FILES_OF_TRUTH + ("decisions.csv", "figures/decision.png")
 SENSING_RANGE_M = 5.0  # robot.sensing_range_m
@@ -25,7 +25,12 @@ def table(file):
         return list(csv.DictReader(stream))
 
 
-class ExploreTest(chain.ChainTest):
+class ExploreCase(chain.ChainTest):
+    def write_flat(self):
+        scene = self.folder / "flat.yaml"
+        scene.write_text(chain.FLAT, encoding="utf-8")
+        return scene
+
     def explore(self, name, *options):
         """Explores to the end, demands success and returns the run folder."""
         out = self.folder / name
@@ -55,8 +60,8 @@ class ExploreTest(chain.ChainTest):
             self.assertEqual(sum(row["is_chosen"] == "1" for row in rows), 1 if possible else 0, number)
 
     # The folders have the same last name, because a figure has it in its title.
-    def test_the_robot_explores_and_the_same_seed_gives_the_same_bytes(self):
-        options = ("--duration", "25", "--seed", "3", *NO_FURNITURE)
+    def explore_twice(self, *options):
+        """Explores twice and demands the same bytes; returns a run folder and its metrics."""
         first, second = (self.explore(name, *options) for name in ("first/run", "second/run"))
         self.assert_files(first)
         self.assert_decisions(first)
@@ -64,6 +69,12 @@ class ExploreTest(chain.ChainTest):
         metrics = chain.metrics_of(first)
         self.assertEqual((metrics["exit_reason"], metrics["planner_state"]), ("completed", "EXPLORING"))
         self.assertEqual(metrics["collisions"], 0)
+        return first, metrics
+
+
+class LongExploreTest(ExploreCase):
+    def test_the_robot_explores_and_the_same_seed_gives_the_same_bytes(self):
+        first, metrics = self.explore_twice("--duration", "25", "--seed", "3", *chain.NO_FURNITURE)
         self.assertEqual(set(metrics["cpu_ms_per_frame"]), set(COMPONENTS))
         self.assertEqual([name for name, value in metrics["cpu_ms_per_frame"].items() if value is None], [])
         self.assertGreater(metrics["decision_time_p95_s"], 0.0)
@@ -82,10 +93,13 @@ class ExploreTest(chain.ChainTest):
         self.assertIn(b"property ushort label", head)
         return [vertex[:2] for vertex in struct.iter_unpack("<fffBBBHf", body)]
 
+
+class ExploreTest(ExploreCase):
+    def test_the_same_seed_gives_the_same_bytes(self):
+        self.explore_twice("--scene", self.write_flat(), "--duration", "10", "--seed", "3")
+
     def test_done_when_nothing_is_left(self):
-        scene = self.folder / "flat.yaml"
-        scene.write_text(chain.FLAT)
-        folder = self.explore("run", "--scene", scene, "--method", "nearest", "--duration", "120")
+        folder = self.explore("run", "--scene", self.write_flat(), "--method", "nearest", "--duration", "120")
         manifest = (folder / "manifest.yaml").read_text()
         self.assertIn("  planner_state: DONE\n  planner_reason: \"nothing is left that can be reached\"\n", manifest)
         metrics = chain.metrics_of(folder)
@@ -94,15 +108,15 @@ class ExploreTest(chain.ChainTest):
         self.assertLess(metrics["duration_s"], 119.0)
 
     def test_by_the_wall_clock_it_ends_when_the_time_is_up(self):
-        folder = self.explore("run", *NO_FURNITURE, "--freerun", "--duration", "20")
+        folder = self.explore("run", "--scene", self.write_flat(), "--freerun", "--duration", "15")
         self.assert_files(folder)
         metrics = chain.metrics_of(folder)
         self.assertEqual((metrics["planner_state"], metrics["collisions"]), ("EXPLORING", 0))
-        self.assertGreater(metrics["duration_s"], 15.0)
+        self.assertGreater(metrics["duration_s"], 10.0)
         self.assertGreater(metrics["decisions"], 0)
 
     def test_an_interrupted_run_has_all_that_a_whole_one_has(self):
-        run = explore(self.folder / "run", *NO_FURNITURE, "--method", "mi_only")
+        run = explore(self.folder / "run", "--scene", self.write_flat(), "--method", "mi_only")
         self.addCleanup(run.kill)
         driven = re.compile(r" [1-9]\d*\.\d m driven, .* EXPLORING: ")
         self.assertTrue(run.wait_for(lambda lines: any(driven.search(line) for line in lines), 90), run.output())
@@ -120,4 +134,4 @@ class ExploreTest(chain.ChainTest):
 
 
 if __name__ == "__main__":
-    chain.main(needs_recordings=False)
+    chain.main()

@@ -37,7 +37,7 @@ class KillEachTest(chain.ChainTest):
         log = self.folder / f"{name}_{len(list(self.folder.iterdir()))}.log"
         arguments = ["--set", f"{name}.output_dir={self.folder / 'run'}"]
         if name == "sensor_replay":
-            arguments = [chain.AWS, "--rate", "1", "--labels", chain.AWS_CLASSES,
+            arguments = [chain.recording(), "--rate", "1", "--labels", chain.recording() / "classes.csv",
                          "--set", "sensor_replay.wait_for_readers=3"]
         self.processes[name] = chain.start(name, log, *arguments)
 

@@ -7,9 +7,9 @@ import chain
 
 
 class LauncherTest(chain.ChainTest):
-    def start_replay(self, name="run", dataset=chain.REDWOOD, progress_lines=1):
+    def start_replay(self, name="run", progress_lines=1):
         """The launcher, while it plays: so many progress lines have come, the first one with the first frame."""
-        run = chain.replay(dataset, self.folder / name)
+        run = chain.replay(chain.recording(), self.folder / name)
         self.addCleanup(run.kill)
         progress = " sensor_replay: frame "
         is_playing = run.wait_for(lambda lines: sum(progress in line for line in lines) >= progress_lines)
@@ -40,8 +40,8 @@ class LauncherTest(chain.ChainTest):
     def test_interrupted(self):
         for number, status in ((signal.SIGINT, 130), (signal.SIGTERM, 143)):
             with self.subTest(number.name):
-                # The second line comes after two seconds of work; the longer recording is far from its end then.
-                run = self.start_replay(number.name, chain.AWS, progress_lines=2)
+                # The second line comes after two seconds of work; the recording is far from its end then.
+                run = self.start_replay(number.name, progress_lines=2)
                 self.assertEqual(run.stop(number), status, run.output())
                 self.assert_no_orphan(run)
                 self.assertIn(f"interrupted by {number.name}", run.output())
@@ -66,20 +66,20 @@ class LauncherTest(chain.ChainTest):
     def test_run_folder_that_cannot_be_made(self):
         file = self.folder / "file"
         file.touch()
-        run = chain.replay(chain.REDWOOD, file / "run", log=self.folder / "run.log")
+        run = chain.replay(chain.recording(), file / "run", log=self.folder / "run.log")
         self.assert_refused(run, f"{file}/run cannot be made a run folder", "--out")
 
     def test_unknown_keys(self):
-        run = chain.replay(chain.REDWOOD, self.folder / "run", "--set", "resolution_m=0.1")
+        run = chain.replay(chain.recording(), self.folder / "run", "--set", "resolution_m=0.1")
         self.assert_refused(run, "resolution_m=0.1: unknown key", "semantic_mapper.")
-        run = chain.replay(chain.REDWOOD, self.folder / "run", "--set", "slam.nonsense=1")
+        run = chain.replay(chain.recording(), self.folder / "run", "--set", "slam.nonsense=1")
         self.assert_refused(run, "slam.nonsense", "unknown")
-        run = chain.replay(chain.REDWOOD, self.folder / "run", "--set", "semantic_mapper.resolution_m=0")
+        run = chain.replay(chain.recording(), self.folder / "run", "--set", "semantic_mapper.resolution_m=0")
         self.assert_refused(run, "semantic_mapper.resolution_m", "0.02")
 
     def test_command_line(self):
-        self.assert_refused(chain.replay(chain.REDWOOD, self.folder / "run", "--duration"), "--duration needs a value")
-        self.assert_refused(chain.replay(chain.REDWOOD, self.folder / "run", "--fast"), "unknown option --fast")
+        self.assert_refused(chain.replay(chain.recording(), self.folder / "run", "--duration"), "--duration needs a value")
+        self.assert_refused(chain.replay(chain.recording(), self.folder / "run", "--fast"), "unknown option --fast")
 
 
 if __name__ == "__main__":

@@ -7,7 +7,6 @@ import signal
 
 import chain
 
-NO_FURNITURE = ("--set", "simulator.world.furniture_folder=/nowhere")
 VICTIMS = ("slam", "semantic_mapper", "planner", "controller", "evaluator")  # slam first: with it the map begins anew
 STOPS_WITHIN_S = 0.3
 SPEAKS_FOR = {"slam": "pose", "semantic_mapper": "map", "planner": "path"}
@@ -24,7 +23,7 @@ class Arrival:
         self.moves = any(float(word) != 0.0 for word in words[3:])
 
 
-class RestartTest(chain.ChainTest):
+class RestartCase(chain.ChainTest):
     def start_probe(self):
         self.probe = chain.Process([chain.BIN / "lapis_stamp_probe"], self.folder / "probe.log")
         self.addCleanup(self.probe.kill)
@@ -61,6 +60,48 @@ class RestartTest(chain.ChainTest):
         self.assertEqual(list(folder.rglob("*.part*")), [])
         self.assertGreater(chain.metrics_of(folder)["frames_tracked"], 0)
 
+    def arrivals(self, begin):
+        return [Arrival(line) for line in self.probe.lines()[begin:] if line.startswith("arrived ")]
+
+    def wait_for_commands(self, fits, count=10, besides=()):
+        """Waits until that many commands in a row have come from now on that fit, and something of all `besides`."""
+        begin = len(self.probe.lines())
+
+        def find(_):
+            arrivals = self.arrivals(begin)
+            commands = [arrival for arrival in arrivals if arrival.what == "command"]
+            has_all = set(besides) <= {arrival.what for arrival in arrivals}
+            return has_all and len(commands) >= count and all(fits(command) for command in commands[-count:])
+        self.assertTrue(self.probe.wait_for(find, 60), self.log_of("controller"))
+
+
+class RestartTest(RestartCase):
+    def test_without_the_simulator_there_is_no_run(self):
+        run = self.explore(*chain.NO_FURNITURE)
+        self.wait_for_progress(run)
+        self.kill(run, "simulator")
+        self.assertEqual(run.wait(), 1, run.output())
+        self.assert_no_orphan(run)
+        self.assertIn("simulator: failed with status 137", run.output())
+        self.assertIn("  simulator: 137\n", (self.folder / "run/manifest.yaml").read_text(encoding="utf-8"))
+        self.assertTrue(chain.is_map_whole(self.folder / "run/map.lapis"))
+        self.assertGreater(chain.metrics_of(self.folder / "run")["frames_tracked"], 0)
+
+    def test_the_fourth_death_ends_the_run(self):
+        self.start_probe()
+        run = self.explore(*chain.NO_FURNITURE, "--freerun")
+        for number in range(1, 4):
+            self.wait_for_commands(lambda _: True)
+            self.kill(run, "controller")
+            self.assertTrue(run.wait_for_text(f"started again ({number} of 3)"), run.output())
+        self.wait_for_commands(lambda _: True)
+        self.kill(run, "controller")
+        self.assertEqual(run.wait(), 1, run.output())
+        self.assertIn("controller: ended early with status 137", run.output())
+        self.assert_no_orphan(run)
+
+
+class LongRestartTest(RestartCase):
     def test_exploration_completes_although_each_process_is_killed_in_turn(self):
         scene = self.folder / "flat.yaml"
         scene.write_text(chain.FLAT.replace("[4.12, 0, 5.6, 3]", "[4.12, 0, 10, 3]"), encoding="utf-8")
@@ -83,33 +124,9 @@ class RestartTest(chain.ChainTest):
         self.assertRegex(self.log_of("semantic_mapper"), r"map\.lapis: [1-9]\d* frames, [1-9]\d* blocks")
         self.assertTrue((self.folder / "run/map.1.lapis").is_file())
 
-    def test_without_the_simulator_there_is_no_run(self):
-        run = self.explore(*NO_FURNITURE)
-        self.wait_for_progress(run)
-        self.kill(run, "simulator")
-        self.assertEqual(run.wait(), 1, run.output())
-        self.assert_no_orphan(run)
-        self.assertIn("simulator: failed with status 137", run.output())
-        self.assertIn("  simulator: 137\n", (self.folder / "run/manifest.yaml").read_text(encoding="utf-8"))
-        self.assertTrue(chain.is_map_whole(self.folder / "run/map.lapis"))
-        self.assertGreater(chain.metrics_of(self.folder / "run")["frames_tracked"], 0)
-
-    def test_the_fourth_death_ends_the_run(self):
-        self.start_probe()
-        run = self.explore(*NO_FURNITURE, "--freerun")
-        for number in range(1, 4):
-            self.wait_for_commands(lambda _: True)
-            self.kill(run, "controller")
-            self.assertTrue(run.wait_for_text(f"started again ({number} of 3)"), run.output())
-        self.wait_for_commands(lambda _: True)
-        self.kill(run, "controller")
-        self.assertEqual(run.wait(), 1, run.output())
-        self.assertIn("controller: ended early with status 137", run.output())
-        self.assert_no_orphan(run)
-
     def test_by_the_wall_clock_the_robot_is_stopped_within_300_ms_and_goes_on(self):
         self.start_probe()
-        run = self.explore(*NO_FURNITURE, "--freerun")
+        run = self.explore(*chain.NO_FURNITURE, "--freerun")
         for victim, what in SPEAKS_FOR.items():
             for _ in range(TRIES):
                 self.wait_for_commands(lambda command: command.moves, besides=[what])
@@ -124,20 +141,6 @@ class RestartTest(chain.ChainTest):
         self.wait_for_commands(lambda command: command.moves)
         self.assertEqual(run.press_ctrl_c(60), 130, run.output())
         self.assert_no_orphan(run)
-
-    def arrivals(self, begin):
-        return [Arrival(line) for line in self.probe.lines()[begin:] if line.startswith("arrived ")]
-
-    def wait_for_commands(self, fits, count=10, besides=()):
-        """Waits until that many commands in a row have come from now on that fit, and something of all `besides`."""
-        begin = len(self.probe.lines())
-
-        def find(_):
-            arrivals = self.arrivals(begin)
-            commands = [arrival for arrival in arrivals if arrival.what == "command"]
-            has_all = set(besides) <= {arrival.what for arrival in arrivals}
-            return has_all and len(commands) >= count and all(fits(command) for command in commands[-count:])
-        self.assertTrue(self.probe.wait_for(find, 60), self.log_of("controller"))
 
     def kill_and_watch(self, run, victim, what):
         """Kills a process, which does not come back before the robot was seen to stand still for a second. Returns the
@@ -159,4 +162,4 @@ class RestartTest(chain.ChainTest):
 
 
 if __name__ == "__main__":
-    chain.main(needs_recordings=False)
+    chain.main()

@@ -17,14 +17,14 @@ def frames_in(map_file):
 
 class ResumeTest(chain.ChainTest):
     def test_goes_on_in_the_run_folder_of_before(self):
-        first = self.play(chain.AWS, "run", "--duration", str(FIRST_S))
+        first = self.play(chain.recording(), "run", "--duration", str(FIRST_S))
         saved = (first / "slam.lapis").read_bytes()
         poses = (first / "keyframes.txt").read_text().splitlines()
         kept, kept_map = self.folder / "kept.lapis", self.folder / "kept_map.lapis"
         kept.write_bytes(saved)
         kept_map.write_bytes((first / "map.lapis").read_bytes())
 
-        second = self.play(chain.AWS, "run", "--start", str(FIRST_S), "--duration", "3",
+        second = self.play(chain.recording(), "run", "--start", str(FIRST_S), "--duration", "3",
                            "--set", f"slam.resume_from={first / 'slam.lapis'}",
                            "--set", f"semantic_mapper.resume_from={first / 'map.lapis'}")
         metrics = chain.metrics_of(second)
@@ -38,7 +38,7 @@ class ResumeTest(chain.ChainTest):
         self.assertGreater(frames_in(second / "map.lapis"), frames_in(kept_map), "the map has the frames of both runs")
         self.assertFalse((second / "map.1.lapis").exists())
 
-        again = self.play(chain.AWS, "again/run", "--start", str(FIRST_S), "--duration", "3",
+        again = self.play(chain.recording(), "again/run", "--start", str(FIRST_S), "--duration", "3",
                           "--set", f"slam.resume_from={kept}", "--set", f"semantic_mapper.resume_from={kept_map}")
         self.assert_same_run(second, again)
 

@@ -6,7 +6,7 @@ import signal
 import chain
 
 SCENE = "apartment"
-OPTIONS = ("--set", "simulator.world.furniture_folder=/nowhere", "--seed", "3")
+OPTIONS = (*chain.NO_FURNITURE, "--seed", "3")
 
 
 class SceneTest(chain.ChainTest):
@@ -65,4 +65,4 @@ class SceneTest(chain.ChainTest):
 
 
 if __name__ == "__main__":
-    chain.main(needs_recordings=False)
+    chain.main()

@@ -4,7 +4,7 @@ set -euo pipefail
 
 source_dir=$1 bin=$2 work=$3
 if ! command -v node >/dev/null || ! command -v npm >/dev/null; then
-  echo "SKIPPED: the interop tier needs node and npm (Debian: apt install nodejs npm); ROS 2 visibility was NOT tested"
+  echo "SKIPPED: node or npm is missing (Debian: apt install nodejs npm); ROS 2 visibility was NOT tested"
   exit 77
 fi
 if [ -z "${LAPIS_INTEROP_INSIDE:-}" ]; then

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Prints the table of benchmark.sh from run folders DIR/SCENE/METHOD/seed_N, and writes it as CSV.
+"""Prints the table of benchmark.sh from run folders, and writes it as CSV.
 
 usage: benchmark_table.py CSV_FILE RUN_FOLDER|CSV_FILE...
 
-CSV files that it wrote earlier, on other machines for example, may stand among the folders.
+CSV files that it wrote earlier, on other machines for example, may stand among the folders. What a run is of is in its
+metrics.json and manifest.yaml; the names of folders say nothing.
 """
 
 import collections
@@ -48,6 +49,12 @@ def time_to(metrics, key):
     return NEVER if metrics[key] is None else metrics[key]
 
 
+def scene_name(facts):
+    """A scene file by its name."""
+    name = pathlib.PurePath(str(facts.get("scene") or facts.get("data_set") or "-")).name
+    return name.removesuffix(".yaml")
+
+
 class Run:
     """What a run is of, how it ended, and its values by column; None where it did not give one."""
 
@@ -72,9 +79,15 @@ class FolderRun(Run):
         push = self._find("simulation.yaml", r"^hardest_push_m_s: (\S+)")
         if push is not None:
             self.metrics["hardest_push_m_s"] = float(push)
-        super().__init__((*folder.parts[-3:-1], folder.name.removeprefix("seed_")), self._outcome(),
-                         self._find("manifest.yaml", r'^commit: "(.*)"$'),
-                         {name: self._value(function) for name, (_, function) in COLUMNS.items()})
+        of = self.metrics.get("run") or self._facts()
+        super().__init__((scene_name(of), of.get("method", "tour"), str(of.get("seed", "-"))), self._outcome(),
+                         of.get("commit"), {name: self._value(function) for name, (_, function) in COLUMNS.items()})
+
+    def _facts(self):
+        """Of a run without metrics."""
+        section = self._find("manifest.yaml", r"^run:\n((?:  .*\n)*)") or ""
+        return {name: value if value[0] != '"' else json.loads(value)
+                for name, value in re.findall(r"^  (\w+): (.+)$", section, re.MULTILINE)}
 
     def _outcome(self):
         if not (self.folder / "identity").exists():  # written when the run has succeeded; others have metrics, too

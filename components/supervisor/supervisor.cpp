@@ -73,12 +73,13 @@ Supervisor::Supervisor(System system, Request request)
       heartbeats_(participant_, topics::kHeartbeat, [this](const auto& heartbeat) { hear(heartbeat); }) {
   executor_.add(heartbeats_);
   for (const auto& name : system_.processes) processes_.emplace_back().name = name;
-  const Settings settings = all_settings();
-  collect_arguments(settings);
-  usual_silence_s_ = usual_silence();
+  settings_ = all_settings();
   std::vector<std::filesystem::path> kept;  // an earlier run's maps that this one resumes
-  for (const auto& setting : settings) kept.emplace_back(setting.value);
+  for (const auto& setting : settings_) kept.emplace_back(setting.value);
   folder_.clear(system_.results, kept);
+  write_manifest();  // of a run that does not come about, too
+  collect_arguments();
+  usual_silence_s_ = usual_silence();
 }
 
 /// In the order in which they win.
@@ -96,11 +97,11 @@ Settings Supervisor::all_settings() const {
 }
 
 /// Of each process, from what it can be set to. Everybody who writes files gets the run folder.
-void Supervisor::collect_arguments(const Settings& settings) {
+void Supervisor::collect_arguments() {
   const auto program = [&](const std::string& name) { return request_.programs / ("lapis_" + name); };
   Configurations known;
   for (const auto& process : processes_) known[process.name] = print_configuration(program(process.name), {}).values;
-  const auto routed = route(known, settings);
+  const auto routed = route(known, settings_);
   auto files = system_.configuration;
   files.insert(files.end(), request_.configuration.begin(), request_.configuration.end());
   std::string stages;
@@ -141,6 +142,9 @@ double Supervisor::usual_silence() const {
 std::map<std::string, std::string> Supervisor::facts() const {
   std::map<std::string, std::string> facts = {{"system", system_.name}};
   for (const auto& [name, key] : system_.facts) {
+    for (const auto& setting : settings_) {
+      if (setting.key == key) facts[name] = setting.value;
+    }
     for (const auto& process : processes_) {
       const auto value = process.configuration.values.find(key);
       if (value != process.configuration.values.end()) facts[name] = value->second;

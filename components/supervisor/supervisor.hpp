@@ -58,7 +58,7 @@ class Supervisor {
 
   // Preparation
   Settings all_settings() const;
-  void collect_arguments(const Settings& settings);
+  void collect_arguments();
   double usual_silence() const;
   std::map<std::string, std::string> facts() const;
 
@@ -90,6 +90,7 @@ class Supervisor {
   Request request_;
   std::string title_;  ///< in front of messages
   RunFolder folder_;
+  Settings settings_;  ///< of the run, in the order in which they win
   std::vector<Process> processes_;
   double usual_silence_s_ = 0.0;
 

@@ -11,8 +11,8 @@ class LauncherTest(chain.ChainTest):
         """The launcher, while it plays: so many progress lines have come, the first one with the first frame."""
         run = chain.replay(chain.recording(), self.folder / name)
         self.addCleanup(run.kill)
-        progress = " sensor_replay: frame "
-        is_playing = run.wait_for(lambda lines: sum(progress in line for line in lines) >= progress_lines)
+        progress = "frame "
+        is_playing = run.wait_for(lambda lines: sum(line.startswith(progress) for line in lines) >= progress_lines)
         self.assertTrue(is_playing, run.output())
         return run
 

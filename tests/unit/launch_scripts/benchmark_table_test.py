@@ -20,10 +20,13 @@ class BenchmarkTableTest(unittest.TestCase):
         self.folder = Path(folder.name)
 
     def run_folder(self, name, has_succeeded=True, **changes):
-        folder = self.folder / name
-        folder.mkdir(parents=True)
-        (folder / "metrics.json").write_text(json.dumps(METRICS | changes))
-        (folder / "manifest.yaml").write_text('version: "0.1.0"\ncommit: "abc123"\n')
+        """Its name in the file system says nothing of the run."""
+        scene, method, seed = name.split("/")
+        run = {"system": "explore", "scene": f"/scenes/{scene}.yaml", "method": method,
+               "seed": int(seed.removeprefix("seed_")), "commit": "abc123"}
+        folder = self.folder / f"folder_{len(list(self.folder.iterdir()))}"
+        folder.mkdir()
+        (folder / "metrics.json").write_text(json.dumps(METRICS | {"run": run} | changes))
         (folder / "simulation.yaml").write_text("hardest_push_m_s: 0.25  # speed towards what was touched\n")
         if has_succeeded:
             (folder / "identity").write_text("0\n")
@@ -55,6 +58,16 @@ class BenchmarkTableTest(unittest.TestCase):
         self.assertEqual(status, 1)
         self.assertEqual([row["outcome"] for row in rows], ["done", "FAILED", "1 done, 1 FAILED"])
         self.assertEqual(rows[-1]["explored %"], "90.0")
+
+    def test_a_run_without_metrics_is_told_by_its_manifest(self):
+        folder = self.folder / "somewhere"
+        folder.mkdir()
+        (folder / "manifest.yaml").write_text('version: "lapis 0.1.0"\nrun:\n  commit: "abc123"\n  method: "tare"\n'
+                                              '  scene: "flat"\n  seed: 4\nexit_status:\n  slam: null\n')
+        status, rows = self.table("runs.csv", folder)
+        self.assertEqual(status, 1)
+        self.assertEqual([rows[0][name] for name in ("scene", "method", "seed", "outcome", "commit")],
+                         ["flat", "tare", "4", "FAILED", "abc123"])
 
     def test_tables_can_be_put_together(self):
         runs = [self.run_folder("flat/lapis/seed_1"), self.run_folder("flat/lapis/seed_2", time_to_80_s=None),

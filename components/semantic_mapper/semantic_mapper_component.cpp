@@ -430,7 +430,7 @@ void SemanticMapperComponent::finish() {
   if (graph_) follow_graph(*graph_);
   flush();
   publish_tiles();
-  for (dds::Writer* writer : std::initializer_list<dds::Writer*>{&tiles_, &map_state_}) {
+  for (dds::Writer* writer : std::initializer_list<dds::Writer*>{&map_description_, &tiles_, &map_state_}) {
     writer->wait_until_acknowledged(kFarewell_s);
   }
   if (config_.output_dir.empty()) return;

@@ -11,8 +11,8 @@ bool is_on_grid(const geometry::Pose& T, double resolution_m);
 /// Adds the counts of `other` to those of `sum`. A voxel of `sum` gets the counts of the one voxel of `other` in which
 /// its centre lies. On the grid this is exact: merging maps equals building one map from all frames. Elsewhere it is
 /// nearest neighbour resampling: surfaces move by up to half the diagonal of a voxel, and a voxel of `other` may be
-/// used twice or not at all. Classes are united; the sensor model stays that of `sum`, but for the number of classes. How
-/// frames entered the maps is known of the sum when it was the same for both.
+/// used twice or not at all. Classes are united; the sensor model stays that of `sum`, but for the number of classes.
+/// How frames entered the maps is known of the sum when it was the same for both.
 /// @param T_map_other the frame of `other` in that of `sum`
 /// Throws std::runtime_error, before anything is changed, when resolutions differ, only one is fused by bki, a class id
 /// has two names, or a count would not fit 32 bits.

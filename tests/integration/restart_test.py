@@ -48,6 +48,11 @@ class RestartCase(chain.ChainTest):
                                                          for line in all_lines[begin:]) >= lines, 60)
         self.assertTrue(is_going_on, run.output())
 
+    def wait_for_saved_maps(self, run):
+        """Waits until the map that began with slam's restart is saved beside the one of before."""
+        maps = [self.folder / "run" / name for name in ("map.lapis", "map.1.lapis")]
+        self.assertTrue(run.wait_for(lambda _: all(file.is_file() for file in maps), 60), run.output())
+
     def log_of(self, name):
         return (self.folder / "run/logs" / f"{name}.log").read_text(encoding="utf-8")
 
@@ -109,6 +114,8 @@ class LongRestartTest(RestartCase):
                            "--set", "semantic_mapper.save_period_s=1")
         for victim in VICTIMS:  # soon one after the other: who dies when all is explored has nothing to go on with
             self.wait_for_progress(run, lines=2 if victim == "slam" else 1)
+            if victim == "semantic_mapper":
+                self.wait_for_saved_maps(run)
             self.assertNotIn("DONE", run.output())
             self.kill(run, victim)
             self.assertTrue(run.wait_for_text(f"{victim} ended with status 137 and is started again (1 of 3)"))

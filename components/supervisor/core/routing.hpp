@@ -28,5 +28,4 @@ std::map<std::string, Settings> route(const Configurations& known, const Setting
 /// Whether the process knows each of these top-level sections ("robot").
 bool knows_sections(const Configuration& configuration, const std::vector<std::string>& sections);
 
-
 }  // namespace lapis::supervisor

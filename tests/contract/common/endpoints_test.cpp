@@ -140,7 +140,7 @@ class Endpoints : public ::testing::TestWithParam<Process> {
     return words;
   }
   static Lines expected() {
-    Lines lines = writers(topics::kDiagnostics, topics::kAck, kRosGraph);
+    Lines lines = writers(topics::kDiagnostics, topics::kHeartbeat, topics::kAck, kRosGraph);
     const Lines tick = readers(topics::kTick);
     lines.insert(lines.end(), tick.begin(), tick.end());
     for (const Lines& more : GetParam().endpoints) lines.insert(lines.end(), more.begin(), more.end());

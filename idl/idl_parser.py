@@ -5,8 +5,8 @@ sequence<T>, sequence<T, N>, T name[N], comments. One file holds one package:
 
     module <package> { module msg | srv { module <Struct>_Constants { const ...; }; struct <Struct> { ...; }; }; };
 
-Everything else is an IdlError that names file and line. The parser is stricter than fastddsgen on purpose: what it
-accepts has one meaning in DDS, in ROS 2 .msg files and in type hashes.
+Everything else is an IdlError that names file and line: what the parser accepts has one meaning in DDS, in ROS 2 .msg
+files and in type hashes.
 """
 
 from __future__ import annotations

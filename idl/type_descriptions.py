@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """ROS 2 names, type hashes and schemas of the IDL files; python3 standard library only.
 
-The build calls `header` and `table`. By hand: `list`, `schema` and `ros2-package [--check]`.
+The build calls `cpp` and `table`. By hand: `list`, `schema` and `ros2-package [--check]`.
 """
 
 from __future__ import annotations
@@ -13,6 +13,7 @@ import json
 import pathlib
 import sys
 
+import cpp_types
 from idl_parser import Field, IdlError, Library, Struct, Type
 
 IDL_DIR = pathlib.Path(__file__).resolve().parent
@@ -144,30 +145,41 @@ def dds_name(struct: Struct) -> str:
     return f"{struct.package}::{struct.section}::dds_::{struct.name}_"
 
 
-def header_text(library: Library, structs: list[Struct], source: str, type_header: str) -> str:
-    lines = [f"// Made from {source} by type_descriptions.py.", "#pragma once", "",
-             f'#include "{type_header}"', '#include "idl/type_support.hpp"', ""]
+def header_text(library: Library, structs: list[Struct], source: str) -> str:
+    package = structs[0].package
+    used = {f.type.name.split("/")[0] for s in structs for f in s.fields if f.type.is_struct} - {package}
+    lines = [f"// Made from {source} by type_descriptions.py.", "#pragma once", "", "#include <array>",
+             "#include <cstdint>", "#include <string>", "#include <utility>", "#include <vector>", "",
+             *(f'#include "idl/{name}.hpp"' for name in sorted(used)), '#include "idl/type_support.hpp"', ""]
+    for struct in structs:
+        lines += cpp_types.declarations(struct)
     names = services(structs)
     for service in names:
         package, _, name = service.split("/")
         lines.append(f"namespace {package}::srv {{ struct {name}; }}")
     lines += ["", "namespace lapis::idl {", ""]
     for struct in structs:
-        cpp = f"::{struct.package}::{struct.section}::{struct.name}"
         is_keyed = "true" if any(f.is_key for f in struct.fields) else "false"
-        lines += ["template <>", f"struct TypeSupport<{cpp}> {{",
-                  f"  using PubSubType = {cpp}PubSubType;",
+        lines += ["template <>", f"struct TypeSupport<{cpp_types.cpp_name(struct.ros_name)}> {{",
                   f'  static constexpr const char* kRosName = "{struct.ros_name}";',
                   f'  static constexpr const char* kDdsName = "{dds_name(struct)}";',
                   f'  static constexpr const char* kHash = "{struct_hash(library, struct)}";',
                   f"  static constexpr bool kIsKeyed = {is_keyed};", "};", ""]
     for service in names:
-        cpp = "::" + service.replace("/", "::")
+        cpp = cpp_types.cpp_name(service)
         lines += ["template <>", f"struct ServiceSupport<{cpp}> {{",
                   f"  using Request = {cpp}_Request;", f"  using Response = {cpp}_Response;",
                   f'  static constexpr const char* kRosName = "{service}";',
                   f'  static constexpr const char* kHash = "{service_hash(library, service)}";', "};", ""]
     lines += ["}  // namespace lapis::idl", ""]
+    return "\n".join(lines)
+
+
+def source_text(structs: list[Struct], source: str) -> str:
+    lines = [f"// Made from {source} by type_descriptions.py.", f'#include "idl/{structs[0].package}.hpp"', "",
+             '#include "idl/cdr.hpp"', ""]
+    for struct in structs:
+        lines += cpp_types.definitions(struct)
     return "\n".join(lines)
 
 
@@ -286,10 +298,10 @@ def parse_arguments(arguments) -> argparse.Namespace:
     command = commands.add_parser("schema", help="print the ros2msg schema of one type")
     command.add_argument("type", help="ROS name, as sensor_msgs/msg/Image")
     command.add_argument("idl", nargs="*", type=pathlib.Path, help="default: all packages of this folder")
-    command = commands.add_parser("header", help="write idl/<package>.hpp (called by the build)")
+    command = commands.add_parser("cpp", help="write the C++ of a package (called by the build)")
     command.add_argument("idl", type=pathlib.Path)
-    command.add_argument("--type-header", required=True, help="file of fastddsgen to include")
-    command.add_argument("--output", required=True, type=pathlib.Path)
+    command.add_argument("--header", required=True, type=pathlib.Path, help="idl/<package>.hpp")
+    command.add_argument("--source", required=True, type=pathlib.Path)
     command = commands.add_parser("table", help="write type_table.cpp (called by the build)")
     command.add_argument("idl", nargs="+", type=pathlib.Path)
     command.add_argument("--output", required=True, type=pathlib.Path)
@@ -312,8 +324,9 @@ def run(options: argparse.Namespace) -> int:
             print(f"unknown type {options.type!r}; `list` prints all", file=sys.stderr)
             return 1
         print(schema(library, library.structs[options.type]), end="")
-    elif options.command == "header":
-        write(options.output, header_text(library, structs, options.idl.name, options.type_header))
+    elif options.command == "cpp":
+        write(options.header, header_text(library, structs, options.idl.name))
+        write(options.source, source_text(structs, options.idl.name))
     elif options.command == "table":
         write(options.output, table_text(library, structs))
     else:

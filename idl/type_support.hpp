@@ -2,9 +2,11 @@
 
 namespace lapis::idl {
 
+class CdrReader;
+class CdrWriter;
+
 /// What the wire calls a message type. Every struct of every package has a specialisation, in "idl/<package>.hpp":
 ///
-///     using PubSubType = ...;                 Fast DDS's type support of T
 ///     static constexpr const char* kRosName;  "sensor_msgs/msg/Image"
 ///     static constexpr const char* kDdsName;  "sensor_msgs::msg::dds_::Image_", the registered type name
 ///     static constexpr const char* kHash;     "RIHS01_...", ROS 2's hash of the declaration

@@ -14,6 +14,7 @@
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
+#include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #if __has_include(<fastdds/config.hpp>)
 #define LAPIS_FASTDDS_3 1
@@ -50,7 +51,12 @@ template <class ReaderQos>
 void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
   qos.reliable_reader_qos().times.heartbeat_response_delay = response_delay;
 }
-using Payload = rtps::SerializedPayload_t&;
+/// `bytes`: of an empty message; samples that need more get more.
+inline void describe_type(fdds::TopicDataType& type, const char* name, std::size_t bytes, bool is_keyed) {
+  type.set_name(name);
+  type.max_serialized_type_size = static_cast<std::uint32_t>(bytes);
+  type.is_compute_key_provided = is_keyed;
+}
 inline void announce_no_type_information(fdds::TypeSupport&) {}
 inline void announce_no_type_information(fdds::DomainParticipantQos& qos) {
   qos.properties().properties().emplace_back("fastdds.type_propagation", "disabled");
@@ -77,7 +83,12 @@ template <class ReaderQos>
 void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
   qos.reliable_reader_qos().times.heartbeatResponseDelay = response_delay;
 }
-using Payload = rtps::SerializedPayload_t*;
+/// `bytes`: of an empty message; samples that need more get more.
+inline void describe_type(fdds::TopicDataType& type, const char* name, std::size_t bytes, bool is_keyed) {
+  type.setName(name);
+  type.m_typeSize = static_cast<std::uint32_t>(bytes);
+  type.m_isGetKeyDefined = is_keyed;
+}
 inline void announce_no_type_information(fdds::TypeSupport& type) {
   type->auto_fill_type_object(false);
   type->auto_fill_type_information(false);

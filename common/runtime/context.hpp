@@ -14,7 +14,8 @@
 #include "common/logging/rate_limit.hpp"
 #include "common/runtime/status.hpp"
 #include "common/time/clock.hpp"
-#include "common/topics.hpp"
+#include "idl/diagnostic_msgs.hpp"
+#include "idl/rosgraph_msgs.hpp"
 
 namespace lapis::runtime {
 

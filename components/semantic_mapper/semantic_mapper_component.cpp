@@ -7,6 +7,11 @@
 #include "common/mapping/map_file.hpp"
 #include "common/messages/labels.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/map_views.hpp"
+#include "common/topics/services.hpp"
+#include "common/topics/slam.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {

@@ -46,7 +46,7 @@ struct SimulatorConfig {
   NoiseConfig noise;
   IdealMapConfig truth;  ///< ground truth maps: as the mapper's, so that they can be compared
   robot::RobotDescription robot;
-  runtime::LockstepConfig lockstep;
+  runtime::LockstepConfig lockstep{.stages = {"slam", "semantic_mapper", "evaluator"}};
   // command line only
   bool validate = false;
   bool credits = false;

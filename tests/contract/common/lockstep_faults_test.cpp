@@ -4,6 +4,7 @@
 
 #include <csignal>
 
+#include "common/topics/slam.hpp"
 #include "tests/contract/common/driven.hpp"
 #include "tests/support/hand_made_participant.hpp"
 

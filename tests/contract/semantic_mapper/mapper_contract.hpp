@@ -10,6 +10,9 @@
 #include "common/mapping/map_mirror.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/diagnostics.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/slam.hpp"
 #include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"
 

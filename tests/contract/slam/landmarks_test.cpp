@@ -8,6 +8,7 @@
 #include "common/mapping/landmark_mirror.hpp"
 #include "common/messages/landmarks.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/slam.hpp"
 #include "tests/contract/slam/slam_contract.hpp"
 #include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"

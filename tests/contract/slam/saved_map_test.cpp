@@ -9,6 +9,8 @@
 #include "common/files/atomic_file.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/diagnostics.hpp"
+#include "common/topics/slam.hpp"
 #include "tests/contract/slam/slam_contract.hpp"
 #include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"

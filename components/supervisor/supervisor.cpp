@@ -247,6 +247,10 @@ void Supervisor::look_after(Process& process) {
     const std::string what = is_source ? "failed" : was_ready ? "ended early" : "ended before it was ready,";
     return fail(process, what + " with status " + std::to_string(*status), *status);
   }
+  if (!process.is_back && process.pulse->is_ready()) {
+    process.is_back = true;
+    std::cerr << title_ << ": " << process.name << " runs again\n";
+  }
   if (!process.pulse->is_hung(now_s(), usual_silence_s_)) return;
   const std::string silence = "was silent for " + seconds_text(process.pulse->silence_s(now_s()));
   const std::string activity = process.pulse->activity();
@@ -263,6 +267,7 @@ bool Supervisor::restart(Process& process, int status, const std::string& why) {
   const int times = system_.restart.times;
   if (!request_.may_restart || process.restarts >= times || &process == &source() || status == kBadSetup) return false;
   ++process.restarts;
+  process.is_back = false;
   progress_.end();
   const std::string line = title_ + ": " + process.name + " " + why + " and is started again (" +
                            std::to_string(process.restarts) + " of " + std::to_string(times) + ")\n";

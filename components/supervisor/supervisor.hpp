@@ -54,6 +54,7 @@ class Supervisor {
     std::optional<Pulse> pulse;
     std::optional<int> status;  ///< of one that has ended for good
     int restarts = 0;
+    bool is_back = true;  ///< false from a restart until it runs again
   };
 
   // Preparation

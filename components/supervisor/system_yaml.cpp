@@ -2,7 +2,6 @@
 
 #include <yaml-cpp/yaml.h>
 
-#include <fstream>
 #include <functional>
 
 #include "supervisor/program.hpp"
@@ -84,22 +83,18 @@ RestartPolicy restart_policy(const YAML::Node& node) {
   return out;
 }
 
-/// Lines of a text file, but for empty ones and comments.
-std::vector<std::string> lines_of(const std::filesystem::path& file) {
-  std::ifstream in(file);
-  if (!in) throw BadSetup(file.string() + ": cannot be read");
-  std::vector<std::string> lines;
-  for (std::string line; std::getline(in, line);) {
-    if (!line.empty() && line.front() != '#') lines.push_back(line);
+/// What a file says wins over its base, which has none itself.
+void read_into(System& out, const std::filesystem::path& file, bool is_base = false) {
+  const YAML::Node root = YAML::LoadFile(file.string());
+  const auto folder = file.parent_path();
+  if (root.IsMap() && root["base"]) {
+    if (is_base) reject(root["base"], "a base has no base");
+    read_into(out, folder / text(root["base"]), true);
   }
-  return lines;
-}
-
-System system_from(const YAML::Node& root, const std::filesystem::path& folder) {
-  System out;
   read_section(
       root,
-      {{"processes", [&](const auto& n) { out.processes = texts(n); }},
+      {{"base", [](const auto&) {}},  // has been read
+       {"processes", [&](const auto& n) { out.processes = texts(n); }},
        {"source", [&](const auto& n) { out.source = text(n); }},
        {"stages", [&](const auto& n) { out.stages = texts(n); }},
        {"settings", [&](const auto& n) { out.settings = settings(n); }},
@@ -115,11 +110,10 @@ System system_from(const YAML::Node& root, const std::filesystem::path& folder) 
        {"silence_s", [&](const auto& n) { out.silence = text(n); }},
        {"report", [&](const auto& n) { out.report = text(n); }},
        {"result", [&](const auto& n) { out.result = text(n); }},
-       {"results", [&](const auto& n) { out.results = lines_of(folder / text(n)); }},
+       {"results", [&](const auto& n) { out.results = texts(n); }},
        {"variants",
         [&](const auto& n) { for_each(n, [&](const auto& name, const auto& v) { out.variants[name] = variant(v); }); }},
        {"restart", [&](const auto& n) { out.restart = restart_policy(n); }}});
-  return out;
 }
 
 }  // namespace
@@ -127,7 +121,7 @@ System system_from(const YAML::Node& root, const std::filesystem::path& folder) 
 System read_system(const std::filesystem::path& file) {
   System system;
   try {
-    system = system_from(YAML::LoadFile(file.string()), file.parent_path());
+    read_into(system, file);
   } catch (const std::exception& error) {
     throw BadSetup(file.string() + ": " + error.what());
   }

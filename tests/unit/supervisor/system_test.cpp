@@ -62,6 +62,16 @@ TEST_F(SystemFile, EverythingIsRead) {
   EXPECT_EQ(system.restart.resume.at("mind").file, "x.map");
 }
 
+TEST_F(SystemFile, WhatItSaysWinsOverItsBase) {
+  std::ofstream(folder_.path() / "base.yaml") << "silence_s: 3\nreport: a.txt\nconfiguration: [robot.yaml]\n";
+  const System system = read("base: base.yaml\nprocesses: [eye]\nsource: eye\nreport: b.txt\n");
+  EXPECT_EQ(system.silence, "3");
+  EXPECT_EQ(system.report, "b.txt");
+  EXPECT_THAT(system.configuration, ElementsAre((folder_.path() / "robot.yaml").string()));
+  EXPECT_THAT(problem("base: none.yaml\n"), HasSubstr("small.yaml: "));
+  EXPECT_THAT(problem("base: small.yaml\n"), HasSubstr("line 1: a base has no base"));
+}
+
 TEST_F(SystemFile, WhatIsWrongIsNamedWithFileLineAndRemedy) {
   EXPECT_THAT(problem("processes: [a]\nsource: a\nsilence: 3\n"),
               HasSubstr("small.yaml: line 3: unknown key silence;"));

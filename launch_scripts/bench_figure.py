@@ -10,6 +10,7 @@ The JSON files are those of lapis_planner_decision_benchmark and lapis_planner_s
 import sys
 
 import matplotlib
+import usage
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of backend)
@@ -36,10 +37,8 @@ def curves_of(files):
 
 
 def main():
-    if len(sys.argv) < 3:
-        print(__doc__.strip(), file=sys.stderr)
-        return 2
-    points = curves_of(sys.argv[2:])
+    picture, *files = usage.arguments(__doc__, least=2)
+    points = curves_of(files)
     if missing := [kernel for kernel in CURVES if kernel not in points]:
         sys.exit(f"bench_figure.py: none of the files has {', '.join(missing)}")
     figure, axes = plt.subplots(figsize=(9, 6.2))
@@ -50,7 +49,7 @@ def main():
     axes.grid(which="major", color="#dddddd", linewidth=0.6)
     axes.legend(loc="upper center", bbox_to_anchor=(0.5, -0.11), ncol=2, fontsize=9, frameon=False)
     figure.tight_layout()
-    figure.savefig(sys.argv[1], dpi=110)
+    figure.savefig(picture, dpi=110)
     return 0
 
 

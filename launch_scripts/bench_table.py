@@ -9,6 +9,8 @@ import pathlib
 import re
 import sys
 
+import usage
+
 PEERS = (  # names of kernels, and what they are measured against: the same job done the plain way
     (r"mutual_information/ray(\w*)/(.*)", r"mutual_information/plain_ray/\2"),
     (r"(?:dopt|whole)_candidate/(.*)", r"full_factorisation/\1"),
@@ -56,10 +58,11 @@ def times(ratio):
 
 
 def main():
+    files = usage.arguments(__doc__, least=1)
     print("| benchmark | kernel | time | peer | ratio |")
     print("| --- | --- | --- | --- | --- |")
     has_failed = False
-    for file in sys.argv[1:]:
+    for file in files:
         kernels = read(file)
         benchmark = pathlib.Path(file).stem.removeprefix("lapis_").removesuffix("_benchmark")
         for name, result in kernels.items():

@@ -10,6 +10,7 @@ import pathlib
 import sys
 
 import matplotlib
+import usage
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of backend)
@@ -72,10 +73,11 @@ def draw_coverage(scene, methods):
 
 
 def main():
-    target = pathlib.Path(sys.argv[1]) / "figures"
+    folder, *sources = usage.arguments(__doc__, least=2)
+    target = pathlib.Path(folder) / "figures"
     target.mkdir(exist_ok=True)
     scenes = {}
-    for (scene, method), runs in runs_of(sys.argv[2:]).items():
+    for (scene, method), runs in runs_of(sources).items():
         scenes.setdefault(scene, {})[method] = runs
     for scene, methods in scenes.items():
         for name, draw in (("boxes", draw_boxes), ("coverage", draw_coverage)):

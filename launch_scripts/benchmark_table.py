@@ -16,6 +16,8 @@ import re
 import statistics
 import sys
 
+import usage
+
 NEVER = math.inf  # the time to reach what was not reached
 
 COLUMNS = {  # of the table: format, and what it shows of metrics.json and simulation.yaml
@@ -171,9 +173,10 @@ def write_csv(target, groups):
 
 
 def main():
-    groups = runs_of(sys.argv[2:])
+    target, *sources = usage.arguments(__doc__, least=2)
+    groups = runs_of(sources)
     print_table(groups)
-    write_csv(pathlib.Path(sys.argv[1]), groups)
+    write_csv(pathlib.Path(target), groups)
     return 1 if any(run.has_failed for runs in groups.values() for run in runs) else 0
 
 

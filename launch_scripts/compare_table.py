@@ -10,6 +10,8 @@ import random
 import statistics
 import sys
 
+import usage
+
 CIRCUMSTANCES = {  # of a run: format, value
     "path m": ("{:.1f}", lambda m: m["path_length_m"]),
     "loops": ("{:.0f}", lambda m: m["loop_closures"]),
@@ -77,7 +79,8 @@ def print_differences(runs, variants, title):
 
 
 def main():
-    folder, variants = pathlib.Path(sys.argv[1]), sys.argv[2:]
+    folder, *variants = usage.arguments(__doc__, least=2)
+    folder = pathlib.Path(folder)
     names = {path.name for name in variants for path in (folder / name).iterdir() if path.is_dir()}
     order = sorted(names, key=lambda name: (name.rstrip("0123456789"), len(name), name))
     runs = {run: {name: metrics_of(folder / name / run) for name in variants} for run in order}

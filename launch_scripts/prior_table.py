@@ -13,6 +13,8 @@ import itertools
 import pathlib
 import sys
 
+import usage
+
 PREFIX = "is_chosen_with_prior_"
 
 
@@ -41,10 +43,7 @@ def row(name, count, changes):
 
 
 def main():
-    if len(sys.argv) < 2 or sys.argv[1] in ("-h", "--help"):
-        print(__doc__.strip())
-        return 0 if len(sys.argv) > 1 else 2
-    runs = {folder: changes_of(folder) for folder in sys.argv[1:]}
+    runs = {folder: changes_of(folder) for folder in usage.arguments(__doc__, least=1)}
     priors = next(iter(runs.values()))[1]
     if any(list(changes) != list(priors) for _, changes in runs.values()):
         sys.exit("the runs do not compare the same priors")

@@ -12,7 +12,8 @@ MEASURED = ("exit_reason", "frames_total", "frames_tracked", "lost_time_s", "loo
             "ate_origin_rmse_m", "ate_raw_rmse_m", "rpe_1m_rmse_m", "heading_rmse_rad", "keyframe_ate_se3_rmse_m",
             "keyframe_ate_origin_rmse_m", "keyframe_ate_raw_rmse_m", "correction_rmse_m", "ate_per_metre", "map_error_mean_m",
             "map_error_p95_m", "map_completeness_mean_m", "reference_fusion_share", "explored_volume_m3",
-            "path_length_m", "real_time_factor", "duration_s", "wall_time_s", "cpu_ms_per_frame", "peak_rss_mb")
+            "path_length_m", "real_time_factor", "duration_s", "wall_time_s", "cpu_ms_per_frame", "peak_rss_mb",
+            "run")
 OF_LABELS = ("iou_top8_mean", "iou_mean", "iou_by_class")
 OF_GROUND_TRUTH = ("explored_share",
                    *(f"{prefix}_{key}" for prefix in ("ideal", "mesh")
@@ -35,6 +36,7 @@ class ReplayMetricsTest(chain.ChainTest):
         self.assertEqual(set(metrics), {*measured, *null})
         self.assertEqual([key for key in measured if metrics[key] is None], [])
         self.assertEqual([key for key in null if metrics[key] is not None], [])
+        self.assertEqual(set(metrics["run"]), {"system", "data_set", "duration_s", "commit"})
         self.assertEqual(set(metrics["cpu_ms_per_frame"]), set(chain.COMPONENTS))
         self.assertTrue(all(math.isfinite(v) and v > 0 for v in metrics["cpu_ms_per_frame"].values()), metrics)
         self.assertEqual((metrics["exit_reason"], metrics["frames_total"], metrics["frames_tracked"]),

@@ -20,6 +20,8 @@ constexpr int kCannotStart = 127;
   setsid();
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(kCannotStart);
+  std::signal(SIGINT,
+              SIG_DFL);  // a shell ignores it for what it starts in the background, and what is ignored is inherited
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

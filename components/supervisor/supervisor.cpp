@@ -59,7 +59,10 @@ Settings with_run_folder(Settings settings, const std::filesystem::path& folder)
 }
 
 void append(std::vector<std::string>& arguments, const Settings& settings) {
-  for (const auto& [key, value] : settings) arguments.insert(arguments.end(), {"--set", key + "=" + value});
+  for (const auto& [key, value] : settings) {
+    arguments.emplace_back("--set");
+    arguments.emplace_back(key).append("=").append(value);
+  }
 }
 
 }  // namespace

@@ -8,7 +8,7 @@
 namespace lapis::mapping {
 namespace {
 
-constexpr int kCompressionLevel = 1;
+constexpr int kFrameCompressionLevel = 1;
 
 /// What a packed frame begins with.
 struct FrameHeader {
@@ -115,7 +115,7 @@ std::vector<std::uint8_t> pack(const CompactFrame& frame) {
   write_differences(frame.depth_mm_.data(), count, values);
   if (header.has_labels) write_differences(frame.labels_.data(), count, values + 2 * count);
   if (header.has_confidence) std::copy_n(frame.confidence_.data(), count, values + 4 * count);
-  return zstd_compress(plain, kCompressionLevel);
+  return zstd_compress(plain, kFrameCompressionLevel);
 }
 
 std::optional<CompactFrame> unpack_frame(std::span<const std::uint8_t> bytes) {
@@ -151,7 +151,7 @@ std::vector<std::uint8_t> pack(const FrameVotes& votes) {
   columns.write(votes.hits, &HitVote::offset);
   columns.write(votes.hits, &HitVote::label);
   columns.write(votes.hits, &HitVote::weight);
-  return zstd_compress(plain, kCompressionLevel);
+  return zstd_compress(plain, kFrameCompressionLevel);
 }
 
 std::optional<FrameVotes> unpack_votes(std::span<const std::uint8_t> bytes) {

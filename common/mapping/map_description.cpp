@@ -9,7 +9,7 @@
 namespace lapis::mapping {
 namespace {
 
-void require(bool is_good, const std::string& what) {
+void refuse_unless(bool is_good, const std::string& what) {
   if (!is_good) throw std::runtime_error(what);
 }
 
@@ -62,21 +62,22 @@ SensorModel with_classes(SensorModel model, const LabelList& labels) {
 void validate(const FrameSettings& frames, double resolution_m) {
   const IntegrationConfig& integration = frames.integration;
   validate(integration);
-  require(std::isfinite(integration.min_height_m) && std::isfinite(integration.max_height_m),
-          "integration: heights must be finite");
-  require(frames.stride >= 1 && frames.stride <= 16, "frame.stride must be in [1, 16]");
-  require(resolution_m >= kMinResolution_m && resolution_m <= kMaxResolution_m, "resolution_m must be in [0.02, 0.5]");
-  require(integration.max_range_m / resolution_m <= kMaxRangeInVoxels, "max_range_m exceeds 500 voxels");
+  refuse_unless(std::isfinite(integration.min_height_m) && std::isfinite(integration.max_height_m),
+                "integration: heights must be finite");
+  refuse_unless(frames.stride >= 1 && frames.stride <= 16, "frame.stride must be in [1, 16]");
+  refuse_unless(resolution_m >= kMinResolution_m && resolution_m <= kMaxResolution_m,
+                "resolution_m must be in [0.02, 0.5]");
+  refuse_unless(integration.max_range_m / resolution_m <= kMaxRangeInVoxels, "max_range_m exceeds 500 voxels");
 }
 
 void validate(const MapDescription& description) {
   validate(description.frames, description.resolution_m);
   const SensorModel& model = description.sensor_model;
-  require(std::isfinite(model.occupancy_limit) && std::isfinite(model.share_limit),
-          "sensor model: limits must be finite");
+  refuse_unless(std::isfinite(model.occupancy_limit) && std::isfinite(model.share_limit),
+                "sensor model: limits must be finite");
   static_cast<void>(BeliefReader(model));  // refuses a model that nobody could read the counts with
-  require(with_classes(model, description.labels) == model,
-          "sensor model: class_count must be the largest id of the labels");
+  refuse_unless(with_classes(model, description.labels) == model,
+                "sensor model: class_count must be the largest id of the labels");
 }
 
 std::string difference(const FrameSettings& a, const FrameSettings& b) {

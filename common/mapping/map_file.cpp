@@ -14,10 +14,10 @@
 namespace lapis::mapping {
 namespace {
 
-constexpr std::string_view kMagic = "LAPISMAP";
+constexpr std::string_view kFileMagic = "LAPISMAP";
 constexpr std::uint32_t kFormatVersion = 3;
 constexpr std::uint32_t kFormerVersion = 2;  // without the settings of frames
-constexpr int kCompressionLevel = 3;
+constexpr int kFileCompressionLevel = 3;
 // A record (all before the blocks; a block) is at most so large: 20,000 classes in each voxel of a block.
 constexpr std::size_t kUsualRecordBytes = std::size_t{64} << 10;
 constexpr std::size_t kMaxRecordBytes = std::size_t{64} << 20;
@@ -202,8 +202,8 @@ struct Payload {
 /// The payload after the header was checked; nothing with a reason otherwise.
 std::optional<Payload> check_header(std::span<const std::uint8_t> bytes, std::string& error) {
   files::ByteReader in(bytes);
-  const auto magic = in.raw(kMagic.size());
-  if (!in.is_good() || !std::equal(magic.begin(), magic.end(), kMagic.begin())) {
+  const auto magic = in.raw(kFileMagic.size());
+  if (!in.is_good() || !std::equal(magic.begin(), magic.end(), kFileMagic.begin())) {
     error = "is not a Lapis map";
     return std::nullopt;
   }
@@ -231,11 +231,11 @@ std::optional<Payload> check_header(std::span<const std::uint8_t> bytes, std::st
 
 std::vector<std::uint8_t> encode_map(const MapFile& file) {
   files::ByteWriter checked;
-  const std::vector<std::uint8_t> payload = zstd_compress(encode_content(file), kCompressionLevel);
+  const std::vector<std::uint8_t> payload = zstd_compress(encode_content(file), kFileCompressionLevel);
   checked.u64(payload.size());
   checked.raw(payload);
   files::ByteWriter out;
-  for (const char c : kMagic) out.u8(static_cast<std::uint8_t>(c));
+  for (const char c : kFileMagic) out.u8(static_cast<std::uint8_t>(c));
   out.u32(kFormatVersion);
   out.u32(files::crc32(checked.bytes()));
   out.raw(checked.bytes());

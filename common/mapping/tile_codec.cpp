@@ -10,10 +10,10 @@
 namespace lapis::mapping {
 namespace {
 
-constexpr std::uint8_t kMagic = 'L', kFormatVersion = 1, kCompressed = 1;
+constexpr std::uint8_t kTileMagic = 'L', kTileFormatVersion = 1, kCompressed = 1;
 constexpr std::size_t kCompressAbove = std::size_t{256} << 10;
 constexpr std::size_t kMaxBodyBytes = std::size_t{64} << 20;
-constexpr int kCompressionLevel = 1;
+constexpr int kTileCompressionLevel = 1;
 
 void read_blocks(files::ByteReader& in, const TileIndex& index, DecodedTile& tile) {
   const std::vector<BlockIndex> indices = blocks_of(index, tile.blocks_per_edge);
@@ -70,12 +70,12 @@ std::optional<std::vector<std::uint8_t>> encode_tile(const VoxelMap& map, const 
   const bool is_large = body.bytes().size() > kCompressAbove;
 
   files::ByteWriter out;
-  out.u8(kMagic);
-  out.u8(kFormatVersion);
+  out.u8(kTileMagic);
+  out.u8(kTileFormatVersion);
   out.u8(static_cast<std::uint8_t>(blocks_per_edge));
   out.u8(is_large ? kCompressed : 0);
   out.f64(map.resolution_m());
-  out.raw(is_large ? zstd_compress(body.bytes(), kCompressionLevel) : body.bytes());
+  out.raw(is_large ? zstd_compress(body.bytes(), kTileCompressionLevel) : body.bytes());
   if (out.bytes().size() > kMaxTileBytes) return std::nullopt;
   return out.take();
 }
@@ -84,7 +84,7 @@ std::optional<DecodedTile> decode_tile(std::span<const std::uint8_t> bytes, cons
   if (bytes.size() > kMaxTileBytes) return std::nullopt;
   files::ByteReader in(bytes);
   DecodedTile tile;
-  const bool is_known = in.u8() == kMagic && in.u8() == kFormatVersion;
+  const bool is_known = in.u8() == kTileMagic && in.u8() == kTileFormatVersion;
   tile.blocks_per_edge = in.u8();
   const std::uint8_t flags = in.u8();
   tile.resolution_m = in.f64();

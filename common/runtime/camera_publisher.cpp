@@ -1,6 +1,10 @@
 #include "common/runtime/camera_publisher.hpp"
 
 #include "common/messages/labels.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/ground_truth.hpp"
+#include "common/topics/lockstep.hpp"
+#include "common/topics/transforms.hpp"
 
 namespace lapis::runtime {
 

@@ -6,6 +6,7 @@
 #include "common/mapping/label_list.hpp"
 #include "common/messages/camera_frame.hpp"
 #include "common/runtime/context.hpp"
+#include "idl/vision_msgs.hpp"
 
 namespace lapis::runtime {
 

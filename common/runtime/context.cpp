@@ -4,6 +4,8 @@
 
 #include "common/messages/time.hpp"
 #include "common/runtime/lockstep_participant.hpp"
+#include "common/topics/diagnostics.hpp"
+#include "common/topics/lockstep.hpp"
 
 namespace lapis::runtime {
 namespace {

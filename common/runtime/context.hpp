@@ -16,7 +16,8 @@
 #include "common/runtime/heart.hpp"
 #include "common/runtime/status.hpp"
 #include "common/time/clock.hpp"
-#include "common/topics.hpp"
+#include "idl/diagnostic_msgs.hpp"
+#include "idl/rosgraph_msgs.hpp"
 
 namespace lapis::runtime {
 

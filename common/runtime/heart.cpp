@@ -3,6 +3,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include "common/topics/heartbeat.hpp"
 
 namespace lapis::runtime {
 

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "common/dds/publisher.hpp"
-#include "common/topics.hpp"
+#include "common/topics/heartbeat.hpp"
 
 namespace lapis::runtime {
 

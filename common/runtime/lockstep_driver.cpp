@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/messages/time.hpp"
+#include "common/topics/lockstep.hpp"
 
 namespace lapis::runtime {
 namespace {

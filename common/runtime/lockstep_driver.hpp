@@ -14,7 +14,7 @@
 namespace lapis::runtime {
 
 struct LockstepConfig {
-  config::Words stages = {"slam", "semantic_mapper", "evaluator"};
+  config::Words stages;
   double soft_timeout_s = 5.0;
   double hard_timeout_s = 30.0;
   std::string silent_participant = "abort";

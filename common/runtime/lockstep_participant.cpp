@@ -4,6 +4,7 @@
 #include <ctime>
 
 #include "common/runtime/context.hpp"
+#include "common/topics/lockstep.hpp"
 
 namespace lapis::runtime {
 namespace {

@@ -7,7 +7,6 @@
 #include "common/dds/publisher.hpp"
 #include "common/dds/subscription.hpp"
 #include "common/runtime/counted_inputs.hpp"
-#include "common/topics.hpp"
 
 namespace lapis::runtime {
 

@@ -7,6 +7,12 @@
 #include <utility>
 
 #include "common/messages/time.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/controller.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/planner.hpp"
+#include "common/topics/slam.hpp"
+#include "common/topics/transforms.hpp"
 
 namespace lapis::controller {
 namespace {

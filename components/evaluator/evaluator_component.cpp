@@ -9,9 +9,16 @@
 
 #include "common/files/atomic_file.hpp"
 #include "common/messages/camera.hpp"
+#include "common/messages/exploration_state.hpp"
 #include "common/messages/map_description.hpp"
-#include "common/messages/planner.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/diagnostics.hpp"
+#include "common/topics/ground_truth.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/planner.hpp"
+#include "common/topics/slam.hpp"
+#include "common/topics/transforms.hpp"
 #include "evaluator/figures.hpp"
 
 namespace lapis::evaluator {

@@ -13,6 +13,9 @@
 #include "evaluator/evaluator_config.hpp"
 #include "evaluator/map_judge.hpp"
 #include "evaluator/process_costs.hpp"
+#include "idl/lapis_msgs.hpp"
+#include "idl/nav_msgs.hpp"
+#include "idl/sensor_msgs.hpp"
 
 namespace lapis::evaluator {
 

@@ -8,6 +8,13 @@
 #include "common/messages/landmarks.hpp"
 #include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/controller.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/planner.hpp"
+#include "common/topics/planner_views.hpp"
+#include "common/topics/services.hpp"
+#include "common/topics/slam.hpp"
 
 namespace lapis::planner {
 namespace {

@@ -10,6 +10,7 @@
 #include "common/mapping/map_description.hpp"
 #include "common/mapping/map_mirror.hpp"
 #include "common/runtime/context.hpp"
+#include "idl/vision_msgs.hpp"
 #include "planner/conversions.hpp"
 #include "planner/decision_log.hpp"
 #include "planner/decision_worker.hpp"

@@ -8,6 +8,11 @@
 #include "common/messages/labels.hpp"
 #include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/map_views.hpp"
+#include "common/topics/services.hpp"
+#include "common/topics/slam.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {

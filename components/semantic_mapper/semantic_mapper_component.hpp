@@ -8,6 +8,7 @@
 #include "common/mapping/map_file.hpp"
 #include "common/runtime/context.hpp"
 #include "common/runtime/stamped_input.hpp"
+#include "idl/std_srvs.hpp"
 #include "semantic_mapper/conversions.hpp"
 #include "semantic_mapper/core/floor_plan.hpp"
 #include "semantic_mapper/core/obstacle_layer.hpp"

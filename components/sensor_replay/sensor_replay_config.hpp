@@ -14,7 +14,7 @@ struct SensorReplayConfig {
   double duration_s = 0.0;
   int wait_for_readers = 0;
   double max_stamp_difference_s = 0.02;
-  runtime::LockstepConfig lockstep;
+  runtime::LockstepConfig lockstep{.stages = {"slam", "semantic_mapper", "evaluator"}};
   bool list = false;  ///< command line only
 };
 

@@ -3,10 +3,17 @@
 #include <spdlog/fmt/fmt.h>
 
 #include "common/files/atomic_file.hpp"
+#include "common/messages/exploration_state.hpp"
 #include "common/messages/map_description.hpp"
-#include "common/messages/planner.hpp"
 #include "common/messages/time.hpp"
 #include "common/time/stamp_buffer.hpp"
+#include "common/topics/controller.hpp"
+#include "common/topics/ground_truth.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/planner.hpp"
+#include "common/topics/robot.hpp"
+#include "common/topics/services.hpp"
+#include "common/topics/transforms.hpp"
 #include "simulator/core/truth/truth_files.hpp"
 #include "simulator/run_files.hpp"
 #include "simulator/set_up.hpp"

@@ -44,7 +44,7 @@ struct SimulatorConfig {
   SceneConfig world;
   NoiseConfig noise;
   robot::RobotDescription robot;
-  runtime::LockstepConfig lockstep;
+  runtime::LockstepConfig lockstep{.stages = {"slam", "semantic_mapper", "evaluator"}};
   // command line only
   bool validate = false;
   bool credits = false;

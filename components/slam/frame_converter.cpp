@@ -2,7 +2,7 @@
 
 #include "common/images/encoded_image.hpp"
 #include "common/messages/camera.hpp"
-#include "common/topics.hpp"
+#include "common/topics/camera.hpp"
 
 namespace lapis::slam {
 namespace {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "common/topics/camera.hpp"
+
 namespace lapis::slam {
 namespace {
 

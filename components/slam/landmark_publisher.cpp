@@ -2,6 +2,7 @@
 
 #include "common/messages/landmarks.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/slam.hpp"
 
 namespace lapis::slam {
 namespace {

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "common/runtime/context.hpp"
+#include "idl/lapis_msgs.hpp"
 #include "slam/core/landmark_tiles.hpp"
 
 namespace lapis::slam {

@@ -6,6 +6,9 @@
 
 #include "common/files/atomic_file.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/robot.hpp"
+#include "common/topics/slam.hpp"
+#include "common/topics/transforms.hpp"
 #include "common/trajectory/trajectory.hpp"
 #include "slam/core/pose_graph_file.hpp"
 

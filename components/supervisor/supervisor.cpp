@@ -7,6 +7,7 @@
 #include <sstream>
 
 #include "common/files/atomic_file.hpp"
+#include "common/topics/heartbeat.hpp"
 
 namespace lapis::supervisor {
 namespace {
@@ -15,7 +16,7 @@ constexpr std::chrono::milliseconds kTurn(50);
 constexpr double kAbsent_s = 1.0;          // a loop that took longer has not listened: the machine or we were stopped
 constexpr double kHurriedSilence_s = 2.0;  // in a hurry, for one that announces nothing
 constexpr double kHurry_s = 9.0;           // from Ctrl-C to the end of everything
-constexpr int kBadSetup = 2;
+constexpr int kBadSetupStatus = 2;
 
 const sigset_t& ending_signals() {
   static const sigset_t signals = [] {
@@ -268,7 +269,8 @@ void Supervisor::look_after(Process& process) {
 /// False when it must not be: not asked for, it has been often enough, its set-up is bad, or its state is the run.
 bool Supervisor::restart(Process& process, int status, const std::string& why) {
   const int times = system_.restart.times;
-  if (!request_.may_restart || process.restarts >= times || &process == &source() || status == kBadSetup) return false;
+  if (!request_.may_restart || process.restarts >= times || &process == &source() || status == kBadSetupStatus)
+    return false;
   ++process.restarts;
   process.is_back = false;
   progress_.end();
@@ -308,7 +310,7 @@ void Supervisor::end(Process& process) {
 }
 
 void Supervisor::fail(const Process& process, const std::string& what, int status) {
-  if (!failure_) failure_ = {process.name, what, status == kBadSetup ? kBadSetup : 1};
+  if (!failure_) failure_ = {process.name, what, status == kBadSetupStatus ? kBadSetupStatus : 1};
 }
 
 /// Says how the run went.

@@ -10,7 +10,7 @@
 #include "common/dds/executor.hpp"
 #include "common/dds/participant.hpp"
 #include "common/dds/subscription.hpp"
-#include "common/topics.hpp"
+#include "common/topics/heartbeat.hpp"
 #include "supervisor/child.hpp"
 #include "supervisor/core/pulse.hpp"
 #include "supervisor/core/system.hpp"

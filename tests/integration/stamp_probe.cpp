@@ -13,7 +13,13 @@
 #include <string>
 
 #include "common/messages/time.hpp"
-#include "common/topics.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/controller.hpp"
+#include "common/topics/diagnostics.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/planner.hpp"
+#include "common/topics/services.hpp"
+#include "common/topics/slam.hpp"
 #include "tests/support/topic_probe.hpp"
 
 namespace lapis::test {

@@ -2,6 +2,10 @@
 
 #include <cstdlib>
 
+#include "common/topics/camera.hpp"
+#include "common/topics/transforms.hpp"
+#include "idl/diagnostic_msgs.hpp"
+
 namespace lapis::test {
 
 CameraFeed::CameraFeed(TopicProbe& probe, const std::string& frame_prefix, const SyntheticCamera& camera)

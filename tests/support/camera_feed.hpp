@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "common/topics.hpp"
+#include "idl/diagnostic_msgs.hpp"
 #include "tests/support/synthetic_camera.hpp"
 #include "tests/support/topic_probe.hpp"
 

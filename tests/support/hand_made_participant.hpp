@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "common/topics.hpp"
+#include "common/topics/lockstep.hpp"
 #include "tests/support/topic_probe.hpp"
 
 namespace lapis::test {

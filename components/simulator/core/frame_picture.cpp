@@ -10,7 +10,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr float kFar_m = 8.0F;  // and beyond: nearly black
+constexpr float kNearlyBlack_m = 8.0F;  // and beyond: nearly black
 constexpr int kCaption_px = 16;
 
 cv::Mat view_of(const geometry::ColorImage& image) {
@@ -19,7 +19,7 @@ cv::Mat view_of(const geometry::ColorImage& image) {
 
 geometry::Rgb8 depth_color(float depth_m) {
   if (!(depth_m > 0.0F)) return {};
-  const auto level = static_cast<std::uint8_t>(255.0F * std::max(0.05F, 1.0F - depth_m / kFar_m));
+  const auto level = static_cast<std::uint8_t>(255.0F * std::max(0.05F, 1.0F - depth_m / kNearlyBlack_m));
   return {level, level, level};
 }
 

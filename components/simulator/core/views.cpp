@@ -13,7 +13,7 @@ constexpr double kSpacing_m = 0.4;  // between candidate places
 constexpr int kHeadings = 12;
 constexpr double kRoomAround_m = 0.15;
 constexpr int kThumbnail_px = 48;
-constexpr float kFar_m = 8.0F;  // seeing farther is not seeing more
+constexpr float kFarEnough_m = 8.0F;  // seeing farther is not seeing more
 
 /// How much a view has in sight: different things, each weighted by the root of its pixels.
 double interest(const RenderedFrame& frame) {
@@ -21,7 +21,7 @@ double interest(const RenderedFrame& frame) {
   double depth = 0.0;
   for (std::size_t i = 0; i < frame.depth.pixels.size(); ++i) {
     ++pixels[frame.instances.pixels[i]];
-    depth += std::min(frame.depth.pixels[i], kFar_m);
+    depth += std::min(frame.depth.pixels[i], kFarEnough_m);
   }
   double sum = 0.0;
   for (std::size_t id = 1; id < pixels.size(); ++id) sum += std::sqrt(pixels[id]);

@@ -16,6 +16,8 @@
 #include "common/messages/geometry.hpp"
 #include "common/messages/time.hpp"
 #include "common/runtime/run_component.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/slam.hpp"
 #include "semantic_mapper/conversions.hpp"
 #include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"

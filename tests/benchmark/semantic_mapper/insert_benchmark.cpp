@@ -22,16 +22,16 @@ const geometry::PinholeCamera kCamera{640, 360, 320, 320, 319.5, 179.5};
 constexpr int kViewsPerRoom = 9;
 constexpr int kLaps = 2;
 
-struct View {
+struct InsertedView {
   geometry::Pose T_map_camera;
   test::RenderedFrame image;
 };
 
-const std::vector<View>& views() {
-  static const std::vector<View> kViews = [] {
+const std::vector<InsertedView>& views() {
+  static const std::vector<InsertedView> kViews = [] {
     const auto flat = test::furnished_flat();
     std::mt19937 random(1);
-    std::vector<View> all;
+    std::vector<InsertedView> all;
     for (const geometry::Pose& T : test::walk_through_flat(kViewsPerRoom)) {
       all.push_back({T, test::render(flat, kCamera, T)});
       test::add_noise(all.back().image, random);
@@ -41,12 +41,12 @@ const std::vector<View>& views() {
   return kViews;
 }
 
-mapping::CompactFrame compact_frame(const View& view, int stride) {
+mapping::CompactFrame compact_frame(const InsertedView& view, int stride) {
   std::string error;
   return mapping::CompactFrame::make(kCamera, view.image.depth, &view.image.labels, {stride, 40}, error).value();
 }
 
-octomap::Pointcloud point_cloud(const View& view, int stride) {
+octomap::Pointcloud point_cloud(const InsertedView& view, int stride) {
   octomap::Pointcloud cloud;
   for (int row = 0; row < kCamera.height; row += stride)
     for (int column = 0; column < kCamera.width; column += stride) {
@@ -78,7 +78,7 @@ std::size_t occupied_voxels(octomap::OcTree& tree) {
 std::vector<double> octomap_times(octomap::OcTree& tree, std::size_t frames, int stride) {
   std::vector<double> times;
   for (std::size_t i = 0; i < frames; ++i) {
-    const View& view = views()[i % views().size()];
+    const InsertedView& view = views()[i % views().size()];
     const octomap::Pointcloud cloud = point_cloud(view, stride);
     const Eigen::Vector3f o = view.T_map_camera.translation().cast<float>();
     times.push_back(cpu_s_of([&] { tree.insertPointCloud(cloud, {o.x(), o.y(), o.z()}, 5.0, false, true); }));
@@ -95,7 +95,7 @@ void insert_beside_octomap(benchmark::State& state, double resolution_m, int str
   std::vector<double> compact_s, total_s;
   std::size_t i = 0, votes = 0;
   for (auto _ : state) {
-    const View& view = views()[i % views().size()];
+    const InsertedView& view = views()[i % views().size()];
     const double begin_s = cpu_s();
     AnchoredFrame frame{{}, i, view.T_map_camera, geometry::Pose::Identity(), 1, compact_frame(view, stride)};
     compact_s.push_back(cpu_s() - begin_s);

@@ -15,6 +15,7 @@
 #include "common/messages/landmarks.hpp"
 #include "common/messages/time.hpp"
 #include "common/runtime/run_component.hpp"
+#include "common/topics/slam.hpp"
 #include "slam/conversions.hpp"
 #include "slam/landmark_publisher.hpp"
 #include "tests/support/child_process.hpp"

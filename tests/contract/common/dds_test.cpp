@@ -8,7 +8,12 @@
 #include <set>
 
 #include "common/messages/time.hpp"
-#include "common/topics.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/diagnostics.hpp"
+#include "common/topics/lockstep.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/services.hpp"
+#include "common/topics/slam.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/endpoint_watcher.hpp"
 #include "tests/support/topic_probe.hpp"

@@ -9,6 +9,8 @@
 
 #include "common/messages/time.hpp"
 #include "common/runtime/lockstep_driver.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/slam.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/topic_probe.hpp"
 

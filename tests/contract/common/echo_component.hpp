@@ -5,7 +5,10 @@
 #include "common/messages/time.hpp"
 #include "common/runtime/run_component.hpp"
 #include "common/time/stamp_buffer.hpp"
-#include "common/topics.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/services.hpp"
+#include "common/topics/slam.hpp"
 
 namespace lapis::test {
 

@@ -4,6 +4,7 @@
 
 #include <csignal>
 
+#include "common/topics/slam.hpp"
 #include "tests/contract/common/driven.hpp"
 #include "tests/support/hand_made_participant.hpp"
 
@@ -13,7 +14,7 @@ namespace {
 using ::testing::HasSubstr;
 using ::testing::Not;
 using Demoted = std::map<std::string, std::uint64_t>;
-using State = LockstepDriver::State;
+using State = runtime::LockstepDriver::State;
 
 constexpr double kShortPatience_s = 5.0;  // a hard time-out that loaded machines do not reach while processes join
 

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <map>
 
+#include "common/topics/camera.hpp"
+#include "common/topics/lockstep.hpp"
+#include "common/topics/slam.hpp"
 #include "tests/contract/common/driven.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/topic_probe.hpp"

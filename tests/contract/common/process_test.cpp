@@ -12,7 +12,7 @@ namespace {
 
 using ::testing::HasSubstr;
 
-constexpr const char* kEcho = "lapis_test_echo";
+constexpr const char* kEchoProgram = "lapis_test_echo";
 
 std::filesystem::path temporary_file(const std::string& name, const std::string& text) {
   auto path = std::filesystem::path(::testing::TempDir()) / name;
@@ -27,14 +27,14 @@ struct Outcome {
 };
 
 Outcome run(const std::vector<std::string>& arguments) {
-  ChildProcess process(kEcho, arguments);
+  ChildProcess process(kEchoProgram, arguments);
   const auto status = process.wait();
   return {status, process.output(), process.log()};
 }
 
 TEST(Process, BecomesReadyAndEndsWithStatus0WhenAsked) {
   for (const int signal : {SIGTERM, SIGINT}) {
-    ChildProcess process(kEcho);
+    ChildProcess process(kEchoProgram);
     ASSERT_TRUE(wait_until_ready(process, Seconds(5))) << process.log();
     EXPECT_EQ(process.stop(signal, Seconds(3)), 0) << process.log();
     EXPECT_THAT(process.log(), HasSubstr("stopped"));
@@ -42,13 +42,13 @@ TEST(Process, BecomesReadyAndEndsWithStatus0WhenAsked) {
 }
 
 TEST(Process, EndsEvenWhenAskedBeforeItIsReady) {
-  ChildProcess process(kEcho);
+  ChildProcess process(kEchoProgram);
   ASSERT_TRUE(process.wait_for_line("domain")) << process.log();
   EXPECT_EQ(process.stop(SIGTERM, Seconds(5)), 0) << process.log();
 }
 
 TEST(Process, ForeignSignalDoesNotMakeItDeafToSigterm) {
-  ChildProcess process(kEcho);
+  ChildProcess process(kEchoProgram);
   ASSERT_TRUE(wait_until_ready(process)) << process.log();
   process.signal(SIGUSR2);
   EXPECT_EQ(process.stop(SIGTERM, Seconds(3)), 0) << process.log();
@@ -84,7 +84,7 @@ TEST(Process, UnknownKeyInAFileNamesFileAndKey) {
 }
 
 TEST(Process, WrongDomainInTheEnvironmentIsStatus2) {
-  ChildProcess process("/usr/bin/env", {"ROS_DOMAIN_ID=nonsense", (bin_dir() / kEcho).string()});
+  ChildProcess process("/usr/bin/env", {"ROS_DOMAIN_ID=nonsense", (bin_dir() / kEchoProgram).string()});
   EXPECT_EQ(process.wait(), 2) << process.log();
   EXPECT_THAT(process.log(), HasSubstr("ROS_DOMAIN_ID='nonsense'"));
 }
@@ -122,14 +122,14 @@ TEST(Process, ExplainsItself) {
 }
 
 TEST(Process, SmallSocketBuffersAreWarnedAbout) {
-  ChildProcess process(kEcho, {"--set", "dds.socket_buffer_bytes=212992"});
+  ChildProcess process(kEchoProgram, {"--set", "dds.socket_buffer_bytes=212992"});
   ASSERT_TRUE(wait_until_ready(process)) << process.log();
   EXPECT_THAT(process.log(), HasSubstr("60-lapis.conf"));
   EXPECT_EQ(process.stop(SIGTERM), 0);
 }
 
 TEST(Process, SharedMemoryWorksAndIsWarnedAbout) {
-  ChildProcess process(kEcho, {"--transport", "shm"});
+  ChildProcess process(kEchoProgram, {"--transport", "shm"});
   ASSERT_TRUE(wait_until_ready(process)) << process.log();
   EXPECT_THAT(process.log(), HasSubstr("shared memory"));
   EXPECT_EQ(process.stop(SIGTERM), 0);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "common/messages/labels.hpp"
+#include "common/topics/slam.hpp"
 #include "tests/contract/planner/planner_contract.hpp"
 
 namespace lapis::test {

@@ -6,6 +6,9 @@
 #include <fstream>
 #include <iterator>
 
+#include "common/topics/planner.hpp"
+#include "common/topics/planner_views.hpp"
+#include "common/topics/services.hpp"
 #include "tests/contract/planner/planner_contract.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -11,6 +11,7 @@
 
 #include "common/files/atomic_file.hpp"
 #include "common/mapping/map_file.hpp"
+#include "common/topics/services.hpp"
 #include "tests/contract/semantic_mapper/mapper_contract.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -12,6 +12,9 @@
 #include "common/messages/labels.hpp"
 #include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/diagnostics.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/slam.hpp"
 #include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"
 

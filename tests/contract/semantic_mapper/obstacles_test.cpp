@@ -5,6 +5,7 @@
 
 #include <cmath>
 
+#include "common/topics/map.hpp"
 #include "tests/contract/semantic_mapper/mapper_contract.hpp"
 
 namespace lapis::test {

@@ -9,6 +9,10 @@
 #include <filesystem>
 #include <set>
 
+#include "common/topics/camera.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/map_views.hpp"
+#include "common/topics/services.hpp"
 #include "tests/contract/semantic_mapper/mapper_contract.hpp"
 
 namespace lapis::test {

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <string>
 
+#include "common/topics/map.hpp"
 #include "tests/contract/semantic_mapper/mapper_contract.hpp"
 #include "tests/support/private_domain.hpp"
 

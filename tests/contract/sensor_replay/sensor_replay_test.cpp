@@ -8,7 +8,10 @@
 
 #include "common/messages/camera.hpp"
 #include "common/messages/time.hpp"
-#include "common/topics.hpp"
+#include "common/topics/camera.hpp"
+#include "common/topics/ground_truth.hpp"
+#include "common/topics/lockstep.hpp"
+#include "common/topics/transforms.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/topic_probe.hpp"
 #include "tests/unit/sensor_replay/synthetic_dataset.hpp"

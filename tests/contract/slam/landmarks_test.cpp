@@ -8,6 +8,8 @@
 #include "common/mapping/landmark_mirror.hpp"
 #include "common/messages/landmarks.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/slam.hpp"
+#include "tests/contract/slam/slam_contract.hpp"
 #include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"
 
@@ -19,7 +21,6 @@ using lapis_msgs::msg::LandmarkTile;
 using lapis_msgs::msg::PoseGraph;
 using lapis_msgs::msg::TrackedFrame;
 
-constexpr const char* kSlam = "lapis_slam";
 const std::string kManyKeyframes = "slam.keyframe.max_translation_m=0.02";
 const std::vector<std::string> kEveryVersion = {
     "--set", "slam.landmark_period_s=0", "--set", "slam.graph_period_s=0", "--set", kManyKeyframes};

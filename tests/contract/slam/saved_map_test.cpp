@@ -9,6 +9,9 @@
 #include "common/files/atomic_file.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/time.hpp"
+#include "common/topics/diagnostics.hpp"
+#include "common/topics/slam.hpp"
+#include "tests/contract/slam/slam_contract.hpp"
 #include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -19,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 using ::testing::HasSubstr;
 
-constexpr const char* kSlam = "lapis_slam";
 constexpr auto kTracking = lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
 constexpr auto kLost = lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST;
 constexpr int kFrames = 24;  // of the first run

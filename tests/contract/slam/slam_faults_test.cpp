@@ -12,6 +12,9 @@
 #include <map>
 #include <random>
 
+#include "common/topics/robot.hpp"
+#include "common/topics/slam.hpp"
+#include "common/topics/transforms.hpp"
 #include "tests/contract/slam/slam_contract.hpp"
 
 namespace lapis::test {
@@ -113,7 +116,8 @@ TEST_F(SlamFaults, PosesThatAreNoneAreCountedAndNotBelieved) {
   reading.header().frame_id("odom");
   reading.child_frame_id("base_link");
   for (int i = 0; i < 20; ++i) {
-    reading.header().stamp(messages::to_message({CameraFeed::stamp(kFirstFrames).nanoseconds + i * 1'000'000}));
+    reading.header().stamp(
+        messages::to_message(time::Time{CameraFeed::stamp(kFirstFrames).nanoseconds + i * 1'000'000}));
     reading.pose().pose().position().x(i % 2 == 0 ? std::numeric_limits<double>::infinity() : 0.0);
     wheels.publish(reading);  // its quaternion is all zero
   }

@@ -6,6 +6,7 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/topics/camera.hpp"
 #include "tests/contract/slam/slam_contract.hpp"
 
 namespace lapis::test {

@@ -7,6 +7,9 @@
 #include <cstring>
 #include <limits>
 
+#include "common/topics/robot.hpp"
+#include "common/topics/slam.hpp"
+#include "common/topics/transforms.hpp"
 #include "tests/contract/slam/slam_contract.hpp"
 
 namespace lapis::test {

@@ -1,8 +1,11 @@
 #include "common/dds/names.hpp"
+#include "common/topics/diagnostics.hpp"
+#include "common/topics/lockstep.hpp"
+#include "common/topics/map.hpp"
+#include "common/topics/slam.hpp"
+#include "common/topics/transforms.hpp"
 
 #include <gtest/gtest.h>
-
-#include "common/topics.hpp"
 
 namespace lapis::dds {
 namespace {

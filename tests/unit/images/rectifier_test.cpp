@@ -7,10 +7,10 @@
 namespace lapis::images {
 namespace {
 
-constexpr int kWidth = 200, kHeight = 150;
+constexpr int kRectifiedWidth = 200, kRectifiedHeight = 150;
 
 geometry::LensCamera camera(const std::vector<double>& distortion) {
-  return {{kWidth, kHeight, 161.0, 158.0, 98.5, 76.2}, distortion};
+  return {{kRectifiedWidth, kRectifiedHeight, 161.0, 158.0, 98.5, 76.2}, distortion};
 }
 
 // Where a pixel of the ideal camera lies in the recorded image: the model of Brown (1966) as OpenCV documents it.
@@ -26,19 +26,21 @@ std::pair<double, double> distorted(const geometry::LensCamera& camera, int u, i
   return {c.fx * x_d + c.cx, c.fy * y_d + c.cy};
 }
 
-bool is_inside(double u, double v) { return u >= 0.0 && v >= 0.0 && u <= kWidth - 1 && v <= kHeight - 1; }
+bool is_inside(double u, double v) {
+  return u >= 0.0 && v >= 0.0 && u <= kRectifiedWidth - 1 && v <= kRectifiedHeight - 1;
+}
 
 // Recorded images whose pixels hold their own coordinates tell where each rectified pixel was taken from.
 void expect_pixels_from_where_the_lens_put_them(const geometry::LensCamera& lens) {
-  geometry::ColorImage color(kWidth, kHeight);
-  geometry::GrayImage gray(kWidth, kHeight);
-  geometry::Image<std::uint16_t> depth(kWidth, kHeight);
-  geometry::DepthImage metres(kWidth, kHeight);
-  for (int v = 0; v < kHeight; ++v) {
-    for (int u = 0; u < kWidth; ++u) {
+  geometry::ColorImage color(kRectifiedWidth, kRectifiedHeight);
+  geometry::GrayImage gray(kRectifiedWidth, kRectifiedHeight);
+  geometry::Image<std::uint16_t> depth(kRectifiedWidth, kRectifiedHeight);
+  geometry::DepthImage metres(kRectifiedWidth, kRectifiedHeight);
+  for (int v = 0; v < kRectifiedHeight; ++v) {
+    for (int u = 0; u < kRectifiedWidth; ++u) {
       color(u, v) = {static_cast<std::uint8_t>(u), static_cast<std::uint8_t>(v), 255};
       gray(u, v) = static_cast<std::uint8_t>(u);
-      depth(u, v) = static_cast<std::uint16_t>(1 + u + kWidth * v);
+      depth(u, v) = static_cast<std::uint16_t>(1 + u + kRectifiedWidth * v);
       metres(u, v) = static_cast<float>(depth(u, v));
     }
   }
@@ -48,8 +50,8 @@ void expect_pixels_from_where_the_lens_put_them(const geometry::LensCamera& lens
   rectifier.rectify(depth);
   rectifier.rectify(metres);
   double largest_shift = 0.0;
-  for (int v = 0; v < kHeight; ++v) {
-    for (int u = 0; u < kWidth; ++u) {
+  for (int v = 0; v < kRectifiedHeight; ++v) {
+    for (int u = 0; u < kRectifiedWidth; ++u) {
       const auto [u_d, v_d] = distorted(lens, u, v);
       if (!is_inside(u_d, v_d)) continue;
       largest_shift = std::max(largest_shift, std::hypot(u_d - u, v_d - v));
@@ -57,7 +59,7 @@ void expect_pixels_from_where_the_lens_put_them(const geometry::LensCamera& lens
       ASSERT_NEAR(color(u, v).g, v_d, 0.6) << u << ", " << v;
       ASSERT_EQ(gray(u, v), color(u, v).r) << u << ", " << v;
       ASSERT_EQ(metres(u, v), static_cast<float>(depth(u, v))) << u << ", " << v;
-      const int column = (depth(u, v) - 1) % kWidth, row = (depth(u, v) - 1) / kWidth;
+      const int column = (depth(u, v) - 1) % kRectifiedWidth, row = (depth(u, v) - 1) / kRectifiedWidth;
       ASSERT_NEAR(column, u_d, 0.55) << u << ", " << v;
       ASSERT_NEAR(row, v_d, 0.55) << u << ", " << v;
     }
@@ -73,16 +75,16 @@ TEST(Rectifier, TakesEveryPixelFromWhereTheLensPutIt) {
 
 TEST(Rectifier, WhatTheLensDidNotSeeIsEmpty) {
   const geometry::LensCamera lens = camera({0.3, 0.0, 0.0, 0.0, 0.0});  // the corners lie outside
-  geometry::Image<std::uint16_t> labels(kWidth, kHeight, 7);
+  geometry::Image<std::uint16_t> labels(kRectifiedWidth, kRectifiedHeight, 7);
   Rectifier(lens).rectify(labels);
   const auto [u_d, v_d] = distorted(lens, 0, 0);
   ASSERT_FALSE(is_inside(u_d, v_d));
   EXPECT_EQ(labels(0, 0), 0);
-  EXPECT_EQ(labels(kWidth / 2, kHeight / 2), 7);
+  EXPECT_EQ(labels(kRectifiedWidth / 2, kRectifiedHeight / 2), 7);
 }
 
 TEST(Rectifier, WithoutDistortionNothingChanges) {
-  geometry::ColorImage image(kWidth, kHeight, {1, 2, 3});
+  geometry::ColorImage image(kRectifiedWidth, kRectifiedHeight, {1, 2, 3});
   image(17, 11) = {4, 5, 6};
   const geometry::ColorImage before = image;
   Rectifier(camera({})).rectify(image);

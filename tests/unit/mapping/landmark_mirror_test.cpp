@@ -10,9 +10,9 @@ namespace lapis::mapping {
 namespace {
 
 /// The publishing side, reduced to its promise: versions of tiles and a state after them.
-class Publisher {
+class LandmarkPublisher {
  public:
-  Publisher(std::int64_t session, unsigned seed) : session_(session), random_(seed) {}
+  LandmarkPublisher(std::int64_t session, unsigned seed) : session_(session), random_(seed) {}
 
   std::vector<LandmarkTile> publish() {
     version_ += 1 + random_() % 3;
@@ -48,7 +48,7 @@ class Publisher {
 };
 
 TEST(LandmarkMirror, ServesEachVersionOnceItsTilesAreThereAndTheLastOneUntilThen) {
-  Publisher publisher(5, 1);
+  LandmarkPublisher publisher(5, 1);
   LandmarkMirror mirror;
   EXPECT_FALSE(mirror.is_consistent() || mirror.state());
   for (int i = 0; i < 20; ++i) {
@@ -70,7 +70,7 @@ TEST(LandmarkMirror, ServesEachVersionOnceItsTilesAreThereAndTheLastOneUntilThen
 TEST(LandmarkMirror, AnyOrderRepeatsAndLossEndInTheNewestVersion) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     std::mt19937 random(seed);
-    Publisher publisher(1, seed);
+    LandmarkPublisher publisher(1, seed);
     LandmarkMirror mirror;
     std::vector<LandmarkTile> sent;
     std::vector<LandmarkState> states;
@@ -95,7 +95,7 @@ TEST(LandmarkMirror, AnyOrderRepeatsAndLossEndInTheNewestVersion) {
 }
 
 TEST(LandmarkMirror, ANewSessionReplacesEverythingAndOldSamplesAreDropped) {
-  Publisher before(10, 3), after(11, 4);
+  LandmarkPublisher before(10, 3), after(11, 4);
   LandmarkMirror mirror;
   const auto old_tiles = before.publish();
   for (const LandmarkTile& tile : old_tiles) mirror.apply_tile(10, tile);

@@ -18,14 +18,14 @@ constexpr double kResolution_m = 0.1;
 constexpr int kEdge = 2;
 
 /// The publishing side, reduced to its promise: versions of tiles and a state after them.
-class Publisher {
+class MapPublisher {
  public:
   struct Tile {
     TileIndex index;
     std::uint64_t version;
     std::vector<std::uint8_t> bytes;
   };
-  explicit Publisher(std::int64_t epoch, double resolution_m = kResolution_m) : epoch_(epoch), map_(resolution_m) {}
+  explicit MapPublisher(std::int64_t epoch, double resolution_m = kResolution_m) : epoch_(epoch), map_(resolution_m) {}
 
   std::vector<Tile> publish(const FrameVotes& votes) {
     map_.add(votes);
@@ -56,7 +56,7 @@ class Publisher {
 
 TEST(MapMirror, ServesEachVersionOnceItsTilesAreThere) {
   std::mt19937 random(1);
-  Publisher publisher(5);
+  MapPublisher publisher(5);
   MapMirror mirror;
   EXPECT_EQ(mirror.map(), nullptr);
   for (int i = 0; i < 10; ++i) {
@@ -71,7 +71,7 @@ TEST(MapMirror, ServesEachVersionOnceItsTilesAreThere) {
 
 TEST(MapMirror, KeepsTheLastConsistentVersionUntilTheNextIsWhole) {
   std::mt19937 random(2);
-  Publisher publisher(1);
+  MapPublisher publisher(1);
   MapMirror mirror;
   for (const auto& tile : publisher.publish(test::random_votes(random)))
     mirror.apply_tile(1, tile.index, tile.version, tile.bytes);
@@ -92,17 +92,17 @@ TEST(MapMirror, KeepsTheLastConsistentVersionUntilTheNextIsWhole) {
 TEST(MapMirror, AnyOrderRepeatsAndLossEndInTheNewestVersion) {
   for (unsigned seed = 0; seed < 30; ++seed) {
     std::mt19937 random(seed);
-    Publisher publisher(1);
+    MapPublisher publisher(1);
     MapMirror mirror;
-    std::vector<Publisher::Tile> sent;
+    std::vector<MapPublisher::Tile> sent;
     std::vector<MapState> states;
     for (int i = 0; i < 6; ++i) {
       for (auto& tile : publisher.publish(test::random_votes(random))) sent.push_back(std::move(tile));
       states.push_back(publisher.state());
     }
     // Keep last 1 per key: older samples of a tile may be lost, the newest is not.
-    std::erase_if(sent, [&](const Publisher::Tile& tile) {
-      const bool is_newest = std::none_of(sent.begin(), sent.end(), [&](const Publisher::Tile& other) {
+    std::erase_if(sent, [&](const MapPublisher::Tile& tile) {
+      const bool is_newest = std::none_of(sent.begin(), sent.end(), [&](const MapPublisher::Tile& other) {
         return other.index == tile.index && other.version > tile.version;
       });
       return !is_newest && random() % 2 == 0;
@@ -122,7 +122,7 @@ TEST(MapMirror, AnyOrderRepeatsAndLossEndInTheNewestVersion) {
 
 TEST(MapMirror, ARestartedMapperReplacesTheMapAndOldSamplesAreDropped) {
   std::mt19937 random(3);
-  Publisher before(10), after(11);
+  MapPublisher before(10), after(11);
   MapMirror mirror;
   const auto old_tiles = before.publish(test::random_votes(random));
   for (const auto& tile : old_tiles) mirror.apply_tile(10, tile.index, tile.version, tile.bytes);
@@ -147,8 +147,8 @@ TEST(MapMirror, WhatIsServedIsAlwaysAVersionAsAWholeAlsoAcrossARestartWithGaps) 
     std::mt19937 random(seed);
     std::map<std::pair<std::int64_t, std::uint64_t>, VoxelMap> published;
     std::vector<std::function<void(MapMirror&)>> samples;
-    Publisher before(10, 0.1), after(11, 0.2);
-    for (Publisher* publisher : {&before, &after}) {
+    MapPublisher before(10, 0.1), after(11, 0.2);
+    for (MapPublisher* publisher : {&before, &after}) {
       for (int i = 0; i < 5; ++i) {
         for (const auto& tile : publisher->publish(test::random_votes(random)))
           samples.emplace_back([tile, epoch = publisher->epoch()](MapMirror& mirror) {
@@ -181,7 +181,7 @@ TEST(MapMirror, WhatIsServedIsAlwaysAVersionAsAWholeAlsoAcrossARestartWithGaps) 
 
 TEST(MapMirror, DamagedTilesAreReportedAndChangeNothing) {
   std::mt19937 random(3);
-  Publisher publisher(1);
+  MapPublisher publisher(1);
   MapMirror mirror;
   auto tiles = publisher.publish(test::random_votes(random));
   mirror.apply_state(publisher.state());
@@ -212,7 +212,7 @@ FrameVotes hit_in(const BlockIndex& block) {
   return {{votes}, {{0, 1, kOneVote}}};
 }
 
-void apply_all(MapMirror& mirror, const Publisher& publisher, const std::vector<Publisher::Tile>& tiles) {
+void apply_all(MapMirror& mirror, const MapPublisher& publisher, const std::vector<MapPublisher::Tile>& tiles) {
   for (const auto& tile : tiles) mirror.apply_tile(publisher.epoch(), tile.index, tile.version, tile.bytes);
   mirror.apply_state(publisher.state());
 }
@@ -220,7 +220,7 @@ void apply_all(MapMirror& mirror, const Publisher& publisher, const std::vector<
 TEST(MapMirror, ChangedBlocksAreThoseOfAllVersionsSinceTheLastCall) {
   for (unsigned seed = 0; seed < 20; ++seed) {
     std::mt19937 random(seed);
-    Publisher publisher(1);
+    MapPublisher publisher(1);
     MapMirror mirror;
     EXPECT_TRUE(mirror.take_changed_blocks().empty());
     VoxelMap known(kResolution_m);
@@ -235,7 +235,7 @@ TEST(MapMirror, ChangedBlocksAreThoseOfAllVersionsSinceTheLastCall) {
 }
 
 TEST(MapMirror, BlocksOfATileThatHaveNotChangedAreNotAmongThem) {
-  Publisher publisher(1);
+  MapPublisher publisher(1);
   MapMirror mirror;
   apply_all(mirror, publisher, publisher.publish(hit_in({0, 0, 0})));
   mirror.take_changed_blocks();
@@ -245,7 +245,7 @@ TEST(MapMirror, BlocksOfATileThatHaveNotChangedAreNotAmongThem) {
 
 TEST(MapMirror, BlocksThatAreGoneWithTheirMapperHaveChanged) {
   std::mt19937 random(7);
-  Publisher before(10), after(11);
+  MapPublisher before(10), after(11);
   MapMirror mirror;
   for (int i = 0; i < 3; ++i) apply_all(mirror, before, before.publish(test::random_votes(random)));
   mirror.take_changed_blocks();
@@ -257,7 +257,7 @@ TEST(MapMirror, BlocksThatAreGoneWithTheirMapperHaveChanged) {
 
 TEST(MapMirror, TwoRestartsBetweenCallsLeaveNoBlockBehind) {
   std::mt19937 random(8);
-  Publisher first(1), second(2), third(3);
+  MapPublisher first(1), second(2), third(3);
   MapMirror mirror;
   apply_all(mirror, first, first.publish(test::random_votes(random)));
   mirror.take_changed_blocks();
@@ -268,7 +268,7 @@ TEST(MapMirror, TwoRestartsBetweenCallsLeaveNoBlockBehind) {
 
 TEST(MapMirror, DamagedTileChangesNoBlock) {
   std::mt19937 random(9);
-  Publisher publisher(1);
+  MapPublisher publisher(1);
   MapMirror mirror;
   apply_all(mirror, publisher, publisher.publish(test::random_votes(random)));
   mirror.take_changed_blocks();

@@ -16,7 +16,7 @@ using lapis::test::Box;
 
 constexpr double kResolution_m = 0.1;
 constexpr double kRate_hz = 15.0;
-const geometry::PinholeCamera kCamera{160, 90, 80, 80, 79.5, 44.5};
+const geometry::PinholeCamera kLayerCamera{160, 90, 80, 80, 79.5, 44.5};
 
 /// A room with a box of 0.4 m that somebody moves, and a camera that looks along x.
 class Scene {
@@ -26,9 +26,9 @@ class Scene {
   static Box box_at(double y) { return {{1.8, y - 0.2, 0.0}, {2.2, y + 0.2, 0.8}, 9}; }
   void look(const std::vector<Box>& boxes, double yaw_rad = 0.0) {
     const Pose T = lapis::test::look({0.03, 0.02, 1.0}, yaw_rad, 0.15);
-    const auto image = lapis::test::render(boxes, kCamera, T);
+    const auto image = lapis::test::render(boxes, kLayerCamera, T);
     std::string error;
-    const auto frame = mapping::CompactFrame::make(kCamera, image.depth, &image.labels, {1, 40}, error).value();
+    const auto frame = mapping::CompactFrame::make(kLayerCamera, image.depth, &image.labels, {1, 40}, error).value();
     layer.add(now, mapping::compute_votes(frame, T, {}, kResolution_m));
     now = now + time::Duration::from_seconds(1.0 / kRate_hz);
   }

@@ -22,9 +22,9 @@ namespace {
 
 using geometry::Pose;
 
-constexpr int kFrames = 40;
+constexpr int kKillFrames = 40;
 
-RgbdFrame room_frame(int index) {
+RgbdFrame kill_frame(int index) {
   return test::render_room(test::small_camera(), test::room_path(index), time::Time::from_seconds(1.0 + index / 30.0));
 }
 
@@ -32,9 +32,9 @@ RgbdFrame room_frame(int index) {
 struct SavedRun {
   SavedRun() {
     RgbdSlam slam({}, test::room_path(0));
-    for (int i = 0; i < kFrames; ++i) {
-      slam.process(room_frame(i));
-      if (i == kFrames / 2) early = {1, slam.state()};
+    for (int i = 0; i < kKillFrames; ++i) {
+      slam.process(kill_frame(i));
+      if (i == kKillFrames / 2) early = {1, slam.state()};
     }
     late = {1, slam.state()};
   }
@@ -68,10 +68,10 @@ TEST(KillSaver, TheFileIsAlwaysWholeAndCanBeGoneOnWith) {
     with_late += *bytes == late ? 1 : 0;
     auto file = read_slam_file(path, error);
     ASSERT_TRUE(file) << error;
-    const int last = *bytes == late ? kFrames : kFrames / 2;
+    const int last = *bytes == late ? kKillFrames : kKillFrames / 2;
     RgbdSlam slam({}, Pose::Identity(), std::move(file->state));
     TrackingResult result;
-    for (int k = 0; k <= SlamConfig{}.relocalization.confirmations; ++k) result = slam.process(room_frame(last + k));
+    for (int k = 0; k <= SlamConfig{}.relocalization.confirmations; ++k) result = slam.process(kill_frame(last + k));
     ASSERT_EQ(result.state, TrackingState::kTracking) << "kill " << i << ": " << result.reason;
   }
   std::cout << i << " kills, " << in_the_middle << " while a file was being written; the later map was left "

@@ -10,7 +10,7 @@ namespace {
 
 using geometry::Pose;
 
-constexpr int kFrames = 50;  // of the run that is saved
+constexpr int kSavedFrames = 50;  // of the run that is saved
 const int kConfirmations = SlamConfig{}.relocalization.confirmations;
 
 // The first frames in a saved map only say where the camera could be.
@@ -23,13 +23,13 @@ void expect_placed(const TrackingResult& result, int frame) {
   }
 }
 
-time::Time stamp(int index) { return time::Time::from_seconds(1.0 + index / 30.0); }
+time::Time resume_stamp(int index) { return time::Time::from_seconds(1.0 + index / 30.0); }
 
-RgbdFrame room_frame(int index) {
-  return test::render_room(test::small_camera(), test::room_path(index), stamp(index));
+RgbdFrame resume_frame(int index) {
+  return test::render_room(test::small_camera(), test::room_path(index), resume_stamp(index));
 }
 
-double distance_m(const TrackingResult& result, int index) {
+double resume_distance_m(const TrackingResult& result, int index) {
   const Pose T_map_camera = result.T_map_keyframe * result.T_keyframe_camera;
   return (T_map_camera.translation() - test::room_path(index).translation()).norm();
 }
@@ -38,7 +38,8 @@ double distance_m(const TrackingResult& result, int index) {
 const std::vector<std::uint8_t>& saved_run() {
   static const std::vector<std::uint8_t> bytes = [] {
     RgbdSlam slam({}, test::room_path(0));
-    for (int i = 0; i < kFrames; ++i) EXPECT_EQ(slam.process(room_frame(i)).state, TrackingState::kTracking) << i;
+    for (int i = 0; i < kSavedFrames; ++i)
+      EXPECT_EQ(slam.process(resume_frame(i)).state, TrackingState::kTracking) << i;
     return encode_slam_file({7, slam.state()});
   }();
   return bytes;
@@ -62,19 +63,19 @@ TEST(Resume, AMapThatWasOnlyLoadedIsSavedAsItWas) {
 TEST(Resume, IsLostUntilItFindsItsPlaceAndThenGoesOn) {
   const SlamState saved = saved_state();
   RgbdSlam slam({}, Pose::Identity(), saved);
-  RgbdFrame dark = room_frame(kFrames);
+  RgbdFrame dark = resume_frame(kSavedFrames);
   dark.gray = geometry::GrayImage(dark.camera.width, dark.camera.height);
   const TrackingResult lost = slam.process(dark);
   EXPECT_EQ(lost.state, TrackingState::kLost);
   EXPECT_EQ(lost.reason, "looking for a place in the saved map: 0 features, 15 needed");
-  EXPECT_EQ(slam.skip(stamp(kFrames), "no depth").reason, "looking for a place in the saved map: no depth");
+  EXPECT_EQ(slam.skip(resume_stamp(kSavedFrames), "no depth").reason, "looking for a place in the saved map: no depth");
   EXPECT_EQ(slam.graph_version(), saved.graph_version);
 
-  for (int i = kFrames; i < kFrames + 30; ++i) {
-    const TrackingResult result = slam.process(room_frame(i));
-    expect_placed(result, i - kFrames);
+  for (int i = kSavedFrames; i < kSavedFrames + 30; ++i) {
+    const TrackingResult result = slam.process(resume_frame(i));
+    expect_placed(result, i - kSavedFrames);
     if (!has_pose(result)) continue;
-    EXPECT_LT(distance_m(result, i), 0.02) << i;
+    EXPECT_LT(resume_distance_m(result, i), 0.02) << i;
     EXPECT_TRUE(!result.is_keyframe || result.keyframe_id >= saved.keyframes.size()) << "an id is used again";
   }
   const PoseGraphSnapshot graph = slam.pose_graph();
@@ -88,12 +89,12 @@ TEST(Resume, IsLostUntilItFindsItsPlaceAndThenGoesOn) {
 TEST(Resume, StampsFromBeforeTheSavedOnesAreNoProblem) {
   RgbdSlam slam({}, Pose::Identity(), saved_state());
   for (int i = 0; i < 12; ++i) {
-    RgbdFrame frame = room_frame(kFrames + i);
-    frame.stamp = stamp(i);
+    RgbdFrame frame = resume_frame(kSavedFrames + i);
+    frame.stamp = resume_stamp(i);
     const TrackingResult result = slam.process(frame);
     expect_placed(result, i);
     if (!has_pose(result)) continue;
-    EXPECT_LT(distance_m(result, kFrames + i), 0.02) << i;
+    EXPECT_LT(resume_distance_m(result, kSavedFrames + i), 0.02) << i;
   }
 }
 
@@ -103,9 +104,9 @@ TEST(Resume, NoOdometryLeadsFromASavedKeyframe) {
   const SlamState saved = saved_state();
   RgbdSlam slam({}, Pose::Identity(), saved);
   const auto is_wheels = [](const PoseGraphEdge& edge) { return edge.type == EdgeType::kWheelOdometry; };
-  for (int i = kFrames - 40; i < kFrames + 100; ++i) {
-    slam.add_odometry(stamp(i), test::room_path(i));
-    if (i >= kFrames) slam.process(room_frame(i));
+  for (int i = kSavedFrames - 40; i < kSavedFrames + 100; ++i) {
+    slam.add_odometry(resume_stamp(i), test::room_path(i));
+    if (i >= kSavedFrames) slam.process(resume_frame(i));
   }
   const auto edges = slam.pose_graph().edges;
   const auto first = std::find_if(edges.begin(), edges.end(), is_wheels);
@@ -115,10 +116,10 @@ TEST(Resume, NoOdometryLeadsFromASavedKeyframe) {
 
 TEST(Resume, AStateDoesNotChangeWhileTheMapGoesOn) {
   RgbdSlam slam({}, Pose::Identity(), saved_state());
-  for (int i = kFrames; i < kFrames + 5; ++i) slam.process(room_frame(i));
+  for (int i = kSavedFrames; i < kSavedFrames + 5; ++i) slam.process(resume_frame(i));
   const SlamState state = slam.state();
   const auto before = encode_slam_file({7, state});
-  for (int i = kFrames + 5; i < kFrames + 25; ++i) slam.process(room_frame(i));
+  for (int i = kSavedFrames + 5; i < kSavedFrames + 25; ++i) slam.process(resume_frame(i));
   EXPECT_EQ(encode_slam_file({7, state}), before);
   EXPECT_NE(encode_slam_file({7, slam.state()}), before);
 }

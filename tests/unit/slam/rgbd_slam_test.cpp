@@ -13,14 +13,14 @@ namespace {
 
 using geometry::Pose;
 
-time::Time stamp(int index) { return time::Time::from_seconds(1.0 + index / 30.0); }
+time::Time room_stamp(int index) { return time::Time::from_seconds(1.0 + index / 30.0); }
 
 RgbdFrame room_frame(int index) {
-  return test::render_room(test::small_camera(), test::room_path(index), stamp(index));
+  return test::render_room(test::small_camera(), test::room_path(index), room_stamp(index));
 }
 
-RgbdFrame black_frame(int index) {
-  return {stamp(index), test::small_camera(), geometry::GrayImage(320, 240), geometry::DepthImage(320, 240, 2.0F)};
+RgbdFrame black_room_frame(int index) {
+  return {room_stamp(index), test::small_camera(), geometry::GrayImage(320, 240), geometry::DepthImage(320, 240, 2.0F)};
 }
 
 // Bands of the image moved apart: two thirds of it contradict the rest.
@@ -96,14 +96,14 @@ TEST(RgbdSlam, IsLostWithAReasonInTheDarkAndRecovers) {
   RgbdSlam slam({}, test::room_path(0));
   for (int i = 0; i < 10; ++i) slam.process(room_frame(i));
   for (int i = 10; i < 90; ++i) {
-    const TrackingResult result = slam.process(black_frame(i));
+    const TrackingResult result = slam.process(black_room_frame(i));
     EXPECT_EQ(result.state, TrackingState::kLost);
     EXPECT_EQ(result.reason, "0 features, 15 needed");
   }
   // Longer than the camera can be trusted to be near: believed when further frames find the same.
   for (int i = 0; i <= SlamConfig{}.relocalization.confirmations; ++i) {
     RgbdFrame back = room_frame(5 + i);
-    back.stamp = stamp(90 + i);
+    back.stamp = room_stamp(90 + i);
     const TrackingResult result = slam.process(back);
     if (i < SlamConfig{}.relocalization.confirmations) {
       EXPECT_EQ(result.state, TrackingState::kLost);
@@ -120,7 +120,7 @@ class RgbdSlamOnWheels : public ::testing::Test {
  protected:
   static Pose T_base_camera() { return Pose(Eigen::Translation3d(0.1, 0.2, 0.3)); }
   void feel(int from, int to) {
-    for (int i = from; i <= to; ++i) slam_.add_odometry(stamp(i), test::room_path(i) * T_base_camera().inverse());
+    for (int i = from; i <= to; ++i) slam_.add_odometry(room_stamp(i), test::room_path(i) * T_base_camera().inverse());
   }
   RgbdSlam slam_{{}, test::room_path(0), T_base_camera()};
 };
@@ -131,7 +131,7 @@ TEST_F(RgbdSlamOnWheels, DeadReckonsInTheDarkWithGrowingCovariance) {
   const auto version = slam_.graph_version();
   double trace = 0.0;
   for (int i = 10; i < 40; ++i) {
-    const TrackingResult result = slam_.process(black_frame(i));
+    const TrackingResult result = slam_.process(black_room_frame(i));
     ASSERT_EQ(result.state, TrackingState::kDeadReckoning) << i;
     EXPECT_EQ(result.reason, "0 features, 15 needed");
     EXPECT_LT(distance_m(result, i), 0.02) << i;
@@ -139,7 +139,7 @@ TEST_F(RgbdSlamOnWheels, DeadReckonsInTheDarkWithGrowingCovariance) {
     trace = result.map_covariance.trace();
   }
   EXPECT_EQ(slam_.graph_version(), version) << "the map is not touched";
-  EXPECT_EQ(slam_.skip(stamp(40), "colour is missing").state, TrackingState::kDeadReckoning);
+  EXPECT_EQ(slam_.skip(room_stamp(40), "colour is missing").state, TrackingState::kDeadReckoning);
   const TrackingResult back = slam_.process(room_frame(40));
   ASSERT_EQ(back.state, TrackingState::kTracking) << back.reason;
   EXPECT_LT(distance_m(back, 40), 0.02);
@@ -203,7 +203,7 @@ TEST_F(RgbdSlamOnWheels, WheelsThatSlipAreLeftOut) {
   for (int i = 0; i <= 60; ++i) {
     const double spun_m = 0.05 * std::clamp(i - kFirst + 1, 0, kLast - kFirst + 1);
     const Pose T_odom_base = test::room_path(i) * T_base_camera().inverse();
-    ASSERT_TRUE(slam_.add_odometry(stamp(i), Pose(Eigen::Translation3d(spun_m, 0.0, 0.0)) * T_odom_base));
+    ASSERT_TRUE(slam_.add_odometry(room_stamp(i), Pose(Eigen::Translation3d(spun_m, 0.0, 0.0)) * T_odom_base));
   }
   for (int i = 0; i < 60; ++i) {
     const TrackingResult result = slam_.process(room_frame(i));
@@ -225,8 +225,8 @@ TEST_F(RgbdSlamOnWheels, WheelsThatSlipAreLeftOut) {
 
 TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {
   RgbdSlam slam({}, Pose::Identity());
-  EXPECT_EQ(slam.process(black_frame(0)).state, TrackingState::kInitializing);
-  EXPECT_EQ(slam.process(black_frame(0)).reason, "0 features with depth, 30 needed");
+  EXPECT_EQ(slam.process(black_room_frame(0)).state, TrackingState::kInitializing);
+  EXPECT_EQ(slam.process(black_room_frame(0)).reason, "0 features with depth, 30 needed");
   ASSERT_EQ(slam.process(room_frame(0)).state, TrackingState::kTracking);
 
   RgbdFrame no_depth = room_frame(1);
@@ -255,7 +255,7 @@ TEST(RgbdSlam, GivesTheSameBitsTwice) {
   RgbdSlam first({}, test::room_path(0));
   RgbdSlam second({}, test::room_path(0));
   for (int i = 0; i < 40; ++i) {
-    const RgbdFrame frame = i == 20 ? black_frame(i) : room_frame(i);
+    const RgbdFrame frame = i == 20 ? black_room_frame(i) : room_frame(i);
     const TrackingResult a = first.process(frame);
     const TrackingResult b = second.process(frame);
     EXPECT_TRUE(a.T_map_keyframe.matrix() == b.T_map_keyframe.matrix());

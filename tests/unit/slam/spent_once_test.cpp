@@ -24,15 +24,16 @@ using Eigen::MatrixXd;
 using geometry::Matrix6d;
 using geometry::Pose;
 
-constexpr int kTurn = 120, kFrames = 170;  // frames of a turn: 3 degrees each; after about 100 the first views return
-constexpr double kCalibration = 2.0;       // of all alignments' information: docs/decisions/0025
+constexpr int kSpentTurn = 120,
+              kSpentFrames = 170;     // frames of a turn: 3 degrees each; after about 100 the first views return
+constexpr double kCalibration = 2.0;  // of all alignments' information: docs/decisions/0025
 
-time::Time stamp(int index) { return time::Time::from_seconds(1.0 + index / 15.0); }
+time::Time spent_stamp(int index) { return time::Time::from_seconds(1.0 + index / 15.0); }
 int index_of(time::Time stamp) { return static_cast<int>(std::lround((stamp.seconds() - 1.0) * 15.0)); }
 
 // A camera that turns on the spot and moves about a little, never twice the same way.
-Pose turn(int index) {
-  const double angle = 2.0 * M_PI * index / kTurn;
+Pose spent_turn(int index) {
+  const double angle = 2.0 * M_PI * index / kSpentTurn;
   Pose T = Pose::Identity();
   T.translation() = Eigen::Vector3d(0.4 * std::sin(angle), 0.001 * index, 0.3 * std::cos(angle));
   T.rotate(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY()));
@@ -40,8 +41,8 @@ Pose turn(int index) {
 }
 
 // With depth as noisy as the model says.
-RgbdFrame frame(const NoiseConfig& noise, int index) {
-  RgbdFrame frame = test::render_room(test::small_camera(), turn(index), stamp(index));
+RgbdFrame spent_frame(const NoiseConfig& noise, int index) {
+  RgbdFrame frame = test::render_room(test::small_camera(), spent_turn(index), spent_stamp(index));
   std::mt19937 random(static_cast<unsigned>(index));
   std::normal_distribution<double> normal;
   for (float& z : frame.depth.pixels) z += static_cast<float>(depth_sigma(noise, z) * normal(random));
@@ -66,9 +67,9 @@ class SpentOnce : public ::testing::Test {
   static void SetUpTestSuite() {
     config_.surface.enabled = false;  // only landmarks inform
     config_.loop.spacing_m = 1.0;     // the whole way is 3 m: more than one pair
-    slam_ = std::make_unique<RgbdSlam>(config_, turn(0));
-    for (int i = 0; i < kFrames; ++i)
-      ASSERT_EQ(slam_->process(frame(config_.noise, i)).state, TrackingState::kTracking);
+    slam_ = std::make_unique<RgbdSlam>(config_, spent_turn(0));
+    for (int i = 0; i < kSpentFrames; ++i)
+      ASSERT_EQ(slam_->process(spent_frame(config_.noise, i)).state, TrackingState::kTracking);
     slam_->settle();
   }
   static void TearDownTestSuite() { slam_.reset(); }
@@ -120,7 +121,7 @@ std::vector<Track> SpentOnce::tracks_with_loops() {
   const Tracker tracker(config_);
   for (const PoseGraphEdge& edge : edges(true)) {
     if (edge.type != EdgeType::kLoopClosure) continue;
-    const RgbdFrame input = frame(config_.noise, index_of(map().keyframe(edge.to).stamp));
+    const RgbdFrame input = spent_frame(config_.noise, index_of(map().keyframe(edge.to).stamp));
     const TrackOutcome outcome = tracker.recognize(map(), make_frame(input, extractor, config_.noise), edge.from,
                                                    map().keyframe(edge.from).T_map_camera * edge.T_from_to);
     EXPECT_TRUE(outcome.is_tracked);

@@ -13,7 +13,7 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kLeastLength_m = 0.02;         // of an edge whose weight is scaled by its length
+constexpr double kLeastEdgeLength_m = 0.02;     // of an edge whose weight is scaled by its length
 constexpr double kFirstLoopLength_m = 0.5;      // a loop is worth an odometry edge of this length before there is any
 constexpr std::size_t kNewestNeighbours = 100;  // pairs of key-frames from which odometry is calibrated
 
@@ -79,7 +79,7 @@ double calibrate_odometry(const LaplacianFactor& factor, const std::vector<Keyfr
     const int b = static_cast<int>(i), a = b - 1;
     const Eigen::MatrixXd covariance = factor.covariance(std::array{a, b});
     const double resistance = covariance(0, 0) + covariance(1, 1) - 2.0 * covariance(0, 1);
-    values.push_back(std::max(edge_length_m(keyframes, a, b), kLeastLength_m) / resistance);
+    values.push_back(std::max(edge_length_m(keyframes, a, b), kLeastEdgeLength_m) / resistance);
   }
   return median(std::move(values));
 }

@@ -7,7 +7,7 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kLeastLength_m = 0.02;  // of a hallucinated odometry edge
+constexpr double kLeastHallucinatedLength_m = 0.02;  // of a hallucinated odometry edge
 
 // Finds, pose by pose, the old places that a path sees again.
 class PlaceFinder {
@@ -95,7 +95,7 @@ Hallucination hallucinate(const AnalysedGraph& graph, const LandmarkIndex& landm
   double way_m = 0.0;
   for (const geometry::Pose& pose : T_map_cameras) {
     const int node = result.graph.node_count++;
-    const double length = std::max(way_between(*before, pose), kLeastLength_m);
+    const double length = std::max(way_between(*before, pose), kLeastHallucinatedLength_m);
     result.graph.edges.push_back({{first + node - 1, first + node, graph.odometry_weight_metres / length}});
     way_m += length;
     finder.look(node, way_m, landmarks.predict(camera, pose, field, config.covisibility));

@@ -11,7 +11,7 @@ namespace lapis::planner {
 namespace {
 
 // Least square of a pivot, of the node's degree: below, rounding has eaten the digits.
-constexpr double kLeastPivot = 1e-12;
+constexpr double kLeastRelativePivot = 1e-12;
 
 // The lower triangle of the reduced Laplacian by columns, as CHOLMOD reads it.
 struct ReducedLaplacian {
@@ -119,7 +119,7 @@ std::variant<LaplacianFactor, GraphError> LaplacianFactor::make(const WeightedGr
   for (std::size_t column = 0; column < factor.n; ++column) {
     const int first = begin[column], last = first + count[column];
     const double degree = laplacian.values[index(laplacian.begin[index(order[column])])];
-    if (values[first] * values[first] < kLeastPivot * degree) return unequal;
+    if (values[first] * values[first] < kLeastRelativePivot * degree) return unequal;
     columns.order.push_back(order[column] + 1);
     columns.diagonal.push_back(values[first]);
     columns.rows.insert(columns.rows.end(), rows + first + 1, rows + last);

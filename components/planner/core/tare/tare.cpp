@@ -86,14 +86,14 @@ class Ways {
   std::map<Cell, CostTree> trees_;
 };
 
-struct Order {
+struct TourOrder {
   std::vector<TourStop> stops;
   double length_m = 0.0;
 };
 
 /// A short tour from the robot; what is being driven to stays the first stop unless another order is much shorter.
-Order order(const TourProblem& problem, Ways& ways, const std::vector<TourStop>& stops, bool ends_at_last,
-            double max_cost_m) {
+TourOrder order(const TourProblem& problem, Ways& ways, const std::vector<TourStop>& stops, bool ends_at_last,
+                double max_cost_m) {
   if (stops.empty()) return {};
   const Eigen::MatrixXd cost = ways.between(stops, max_cost_m);
   std::vector<int> nodes = short_tour(cost, ends_at_last);
@@ -107,7 +107,7 @@ Order order(const TourProblem& problem, Ways& ways, const std::vector<TourStop>&
     std::vector<int> other = short_tour(kept_first, ends_at_last);
     if (tour_length(cost, other) <= problem.keep_factor * tour_length(cost, nodes)) nodes = std::move(other);
   }
-  Order result{{}, tour_length(cost, nodes)};
+  TourOrder result{{}, tour_length(cost, nodes)};
   for (std::size_t i = 1; i < nodes.size(); ++i) result.stops.push_back(stops[static_cast<std::size_t>(nodes[i] - 1)]);
   return result;
 }
@@ -278,15 +278,15 @@ Tour plan_tour(const TourProblem& problem, const TareConfig& config) {
   const std::vector<LocalView> views = local_views(problem, config, targets);
   Tour tour;
   Ways ways(problem);
-  const Order global = order(problem, ways, sub_spaces(problem, config, views, targets, tour), false,
-                             std::numeric_limits<double>::infinity());
+  const TourOrder global = order(problem, ways, sub_spaces(problem, config, views, targets, tour), false,
+                                 std::numeric_limits<double>::infinity());
   std::mt19937_64 engine(static_cast<std::uint64_t>(config.seed));
-  std::optional<Order> local;
+  std::optional<TourOrder> local;
   for (int i = 0; i < kTours && !views.empty(); ++i) {
     RandomChoice choice(views, targets.size(), least_reward(problem, config));
     std::vector<TourStop> stops = choice.draw(problem.goal, engine);
     if (!global.stops.empty()) stops.push_back(global.stops.front());
-    Order order_of = order(problem, ways, stops, !global.stops.empty(), 2.0 * config.horizon_m);
+    TourOrder order_of = order(problem, ways, stops, !global.stops.empty(), 2.0 * config.horizon_m);
     if (!local || order_of.length_m < local->length_m) local = std::move(order_of);
   }
   if (local) tour.stops = std::move(local->stops);

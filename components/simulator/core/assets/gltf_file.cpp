@@ -18,7 +18,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+constexpr std::size_t kNoItem = std::numeric_limits<std::size_t>::max();
 
 // Values of componentType [section 3.6.2.2].
 enum : std::size_t { kByte = 5120, kUnsignedByte, kShort, kUnsignedShort, kUnsignedInt = 5125, kFloat = 5126 };
@@ -145,7 +145,7 @@ std::vector<std::uint8_t> GltfFile::resolve(const AssetStore& store, const std::
 
 GltfFile::View GltfFile::view(std::size_t index) const {
   const auto& json = item("bufferViews", index);
-  const std::size_t buffer = index_member(json, "buffer", file_, kNone);
+  const std::size_t buffer = index_member(json, "buffer", file_, kNoItem);
   const std::size_t offset = index_member(json, "byteOffset", file_, 0);
   const std::size_t length = index_member(json, "byteLength", file_, 0);
   const bool is_inside =
@@ -160,7 +160,7 @@ GltfFile::Numbers GltfFile::numbers(std::size_t accessor) const {
   if (!member(json, "sparse").is_null() || member(json, "bufferView").is_null()) {
     fail(name + " is sparse, which is not read; export without sparse accessors");
   }
-  const View source = view(index_member(json, "bufferView", file_, kNone));
+  const View source = view(index_member(json, "bufferView", file_, kNoItem));
   Numbers result;
   result.type = index_member(json, "componentType", file_, 0);
   result.size = component_size(result.type);
@@ -223,7 +223,7 @@ std::vector<std::uint32_t> GltfFile::indices(std::size_t accessor) const {
 std::vector<std::uint8_t> GltfFile::image(std::size_t index) const {
   const auto& json = item("images", index);
   if (!member(json, "bufferView").is_null()) {
-    const auto bytes = view(index_member(json, "bufferView", file_, kNone)).bytes;
+    const auto bytes = view(index_member(json, "bufferView", file_, kNoItem)).bytes;
     return {bytes.begin(), bytes.end()};
   }
   bool is_found = false;

@@ -18,7 +18,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr std::size_t kLargestId = std::numeric_limits<std::uint16_t>::max();
+constexpr std::size_t kLargestClassId = std::numeric_limits<std::uint16_t>::max();
 constexpr float kBoxTolerance_m = 1e-3F;
 
 // What instances.csv says about the looks of an instance.
@@ -117,7 +117,7 @@ void LabelledPlyLoader::read_classes() {
   const CsvTable table(as_text(bytes), ',', file);
   std::map<std::uint16_t, std::string> names;
   for (const auto& row : table.rows()) {
-    const auto id = static_cast<std::uint16_t>(table.index_at(row, "class_id", kLargestId));
+    const auto id = static_cast<std::uint16_t>(table.index_at(row, "class_id", kLargestClassId));
     if (id != 0 && !names.emplace(id, table.at(row, "class")).second) table.fail(row, "this class_id occurs twice");
   }
   scene_.labels = mapping::LabelList::from_names({names.begin(), names.end()});
@@ -129,8 +129,8 @@ void LabelledPlyLoader::read_instances() {
   const CsvTable table(as_text(bytes), ',', file);
   const bool has_models = table.has("model") && table.has("m00");
   for (const auto& row : table.rows()) {
-    const std::size_t id = table.index_at(row, "instance_id", kLargestId);
-    const auto class_id = static_cast<std::uint16_t>(table.index_at(row, "class_id", kLargestId));
+    const std::size_t id = table.index_at(row, "instance_id", kLargestClassId);
+    const auto class_id = static_cast<std::uint16_t>(table.index_at(row, "class_id", kLargestClassId));
     if (id == 0 || index_by_id_.count(static_cast<std::int64_t>(id)) > 0) {
       table.fail(row, "instance_id must not be 0 nor occur twice; renumber it here and in the PLY file");
     }
@@ -162,7 +162,7 @@ void LabelledPlyLoader::sort_triangles(const PlyMesh& ply) {
 std::uint32_t LabelledPlyLoader::instance_of(std::int64_t id, std::int64_t class_id) {
   const auto [entry, is_new] = index_by_pair_.try_emplace({id, class_id}, 0);
   if (!is_new) return entry->second;
-  const bool is_listed = class_id == 0 || (class_id > 0 && class_id <= static_cast<std::int64_t>(kLargestId) &&
+  const bool is_listed = class_id == 0 || (class_id > 0 && class_id <= static_cast<std::int64_t>(kLargestClassId) &&
                                            scene_.labels.contains(static_cast<std::uint16_t>(class_id)));
   if (!is_listed) {
     throw std::runtime_error(file_ + ": there are faces of class " + std::to_string(class_id) +

@@ -17,14 +17,15 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLargestId = std::numeric_limits<std::uint16_t>::max();
+constexpr std::size_t kLargestReplicaId = std::numeric_limits<std::uint16_t>::max();
 
 std::map<std::uint16_t, std::string> read_classes(const json& root, const std::string& file) {
   std::map<std::uint16_t, std::string> names;
   for (const auto& item : array_member(root, "classes", file)) {
     const std::size_t id = index_member(item, "id", file, 0);
     if (id == 0) continue;
-    if (id > kLargestId || !names.emplace(static_cast<std::uint16_t>(id), text_member(item, "name", file)).second) {
+    if (id > kLargestReplicaId ||
+        !names.emplace(static_cast<std::uint16_t>(id), text_member(item, "name", file)).second) {
       throw std::runtime_error(file + ": class " + std::to_string(id) +
                                " occurs twice or is above 65535; download the file again");
     }
@@ -37,10 +38,11 @@ std::map<std::int64_t, ObjectLabel> read_objects(const json& root, const std::ma
                                                  const std::string& file) {
   std::map<std::int64_t, ObjectLabel> objects;
   for (const auto& item : array_member(root, "objects", file)) {
-    const std::size_t id = index_member(item, "id", file, kLargestId + 1);
-    if (id > kLargestId) throw std::runtime_error(file + ": an object has no id up to 65535; download the file again");
+    const std::size_t id = index_member(item, "id", file, kLargestReplicaId + 1);
+    if (id > kLargestReplicaId)
+      throw std::runtime_error(file + ": an object has no id up to 65535; download the file again");
     const json& class_id = member(item, "class_id");
-    const bool is_index = class_id.is_number_unsigned() && class_id.get<std::size_t>() <= kLargestId;
+    const bool is_index = class_id.is_number_unsigned() && class_id.get<std::size_t>() <= kLargestReplicaId;
     const auto known = classes.find(is_index ? class_id.get<std::uint16_t>() : std::uint16_t{0});
     ObjectLabel label{0, "object " + std::to_string(id)};
     if (known != classes.end()) label = {known->first, known->second + " " + std::to_string(id)};

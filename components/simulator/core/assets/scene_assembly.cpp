@@ -11,7 +11,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr float kFarthest_m = 1e5F;
-constexpr std::uint32_t kLargestId = std::numeric_limits<std::uint16_t>::max();
+constexpr std::uint32_t kLargestNamedId = std::numeric_limits<std::uint16_t>::max();
 
 bool is_sound(const Eigen::Vector3f& p) { return (p.array().abs() <= kFarthest_m).all(); }  // false for NaN
 
@@ -83,7 +83,7 @@ std::vector<std::uint8_t> read_required(const AssetStore& store, const std::stri
 mapping::LabelList number_classes(const std::set<std::string>& names) {
   std::vector<std::pair<std::uint16_t, std::string>> numbered;
   for (const auto& name : names) {
-    if (numbered.size() < kLargestId) numbered.emplace_back(static_cast<std::uint16_t>(numbered.size() + 1), name);
+    if (numbered.size() < kLargestNamedId) numbered.emplace_back(static_cast<std::uint16_t>(numbered.size() + 1), name);
   }
   return mapping::LabelList::from_names(numbered);
 }
@@ -109,7 +109,7 @@ std::optional<std::string> ClassNames::warning() const {
 }
 
 std::uint32_t InstanceList::add(std::int64_t id, std::uint16_t class_id, std::string name) {
-  if (id < 1 || id > kLargestId) {
+  if (id < 1 || id > kLargestNamedId) {
     throw std::runtime_error(file_ + ": instance " + std::to_string(id) + " is not between 1 and 65535; renumber it");
   }
   const auto small = static_cast<std::uint16_t>(id);
@@ -121,8 +121,8 @@ std::uint32_t InstanceList::add(std::int64_t id, std::uint16_t class_id, std::st
 }
 
 std::uint32_t InstanceList::add_with_free_id(std::uint16_t class_id, std::string name) {
-  while (lowest_free_ <= kLargestId && ids_.count(static_cast<std::uint16_t>(lowest_free_)) > 0) ++lowest_free_;
-  if (lowest_free_ > kLargestId) {
+  while (lowest_free_ <= kLargestNamedId && ids_.count(static_cast<std::uint16_t>(lowest_free_)) > 0) ++lowest_free_;
+  if (lowest_free_ > kLargestNamedId) {
     throw std::runtime_error(file_ + ": there are more than 65535 instances; split the scene");
   }
   return add(lowest_free_, class_id, std::move(name));

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kLargestId = 65535;
+constexpr std::size_t kLargestListedId = 65535;
 
 std::optional<std::string> optional_text(const json& object, const std::string& key, const std::string& file) {
   if (member(object, key).is_null()) return std::nullopt;
@@ -29,7 +29,7 @@ Semantics::Entry parse_entry(const json& source, std::size_t index, const std::s
   const std::string place = file + ": instances[" + std::to_string(index) + "]";
   Semantics::Entry entry;
   const std::size_t id = index_member(source, "id", place, 0);
-  if (id < 1 || id > kLargestId) throw std::runtime_error(place + ": 'id' must be between 1 and 65535");
+  if (id < 1 || id > kLargestListedId) throw std::runtime_error(place + ": 'id' must be between 1 and 65535");
   entry.id = static_cast<std::int64_t>(id);
   entry.class_name = text_member(source, "class", place);
   entry.node = optional_text(source, "node", place);
@@ -48,7 +48,7 @@ mapping::LabelList parse_labels(const json& source, const std::string& file) {
     const std::string place = file + ": labels[" + std::to_string(i) + "]";
     const std::size_t id = source[i].is_string() ? i + 1 : index_member(source[i], "id", place, 0);
     std::string name = source[i].is_string() ? source[i].get<std::string>() : text_member(source[i], "name", place);
-    if (id < 1 || id > kLargestId || name.empty()) {
+    if (id < 1 || id > kLargestListedId || name.empty()) {
       throw std::runtime_error(place + ": must be a name, or an id between 1 and 65535 and a name");
     }
     names.emplace_back(static_cast<std::uint16_t>(id), std::move(name));

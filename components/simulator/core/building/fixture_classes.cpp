@@ -176,7 +176,7 @@ void appliances(Workshop& s) {
     s.box(x * s.w, (x + 0.08F) * s.w, -s.d / 2, front, 0.86F * s.h, 0.94F * s.h, dark);
 }
 
-constexpr std::array kClasses{
+constexpr std::array kFixtureClasses{
     FurnitureClass{"curtain", 0.6, 0.1, 2.2, curtain},   FurnitureClass{"sink", 0.55, 0.45, 0.95, sink},
     FurnitureClass{"stairs", 1.0, 2.4, 1.8, stairs},     FurnitureClass{"toilet", 0.38, 0.65, 0.78, toilet},
     FurnitureClass{"towel", 0.5, 0.08, 0.7, towel},      FurnitureClass{"mirror", 0.6, 0.04, 1.4, mirror},
@@ -189,6 +189,6 @@ constexpr std::array kClasses{
 
 }  // namespace
 
-std::span<const FurnitureClass> fixture_classes() { return kClasses; }
+std::span<const FurnitureClass> fixture_classes() { return kFixtureClasses; }
 
 }  // namespace lapis::simulator

@@ -205,7 +205,7 @@ void rug(Workshop& s) {
   s.shapes.picture({-0.48F * s.w, -0.48F * s.d, s.h}, {0.96F * s.w, 0, 0}, {0, 0.96F * s.d, 0}, s.painting(s.w / s.d));
 }
 
-constexpr std::array kClasses{
+constexpr std::array kMovableClasses{
     FurnitureClass{"chair", 0.46, 0.52, 0.9, chair},
     FurnitureClass{"table", 1.4, 0.8, 0.74, table},
     FurnitureClass{"cabinet", 1.0, 0.45, 1.2, cabinet},
@@ -228,6 +228,6 @@ constexpr std::array kClasses{
 
 }  // namespace
 
-std::span<const FurnitureClass> movable_classes() { return kClasses; }
+std::span<const FurnitureClass> movable_classes() { return kMovableClasses; }
 
 }  // namespace lapis::simulator

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kMaxMove_m = 0.05, kMaxTurn_rad = 10.0 * std::numbers::pi / 180.0;
 constexpr double kMaxPictureMove_m = 0.1;
-constexpr double kFlat_m = 0.03;        // what is lower (a rug) is in nobody's way
-constexpr double kFrameWidth_m = 0.07;  // of doors and windows
+constexpr double kFlat_m = 0.03;           // what is lower (a rug) is in nobody's way
+constexpr double kOpeningMargin_m = 0.07;  // of doors and windows
 
 /// Places items one after another; `OnItem` refers to earlier ones.
 class FurniturePlacer {
@@ -132,7 +132,7 @@ std::string obstacle(const SceneSpec& spec, const std::vector<RoomPlan>& plan, c
                                 Eigen::Vector2d(along_m + half.x(), picture.height_m + half.y()));
   const Eigen::AlignedBox2d face(Eigen::Vector2d(0, 0), Eigen::Vector2d(wall.length_m, room.height_m));
   if (!face.contains(box)) return "leaves its wall";
-  const Eigen::Vector2d margin(kFrameWidth_m, kFrameWidth_m);
+  const Eigen::Vector2d margin(kOpeningMargin_m, kOpeningMargin_m);
   for (const WallOpening& hole : wall.openings) {
     const Eigen::AlignedBox2d frame(Eigen::Vector2d(hole.from_m, hole.bottom_m) - margin,
                                     Eigen::Vector2d(hole.to_m, hole.top_m) + margin);

@@ -16,7 +16,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kResolution_m = 0.05;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoLoop = std::numeric_limits<double>::infinity();
 
 struct Island {
   std::vector<Cell> cells;
@@ -101,13 +101,13 @@ Cut cheapest_cut(const Island& island, const geometry::GrayImage& reachable) {
 class LoopSearch {
  public:
   LoopSearch(const geometry::GrayImage& reachable, const Cut& cut)
-      : reachable_(reachable), cut_(cut), layer_(reachable.pixels.size()), cost_(2 * layer_, kInfinity),
+      : reachable_(reachable), cut_(cut), layer_(reachable.pixels.size()), cost_(2 * layer_, kNoLoop),
         parent_(2 * layer_) {}
 
   /// Cells of the shortest loop; empty when there is none.
   std::vector<Cell> shortest() {
     std::vector<Cell> best;
-    double best_length = kInfinity;
+    double best_length = kNoLoop;
     for (Cell c = cut_.from; c.column >= 0 && c.column < reachable_.width; c.column += cut_.direction) {
       if (!is_set(reachable_, c)) continue;
       const double length = search(c, best_length);
@@ -115,7 +115,7 @@ class LoopSearch {
         best_length = length;
         best = trace(c);
       }
-      for (const std::size_t node : touched_) cost_[node] = kInfinity;
+      for (const std::size_t node : touched_) cost_[node] = kNoLoop;
       touched_.clear();
     }
     return best;
@@ -133,7 +133,7 @@ class LoopSearch {
   }
 
   void reach(std::size_t node, double cost, std::size_t parent) {
-    if (cost_[node] == kInfinity) touched_.push_back(node);
+    if (cost_[node] == kNoLoop) touched_.push_back(node);
     cost_[node] = cost;
     parent_[node] = parent;
   }
@@ -164,7 +164,7 @@ class LoopSearch {
         open.emplace(estimate, to);
       }
     }
-    return kInfinity;
+    return kNoLoop;
   }
 
   static double straight(Cell a, Cell b) { return step_length({a.column - b.column, a.row - b.row}); }

@@ -13,8 +13,8 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kSnap_m = 0.15;
-constexpr double kSample_m = 0.025;  // between points of a line that are tested
-constexpr double kSlack = 1.001;     // a line may cost so much more than the path that it replaces
+constexpr double kLineSample_m = 0.025;  // between points of a line that are tested
+constexpr double kSlack = 1.001;         // a line may cost so much more than the path that it replaces
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::size_t index_of(const Grid& grid, Cell c) {
@@ -71,7 +71,7 @@ double PathPlanner::cost_per_metre(const Eigen::Vector2d& p) const {
 
 double PathPlanner::segment_cost(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
   const double length = (b - a).norm();
-  const int samples = std::max(1, static_cast<int>(std::ceil(length / kSample_m)));
+  const int samples = std::max(1, static_cast<int>(std::ceil(length / kLineSample_m)));
   double sum = 0.0;
   for (int i = 0; i < samples; ++i) {
     const Eigen::Vector2d p = a + (b - a) * ((i + 0.5) / samples);

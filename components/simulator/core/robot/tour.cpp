@@ -14,7 +14,7 @@ constexpr double kSharp_rad = 0.7;  // the follower turns on the spot from here 
 constexpr double kStop_s = 1.0;     // lost by slowing down, stopping, and speeding up
 constexpr double kCrawl_m_s = 0.15;
 constexpr double kSpeedPerGap = 1.5;  // [1/s]
-constexpr double kSample_m = 0.05;
+constexpr double kTourSample_m = 0.05;
 
 std::string place(std::size_t number, const Eigen::Vector2d& p) {
   std::ostringstream text;
@@ -49,7 +49,7 @@ double drive_time_s(const NavMap& map, const TourConfig& config, const Path& pat
   double sum = 0.0;
   for (std::size_t i = 1; i < path.size(); ++i) {
     const Eigen::Vector2d step = path[i] - path[i - 1];
-    const int samples = std::max(1, static_cast<int>(step.norm() / kSample_m));
+    const int samples = std::max(1, static_cast<int>(step.norm() / kTourSample_m));
     for (int s = 0; s < samples; ++s) {
       const double distance = map.distance_m(path[i - 1] + step * ((s + 0.5) / samples));
       sum += step.norm() / samples / speed_limit_m_s(config, distance);

@@ -21,7 +21,7 @@ constexpr double kPassed_m = 0.20;   // from the end of one that does not
 constexpr double kSlow_m_s = 0.08;   // just before a stop
 constexpr double kStopGain = 0.8;    // [1/s]
 constexpr double kSafety_m = 0.02;   // between disc and obstacle on the line to the target
-constexpr double kSample_m = 0.025;
+constexpr double kFollowerSample_m = 0.025;
 constexpr double kShortest_m = 0.05;  // distance of the target
 constexpr double kProgress_m = 0.05;  // along the path: less is none
 constexpr double kPatience_s = 20.0;  // without progress, beside the time that turning round takes
@@ -106,7 +106,7 @@ Eigen::Vector2d TourFollower::target(const Eigen::Vector2d& position) const {
 }
 
 bool TourFollower::is_clear(const Eigen::Vector2d& a, const Eigen::Vector2d& b) const {
-  const int samples = std::max(1, static_cast<int>((b - a).norm() / kSample_m));
+  const int samples = std::max(1, static_cast<int>((b - a).norm() / kFollowerSample_m));
   for (int i = 1; i <= samples; ++i) {
     if (map_->distance_m(a + (b - a) * (static_cast<double>(i) / samples)) < config_.path.radius_m + kSafety_m)
       return false;

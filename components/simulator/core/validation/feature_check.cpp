@@ -17,7 +17,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kSpacing_m = 0.5;
+constexpr double kViewSpacing_m = 0.5;
 constexpr int kHeadings = 8;
 constexpr int kMaxFeatures = 1000, kFewFeatures = 100;
 constexpr double kMostPoor = 0.04, kLeastPoor = 0.005;
@@ -31,7 +31,7 @@ std::vector<FeatureView> reachable_views(const World& world, double radius_m) {
   for (const StartPose& start : starts_of(world.scene(), map, radius_m))
     reachable.push_back(map.reachable(start.position, radius_m));
   const Grid& grid = map.grid();
-  const int step = std::max(1, static_cast<int>(std::lround(kSpacing_m / grid.resolution_m)));
+  const int step = std::max(1, static_cast<int>(std::lround(kViewSpacing_m / grid.resolution_m)));
   std::vector<FeatureView> views;
   for (int row = step / 2; row < grid.height; row += step) {
     for (int column = step / 2; column < grid.width; column += step) {

@@ -12,7 +12,7 @@ namespace {
 constexpr int kContact_voxels = 4;  // 8 cm: what is pressed in by 6 cm is not more, however the grid lies
 constexpr double kOverlapShare = 0.02;
 constexpr double kOutside_m = 0.03, kOutsideShare = 0.01;
-constexpr float kSpacing_m = 0.03F;
+constexpr float kOverlapSpacing_m = 0.03F;
 constexpr double kMostVoxels = 6e7;  // 500 m3: what is larger is no furniture
 
 /// The voxels of two solids.
@@ -109,7 +109,7 @@ std::vector<Protrusion> find_protrusions(const Scene& scene, const Inventory& in
   for (std::size_t i = 0; i < inventory.items.size() && !scene.rooms.empty(); ++i) {
     const Item& item = inventory.items[i];
     const auto rooms = rooms_around(scene, item);
-    const auto points = surface_points(scene.mesh, item.triangles, kSpacing_m);
+    const auto points = surface_points(scene.mesh, item.triangles, kOverlapSpacing_m);
     const auto outside = std::count_if(points.begin(), points.end(), [&](const Eigen::Vector3f& p) {
       return is_outside(rooms, scene.floor_z_m, p.cast<double>());
     });

@@ -6,7 +6,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr float kSpacing_m = 0.4F * Solid::kVoxel_m;  // so close that a surface has no holes
+constexpr float kSolidSpacing_m = 0.4F * Solid::kVoxel_m;  // so close that a surface has no holes
 constexpr std::uint8_t kSurface = 1, kOutside = 2;
 
 Eigen::Vector3i voxel_of(const Eigen::Vector3f& p) { return (p / Solid::kVoxel_m).array().floor().cast<int>(); }
@@ -18,7 +18,7 @@ double Solid::voxels(const Item& item) { return ((item.box.sizes() / kVoxel_m).c
 Solid::Solid(const Scene& scene, const Item& item)
     : low_(voxel_of(item.box.min())), size_((voxel_of(item.box.max()) - low_).array() + 1),
       filled_(index(Eigen::Vector3i(0, 0, size_.z())), 0) {
-  for (const auto& p : surface_points(scene.mesh, item.triangles, kSpacing_m)) {
+  for (const auto& p : surface_points(scene.mesh, item.triangles, kSolidSpacing_m)) {
     const Eigen::Vector3i v = (voxel_of(p) - low_).cwiseMax(0).cwiseMin((size_.array() - 1).matrix());
     filled_[index(v)] = kSurface;
   }

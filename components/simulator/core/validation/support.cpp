@@ -11,7 +11,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr float kSpacing_m = 0.02F;
+constexpr float kSupportSpacing_m = 0.02F;
 constexpr float kPressed_m = 0.01F;  // rays begin so far inside
 
 using Points = std::vector<Eigen::Vector3f>;
@@ -45,7 +45,7 @@ bool touches(const SceneRaycaster& others, const Points& points, std::size_t cou
 
 /// Lowest first: there most items stand.
 Points points_of(const Scene& scene, const Item& item) {
-  Points points = surface_points(scene.mesh, item.triangles, kSpacing_m);
+  Points points = surface_points(scene.mesh, item.triangles, kSupportSpacing_m);
   std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
   return points;
 }

@@ -14,10 +14,10 @@ using mapping::BlockIndex;
 using mapping::VoxelBlock;
 using mapping::VoxelMap;
 
-constexpr double kResolution_m = 0.25;
-constexpr int kClasses = 40;
+constexpr double kFieldResolution_m = 0.25;
+constexpr int kFieldClasses = 40;
 
-InformationField empty_field() { return {kResolution_m, mapping::SensorModel{}, Measure::kSemantic}; }
+InformationField empty_field() { return {kFieldResolution_m, mapping::SensorModel{}, Measure::kSemantic}; }
 
 /// Blocks -2..1 along each axis: more than random_map fills.
 template <class Visit>
@@ -36,7 +36,7 @@ void expect_equal(const InformationField& a, const InformationField& b) {
 
 TEST(InformationField, HoldsTheMeasureOfEveryVoxel) {
   std::mt19937 random(1);
-  const VoxelMap map = test::random_map(random, kResolution_m, kClasses);
+  const VoxelMap map = test::random_map(random, kFieldResolution_m, kFieldClasses);
   InformationField field = empty_field();
   field.rebuild(map);
   const CellMeasure measure(mapping::SensorModel{}, Measure::kSemantic);
@@ -53,9 +53,9 @@ TEST(InformationField, HoldsTheMeasureOfEveryVoxel) {
 TEST(InformationField, UpdatesOfChangedBlocksEqualARebuild) {
   std::mt19937 random(2);
   InformationField field = empty_field();
-  VoxelMap map(kResolution_m);
+  VoxelMap map(kFieldResolution_m);
   for (int version = 0; version < 20; ++version) {
-    const VoxelMap next = test::random_map(random, kResolution_m, kClasses);
+    const VoxelMap next = test::random_map(random, kFieldResolution_m, kFieldClasses);
     std::vector<BlockIndex> changed;
     for_each_block([&](const BlockIndex& index) {
       const VoxelBlock *before = map.find(index), *after = next.find(index);
@@ -74,13 +74,13 @@ TEST(InformationField, UpdatesOfChangedBlocksEqualARebuild) {
 TEST(InformationField, RebuildForgetsWhatTheMapDoesNotHave) {
   std::mt19937 random(3);
   InformationField field = empty_field();
-  field.rebuild(test::random_map(random, kResolution_m, kClasses));
-  field.rebuild(VoxelMap(kResolution_m));
+  field.rebuild(test::random_map(random, kFieldResolution_m, kFieldClasses));
+  field.rebuild(VoxelMap(kFieldResolution_m));
   expect_equal(field, empty_field());
 }
 
 TEST(InformationField, BlocksOfEqualCellsShareOneCopy) {
-  VoxelMap map(kResolution_m);
+  VoxelMap map(kFieldResolution_m);
   // Long since clamped, and not uniform in the map.
   for (int i = 0; i < 4; ++i) {
     VoxelBlock block(1000 * mapping::kOneVote);

@@ -117,9 +117,9 @@ TEST(FrontierMap, TheLargerPartKeepsTheIdAndNoIdIsUsedTwice) {
   EXPECT_TRUE(map.frontiers().contains(3)) << "2 was used";
 }
 
-class RandomDeltas : public testing::TestWithParam<unsigned> {};
+class RandomFrontierDeltas : public testing::TestWithParam<unsigned> {};
 
-TEST_P(RandomDeltas, UpdatedEqualsRescan) {
+TEST_P(RandomFrontierDeltas, UpdatedEqualsRescan) {
   constexpr int kEdge = 60;
   World world(0.1);
   const FrontierConfig config{.max_extent_m = 1.3};
@@ -143,7 +143,7 @@ TEST_P(RandomDeltas, UpdatedEqualsRescan) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomDeltas, testing::Range(0u, 60u));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomFrontierDeltas, testing::Range(0u, 60u));
 
 }  // namespace
 }  // namespace lapis::planner

@@ -181,9 +181,9 @@ double nearest_m(const World& world, Cell c, std::int8_t value, int reach) {
   return best;
 }
 
-class RandomDeltas : public testing::TestWithParam<unsigned> {};
+class RandomGridDeltas : public testing::TestWithParam<unsigned> {};
 
-TEST_P(RandomDeltas, StateChangesAndDistancesEqualThoseFromScratch) {
+TEST_P(RandomGridDeltas, StateChangesAndDistancesEqualThoseFromScratch) {
   World world(0.1);
   std::mt19937 random(GetParam());
   const auto number = [&random](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
@@ -223,7 +223,7 @@ TEST_P(RandomDeltas, StateChangesAndDistancesEqualThoseFromScratch) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Seeds, RandomDeltas, testing::Range(0u, 20u));
+INSTANTIATE_TEST_SUITE_P(Seeds, RandomGridDeltas, testing::Range(0u, 20u));
 
 }  // namespace
 }  // namespace lapis::planner

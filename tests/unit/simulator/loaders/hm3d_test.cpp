@@ -18,7 +18,7 @@ using ::testing::IsEmpty;
 
 using Mapping = std::optional<std::map<std::string, std::string>>;
 
-Scene load(const Files& files, const Mapping& mapping = std::nullopt, const LoadOptions& options = {}) {
+Scene load_hm3d_files(const Files& files, const Mapping& mapping = std::nullopt, const LoadOptions& options = {}) {
   return load_hm3d(MemoryStore(files), "h", mapping, options);
 }
 
@@ -27,7 +27,7 @@ std::string list_error(const std::string& lines) {
 }
 
 TEST(Hm3d, TexelsTellInstances) {
-  const Scene scene = load(test::hm3d_files());
+  const Scene scene = load_hm3d_files(test::hm3d_files());
   EXPECT_EQ(problem_of(scene.mesh), "");
   ASSERT_EQ(scene.mesh.triangles.size(), 2U);
   const auto part = [&](std::size_t i) { return scene.instances[scene.mesh.triangles[i].part]; };
@@ -39,13 +39,13 @@ TEST(Hm3d, TexelsTellInstances) {
 }
 
 TEST(Hm3d, LooksComeFromTheOtherFile) {
-  const Scene scene = load(test::hm3d_files());
+  const Scene scene = load_hm3d_files(test::hm3d_files());
   ASSERT_EQ(scene.mesh.textures.size(), 1U);
   EXPECT_EQ(scene.mesh.textures[0]->pixels[0], (Rgba8{90, 80, 70, 255}));
   EXPECT_FALSE(scene.is_lit);
   Files files = test::hm3d_files();
   files.erase("h.glb");
-  const Scene plain = load(files);
+  const Scene plain = load_hm3d_files(files);
   EXPECT_THAT(plain.mesh.textures, IsEmpty());
   EXPECT_EQ(plain.mesh.materials[plain.mesh.triangles[1].material].color, (geometry::Rgb8{0, 0xFF, 0x20}));
   EXPECT_THAT(plain.warnings, Contains(HasSubstr("no h.glb with the same triangles")));
@@ -57,7 +57,7 @@ TEST(Hm3d, LooksNeedTheSameTriangles) {
   GltfBuilder other;
   other.add_node({{"mesh", add_triangle_mesh(other)}});
   files["h.glb"] = other.glb();
-  EXPECT_THAT(load(files).warnings, Contains(HasSubstr("with the same triangles")));
+  EXPECT_THAT(load_hm3d_files(files).warnings, Contains(HasSubstr("with the same triangles")));
 }
 
 TEST(Hm3d, VertexColorsTellInstancesWhereThereIsNoTexture) {
@@ -68,14 +68,14 @@ TEST(Hm3d, VertexColorsTellInstancesWhereThereIsNoTexture) {
       builder.add_accessor({0, 255, 32, 255, 0, 255, 32, 255, 9, 9, 9, 255}, 5121, "VEC4", 3, 0, true);
   builder.add_node({{"mesh", mesh}});
   files["h.semantic.glb"] = builder.glb();
-  const Scene scene = load(files);
+  const Scene scene = load_hm3d_files(files);
   EXPECT_EQ(scene.instances[scene.mesh.triangles[0].part].id, 2);
 }
 
 TEST(Hm3d, ColorsThatAreNotListedAreUnlabelled) {
   Files files = test::hm3d_files();
   files["h.semantic.txt"] = to_bytes("HM3D Semantic Annotations\n1,FF0010,\"floor\",0\n");
-  const Scene scene = load(files);
+  const Scene scene = load_hm3d_files(files);
   EXPECT_EQ(scene.instances[scene.mesh.triangles[1].part].class_id, 0);
   EXPECT_EQ(scene.instances[scene.mesh.triangles[1].part].id, 2);
 }
@@ -84,19 +84,19 @@ TEST(Hm3d, TheMappingLeadsToTheClassesOfTheList) {
   const auto bytes = test::hm3d_mapping();
   const auto mapping = parse_hm3d_mapping({reinterpret_cast<const char*>(bytes.data()), bytes.size()}, "m.tsv");
   const auto labels = mapping::LabelList::from_names({{2, "floor"}, {3, "chair"}});
-  const Scene scene = load(test::hm3d_files(), mapping, {labels, 64});
+  const Scene scene = load_hm3d_files(test::hm3d_files(), mapping, {labels, 64});
   EXPECT_EQ(scene.labels, labels);
   EXPECT_EQ(scene.instances[scene.mesh.triangles[1].part].class_id, 3);
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("1 categories are not in")));  // the lamp
   EXPECT_THAT(test::error_of([] { parse_hm3d_mapping("a\tb\n", "m.tsv"); }), HasSubstr("m.tsv: line 1"));
 }
 
-TEST(Hm3d, UpIsZ) { EXPECT_FLOAT_EQ(bounds(load(test::hm3d_files()).mesh).max().z(), 0.0F); }
+TEST(Hm3d, UpIsZ) { EXPECT_FLOAT_EQ(bounds(load_hm3d_files(test::hm3d_files()).mesh).max().z(), 0.0F); }
 
 TEST(Hm3d, LooksInTheBasisFormatAreNotRead) {
   Files files = test::hm3d_files();
   files["h.basis.glb"] = files.extract("h.glb").mapped();
-  EXPECT_THAT(load(files).warnings, Contains(HasSubstr(".basis.glb is not read")));
+  EXPECT_THAT(load_hm3d_files(files).warnings, Contains(HasSubstr(".basis.glb is not read")));
 }
 
 TEST(Hm3d, ErrorsNameFileAndLine) {
@@ -108,13 +108,13 @@ TEST(Hm3d, ErrorsNameFileAndLine) {
   EXPECT_THAT(list_error("1,FF0000,a,0\n2,FF0000,b,0\n"), HasSubstr("FF0000 occurs twice"));
   Files files = test::hm3d_files();
   files["h.semantic.txt"] = to_bytes("HM3D Semantic Annotations\n0,FF0010,a,0\n");
-  EXPECT_THAT(test::error_of([&] { load(files); }), HasSubstr("instance 0"));
+  EXPECT_THAT(test::error_of([&] { load_hm3d_files(files); }), HasSubstr("instance 0"));
   for (const char* name : {"h.semantic.glb", "h.semantic.txt"}) {
     files = test::hm3d_files();
     files.erase(name);
-    EXPECT_THAT(test::error_of([&] { load(files); }), HasSubstr(std::string("memory/") + name));
+    EXPECT_THAT(test::error_of([&] { load_hm3d_files(files); }), HasSubstr(std::string("memory/") + name));
     files[name] = {};
-    EXPECT_THAT(test::error_of([&] { load(files); }), HasSubstr("0 bytes"));
+    EXPECT_THAT(test::error_of([&] { load_hm3d_files(files); }), HasSubstr("0 bytes"));
   }
 }
 

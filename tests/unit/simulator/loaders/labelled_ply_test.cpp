@@ -17,10 +17,10 @@ using test::to_bytes;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-Scene load(const Files& files) { return load_labelled_ply(MemoryStore(files), "scene_labelled.ply", {}); }
+Scene load_labelled(const Files& files) { return load_labelled_ply(MemoryStore(files), "scene_labelled.ply", {}); }
 
-std::string load_error(const Files& files) {
-  return test::error_of([&] { load(files); });
+std::string labelled_error(const Files& files) {
+  return test::error_of([&] { load_labelled(files); });
 }
 
 PlySource labelled_source() {
@@ -43,7 +43,7 @@ std::size_t triangles_of(const Scene& scene, std::uint16_t id) {
 }
 
 TEST(LabelledPly, HasClassesInstancesAndColorsOfTheClasses) {
-  const Scene scene = load(test::labelled_ply_files());
+  const Scene scene = load_labelled(test::labelled_ply_files());
   EXPECT_EQ(problem_of(scene.mesh), "");
   EXPECT_EQ(scene.mesh.triangles.size(), 12U);
   ASSERT_EQ(scene.instances.size(), 2U);
@@ -64,7 +64,7 @@ TEST(LabelledPly, ColorsOfFacesDivideVertices) {
   source.face_colors.assign(12, {1, 2, 3});
   source.face_colors[0] = {9, 9, 9};
   source.vertex_colors.assign(source.positions.size(), {50, 50, 50});
-  const Scene scene = load(with_ply(source));
+  const Scene scene = load_labelled(with_ply(source));
   EXPECT_EQ(scene.mesh.positions.size(), source.positions.size() + 2);  // two corners of the floor are shared
   for (std::size_t i = 0; i < 12; ++i) {
     for (const std::uint32_t v : scene.mesh.triangles[i].vertices)
@@ -75,7 +75,7 @@ TEST(LabelledPly, ColorsOfFacesDivideVertices) {
 TEST(LabelledPly, FacesDecideTheClassOfPartsOfAnInstance) {
   PlySource source = labelled_source();
   source.label_values[0][11] = 1;  // of instance 7, which is a chair
-  const Scene scene = load(with_ply(source));
+  const Scene scene = load_labelled(with_ply(source));
   ASSERT_EQ(scene.instances.size(), 3U);
   EXPECT_EQ(triangles_of(scene, 7), 9U);
   EXPECT_EQ(scene.instances[2].class_id, 1);
@@ -88,7 +88,7 @@ TEST(LabelledPly, FacesWithoutInstanceAreHeldByClass) {
   PlySource source = labelled_source();
   for (std::size_t i = 0; i < 4; ++i) source.label_values[1][i] = 0;
   source.label_values[0][3] = 0;
-  const Scene scene = load(with_ply(source));
+  const Scene scene = load_labelled(with_ply(source));
   ASSERT_EQ(scene.instances.size(), 5U);  // ground, block; floor, chair, unlabelled without instance
   const auto part = [&](std::size_t i) { return scene.instances[scene.mesh.triangles[i].part]; };
   std::size_t unlabelled = 0, floors = 0;
@@ -131,11 +131,11 @@ class LabelledPlyWithModels : public testing::Test {
 };
 
 TEST_F(LabelledPlyWithModels, ModelsShowInstancesThatTheyFit) {
-  const Scene scene = load(files(0.8F));
+  const Scene scene = load_labelled(files(0.8F));
   EXPECT_THAT(scene.warnings, IsEmpty());
   EXPECT_EQ(scene.mesh.textures.size(), 1U);
   EXPECT_EQ(problem_of(scene.mesh), "");
-  const Scene plain = load(test::labelled_ply_files());
+  const Scene plain = load_labelled(test::labelled_ply_files());
   EXPECT_EQ(triangles_of(scene, 7), 10U);
   ASSERT_EQ(scene.mesh.triangles.size(), plain.mesh.triangles.size());
   for (std::size_t i = 0; i < plain.mesh.triangles.size(); ++i) {
@@ -149,7 +149,7 @@ TEST_F(LabelledPlyWithModels, ModelsShowInstancesThatTheyFit) {
 }
 
 TEST_F(LabelledPlyWithModels, TheSurfaceStaysWhereAModelDiffers) {
-  const Scene scene = load(files(0.81F));
+  const Scene scene = load_labelled(files(0.81F));
   EXPECT_THAT(scene.mesh.textures, IsEmpty());
   EXPECT_FLOAT_EQ(bounds(scene.mesh).max().z(), 0.8F);
   ASSERT_EQ(scene.warnings.size(), 1U);
@@ -159,7 +159,7 @@ TEST_F(LabelledPlyWithModels, TheSurfaceStaysWhereAModelDiffers) {
 TEST_F(LabelledPlyWithModels, TheSurfaceStaysWhereAModelIsMissing) {
   Files files = LabelledPlyWithModels::files(0.8F);
   files.erase("models/block.obj");
-  const Scene scene = load(files);
+  const Scene scene = load_labelled(files);
   EXPECT_EQ(scene.mesh.triangles.size(), 12U);
   ASSERT_EQ(scene.warnings.size(), 1U);
   EXPECT_THAT(scene.warnings[0], HasSubstr("models/block.obj"));
@@ -169,35 +169,35 @@ TEST(LabelledPly, TrianglesThatAreNotFiniteAreLeftOut) {
   PlySource source = labelled_source();
   source.positions[8].y() = std::numeric_limits<float>::quiet_NaN();
   source.positions[9].z() = 1e20F;
-  const Scene scene = load(with_ply(source));
+  const Scene scene = load_labelled(with_ply(source));
   EXPECT_EQ(problem_of(scene.mesh), "");
   EXPECT_LT(scene.mesh.triangles.size(), 12U);
   EXPECT_LE(bounds(scene.mesh).max().maxCoeff(), 2.0F);
   ASSERT_EQ(scene.warnings.size(), 1U);
   EXPECT_THAT(scene.warnings[0], HasSubstr(std::to_string(12 - scene.mesh.triangles.size()) + " triangles"));
   for (auto& p : source.positions) p.x() = std::numeric_limits<float>::infinity();
-  EXPECT_THAT(load_error(with_ply(source)), HasSubstr("no triangle has finite coordinates"));
+  EXPECT_THAT(labelled_error(with_ply(source)), HasSubstr("no triangle has finite coordinates"));
 }
 
 TEST(LabelledPly, ErrorsNameFileAndRemedy) {
   for (const char* name : {"scene_labelled.ply", "classes.csv", "instances.csv"}) {
     Files files = test::labelled_ply_files();
     files.erase(name);
-    EXPECT_THAT(load_error(files), HasSubstr(name));
+    EXPECT_THAT(labelled_error(files), HasSubstr(name));
     files[name] = {};
-    EXPECT_THAT(load_error(files), HasSubstr(std::string(name) + ": the file is empty (0 bytes)"));
+    EXPECT_THAT(labelled_error(files), HasSubstr(std::string(name) + ": the file is empty (0 bytes)"));
   }
   Files files = test::labelled_ply_files();
   files["classes.csv"] = to_bytes("class_id,class\n1,floor\n");
-  EXPECT_THAT(load_error(files), HasSubstr("class 2; add it to classes.csv"));
+  EXPECT_THAT(labelled_error(files), HasSubstr("class 2; add it to classes.csv"));
   files = test::labelled_ply_files();
   files["instances.csv"] = to_bytes("instance_id,name,class_id\n1,ground,1\n");
-  EXPECT_THAT(load_error(files), HasSubstr("instance 7; add it to instances.csv"));
+  EXPECT_THAT(labelled_error(files), HasSubstr("instance 7; add it to instances.csv"));
   files["instances.csv"] = to_bytes("instance_id,name,class_id\n1,ground,1\n1,x,1\n");
-  EXPECT_THAT(load_error(files), HasSubstr("instances.csv: line 3"));
+  EXPECT_THAT(labelled_error(files), HasSubstr("instances.csv: line 3"));
   PlySource source = labelled_source();
   for (auto& polygon : source.polygons) polygon.resize(2);
-  EXPECT_THAT(load_error(with_ply(source)), HasSubstr("no triangles"));
+  EXPECT_THAT(labelled_error(with_ply(source)), HasSubstr("no triangles"));
 }
 
 }  // namespace

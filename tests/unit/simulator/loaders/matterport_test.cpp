@@ -14,7 +14,7 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-Scene load(const Files& files, const mapping::LabelList& labels = {}) {
+Scene load_matterport_files(const Files& files, const mapping::LabelList& labels = {}) {
   return load_matterport(MemoryStore(files), "m", {labels, 64});
 }
 
@@ -23,7 +23,7 @@ std::string house_error(const std::string& records) {
 }
 
 TEST(Matterport, ObjectsLeadToClassesByWayOfCategories) {
-  const Scene scene = load(test::matterport_files());
+  const Scene scene = load_matterport_files(test::matterport_files());
   EXPECT_EQ(problem_of(scene.mesh), "");
   EXPECT_EQ(scene.mesh.triangles.size(), 12U);
   EXPECT_FALSE(scene.is_lit);
@@ -42,7 +42,7 @@ TEST(Matterport, ObjectsLeadToClassesByWayOfCategories) {
 
 TEST(Matterport, ClassesAreThoseOfTheLabelList) {
   const auto labels = mapping::LabelList::from_names({{1, "wall"}, {3, "chair"}});
-  const Scene scene = load(test::matterport_files(), labels);
+  const Scene scene = load_matterport_files(test::matterport_files(), labels);
   EXPECT_EQ(scene.labels, labels);
   EXPECT_EQ(scene.instances[scene.mesh.triangles[5].part].class_id, 3);
   EXPECT_EQ(scene.instances[scene.mesh.triangles[0].part].class_id, 0);
@@ -53,7 +53,7 @@ TEST(Matterport, WarnsOfObjectsAndCountsThatDoNotFit) {
   Files files = test::matterport_files();
   const std::string house(files["m.house"].begin(), files["m.house"].end());
   files["m.house"] = to_bytes(house.substr(0, house.find("O 1 ")));
-  EXPECT_THAT(load(files).warnings,
+  EXPECT_THAT(load_matterport_files(files).warnings,
               ElementsAre(HasSubstr("has 1 objects and 2 categories, its header promises 3 and 2"),
                           HasSubstr("2 objects are not in the list"), HasSubstr("colours")));
 }
@@ -69,9 +69,9 @@ TEST(Matterport, ErrorsNameFileAndLine) {
   for (const char* name : {"m.house", "m_semantic.ply"}) {
     Files files = test::matterport_files();
     files.erase(name);
-    EXPECT_THAT(test::error_of([&] { load(files); }), HasSubstr(std::string("memory/") + name));
+    EXPECT_THAT(test::error_of([&] { load_matterport_files(files); }), HasSubstr(std::string("memory/") + name));
     files[name] = {};
-    EXPECT_THAT(test::error_of([&] { load(files); }), HasSubstr("0 bytes"));
+    EXPECT_THAT(test::error_of([&] { load_matterport_files(files); }), HasSubstr("0 bytes"));
   }
 }
 
@@ -82,7 +82,7 @@ TEST(Matterport, ObjectIdsAreAtMost65534) {
   Files files = test::matterport_files();
   files["m_semantic.ply"] = write_ply(source, test::PlyFormat::kAscii);
   files["m.house"] = to_bytes("ASCII 1.1\nO 65535 0 -1\n");
-  EXPECT_THAT(test::error_of([&] { load(files); }), HasSubstr("instance 65536"));
+  EXPECT_THAT(test::error_of([&] { load_matterport_files(files); }), HasSubstr("instance 65536"));
 }
 
 }  // namespace

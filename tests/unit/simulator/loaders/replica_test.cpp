@@ -15,16 +15,16 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-Scene load(const Files& files) { return load_replica(MemoryStore(files), ""); }
+Scene load_replica_files(const Files& files) { return load_replica(MemoryStore(files), ""); }
 
 std::string info_error(const json& info) {
   Files files = test::replica_files();
   files["info_semantic.json"] = to_bytes(info.dump());
-  return test::error_of([&] { load(files); });
+  return test::error_of([&] { load_replica_files(files); });
 }
 
 TEST(Replica, QuadsBecomeTrianglesWithClassAndColor) {
-  const Scene scene = load(test::replica_files());
+  const Scene scene = load_replica_files(test::replica_files());
   EXPECT_EQ(problem_of(scene.mesh), "");
   ASSERT_EQ(scene.mesh.triangles.size(), 4U);
   const auto part = [&](std::size_t i) { return scene.instances[scene.mesh.triangles[i].part]; };
@@ -43,7 +43,7 @@ TEST(Replica, ObjectsWithoutClassAreUnlabelled) {
   const json info{{"classes", {{{"id", 0}, {"name", "undefined"}}, {{"id", 40}, {"name", "floor"}}}},
                   {"objects", {{{"id", 0}, {"class_id", -1}}}}};
   files["info_semantic.json"] = to_bytes(info.dump());
-  const Scene scene = load(files);
+  const Scene scene = load_replica_files(files);
   for (const auto& instance : scene.instances) EXPECT_EQ(instance.class_id, 0);
   EXPECT_EQ(scene.labels.size(), 1U);
   EXPECT_THAT(scene.warnings, ElementsAre(HasSubstr("1 objects are not in the list"), HasSubstr("class 'floor'")));
@@ -59,7 +59,7 @@ TEST(Replica, ErrorsNameFileAndRemedy) {
   for (const char* name : {"mesh_semantic.ply", "info_semantic.json"}) {
     Files files = test::replica_files();
     files.erase(name);
-    EXPECT_THAT(test::error_of([&] { load(files); }), HasSubstr(std::string("memory/") + name));
+    EXPECT_THAT(test::error_of([&] { load_replica_files(files); }), HasSubstr(std::string("memory/") + name));
   }
 }
 

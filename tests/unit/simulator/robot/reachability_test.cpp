@@ -16,8 +16,6 @@ namespace {
 using testing::ElementsAre;
 using testing::UnorderedElementsAre;
 
-constexpr double kPi = std::numbers::pi;
-
 Room room(const std::string& id, const Rectangle& r) {
   return {id, "", {{r.x0, r.y0}, {r.x1, r.y0}, {r.x1, r.y1}, {r.x0, r.y1}}, 2.6};
 }
@@ -75,11 +73,11 @@ TEST(Loops, AreAsLongAsAStringAroundAPillar) {
     const NavMap map = map_of(8, 8, {{3, 4, 3 + side, 4 + side}});
     const auto loops = find_loops(map, {}, {1, 1}, 0.3);
     ASSERT_EQ(loops.size(), 1U);
-    const double string = 4 * side + 2 * kPi * 0.3;
+    const double string = 4 * side + 2 * std::numbers::pi * 0.3;
     EXPECT_GE(loops[0].length_m, string - 0.1);
     EXPECT_LE(loops[0].length_m, 1.08 * string + 0.1);
     EXPECT_LT((loops[0].island - Eigen::Vector2d(3 + side / 2, 4 + side / 2)).norm(), 0.05);
-    EXPECT_NEAR(loops[0].island_area_m2, side * side + 4 * side * 0.3 + kPi * 0.09, 0.1 * side + 0.1);
+    EXPECT_NEAR(loops[0].island_area_m2, side * side + 4 * side * 0.3 + std::numbers::pi * 0.09, 0.1 * side + 0.1);
     EXPECT_EQ(loops[0].path.front(), loops[0].path.back());
   }
 }
@@ -91,7 +89,7 @@ int winding(const Path& path, const Eigen::Vector2d& p) {
     const Eigen::Vector2d a = path[i - 1] - p, b = path[i] - p;
     angle += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
   }
-  return static_cast<int>(std::lround(angle / (2 * kPi)));
+  return static_cast<int>(std::lround(angle / (2 * std::numbers::pi)));
 }
 
 TEST(Loops, TwoRingsThatShareACorridor) {
@@ -101,8 +99,8 @@ TEST(Loops, TwoRingsThatShareACorridor) {
                                 room("east", {13.4, 0, 14.6, 6.4})};
   const auto loops = find_loops(map, rooms, {0.6, 0.6}, 0.2);
   ASSERT_EQ(loops.size(), 2U);
-  EXPECT_NEAR(loops[0].length_m, 2 * (6 + 4) + 2 * kPi * 0.2, 0.4);
-  EXPECT_NEAR(loops[1].length_m, 2 * (5 + 4) + 2 * kPi * 0.2, 0.4);
+  EXPECT_NEAR(loops[0].length_m, 2 * (6 + 4) + 2 * std::numbers::pi * 0.2, 0.4);
+  EXPECT_NEAR(loops[1].length_m, 2 * (5 + 4) + 2 * std::numbers::pi * 0.2, 0.4);
   EXPECT_THAT(loops[0].rooms, UnorderedElementsAre("middle", "east"));
   EXPECT_THAT(loops[1].rooms, UnorderedElementsAre("west", "middle"));
   const Eigen::Vector2d first(3.7, 3.2), second(10.4, 3.2);
@@ -119,7 +117,7 @@ TEST(Loops, RoomsInsideABlockDoNotHideItsRing) {
       {{1.5, 1.5, 6.5, 1.6}, {1.5, 6.4, 6.5, 6.5}, {1.5, 1.5, 1.6, 6.5}, {6.4, 1.5, 6.5, 3.5}, {6.4, 4.5, 6.5, 6.5}});
   const auto loops = find_loops(map, {}, {0.7, 0.7}, 0.2);
   ASSERT_EQ(loops.size(), 1U);
-  EXPECT_NEAR(loops[0].length_m, 20 + 2 * kPi * 0.2, 0.4);
+  EXPECT_NEAR(loops[0].length_m, 20 + 2 * std::numbers::pi * 0.2, 0.4);
 }
 
 TEST(Loops, ThereAreNoneAroundSmallThingsOrClosedRooms) {

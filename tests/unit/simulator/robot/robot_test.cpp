@@ -18,7 +18,6 @@ namespace {
 using time::Duration;
 using time::Time;
 
-constexpr double kPi = std::numbers::pi;
 constexpr Duration kNever{std::numeric_limits<std::int64_t>::max() / 4};
 
 const NavMap& hall() {
@@ -49,7 +48,7 @@ TEST(Robot, DrivesExactArcs) {
   const Eigen::Vector2d center = start.position + radius * Eigen::Vector2d(-std::sin(0.3), std::cos(0.3));
   const Eigen::Vector2d end = center + radius * Eigen::Vector2d(std::sin(0.3 + turn), -std::cos(0.3 + turn));
   EXPECT_NEAR((robot.state().position - end).norm(), 0.0, 1e-9);
-  EXPECT_NEAR(std::remainder(robot.state().yaw_rad - 0.3 - turn, 2 * kPi), 0.0, 1e-9);
+  EXPECT_NEAR(std::remainder(robot.state().yaw_rad - 0.3 - turn, 2 * std::numbers::pi), 0.0, 1e-9);
   EXPECT_NEAR(motion.distance_m, 0.5 * 7.123456789, 1e-9);
   EXPECT_NEAR(motion.turn_rad, turn, 1e-9);
   EXPECT_FALSE(motion.is_in_contact);
@@ -204,7 +203,7 @@ TEST_P(Sliding, KeepsOffTheWallAndMovesAlongIt) {
   EXPECT_NEAR(slid, 2 * std::cos(angle) * std::sin(angle), 0.01) << "and not the part across it";
 }
 
-INSTANTIATE_TEST_SUITE_P(Angles, Sliding, testing::Values(0.05, 0.4, kPi / 4, 1.2));
+INSTANTIATE_TEST_SUITE_P(Angles, Sliding, testing::Values(0.05, 0.4, std::numbers::pi / 4, 1.2));
 
 TEST(Robot, StandsInFrontOfAWallAndGetsAway) {
   const NavMap map = map_of(4, 4, {});
@@ -244,7 +243,7 @@ TEST(Robot, NeverEntersObstaclesWhateverItIsTold) {
 
 TEST(Robot, LeavesCornersAgain) {
   const NavMap map = map_of(4, 4, {});
-  Robot robot(map, untimed(), at(1, 1, -3 * kPi / 4));
+  Robot robot(map, untimed(), at(1, 1, -3 * std::numbers::pi / 4));
   ASSERT_TRUE(robot.command({0.6, 0.0}));
   robot.advance(Time::from_seconds(5));
   ASSERT_LT(robot.state().position.norm(), 0.5) << "it stands in the corner";

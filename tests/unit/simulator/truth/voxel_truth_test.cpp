@@ -23,11 +23,11 @@ namespace {
 using ::testing::ElementsAre;
 
 constexpr double kVoxel_m3 = 0.25 * 0.25 * 0.25;
-constexpr geometry::PinholeCamera kCamera{640, 360, 320.0, 320.0, 319.5, 179.5};
+constexpr geometry::PinholeCamera kTruthCamera{640, 360, 320.0, 320.0, 319.5, 179.5};
 
 TruthConfig config() {
   TruthConfig out;
-  out.camera = kCamera;
+  out.camera = kTruthCamera;
   out.mount = {1.0, 0.0};
   out.view_spacing_m = 0.25;
   return out;
@@ -158,15 +158,16 @@ TEST(IdealMapTest, OfAWholeTourIsTheTruthOfTheMesh) {
     for (int i = 0; i < 12; ++i) {
       const geometry::Pose T_world_camera =
           test::planar_pose(x, y, 0.1 + i * 2 * M_PI / 12) * geometry::T_base_camera(truth_config.mount);
-      const auto frame = renderer.render(kCamera, T_world_camera, false);
-      ideal.add(kCamera, T_map_world(start) * T_world_camera, frame.depth, frame.labels);
+      const auto frame = renderer.render(kTruthCamera, T_world_camera, false);
+      ideal.add(kTruthCamera, T_map_world(start) * T_world_camera, frame.depth, frame.labels);
     }
   }
   const auto mesh = known(truth.mesh), seen = known(ideal.map());
   EXPECT_GT(evaluator::coverage(mesh, seen).explored_share.value(), 0.98);
   EXPECT_GT(evaluator::coverage(seen, mesh).explored_share.value(), 0.98);
   EXPECT_GT(evaluator::semantic_iou(mesh.occupied, seen.occupied).top_mean.value(), 0.8);
-  EXPECT_THROW(ideal.add(kCamera, start, geometry::DepthImage(3, 3), geometry::LabelImage(3, 3)), std::runtime_error);
+  EXPECT_THROW(ideal.add(kTruthCamera, start, geometry::DepthImage(3, 3), geometry::LabelImage(3, 3)),
+               std::runtime_error);
 }
 
 }  // namespace

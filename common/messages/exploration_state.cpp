@@ -1,4 +1,4 @@
-#include "common/messages/planner.hpp"
+#include "common/messages/exploration_state.hpp"
 
 namespace lapis::messages {
 

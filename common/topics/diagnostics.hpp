@@ -1,0 +1,17 @@
+#pragma once
+
+#include "common/dds/topic.hpp"
+#include "idl/diagnostic_msgs.hpp"
+
+namespace lapis::topics {
+
+// What everybody publishes.
+inline constexpr dds::Topic<diagnostic_msgs::msg::DiagnosticArray> kDiagnostics{
+    "/diagnostics",
+    dds::kState,
+    "all",
+    "1 Hz and on change",
+    "health, counters, CPU time and memory of the process",
+    true};
+
+}  // namespace lapis::topics

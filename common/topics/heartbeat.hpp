@@ -1,0 +1,16 @@
+#pragma once
+
+#include "common/dds/topic.hpp"
+#include "idl/lapis_msgs.hpp"
+
+namespace lapis::topics {
+
+// The life of every process.
+inline constexpr dds::Topic<lapis_msgs::msg::Heartbeat> kHeartbeat{"/heartbeat",
+                                                                   dds::kLatchedByMany,
+                                                                   "all",
+                                                                   "2 Hz and before long work",
+                                                                   "life, phase and activity, for the supervisor",
+                                                                   true};
+
+}  // namespace lapis::topics

@@ -1,0 +1,17 @@
+#pragma once
+
+#include "common/dds/topic.hpp"
+#include "idl/lapis_msgs.hpp"
+#include "idl/nav_msgs.hpp"
+
+namespace lapis::topics {
+
+// What the planner publishes.
+inline constexpr dds::Topic<nav_msgs::msg::Path> kPlannerPath{"/planner/path", dds::kLatched, "planner", "on change",
+                                                              "path to the chosen goal"};
+inline constexpr dds::Topic<lapis_msgs::msg::CandidateSet> kCandidates{
+    "/planner/candidates", dds::kLatched, "planner", "each decision", "cost, information, utility of every candidate"};
+inline constexpr dds::Topic<lapis_msgs::msg::PlannerStatus> kPlannerStatus{
+    "/planner/status", dds::kLatched, "planner", "each frame and on change", "state and reason"};
+
+}  // namespace lapis::topics

@@ -1,0 +1,14 @@
+#pragma once
+
+#include "common/dds/topic.hpp"
+#include "idl/nav_msgs.hpp"
+#include "idl/sensor_msgs.hpp"
+
+namespace lapis::topics {
+
+// What a robot publishes beside its camera.
+inline constexpr dds::Topic<nav_msgs::msg::Odometry> kWheelOdometry{"/odom", dds::kBurst, "robot", "50 Hz",
+                                                                    "optional; wheel odometry, drifting"};
+inline constexpr dds::Topic<sensor_msgs::msg::Imu> kImu{"/imu", dds::kBurst, "robot", "200 Hz", "optional"};
+
+}  // namespace lapis::topics

@@ -7,6 +7,11 @@ get_filename_component(LAPIS_SOURCE_DIR "${CMAKE_CURRENT_LIST_DIR}/../.." ABSOLU
 add_library(lapis_warnings INTERFACE)
 target_compile_options(lapis_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
 
+if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
+  # It warns of types in anonymous namespaces of included files, which the sources of a unit are.
+  target_compile_options(lapis_warnings INTERFACE -Wno-subobject-linkage)
+endif()
+
 # lapis_library(<name> SOURCES <file>... [HEADERS <file>...] [LINK <target>...] [PRIVATE_LINK <target>...])
 # A static library of our own code. Every header stands alone: a source includes its own header first (.ci/run checks it),
 # and HEADERS without a source are compiled by themselves (target all_verify_interface_header_sets).

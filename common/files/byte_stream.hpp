@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <bit>
 #include <cstddef>
 #include <cstdint>
@@ -42,9 +41,9 @@ class ByteWriter {
 
  private:
   void fixed(std::uint64_t v, std::size_t size) {
-    std::array<std::uint8_t, 8> little{};
-    for (std::size_t i = 0; i < size; ++i) little[i] = static_cast<std::uint8_t>(v >> (8 * i));
-    bytes_.insert(bytes_.end(), little.begin(), little.begin() + size);
+    const std::size_t at = bytes_.size();
+    bytes_.resize(at + size);
+    set(at, v, size);
   }
   void set(std::size_t at, std::uint64_t v, std::size_t size) {
     for (std::size_t i = 0; i < size; ++i) bytes_[at + i] = static_cast<std::uint8_t>(v >> (8 * i));

@@ -1,5 +1,7 @@
 #include "common/runtime/file_tools.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <ostream>
 
 namespace lapis::runtime {

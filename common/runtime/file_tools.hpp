@@ -1,9 +1,11 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <iosfwd>
 #include <string_view>
+
+namespace CLI {
+class App;
+}
 
 namespace lapis::runtime {
 

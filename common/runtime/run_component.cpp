@@ -1,5 +1,7 @@
 #include "common/runtime/run_component.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <pthread.h>
 
 #include <atomic>

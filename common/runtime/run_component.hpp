@@ -1,7 +1,5 @@
 #pragma once
 
-#include <CLI/CLI.hpp>
-
 #include <concepts>
 #include <functional>
 #include <memory>
@@ -9,7 +7,12 @@
 #include <string>
 
 #include "common/config/schema.hpp"
+#include "common/runtime/component_main.hpp"
 #include "common/runtime/context.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace lapis::runtime {
 

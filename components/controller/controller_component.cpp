@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "common/messages/time.hpp"
+#include "common/runtime/run_component.hpp"
 #include "common/topics/camera.hpp"
 #include "common/topics/controller.hpp"
 #include "common/topics/map.hpp"
@@ -206,3 +207,5 @@ void ControllerComponent::finish() {
 }
 
 }  // namespace lapis::controller
+
+template int lapis::runtime::run_component<lapis::controller::ControllerComponent>(int argc, char** argv);

@@ -1,5 +1,7 @@
 #include "evaluator/command_line.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include "evaluator/map_tools.hpp"
 #include "evaluator/trajectory_tools.hpp"
 

@@ -12,6 +12,7 @@
 #include "common/messages/exploration_state.hpp"
 #include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
+#include "common/runtime/run_component.hpp"
 #include "common/topics/camera.hpp"
 #include "common/topics/diagnostics.hpp"
 #include "common/topics/ground_truth.hpp"
@@ -313,3 +314,5 @@ void EvaluatorComponent::finish() {
 }
 
 }  // namespace lapis::evaluator
+
+template int lapis::runtime::run_component<lapis::evaluator::EvaluatorComponent>(int argc, char** argv);

@@ -1,8 +1,11 @@
 #include <iostream>
 
-#include "common/runtime/run_component.hpp"
+#include "common/runtime/component_main.hpp"
 #include "evaluator/command_line.hpp"
-#include "evaluator/evaluator_component.hpp"
+
+namespace lapis::evaluator {
+class EvaluatorComponent;
+}
 
 int main(int argc, char** argv) {
   using lapis::evaluator::kFileTools;

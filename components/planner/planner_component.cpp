@@ -8,6 +8,7 @@
 #include "common/messages/landmarks.hpp"
 #include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
+#include "common/runtime/run_component.hpp"
 #include "common/topics/camera.hpp"
 #include "common/topics/controller.hpp"
 #include "common/topics/map.hpp"
@@ -376,3 +377,5 @@ void PlannerComponent::finish() {
 }
 
 }  // namespace lapis::planner
+
+template int lapis::runtime::run_component<lapis::planner::PlannerComponent>(int argc, char** argv);

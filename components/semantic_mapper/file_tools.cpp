@@ -1,5 +1,7 @@
 #include "semantic_mapper/file_tools.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include "semantic_mapper/convert_tool.hpp"
 #include "semantic_mapper/info_tool.hpp"
 #include "semantic_mapper/merge_tool.hpp"

@@ -1,8 +1,11 @@
 #include <iostream>
 
-#include "common/runtime/run_component.hpp"
+#include "common/runtime/component_main.hpp"
 #include "semantic_mapper/file_tools.hpp"
-#include "semantic_mapper/semantic_mapper_component.hpp"
+
+namespace lapis::semantic_mapper {
+class SemanticMapperComponent;
+}
 
 int main(int argc, char** argv) {
   using lapis::semantic_mapper::kFileTools;

@@ -8,6 +8,7 @@
 #include "common/messages/labels.hpp"
 #include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
+#include "common/runtime/run_component.hpp"
 #include "common/topics/camera.hpp"
 #include "common/topics/map.hpp"
 #include "common/topics/map_views.hpp"
@@ -454,3 +455,5 @@ std_msgs::msg::Header SemanticMapperComponent::header(time::Time stamp) const {
 }
 
 }  // namespace lapis::semantic_mapper
+
+template int lapis::runtime::run_component<lapis::semantic_mapper::SemanticMapperComponent>(int argc, char** argv);

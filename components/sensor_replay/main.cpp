@@ -1,5 +1,8 @@
-#include "common/runtime/run_component.hpp"
-#include "sensor_replay/sensor_replay_component.hpp"
+#include "common/runtime/component_main.hpp"
+
+namespace lapis::sensor_replay {
+class SensorReplayComponent;
+}
 
 int main(int argc, char** argv) {
   return lapis::runtime::run_component<lapis::sensor_replay::SensorReplayComponent>(argc, argv);

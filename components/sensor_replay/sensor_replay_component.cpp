@@ -1,9 +1,12 @@
 #include "sensor_replay/sensor_replay_component.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <spdlog/fmt/fmt.h>
 
 #include <iostream>
 
+#include "common/runtime/run_component.hpp"
 #include "sensor_replay/camera_yaml.hpp"
 #include "sensor_replay/core/dataset_summary.hpp"
 
@@ -162,3 +165,5 @@ void SensorReplayComponent::finish() {
 }
 
 }  // namespace lapis::sensor_replay
+
+template int lapis::runtime::run_component<lapis::sensor_replay::SensorReplayComponent>(int argc, char** argv);

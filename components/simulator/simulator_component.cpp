@@ -1,11 +1,14 @@
 #include "simulator/simulator_component.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <spdlog/fmt/fmt.h>
 
 #include "common/files/atomic_file.hpp"
 #include "common/messages/exploration_state.hpp"
 #include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
+#include "common/runtime/run_component.hpp"
 #include "common/time/stamp_buffer.hpp"
 #include "common/topics/controller.hpp"
 #include "common/topics/ground_truth.hpp"
@@ -312,3 +315,5 @@ void SimulatorComponent::write_files() {
 }
 
 }  // namespace lapis::simulator
+
+template int lapis::runtime::run_component<lapis::simulator::SimulatorComponent>(int argc, char** argv);

@@ -1,8 +1,11 @@
 #include <iostream>
 
-#include "common/runtime/run_component.hpp"
+#include "common/runtime/component_main.hpp"
 #include "slam/optimise_tool.hpp"
-#include "slam/slam_component.hpp"
+
+namespace lapis::slam {
+class SlamComponent;
+}
 
 int main(int argc, char** argv) {
   using lapis::slam::kFileTools;

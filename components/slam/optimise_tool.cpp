@@ -1,5 +1,7 @@
 #include "slam/optimise_tool.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <algorithm>
 #include <ctime>
 #include <fstream>

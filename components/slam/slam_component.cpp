@@ -6,6 +6,7 @@
 
 #include "common/files/atomic_file.hpp"
 #include "common/messages/time.hpp"
+#include "common/runtime/run_component.hpp"
 #include "common/topics/robot.hpp"
 #include "common/topics/slam.hpp"
 #include "common/topics/transforms.hpp"
@@ -350,3 +351,5 @@ void SlamComponent::write_graph() const {
 }
 
 }  // namespace lapis::slam
+
+template int lapis::runtime::run_component<lapis::slam::SlamComponent>(int argc, char** argv);

@@ -1,5 +1,7 @@
 #include "common/runtime/run_component.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -43,5 +43,5 @@ unshare --mount --propagation private bash -euo pipefail -c '
   for part in proc sys dev; do mount --rbind "/$part" "$1/$part"; done
   exec chroot "$1" /usr/bin/env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
     http_proxy="${http_proxy:-}" https_proxy="${https_proxy:-}" ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST \
-    bash -euo pipefail -c "cd /lapis && launch_scripts/setup.sh && ctest --preset release -L \"^(unit|contract)\$\""
+    bash -euo pipefail -c "cd /lapis && launch_scripts/setup.sh --dev && ctest --preset release -L \"^(unit|contract)\$\""
 ' debian13 "$folder"

@@ -28,7 +28,7 @@ if [[ -n "${LAPIS_TEST_DATA:-}" ]]; then
   [[ -d "$LAPIS_TEST_DATA" ]] || { echo "test.sh: LAPIS_TEST_DATA=$LAPIS_TEST_DATA: no such folder" >&2; exit 2; }
   LAPIS_TEST_DATA="$(cd "$LAPIS_TEST_DATA" && pwd)" # tests run in other folders
 fi
-"$root/launch_scripts/setup.sh"
+"$root/launch_scripts/setup.sh" --dev
 cd "$root"
 export ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST
 if [[ -z "${LAPIS_TEST_DATA:-}" && -d ../shared/data ]]; then

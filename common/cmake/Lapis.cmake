@@ -4,8 +4,10 @@
 get_filename_component(LAPIS_SOURCE_DIR "${CMAKE_CURRENT_LIST_DIR}/../.." ABSOLUTE)
 
 # Compiler settings that every target of our own code uses (generated code does not).
+option(LAPIS_WARNINGS_AS_ERRORS "A warning in our own code ends the build" OFF)
 add_library(lapis_warnings INTERFACE)
-target_compile_options(lapis_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Werror)
+target_compile_options(lapis_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Wconversion
+                       $<$<BOOL:${LAPIS_WARNINGS_AS_ERRORS}>:-Werror>)
 
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # It warns of types in anonymous namespaces of included files, which the sources of a unit are.

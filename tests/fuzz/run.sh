@@ -12,7 +12,7 @@ fi
 seconds="${1:-600}"
 shift || true
 if [[ $# -gt 0 ]]; then fuzzers=("$@"); fi
-command -v clang++ >/dev/null || { echo "run.sh: clang is missing: launch_scripts/setup.sh installs it" >&2; exit 2; }
+command -v clang++ >/dev/null || { echo "run.sh: clang is missing: launch_scripts/setup.sh --dev installs it" >&2; exit 2; }
 
 cd "$root"
 cmake --preset fuzz >/dev/null

@@ -24,7 +24,7 @@ using ::testing::HasSubstr;
 
 constexpr auto kTracking = lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
 constexpr auto kLost = lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST;
-constexpr int kFrames = 24;  // of the first run
+constexpr int kSavedFrames = 24;  // of the first run
 
 /// slam with a camera, and somebody who listens. Key-frames are near each other, so that short runs have several.
 class Slam {
@@ -92,9 +92,9 @@ class SavedMap : public ::testing::Test {
   void save_a_map() {
     Slam run(folder_.path(), {"slam.autosave_period_s=0"});
     ASSERT_TRUE(run.is_ready()) << run.log();
-    ASSERT_TRUE(run.are_tracked(0, kFrames)) << run.log();
+    ASSERT_TRUE(run.are_tracked(0, kSavedFrames)) << run.log();
     EXPECT_FALSE(fs::exists(file())) << "autosave is off";
-    ASSERT_TRUE(run.wait_until([&] { return run.odometry.size() == kFrames; })) << run.log();
+    ASSERT_TRUE(run.wait_until([&] { return run.odometry.size() == kSavedFrames; })) << run.log();
     last_pose_ = *messages::from_message(run.odometry.back().pose().pose());
     session_ = run.frames.back().session();
     ASSERT_EQ(run.slam().stop(SIGTERM), 0) << run.log();
@@ -122,9 +122,9 @@ TEST_F(SavedMap, IsGoneOnWithInANewSessionOfTheSameFrame) {
   ASSERT_NO_FATAL_FAILURE(save_a_map());
   Slam run(folder_.path(), {resume()});
   ASSERT_TRUE(run.is_ready()) << run.log();
-  auto dark = run.frame(kFrames);
+  auto dark = run.frame(kSavedFrames);
   std::fill(dark.color->data().begin(), dark.color->data().end(), std::uint8_t{0});
-  ASSERT_TRUE(run.answers(dark, kFrames)) << run.log();
+  ASSERT_TRUE(run.answers(dark, kSavedFrames)) << run.log();
   EXPECT_EQ(run.frames.back().state(), kLost);
   EXPECT_THAT(run.frames.back().reason(), HasSubstr("looking for a place in the saved map"));
   EXPECT_GT(run.frames.back().session(), session_);
@@ -139,11 +139,11 @@ TEST_F(SavedMap, IsGoneOnWithInANewSessionOfTheSameFrame) {
     EXPECT_EQ(saved.nodes()[i].pose(), graph_.nodes()[i].pose());
   }
 
-  ASSERT_TRUE(run.finds_its_place(kFrames + 1)) << run.frames.back().reason() << run.log();
-  ASSERT_TRUE(run.are_tracked(kFrames + 4, kFrames + 15)) << run.frames.back().reason() << run.log();
+  ASSERT_TRUE(run.finds_its_place(kSavedFrames + 1)) << run.frames.back().reason() << run.log();
+  ASSERT_TRUE(run.are_tracked(kSavedFrames + 4, kSavedFrames + 15)) << run.frames.back().reason() << run.log();
   EXPECT_GE(run.frames.back().keyframe_id(), saved.nodes().size());
   ASSERT_TRUE(run.wait_until([&] { return run.odometry.size() == 12; })) << run.log();
-  const auto T_camera = slow_motion(kFrames - 1).inverse() * slow_motion(kFrames + 14);
+  const auto T_camera = slow_motion(kSavedFrames - 1).inverse() * slow_motion(kSavedFrames + 14);
   const auto T_expected = T_base_camera() * T_camera * T_base_camera().inverse();
   const auto T_base = last_pose_.inverse() * *messages::from_message(run.odometry.back().pose().pose());
   EXPECT_LT((T_base.translation() - T_expected.translation()).norm(), 0.02) << "the frame is not the same";
@@ -220,7 +220,7 @@ TEST_F(SavedMap, OfAnotherCameraIsRefusedWithTheFirstFrame) {
   const auto before = files::read_file(file(), error);
   Slam run(folder_.path(), {resume()});
   ASSERT_TRUE(run.is_ready()) << run.log();
-  auto frame = run.frame(kFrames);
+  auto frame = run.frame(kSavedFrames);
   frame.info->k()[0] *= 1.5;
   run.send(frame);
   EXPECT_EQ(run.slam().wait(), 2) << run.log();

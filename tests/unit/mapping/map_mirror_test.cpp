@@ -15,7 +15,7 @@ namespace lapis::mapping {
 namespace {
 
 constexpr double kResolution_m = 0.1;
-constexpr int kEdge = 2;
+constexpr int kTileEdge = 2;
 
 /// The publishing side, reduced to its promise: versions of tiles and a state after them.
 class MapPublisher {
@@ -31,11 +31,11 @@ class MapPublisher {
     map_.add(votes);
     ++version_;
     std::set<TileIndex> changed;
-    for (const BlockVotes& block : votes.blocks) changed.insert(tile_of(block.block, kEdge));
+    for (const BlockVotes& block : votes.blocks) changed.insert(tile_of(block.block, kTileEdge));
     std::vector<Tile> tiles;
     for (const TileIndex& index : changed) {
       versions_[index] = version_;
-      tiles.push_back({index, version_, *encode_tile(map_, index, kEdge)});
+      tiles.push_back({index, version_, *encode_tile(map_, index, kTileEdge)});
     }
     return tiles;
   }

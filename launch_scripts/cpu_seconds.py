@@ -61,8 +61,9 @@ def main():
     if len(sys.argv) == 5 and sys.argv[1] == "table":
         table(*sys.argv[2:])
         return 0
-    print(__doc__, file=sys.stderr)
-    return 2
+    asks = sys.argv[1:] in (["--help"], ["-h"])
+    print(__doc__.strip(), file=sys.stdout if asks else sys.stderr)
+    return 0 if asks else 2
 
 
 if __name__ == "__main__":

@@ -35,8 +35,9 @@ void describe(Field& field, LocalMapConfig& c) {
   field("memory_s", c.memory_s, config::in_range(0.1, 600.0),
         "what was seen longer ago is forgotten; time without a path does not count while the robot stands [s]");
   field("stride", c.stride, config::in_range(1, 32), "every stride-th pixel of every stride-th row is used");
-  field("passes_to_clear", c.passes_to_clear, config::in_range(1, 100),
+  field("misses_to_clear", c.misses_to_clear, config::in_range(1, 100),
         "images that must look through an obstacle before it is gone");
+  field.moved("passes_to_clear", "controller.local_map.misses_to_clear");
 }
 
 template <class Field>

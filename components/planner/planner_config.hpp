@@ -168,6 +168,8 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("patience_s", c.explorer.patience_s, config::in_range(0.0, 600.0),
         "for obstacles that may go away before exploration is over [s]");
   field("returns_home", c.explorer.returns_home, config::anything(), "drives to where it started when nothing is left");
+  field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain",
+              "the planner reads it on /semantic_mapper/map_description");
   field.moved("sensor_model", "semantic_mapper.sensor_model",
               "the planner reads it on /semantic_mapper/map_description");
   field("compared_priors", c.surroundings.compared_priors, config::in_range(0.001, 0.999),

@@ -33,8 +33,9 @@ struct SemanticMapperComponentConfig {
 template <class Field>
 void describe(Field& field, ObstacleConfig& c) {
   field("window_s", c.window_s, config::in_range(0.1, 600.0), "what was seen longer ago is forgotten [s]");
-  field("passes_to_clear", c.passes_to_clear, config::in_range(1, 100),
+  field("misses_to_clear", c.misses_to_clear, config::in_range(1, 100),
         "frames that must look through an obstacle before it is gone");
+  field.moved("passes_to_clear", "semantic_mapper.obstacles.misses_to_clear");
 }
 
 template <class Field>
@@ -52,6 +53,7 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("integration", c.map.integration);
   field("frame", c.frame);
   field("sensor_model", c.sensor_model);
+  field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain");
   field("kernel_length_voxels", c.kernel_length_voxels,
         config::in_range(mapping::kMinKernelLength_voxels, mapping::kMaxKernelLength_voxels),
         "of the kernel by which hits vote for the voxels of other hits around them, with sensor_model.fusion: bki");

@@ -20,7 +20,7 @@ struct LocalMapConfig {
   double max_height_m = 1.2;  ///< what is higher is passed under, in [-1, 10]
   double memory_s = 20.0;     ///< what was seen longer ago is forgotten, in [0.1, 600]
   int stride = 4;             ///< every stride-th pixel of every stride-th row is used, in [1, 32]
-  int passes_to_clear = 3;    ///< images that must look through an obstacle before it is gone, in [1, 100]
+  int misses_to_clear = 3;    ///< images that must look through an obstacle before it is gone, in [1, 100]
 };
 
 /// A depth image and where its camera sits on the robot.
@@ -67,7 +67,7 @@ class LocalMap {
  private:
   struct Point {
     double seen_s = 0.0;  ///< time that counts of the last hit
-    int passes = 0;       ///< images that looked through it since
+    int misses = 0;       ///< images that looked through it since
   };
   struct Look {
     PlanarPose T_map_base;

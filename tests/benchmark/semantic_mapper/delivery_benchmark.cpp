@@ -201,7 +201,7 @@ mapping::VoxelMap large_map(std::size_t blocks) {
   std::vector<mapping::VoxelBlock> patterns(64);
   for (mapping::VoxelBlock& block : patterns) {
     for (int offset = 0; offset < mapping::kBlockVoxels; ++offset) {
-      block.add_pass(offset, mapping::kOneVote * (1 + static_cast<std::uint32_t>(random() % 40)));
+      block.add_miss(offset, mapping::kOneVote * (1 + static_cast<std::uint32_t>(random() % 40)));
       if (random() % 2 == 0)
         block.add_hit(offset, static_cast<std::uint16_t>(1 + random() % 40),
                       mapping::kOneVote * (1 + static_cast<std::uint32_t>(random() % 40)));

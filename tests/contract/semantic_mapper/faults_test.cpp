@@ -205,7 +205,7 @@ struct SavedHugeMap {
   SavedHugeMap() {
     constexpr std::int32_t kEdge = 58;  // blocks
     mapping::VoxelBlock seen(20 * mapping::kOneVote), torn = seen;
-    torn.add_pass(7, mapping::kOneVote);
+    torn.add_miss(7, mapping::kOneVote);
     for (std::int32_t i = 0; i < kEdge * kEdge * kEdge; ++i) {
       const mapping::BlockIndex index{100 + i % kEdge, i / kEdge % kEdge, i / kEdge / kEdge};
       saved.map.set_block(index, i % 8 == 0 ? torn : seen);

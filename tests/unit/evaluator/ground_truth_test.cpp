@@ -20,7 +20,7 @@ class GroundTruthFolder : public ::testing::Test {
     mapping::MapFile file{mapping::VoxelMap(0.25), {}, mapping::LabelList::from_names({{1, "wall"}}), {}};
     mapping::VoxelBlock block;
     block.add_hit(mapping::offset_in_block({3, 2, 1}), 1, 32 * mapping::kOneVote);
-    block.add_pass(mapping::offset_in_block({4, 2, 1}), mapping::kOneVote);
+    block.add_miss(mapping::offset_in_block({4, 2, 1}), mapping::kOneVote);
     file.map.set_block({0, 0, 0}, block);
     EXPECT_FALSE(mapping::save_map((folder / "mesh.lapis").string(), file));
     write("classes.json", R"({"top_classes": [1, 7]})");

@@ -336,7 +336,7 @@ TEST(SemanticMapper, WallOfFortyClassesStandsAfterThreeFramesLookThroughIt) {
   }
   const mapping::BeliefReader reader{mapping::SensorModel{}};
   const mapping::VoxelCounts wall = mapper.map().read(mapper.map().index_of({2.125, 0.125, 1.1}));
-  EXPECT_EQ(wall.passes, 3 * mapping::kOneVote);
+  EXPECT_EQ(wall.misses, 3 * mapping::kOneVote);
   EXPECT_TRUE(reader.is_occupied(wall));
   EXPECT_EQ(reader.label(wall), 1);
 }
@@ -454,7 +454,7 @@ TEST(SemanticMapper, GoneOnWithTellsTheWholeMap) {
 TEST(SemanticMapper, AFullMapTakesNoMoreFrames) {
   mapping::VoxelMap full(0.25);
   mapping::VoxelBlock block;
-  block.add_pass(0, 0xffffff00u);
+  block.add_miss(0, 0xffffff00u);
   full.set_block({0, 0, 0}, block);
   SemanticMapper mapper(MapperConfig{}, full);
   EXPECT_EQ(mapper.integrate(tour().frames[0]).status, IntegrationStatus::kMapIsFull);

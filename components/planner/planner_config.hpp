@@ -159,7 +159,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("settle_s", c.explorer.settle_s, config::in_range(0.0, 60.0),
         "after arriving, until the map tells whether the look was in vain [s]");
   field("dead_reckoning_s", c.explorer.dead_reckoning_s, config::in_range(0.0, 10.0),
-        "by wheels alone before the robot drives back: a turn past a blank wall [s]");
+        "by odometry alone before the robot drives back: a turn past a blank wall [s]");
   field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),
         "without tracking, exploration has failed [s]");
   field("path_spacing_m", c.explorer.path_spacing_m, config::in_range(0.02, 1.0), "between poses of /planner/path [m]");

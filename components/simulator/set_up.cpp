@@ -88,7 +88,7 @@ SensorConfig sensor_config(const SimulatorConfig& config) {
   out.depth.noise_multiplier = noise.depth_multiplier;
   out.labels.model = noise.labels == "none" ? LabelModel::kNone : LabelModel::kDefault;
   if (!noise.color) out.color.sigma = 0.0;
-  if (!noise.wheels) out.wheels.scale = 0.0;
+  if (!noise.odometry) out.odometry.scale = 0.0;
   out.has_imu = config.imu;
   apply_drift(noise.drift == "hard" ? DriftPreset::kHard : DriftPreset::kNominal, out);
   return out;

@@ -67,7 +67,7 @@ std::optional<int> SimulatorComponent::run_tool(const Config& config) { return r
 SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), world_(load_world(config, context)), start_(start_pose(world_, config)),
       tour_(plan_tour(world_, start_, config)), camera_(context, {.has_labels = true, .has_ground_truth = true}),
-      wheels_(context.advertise(topics::kWheelOdometry)), transforms_(context.advertise(topics::kTransforms)),
+      odometry_(context.advertise(topics::kWheelOdometry)), transforms_(context.advertise(topics::kTransforms)),
       collision_(context.advertise(topics::kCollision)) {
   if (!config_.output_dir.empty()) {
     files::require_writable_folder(config_.output_dir, "simulator.output_dir");
@@ -238,7 +238,7 @@ void SimulatorComponent::tick() {
 /// Nothing in the last tick, which has no frame.
 void SimulatorComponent::publish_again() {
   if (has_ended_) return;
-  for (const auto& message : run_->messages()->wheels) wheels_.publish(message);
+  for (const auto& message : run_->messages()->odometry) odometry_.publish(message);
   for (const auto& message : run_->messages()->transforms) transforms_.publish(message);
   for (const auto& message : run_->messages()->imu) imu_->publish(message);
   camera_.publish(run_->messages()->camera);

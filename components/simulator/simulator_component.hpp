@@ -61,7 +61,7 @@ class SimulatorComponent {
   const StartPose start_;
   const std::optional<TourFollower> tour_;  // at its beginning
   runtime::CameraPublisher camera_;
-  dds::Publisher<nav_msgs::msg::Odometry>& wheels_;
+  dds::Publisher<nav_msgs::msg::Odometry>& odometry_;
   dds::Publisher<tf2_msgs::msg::TFMessage>& transforms_;
   dds::Publisher<std_msgs::msg::Bool>& collision_;
   dds::Publisher<sensor_msgs::msg::Imu>* imu_ = nullptr;

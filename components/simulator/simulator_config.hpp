@@ -14,7 +14,7 @@ struct NoiseConfig {
   double depth_multiplier = 1.0;
   std::string labels = "default";
   bool color = true;
-  bool wheels = true;
+  bool odometry = true;
   std::string drift = "nominal";
 };
 
@@ -59,9 +59,10 @@ void describe(Field& field, NoiseConfig& c) {
   field("depth_multiplier", c.depth_multiplier, config::in_range(0.0, 10.0), "scales its standard deviations");
   field("labels", c.labels, config::one_of({"none", "default"}), "model of the segmentation");
   field("color", c.color, config::anything(), "noise of the colour camera");
-  field("wheels", c.wheels, config::anything(), "noise and systematic errors of wheel odometry");
+  field("odometry", c.odometry, config::anything(), "noise and systematic errors of wheel odometry");
+  field.moved("wheels", "simulator.noise.odometry");
   field("drift", c.drift, config::one_of({"nominal", "hard"}),
-        "how hard localisation is: texture, blur, noise and dropouts of depth, and wheel noise together");
+        "how hard localisation is: texture, blur, noise and dropouts of depth, and noise of odometry together");
 }
 
 template <class Field>

@@ -262,7 +262,7 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   }
   context_.status().value("frames", frames_total_);
   context_.status().value("frames_tracked", frames_tracked_);
-  context_.status().value("wheel_slips", slam_->slip_count());
+  context_.status().value("odometry_slips", slam_->slip_count());
   const bool has_changed = !reported_ || reported_->second != result.state;
   const bool was_tracking = !reported_ || reported_->second == TrackingState::kTracking;
   if (has_changed && !is_tracking && was_tracking) spdlog::warn("tracking lost: {}", result.reason);

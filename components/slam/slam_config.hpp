@@ -133,7 +133,7 @@ void describe(Field& field, RelocalizationConfig& c) {
         "frames that have to find the same pose again, unless motion leads there");
   field("near_m", c.near_m, config::in_range(0.01, 5), "distance of poses that are the same [m]");
   field("near_rad", c.near_rad, config::in_range(0.01, 3), "angle of poses that are the same [rad]");
-  field("speed_m_s", c.speed_m_s, config::in_range(0, 10), "between such frames, when no wheels tell [m/s]");
+  field("speed_m_s", c.speed_m_s, config::in_range(0, 10), "between such frames, without odometry [m/s]");
   field("patience_s", c.patience_s, config::in_range(0, 10),
         "without a pose, after which one that can be reached from the last is still believed at once [s]");
   field("memory_s", c.memory_s, config::in_range(0.01, 10), "longest time between such frames [s]");
@@ -141,10 +141,10 @@ void describe(Field& field, RelocalizationConfig& c) {
 
 template <class Field>
 void describe(Field& field, OdometryConfig& c) {
-  field("distance_sigma", c.distance_sigma, config::in_range(0, 1), "of wheel odometry along the way, after 1 m [m]");
+  field("distance_sigma", c.distance_sigma, config::in_range(0, 1), "of wheel odometry along the path, after 1 m [m]");
   field("turn_sigma", c.turn_sigma, config::in_range(0, 1), "of its heading, after a turn of 1 rad [rad]");
   field("turn_sigma_per_m", c.turn_sigma_per_m, config::in_range(0, 1), "of its heading, after 1 m [rad]");
-  field("scale_sigma", c.scale_sigma, config::in_range(0, 0.5), "share of way and turn by which the wheels always err");
+  field("scale_sigma", c.scale_sigma, config::in_range(0, 0.5), "share of path and turn by which odometry always errs");
   field("vertical_sigma", c.vertical_sigma, config::in_range(0, 1), "how far the floor rises or sinks in 1 m [m]");
   field("tilt_sigma", c.tilt_sigma, config::in_range(0, 1), "change of roll and pitch in 1 m [rad]");
   field("least_sigma", c.least_sigma, config::in_range(1e-6, 0.1), "of every motion [m], [rad]");
@@ -152,7 +152,7 @@ void describe(Field& field, OdometryConfig& c) {
   field("max_speed_m_s", c.max_speed_m_s, config::in_range(0.1, 50), "faster steps are no motion of the robot [m/s]");
   field("max_turn_rate_rad_s", c.max_turn_rate_rad_s, config::in_range(0.1, 100), "the same [rad/s]");
   field("max_disagreement", c.max_disagreement, config::in_range(1, 100),
-        "with vision between key-frames, in sigmas; wheels that disagree more have slipped and are left out");
+        "with vision between key-frames, in sigmas; odometry that disagrees more counts as slip and is left out");
 }
 
 template <class Field>

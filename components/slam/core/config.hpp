@@ -97,7 +97,7 @@ struct RelocalizationConfig {
   int confirmations = 2;         ///< frames that have to find the same again, unless motion leads there [0, 100]
   double near_m = 0.25;          ///< what "the same" is, and where motion leads [0.01, 5]
   double near_rad = 0.2;         ///< the same [0.01, 3]
-  double speed_m_s = 1.0;        ///< between frames, when no wheels tell [0, 10]
+  double speed_m_s = 1.0;        ///< between frames, without odometry [0, 10]
   double patience_s = 2.0;       ///< without a pose, after which one within reach of the last is still believed [0, 10]
   double memory_s = 0.5;         ///< longest time between frames that confirm each other [0.01, 10]
 };
@@ -109,14 +109,14 @@ struct OdometryConfig {
   double distance_sigma = 0.02;       ///< along the way [m] after 1 m [0, 1]
   double turn_sigma = 0.02;           ///< of the heading [rad] after a turn of 1 rad [0, 1]
   double turn_sigma_per_m = 0.01;     ///< of the heading [rad] after 1 m [0, 1]
-  double scale_sigma = 0.01;          ///< share of way and turn by which the wheels always err [0, 0.5]
+  double scale_sigma = 0.01;          ///< share of path and turn by which odometry always errs [0, 0.5]
   double vertical_sigma = 0.001;      ///< [m] after 1 m [0, 1]
   double tilt_sigma = 0.0005;         ///< of roll and pitch [rad] after 1 m [0, 1]
   double least_sigma = 1e-4;          ///< of every motion [m], [rad] [1e-6, 0.1]
   double max_gap_s = 0.2;             ///< between readings that belong together [0.01, 5]
   double max_speed_m_s = 5.0;         ///< faster steps are no motion of the robot [0.1, 50]
   double max_turn_rate_rad_s = 15.0;  ///< the same [0.1, 100]
-  double max_disagreement = 8.0;      ///< with vision, in sigmas; wheels that disagree more have slipped [1, 100]
+  double max_disagreement = 8.0;      ///< with vision, in sigmas; odometry that disagrees more is slip [1, 100]
 };
 
 struct SlamConfig {

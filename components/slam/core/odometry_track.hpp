@@ -10,7 +10,7 @@
 
 namespace lapis::slam {
 
-/// How the robot has moved between two stamps, as its wheels say.
+/// How the robot has moved between two stamps, as odometry says.
 struct OdometryMotion {
   geometry::Pose T_from_to = geometry::Pose::Identity();       ///< of base_link
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< right perturbation (translation, rotation)

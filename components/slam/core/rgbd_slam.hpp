@@ -85,7 +85,7 @@ class RgbdSlam {
   std::size_t keyframe_count() const;
   std::size_t landmark_count() const;
   const Map& map() const;
-  /// Motions of the wheels between key-frames that were left out (OdometryConfig::max_disagreement).
+  /// Motions of odometry between key-frames that were left out (OdometryConfig::max_disagreement).
   std::size_t slip_count() const;
 
  private:

@@ -32,7 +32,7 @@ struct TrialStep {
   bool is_keyframe = false;
   geometry::Pose estimate = geometry::Pose::Identity();  ///< T_map_camera as told; valid when has_pose
   geometry::Pose truth = geometry::Pose::Identity();     ///< T_world_camera
-  geometry::Pose wheels = geometry::Pose::Identity();    ///< T_odom_camera by the wheels alone
+  geometry::Pose odometry = geometry::Pose::Identity();  ///< T_odom_camera by odometry alone
   std::uint64_t graph_version = 0;
   std::size_t keyframes = 0;
   std::size_t landmarks = 0;
@@ -51,6 +51,6 @@ TrialPlan corridor_plan(const simulator::World& world, const simulator::TourConf
 
 /// Drives the plan. Frames that are covered are not rendered.
 std::vector<TrialStep> drive_trial(const simulator::World& world, const simulator::SimulationConfig& simulation,
-                                   const SlamConfig& config, const TrialPlan& plan, bool with_wheels);
+                                   const SlamConfig& config, const TrialPlan& plan, bool with_odometry);
 
 }  // namespace lapis::slam::benchmark

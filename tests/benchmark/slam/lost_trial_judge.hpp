@@ -12,7 +12,7 @@ struct PoseError {
   double m = 0.0, rad = 0.0;
 };
 
-/// Limits on poses are on top of what the wheels have erred meanwhile, when slam gets them.
+/// Limits on poses are on top of what odometry has erred meanwhile, when slam gets them.
 struct TrialLimits {
   double declared_s = 0.5;
   double returned_s = 1.0;
@@ -32,12 +32,12 @@ struct TrialVerdict {
   double returned_s = 0.0;   ///< from the view's return to the first tracked frame
   PoseError before;          ///< in the map: of the last tracked pose
   PoseError returned;        ///< ... of the first one afterwards
-  PoseError wheels;          ///< of their motion between these two
+  PoseError odometry;        ///< of its motion between these two
   PoseError end;             ///< in the map: of the last pose
   std::string failure;       ///< what is beyond its limit; empty: passed
 };
 
 /// `steps` of at least one frame. `is_covered`: the plan covers the camera.
-TrialVerdict judge(const std::vector<TrialStep>& steps, const TrialLimits& limits, bool is_covered, bool with_wheels);
+TrialVerdict judge(const std::vector<TrialStep>& steps, const TrialLimits& limits, bool is_covered, bool with_odometry);
 
 }  // namespace lapis::slam::benchmark

@@ -32,14 +32,14 @@ TEST_F(PlannerContract, StandsWhileSlamIsLostAndGoesOnAfterwards) {
   ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
 }
 
-TEST_F(PlannerContract, DrivesBackByWheelsToWhereSlamWasLastSure) {
+TEST_F(PlannerContract, DrivesBackByOdometryToWhereSlamWasLastSure) {
   peers.drives = true;
   get_going();
   ASSERT_TRUE(ticks_until([this] { return (peers.position - Eigen::Vector2d(2, 2)).norm() > 0.5; })) << reason();
   const Eigen::Vector2d last_tracked = peers.position;
-  peers.position.x() -= 0.5;  // a slip that only the wheels know of
+  peers.position.x() -= 0.5;  // a slip that only odometry knows of
   ASSERT_TRUE(ticks_until([this] { return state() == STATE_RECOVERING && has_path(); }, 4.0, kReckoning)) << reason();
-  EXPECT_EQ(reason(), "slam reckons by wheels alone");
+  EXPECT_EQ(reason(), "slam reckons by odometry alone");
   EXPECT_LT((goal() - last_tracked).norm(), 0.3);
 }
 

@@ -97,7 +97,7 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   const auto& labels = probe.collect(topics::kLabels);
   const auto& info = probe.collect(topics::kColorInfo);
   const auto& truth = probe.collect(topics::kGroundTruth);
-  const auto& wheels = probe.collect(topics::kWheelOdometry);
+  const auto& odometry = probe.collect(topics::kWheelOdometry);
   const auto& transforms = probe.collect(topics::kTransforms);
   const auto& mount = probe.collect(topics::kStaticTransforms);
   const auto& names = probe.collect(topics::kLabelInfo);
@@ -105,7 +105,7 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
                                                 "robot.camera.rate_hz=5"}));
   ASSERT_TRUE(probe.wait_until([&] {
     return std::min({color.size(), depth.size(), labels.size(), info.size(), truth.size()}) > 5 &&
-           std::min(wheels.size(), transforms.size()) > 20;
+           std::min(odometry.size(), transforms.size()) > 20;
   })) << simulator.log();
   // It began when the readers were there: nothing is missing from the first frame on.
   for (std::size_t i = 0; i < 5; ++i) {
@@ -128,23 +128,23 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   EXPECT_LT((*metres)(320, 180), 2.5F);
   EXPECT_EQ(color.back().header().frame_id(), "camera_color_optical_frame");
   EXPECT_EQ(truth.back().child_frame_id(), "base_link");
-  EXPECT_EQ(wheels.back().header().frame_id(), "odom");
+  EXPECT_EQ(odometry.back().header().frame_id(), "odom");
   for (std::size_t i = 0; i < 20; ++i) {  // odom -> base_link is told with each reading
     ASSERT_EQ(transforms[i].transforms().size(), 1U);
     const auto& transform = transforms[i].transforms()[0];
     EXPECT_EQ(transform.header().frame_id(), "odom");
     EXPECT_EQ(transform.child_frame_id(), "base_link");
-    const auto reading = std::find_if(wheels.begin(), wheels.end(), [&](const auto& m) {
+    const auto reading = std::find_if(odometry.begin(), odometry.end(), [&](const auto& m) {
       return stamp_of(m) == messages::from_message(transform.header().stamp());
     });
-    ASSERT_NE(reading, wheels.end());
+    ASSERT_NE(reading, odometry.end());
     const auto T_odom_base = messages::from_message(transform.transform());
     const auto expected = messages::from_message(reading->pose().pose());
     ASSERT_TRUE(T_odom_base && expected);
     EXPECT_TRUE(T_odom_base->isApprox(*expected, 1e-12));
   }
-  for (std::size_t i = 1; i < wheels.size(); ++i) {
-    EXPECT_EQ((stamp_of(wheels[i]) - stamp_of(wheels[i - 1])).nanoseconds, 20'000'000);
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    EXPECT_EQ((stamp_of(odometry[i]) - stamp_of(odometry[i - 1])).nanoseconds, 20'000'000);
   }
   EXPECT_EQ(simulator.stop(SIGTERM), 0) << simulator.log();
   EXPECT_THAT(summary(), HasSubstr("exit_reason: \"stopped\""));

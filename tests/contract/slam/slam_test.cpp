@@ -137,9 +137,9 @@ TEST_F(SlamContract, FrameWithoutDepthInRangeIsLostWithTheReasonAndFoundAgain) {
 }
 
 TEST_F(SlamContract, OdometryCarriesThePoseOnAndMakesTheOdomFrameItsOwn) {
-  auto& wheels = probe.advertise(topics::kWheelOdometry);
+  auto& odometry = probe.advertise(topics::kWheelOdometry);
   const auto& transforms = probe.collect(topics::kTransforms);
-  ASSERT_TRUE(probe.wait_until([&] { return wheels.matched() > 0; })) << slam.log();
+  ASSERT_TRUE(probe.wait_until([&] { return odometry.matched() > 0; })) << slam.log();
   ASSERT_TRUE(probe.wait_until_known_by("slam")) << slam.log();
   const auto feel = [&](int index, const std::string& child) {
     Odometry message;
@@ -147,13 +147,13 @@ TEST_F(SlamContract, OdometryCarriesThePoseOnAndMakesTheOdomFrameItsOwn) {
     message.header().frame_id("odom");
     message.child_frame_id(child);
     message.pose().pose(messages::to_message(T_base_camera() * slow_motion(index) * T_base_camera().inverse()));
-    wheels.publish(message);
+    odometry.publish(message);
   };
   for (int i = 0; i < 4; ++i) feel(i, "base_link");
   feel(4, "wheel");
   EXPECT_TRUE(wait_for_count("child frame is 'wheel'", 1)) << slam.log();
   ASSERT_TRUE(track(0)) << slam.log();
-  const int index = 1;  // what the wheels said before there was a frame carries the first pose on
+  const int index = 1;  // what odometry said before there was a frame carries the first pose on
   auto blind = feed.frame(index);
   std::fill(blind.color->data().begin(), blind.color->data().end(), std::uint8_t{0});
   ASSERT_TRUE(answers(blind, index)) << slam.log();

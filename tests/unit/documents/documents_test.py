@@ -34,6 +34,7 @@ RENAMED = {  # keys of before, by the component that refuses them
         "semantic_mapper.obstacles.passes_to_clear": "semantic_mapper.obstacles.misses_to_clear",
         "semantic_mapper.sensor_model.pass_gain": "semantic_mapper.sensor_model.miss_gain",
     },
+    "simulator": {"simulator.noise.wheels": "simulator.noise.odometry"},
     "planner": {"planner.sensor_model.pass_gain": "semantic_mapper.sensor_model.miss_gain"},
     "evaluator": {"evaluator.sensor_model.pass_gain": "semantic_mapper.sensor_model.miss_gain"},
 }

@@ -282,7 +282,8 @@ void Explorer::end_or_look_around(const Decision& decision, time::Time now) {
   enter(config_.returns_home ? State::kReturning : State::kDone, "nothing is left that can be reached");
 }
 
-// By wheels it goes on for a moment: where it would turn back at once, it would never get past a view of a blank wall.
+// By odometry it continues for a moment: where it would turn back at once, it would never get past a view of a blank
+// wall.
 bool Explorer::is_briefly_untracked(const Report& report) {
   if (report.tracking == Tracking::kTracking) {
     untracked_since_.reset();
@@ -305,7 +306,7 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
     interrupted_ = state_;
     lost_at_ = report.now;
     trail_.turn_back();
-    enter(State::kRecovering, report.tracking == Tracking::kLost ? "slam is lost" : "slam reckons by wheels alone");
+    enter(State::kRecovering, report.tracking == Tracking::kLost ? "slam is lost" : "slam reckons by odometry alone");
   }
   if ((report.now - *lost_at_).seconds() > config_.lost_timeout_s) {
     drop_goal();

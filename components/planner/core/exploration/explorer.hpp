@@ -32,7 +32,7 @@ struct ExplorerConfig {
   double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
   double slowest_m_s = 0.15;        ///< a way that takes longer than at this speed has failed, in [0.01, 5]
   double settle_s = 1.5;            ///< after arriving, until the map tells whether the look was in vain, in [0, 60]
-  double dead_reckoning_s = 2.0;    ///< by wheels alone, before it drives back: a turn past a blank wall, in [0, 10]
+  double dead_reckoning_s = 2.0;    ///< by odometry alone, before it drives back: a turn past a blank wall, in [0, 10]
   double lost_timeout_s = 60.0;     ///< without tracking, exploration has failed, in [1, 3600]
   double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
   int confirmations = 3;      ///< looks around, a full turn in all, that find nothing before it is over, in [2, 12]

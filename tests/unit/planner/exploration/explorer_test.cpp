@@ -140,7 +140,7 @@ TEST(Explorer, StandsStillWhileLostAndFailsInTheEnd) {
   EXPECT_TRUE(world.explorer.path().empty());
 }
 
-TEST(Explorer, GoesOnByWheelsForAMoment) {
+TEST(Explorer, ContinuesByOdometryForAMoment) {
   WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 2.0});
   world.explorer.start();
   world.run(5.0);
@@ -162,7 +162,7 @@ TEST(Explorer, GoesOnByWheelsForAMoment) {
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
 }
 
-TEST(Explorer, DrivesBackToWhereItWasTrackedWhenWheelsLead) {
+TEST(Explorer, DrivesBackToWhereItWasTrackedWhenOdometryLeads) {
   WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 0.0});
   world.explorer.start();
   world.run(5.0);
@@ -172,7 +172,7 @@ TEST(Explorer, DrivesBackToWhereItWasTrackedWhenWheelsLead) {
   world.robot.p_map += Eigen::Vector2d(0.0, -0.5);
   world.run(0.8);
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
-  EXPECT_EQ(world.explorer.reason(), "slam reckons by wheels alone");
+  EXPECT_EQ(world.explorer.reason(), "slam reckons by odometry alone");
   EXPECT_LT((world.robot.p_map - place).norm(), 0.4);
 }
 

@@ -157,7 +157,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("slowest_m_s", c.explorer.slowest_m_s, config::in_range(0.01, 5.0),
         "a way that takes longer than at this speed has failed [m/s]");
   field("settle_s", c.explorer.settle_s, config::in_range(0.0, 60.0),
-        "after arriving, until the map tells whether the look was in vain [s]");
+        "after arriving, until the map shows whether the view has failed [s]");
   field("dead_reckoning_s", c.explorer.dead_reckoning_s, config::in_range(0.0, 10.0),
         "by odometry alone before the robot drives back: a turn past a blank wall [s]");
   field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),

@@ -100,7 +100,7 @@ struct Decision {
 struct Memory {
   std::vector<Eigen::Vector2d> left_alone;  ///< targets [m, map]
   std::vector<Eigen::Vector2d> revisited;   ///< old places to leave alone [m, map]
-  std::vector<VainLook> vain_looks;
+  std::vector<FailedView> failed_views;
   double radius_m = 0.75;     ///< what lies nearer to such places is meant, too
   std::optional<Pose2> goal;  ///< current one
 };

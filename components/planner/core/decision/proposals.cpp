@@ -70,8 +70,8 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
     for (const Viewpoint& viewpoint : found.viewpoints) {
       Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
       if (sight == Sight::kNotNeeded) candidate.kind = CandidateKind::kCloserLook;
-      if (is_looked_at(memory.vain_looks, candidate.target_map, candidate.goal.p_map, memory.radius_m))
-        candidate.rejection = "was looked at from here in vain";
+      if (is_failed_view(memory.failed_views, candidate.target_map, candidate.goal.p_map, memory.radius_m))
+        candidate.rejection = "the view from here has failed";
       if (is_one_of(memory.left_alone, candidate, memory)) candidate.rejection = kLeftAlone;
     }
   }
@@ -85,7 +85,7 @@ std::vector<Candidate> propose_tour(const Situation& s, const CostTree& tree, co
   const double fov_rad = 2.0 * std::atan(0.5 * camera.width / camera.fx);
   const Tour tour = plan_tour(
       {s.grid, s.frontiers, tree, s.robot, fov_rad, config.path, config.viewpoints, config.turn_cost_m_per_rad,
-       memory.left_alone, memory.vain_looks, memory.radius_m, memory.goal, config.keep_factor},
+       memory.left_alone, memory.failed_views, memory.radius_m, memory.goal, config.keep_factor},
       config.tare);
   std::vector<Candidate> candidates;
   for (const TourStop& stop : tour.stops) {

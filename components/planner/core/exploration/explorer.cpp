@@ -34,7 +34,7 @@ void Explorer::start() {
     memory_.clear();
     revisited_.clear();
     blocked_.clear();
-    looks_.forgive();
+    failed_views_.forgive();
     losses_.clear();
   }
   empty_decisions_ = 0;
@@ -66,7 +66,7 @@ void Explorer::forget_map() {
   revisited_.clear();
   blocked_.clear();
   nothing_since_.reset();
-  looks_.clear();
+  failed_views_.clear();
   losses_.clear();
   home_.reset();
   trail_.clear();
@@ -125,7 +125,8 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
 }
 
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
-  for (const VainLook& look : looks_.judge(surroundings, report.now)) memory_.add_failure(look.target_map, report.now);
+  for (const FailedView& view : failed_views_.judge(surroundings, report.now))
+    memory_.add_failure(view.target_map, report.now);
   may_change_ = surroundings.grid().has_passing_obstacles();
   const bool may_decide = !chosen_at_ || (report.now - *chosen_at_).seconds() >= kLeastDecisionTime_s;
   if (!goal_) return may_decide;
@@ -169,11 +170,11 @@ void Explorer::note_vanished(const Decision& decision, time::Time now) {
   if (!is_there) await({*goal_->target_map, trail_.newest()->p_map}, now, config_.memory.expiry_s);
 }
 
-/// Leaves the target alone until then, when it is judged whether the look was in vain.
-void Explorer::await(const VainLook& look, time::Time now, double seconds) {
+/// Leaves the target alone until then, when it is judged whether the view has failed.
+void Explorer::await(const FailedView& view, time::Time now, double seconds) {
   const time::Time due = now + time::Duration::from_seconds(seconds);
-  looks_.await(look, due);
-  memory_.leave_alone(look.target_map, due);
+  failed_views_.await(view, due);
+  memory_.leave_alone(view.target_map, due);
 }
 
 bool Explorer::is_at(const Pose2& place, const Pose2& robot) const {
@@ -209,7 +210,7 @@ Memory Explorer::memory(time::Time now) const {
   Memory memory;
   memory.left_alone = memory_.left_alone(now);
   memory.revisited = revisited_.left_alone(now);
-  memory.vain_looks = looks_.in_vain();
+  memory.failed_views = failed_views_.all();
   memory.radius_m = config_.memory.radius_m;
   if (goal_) memory.goal = goal_->pose;
   return memory;

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "planner/core/decision/decision.hpp"
+#include "planner/core/exploration/failed_views.hpp"
 #include "planner/core/exploration/goal_memory.hpp"
-#include "planner/core/exploration/looks.hpp"
 #include "planner/core/exploration/surroundings.hpp"
 #include "planner/core/exploration/trail.hpp"
 
@@ -31,7 +31,7 @@ struct ExplorerConfig {
   double goal_tolerance_rad = 0.3;  ///< in [0.05, 0.5]
   double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
   double slowest_m_s = 0.15;        ///< a way that takes longer than at this speed has failed, in [0.01, 5]
-  double settle_s = 1.5;            ///< after arriving, until the map tells whether the look was in vain, in [0, 60]
+  double settle_s = 1.5;            ///< after arriving, until the map shows whether the view has failed, in [0, 60]
   double dead_reckoning_s = 2.0;    ///< by odometry alone, before it drives back: a turn past a blank wall, in [0, 10]
   double lost_timeout_s = 60.0;     ///< without tracking, exploration has failed, in [1, 3600]
   double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
@@ -106,7 +106,7 @@ class Explorer {
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
   void note_arrival(time::Time now);
   void note_vanished(const Decision& decision, time::Time now);
-  void await(const VainLook& look, time::Time now, double seconds);
+  void await(const FailedView& view, time::Time now, double seconds);
   bool is_active() const;
   bool may_yet_return(const Report& report, Surroundings& surroundings);
   bool is_at(const Pose2& place, const Pose2& robot) const;
@@ -125,7 +125,7 @@ class Explorer {
   std::vector<Pose2> path_;
   std::uint64_t path_number_ = 0;
   std::optional<Goal> goal_;
-  Looks looks_;
+  FailedViews failed_views_;
   std::vector<Eigen::Vector2d> losses_;  ///< targets on the way to which slam stopped tracking [m, map]
   std::optional<Pose2> home_;
   Trail trail_;

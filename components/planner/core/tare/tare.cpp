@@ -33,9 +33,9 @@ bool is_left_alone(const TourProblem& problem, Cell c) {
                      [&](const Eigen::Vector2d& place) { return (place - p).norm() <= problem.radius_m; });
 }
 
-bool is_vain(const TourProblem& problem, Cell from, Cell target) {
+bool has_failed_view(const TourProblem& problem, Cell from, Cell target) {
   const PlanningGrid& grid = problem.grid;
-  return is_looked_at(problem.vain_looks, grid.center_of(target), grid.center_of(from), problem.radius_m);
+  return is_failed_view(problem.failed_views, grid.center_of(target), grid.center_of(from), problem.radius_m);
 }
 
 /// Cell of a frontier that is to be covered.
@@ -131,7 +131,7 @@ std::array<std::vector<std::size_t>, kHeadings> covered_from(const TourProblem& 
     const Cell to = targets[i].cell;
     const double range_m = distance(from, to) * problem.grid.resolution_m();
     if (range_m < problem.viewpoints.min_distance_m || range_m > config.range_m) continue;
-    if (!is_in_sight(problem.grid, from, to) || is_vain(problem, from, to)) continue;
+    if (!is_in_sight(problem.grid, from, to) || has_failed_view(problem, from, to)) continue;
     const double bearing = std::atan2(to.y - from.y, to.x - from.x);
     for (std::size_t k = 0; k < kHeadings; ++k) {
       const double heading = 2.0 * std::numbers::pi / kHeadings * static_cast<double>(k);
@@ -223,7 +223,8 @@ std::optional<TourStop> stop_at(const TourProblem& problem, const Frontier& fron
   std::optional<TourStop> best;
   const auto rank = [&](const Viewpoint& v) { return is_goal(v.pose, problem.goal) ? 0.0 : v.cost_m; };
   for (const Viewpoint& viewpoint : found.viewpoints) {
-    if (is_left_alone(problem, viewpoint.target) || is_vain(problem, viewpoint.cell, viewpoint.target)) continue;
+    if (is_left_alone(problem, viewpoint.target) || has_failed_view(problem, viewpoint.cell, viewpoint.target))
+      continue;
     if (!best || rank(viewpoint) < rank(best->viewpoint)) best = TourStop{frontier.id, viewpoint};
   }
   if (!best) tour.missed.emplace_back(frontier.id, found.viewpoints.empty() ? reason_of(found.status) : kLeftAlone);

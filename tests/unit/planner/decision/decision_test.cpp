@@ -112,17 +112,17 @@ TEST(Decide, LeavesAloneWhatItIsTold) {
   EXPECT_GT(left_alone, 0);
 }
 
-TEST(Decide, LooksFromElsewhereAtWhatWasLookedAtInVain) {
+TEST(Decide, LooksFromElsewhereAtWhatAFailedViewShowed) {
   Explorer explorer;
   explorer.config.method = Method::kNearest;
   const Candidate first = explorer.chosen();
   Memory memory;
-  memory.vain_looks = {{first.target_map, first.goal.p_map}};
+  memory.failed_views = {{first.target_map, first.goal.p_map}};
   int rejected = 0;
   for (const Candidate& candidate : explorer.choose(memory).candidates) {
     const bool is_the_same = (candidate.target_map - first.target_map).norm() <= memory.radius_m &&
                              (candidate.goal.p_map - first.goal.p_map).norm() <= memory.radius_m;
-    EXPECT_EQ(candidate.rejection, is_the_same ? "was looked at from here in vain" : "");
+    EXPECT_EQ(candidate.rejection, is_the_same ? "the view from here has failed" : "");
     rejected += is_the_same ? 1 : 0;
   }
   EXPECT_GT(rejected, 0);

@@ -75,8 +75,8 @@ TEST(Explorer, GivesUpAFrontierBehindGlassAfterThreeTries) {
   world.explorer.start();
   world.run(600.0);
   EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
-  EXPECT_GE(world.most_failures() + world.most_vain_looks(), 1);
-  EXPECT_LE(world.most_failures() + world.most_vain_looks(), 3);
+  EXPECT_GE(world.most_failures() + world.most_failed_views(), 1);
+  EXPECT_LE(world.most_failures() + world.most_failed_views(), 3);
 }
 
 TEST(Explorer, DecidesTwiceASecondAtMostHoweverOftenItIsStarted) {

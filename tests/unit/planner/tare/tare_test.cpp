@@ -49,7 +49,7 @@ struct Planner {
                       {},
                       0.5,
                       left_alone,
-                      vain_looks,
+                      failed_views,
                       0.75,
                       goal,
                       1.2},
@@ -76,7 +76,7 @@ struct Planner {
   TareConfig config;
   Pose2 robot;
   std::vector<Eigen::Vector2d> left_alone;
-  std::vector<VainLook> vain_looks;
+  std::vector<FailedView> failed_views;
   std::optional<Pose2> goal;
 };
 
@@ -143,12 +143,12 @@ TEST(Tare, LeavesAloneWhatItIsTold) {
   EXPECT_EQ(tour.missed[0].second, kLeftAlone);
 }
 
-TEST(Tare, LooksFromElsewhereAtWhatItHasLookedAtInVain) {
+TEST(Tare, LooksFromElsewhereAtWhatAFailedViewShowed) {
   for (const auto& lines : {kHall, kCorridor}) {
     Planner planner(lines);
     const TourStop first = planner.plan().stops[0];
     const Eigen::Vector2d target_map = planner.world.grid.center_of(first.viewpoint.target);
-    planner.vain_looks = {{target_map, first.viewpoint.pose.p_map}};
+    planner.failed_views = {{target_map, first.viewpoint.pose.p_map}};
     const Tour tour = planner.plan();
     EXPECT_FALSE(tour.stops.empty());
     for (const TourStop& stop : tour.stops) {

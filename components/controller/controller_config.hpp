@@ -69,7 +69,7 @@ void describe(Field& field, ControllerComponentConfig& c) {
   field("heading_tolerance_rad", c.method.heading_tolerance_rad, config::in_range(0.01, 3.2),
         "at the path's end [rad]");
   field("patience_s", c.method.patience_s, config::in_range(0.0, 60.0),
-        "without a free way before the robot tries to recover [s]");
+        "without a free path before the robot tries to recover [s]");
   field("back_up_m", c.method.back_up_m, config::in_range(0.0, 2.0), "first, where it is known to be free [m]");
   field("back_up_speed_m_s", c.method.back_up_speed_m_s, config::in_range(0.01, 1.0), "[m/s]");
   field("recovery_turn_rad", c.method.recovery_turn_rad, config::in_range(0.0, 3.0), "to look around after that [rad]");

@@ -36,7 +36,7 @@ nav_msgs::msg::Path to_message(const std::vector<Pose2>& path, const std_msgs::m
 lapis_msgs::msg::CandidateSet to_message(const Decision& decision, std::uint64_t id, const std::string& method,
                                          const std_msgs::msg::Header& header);
 std::uint8_t to_message(State state);
-/// Frontiers, and the ways of the candidates: the chosen one green, others blue, rejected ones red at their targets.
+/// Frontiers, and the paths of the candidates: the chosen one green, others blue, rejected ones red at their targets.
 visualization_msgs::msg::MarkerArray to_markers(const FrontierMap& frontiers, const PlanningGrid& grid,
                                                 const Decision& decision, const std_msgs::msg::Header& header);
 

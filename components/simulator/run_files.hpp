@@ -41,7 +41,7 @@ std::filesystem::path truth_folder(const SimulatorConfig& config);
 mapping::MapDescription default_map(const SimulatorConfig& config);
 void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const StartPose& start,
             const SimulatorConfig& config);
-/// Writes the ground truth of a scene, as far as it does not depend on the run's way, into a folder whose parent
+/// Writes the ground truth of a scene, as far as it does not depend on the run's path, into a folder whose parent
 /// exists.
 /// @throws std::runtime_error naming the file that cannot be written
 void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config, double resolution_m,

@@ -51,7 +51,7 @@ void describe_scene(const World& world) {
 void SimulatorComponent::add_options(CLI::App& app, Config& config) {
   app.add_option("scene", config.scene, "name of a bundled scene, or a file or folder (docs/scenes.md)");
   app.add_option("--seed", config.seed, "draws start, noise, systematic errors, label confusion, jitter");
-  app.add_option("--tour", config.tour, "\"bundled\" or a file with way-points: the robot drives by itself");
+  app.add_option("--tour", config.tour, "\"bundled\" or a file with waypoints: the robot drives by itself");
   app.add_option("--duration", config.duration_s, "end after this much simulated time [s]");
   app.add_option("--mode", config.mode, "lockstep or freerun");
   app.add_flag("--validate", config.validate, "check the scene, print a table, write its navigation map, and exit");

@@ -92,9 +92,9 @@ void describe(Field& field, SimulatorConfig& c) {
   field("ends_when_explored", c.ends_when_explored, config::anything(),
         "the run ends, too, when /planner/status tells DONE or FAILED");
   field("tour", c.tour, config::anything(),
-        "\"bundled\", or a file with way-points, that the robot drives by itself; empty: it obeys /cmd_vel");
+        "\"bundled\", or a file with waypoints, that the robot drives by itself; empty: it obeys /cmd_vel");
   field("tour_revisit_every_m", c.tour_revisit_every_m, config::in_range(0.0, 1000.0),
-        "after so much way each, the tour goes back to an old place and comes back; 0: never [m]");
+        "after a path of this length each, the tour goes back to an old place and comes back; 0: never [m]");
   field("start", c.start, config::anything(), "\"x y yaw_deg\" [m, m, deg]; empty: drawn by the seed");
   field("output_dir", c.output_dir, config::anything(),
         "run folder for simulation.yaml and ground_truth/; empty: none");

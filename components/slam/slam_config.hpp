@@ -61,7 +61,7 @@ void describe(Field& field, SurfaceConfig& c) {
 template <class Field>
 void describe(Field& field, TrackerConfig& c) {
   field("min_matches", c.min_matches, config::in_range(6, 500),
-        "projection matches below which the next way of matching is tried");
+        "projection matches below which the next kind of matching is tried");
   field("min_inliers", c.min_inliers, config::in_range(6, 200), "fewer after the refinement is lost");
   field("min_inlier_share", c.min_inlier_share, config::in_range(0.0, 1.0),
         "of the matches; with fewer the view repeats itself or is noise");
@@ -118,7 +118,7 @@ void describe(Field& field, LoopConfig& c) {
         "key-frames within which a second one has to say the same");
   field("max_disagreement_m", c.max_disagreement_m, config::in_range(0.01, 2), "between the two [m]");
   field("max_disagreement_rad", c.max_disagreement_rad, config::in_range(0.01, 1), "between the two [rad]");
-  field("spacing_m", c.spacing_m, config::in_range(0, 100), "way between pairs of loops [m]");
+  field("spacing_m", c.spacing_m, config::in_range(0, 100), "path between pairs of loops [m]");
   field("latency_frames", c.latency_frames, config::in_range(1, 1000), "from a loop to the corrected map");
 }
 

@@ -37,7 +37,7 @@ struct SurfaceConfig {
 };
 
 struct TrackerConfig {
-  int min_matches = 30;            ///< projection matches below which the next way of matching is tried [6, 500]
+  int min_matches = 30;            ///< projection matches below which the next kind of matching is tried [6, 500]
   int min_inliers = 15;            ///< fewer after the refinement is lost [6, 200]
   double min_inlier_share = 0.45;  ///< of the matches; with fewer the view repeats itself, or is noise [0, 1]
   int local_keyframes = 5;         ///< key-frames whose landmarks form the local map [1, 50]
@@ -85,7 +85,7 @@ struct LoopConfig {
   int confirm_within = 3;              ///< key-frames, in which a second one has to say the same [1, 100]
   double max_disagreement_m = 0.1;     ///< between the two [0.01, 2]
   double max_disagreement_rad = 0.05;  ///< between the two [0.01, 1]
-  double spacing_m = 5.0;              ///< way between pairs of loops along one passage [0, 100]
+  double spacing_m = 5.0;              ///< path between pairs of loops along one passage [0, 100]
   int latency_frames = 15;             ///< from a loop to the corrected map [1, 1000]
 };
 
@@ -106,7 +106,7 @@ struct RelocalizationConfig {
 /// square root. Right for a robot with wheels on floors without steps; a robot that climbs wants a larger
 /// vertical_sigma and tilt_sigma.
 struct OdometryConfig {
-  double distance_sigma = 0.02;       ///< along the way [m] after 1 m [0, 1]
+  double distance_sigma = 0.02;       ///< along the path [m] after 1 m [0, 1]
   double turn_sigma = 0.02;           ///< of the heading [rad] after a turn of 1 rad [0, 1]
   double turn_sigma_per_m = 0.01;     ///< of the heading [rad] after 1 m [0, 1]
   double scale_sigma = 0.01;          ///< share of path and turn by which odometry always errs [0, 0.5]

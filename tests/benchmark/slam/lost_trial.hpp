@@ -42,7 +42,7 @@ struct TrialStep {
 };
 
 /// A stop for `cover_s` in the middle of turning, at a place of the map with room around it. The camera goes on
-/// turning, or turns back half-way so that it returns to what it saw (`turns_back`).
+/// turning, or turns back halfway so that it returns to what it saw (`turns_back`).
 TrialPlan covered_plan(const simulator::World& world, double radius_m, std::uint64_t seed, bool turns_back);
 /// Slowly, then once around much too fast, then slowly back over what was seen.
 TrialPlan spin_plan(const simulator::World& world, double radius_m, std::uint64_t seed);

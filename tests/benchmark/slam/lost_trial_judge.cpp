@@ -34,11 +34,11 @@ std::optional<std::size_t> find(const Steps& steps, std::size_t begin, Predicate
 // Longest time that wrong poses were told as tracked.
 double longest_wrong_s(const Steps& steps, const TrialLimits& limits, bool with_odometry) {
   const std::size_t origin = *find(steps, 0, is_tracked);
-  double longest_s = 0.0, way_m = 0.0;
+  double longest_s = 0.0, path_m = 0.0;
   std::optional<double> since_s;
   for (std::size_t i = origin + 1; i < steps.size(); ++i) {
-    way_m += difference(steps[i - 1].truth, steps[i].truth).m;
-    const double allowed_m = limits.wrong_m + limits.drift * way_m +
+    path_m += difference(steps[i - 1].truth, steps[i].truth).m;
+    const double allowed_m = limits.wrong_m + limits.drift * path_m +
                              (with_odometry ? motion_error(steps[origin], steps[i], &TrialStep::odometry).m : 0.0);
     const bool is_wrong =
         is_tracked(steps[i]) && motion_error(steps[origin], steps[i], &TrialStep::estimate).m > allowed_m;

@@ -19,7 +19,7 @@ struct TrialLimits {
   double jump_m = 0.10;
   double jump_rad = 0.05;
   double wrong_m = 0.25;  ///< a pose that errs by more is wrong, however sure slam is ...
-  double drift = 0.05;    ///< ... on top of this share of the way so far
+  double drift = 0.05;    ///< ... on top of this share of the path so far
 };
 
 struct TrialVerdict {

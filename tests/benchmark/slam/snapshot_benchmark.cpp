@@ -54,7 +54,7 @@ class Stopwatch {
   double begin_ms_;
 };
 
-/// A map that grows along a way through a building: rows of 30 m, 4 m apart, a key-frame every 0.35 m.
+/// A map that grows along a path through a building: rows of 30 m, 4 m apart, a key-frame every 0.35 m.
 class GrowingMap {
  public:
   void add_keyframe() {
@@ -104,8 +104,8 @@ class GrowingMap {
 
  private:
   static Eigen::Vector3d position(double index) {
-    const double way_m = 0.35 * index;
-    return {std::fmod(way_m, 30.0), 4.0 * std::floor(way_m / 30.0), 1.0};
+    const double path_m = 0.35 * index;
+    return {std::fmod(path_m, 30.0), 4.0 * std::floor(path_m / 30.0), 1.0};
   }
   /// Moves the newest landmarks along x by a size of that order.
   void move(int newest, double size_m) {

@@ -251,7 +251,7 @@ TEST_F(PlannerContract, BlockedControllerGetsAnotherGoal) {
   ASSERT_TRUE(tick());
   peers.say_blocked();
   ASSERT_TRUE(ticks_until([this] { return stands(); }, 1.0)) << reason() << planner->log();
-  EXPECT_EQ(reason(), "the way was blocked");
+  EXPECT_EQ(reason(), "the path was blocked");
   peers.controller.publish({});
   ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
   EXPECT_NE(goal().x() > 2.5, went_right) << "the other door";

@@ -458,13 +458,13 @@ TEST_F(SimulatorContract, AResetThatConsumersWouldTakeForDisorderIsRefused) {
 }
 
 /// A robot whose watchdog stops it at once, and again after every command, does not get anywhere.
-TEST_F(SimulatorContract, ATourThatIsStuckEndsTheRunAndNamesTheWayPoint) {
+TEST_F(SimulatorContract, ATourThatIsStuckEndsTheRunAndNamesTheWaypoint) {
   ChildProcess simulator(kSimulator,
                          with_stages("[]", {"--tour", "bundled", "--set", "robot.camera.rate_hz=0.1", "--set",
                                             "robot.command_timeout_s=0.05", "--set", "robot.max_speed_m_s=0.01"}));
   EXPECT_EQ(simulator.wait(Seconds(60)), 1) << simulator.log();
-  EXPECT_THAT(simulator.log(), HasSubstr("way-point 1"));
-  EXPECT_THAT(summary(), HasSubstr("way-point 1"));
+  EXPECT_THAT(simulator.log(), HasSubstr("waypoint 1"));
+  EXPECT_THAT(summary(), HasSubstr("waypoint 1"));
 }
 
 TEST_F(SimulatorContract, GroundTruthThatCannotBeWrittenEndsTheRun) {

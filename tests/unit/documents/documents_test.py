@@ -35,7 +35,10 @@ RENAMED = {  # keys of before, by the component that refuses them
         "semantic_mapper.sensor_model.pass_gain": "semantic_mapper.sensor_model.miss_gain",
     },
     "simulator": {"simulator.noise.wheels": "simulator.noise.odometry"},
-    "planner": {"planner.sensor_model.pass_gain": "semantic_mapper.sensor_model.miss_gain"},
+    "planner": {
+        "planner.hallucination.min_loop_way_m": "planner.hallucination.min_loop_path_m",
+        "planner.sensor_model.pass_gain": "semantic_mapper.sensor_model.miss_gain",
+    },
     "evaluator": {"evaluator.sensor_model.pass_gain": "semantic_mapper.sensor_model.miss_gain"},
 }
 

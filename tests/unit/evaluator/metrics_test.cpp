@@ -115,7 +115,7 @@ TEST(Metrics, TrajectoryFiguresOfADriftingWalk) {
   EXPECT_FALSE(trajectory_figures({}, estimate).ate_raw_rmse_m);
 }
 
-TEST(Metrics, AteUpToAWayIsThatOfThePosesBefore) {
+TEST(Metrics, AteUpToAPathLengthIsThatOfThePosesBefore) {
   Trajectory reference, estimate;  // 1 m/s; the estimate is 1 m beside at the start, and 5 m from 3 s on
   for (int i = 0; i <= 10; ++i) {
     const auto pose = [i](double y) { return geometry::make_pose({1.0 * i, y, 0}, Eigen::Quaterniond::Identity()); };

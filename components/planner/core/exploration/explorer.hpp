@@ -30,7 +30,7 @@ struct ExplorerConfig {
   double goal_tolerance_m = 0.3;    ///< in [0.05, 2]
   double goal_tolerance_rad = 0.3;  ///< in [0.05, 0.5]
   double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
-  double slowest_m_s = 0.15;        ///< a way that takes longer than at this speed has failed, in [0.01, 5]
+  double slowest_m_s = 0.15;        ///< a path that takes longer than at this speed has failed, in [0.01, 5]
   double settle_s = 1.5;            ///< after arriving, until the map shows whether the view has failed, in [0, 60]
   double dead_reckoning_s = 2.0;    ///< by odometry alone, before it drives back: a turn past a blank wall, in [0, 10]
   double lost_timeout_s = 60.0;     ///< without tracking, exploration has failed, in [1, 3600]
@@ -47,7 +47,7 @@ struct Report {
   time::Time now;
   std::optional<Pose2> robot;  ///< nothing while slam has no pose
   Tracking tracking = Tracking::kLost;
-  bool is_blocked = false;  ///< the controller finds no way; only true when it speaks of the newest path
+  bool is_blocked = false;  ///< the controller finds no path; only true when it speaks of the newest path
 };
 
 /// The mission: when to decide, what to do with the decision, and when it is over.
@@ -68,7 +68,7 @@ class Explorer {
   /// What decide() has to leave alone, and what is being driven to.
   Memory memory(time::Time now) const;
   /// Acts on a decision that was wanted. One that came too late changes nothing, nor does one that was made before the
-  /// way was found blocked: the goal that it did not know to have failed is judged first.
+  /// path was found blocked: the goal that it did not know to have failed is judged first.
   void take(const Decision& decision, const Report& report);
 
   State state() const { return state_; }
@@ -81,7 +81,7 @@ class Explorer {
  private:
   struct Goal {
     Pose2 pose = {};
-    std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< none: a look around, or the way home
+    std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< none: a look around, or the path home
     CandidateKind kind = CandidateKind::kFrontier;
     time::Time set_out_at = {};  ///< from where none was left for another
     std::optional<time::Time> deadline = std::nullopt;
@@ -118,7 +118,7 @@ class Explorer {
   ExplorerConfig config_;
   GoalMemory memory_;     ///< targets of frontiers
   GoalMemory revisited_;  ///< old places
-  GoalMemory blocked_;    ///< places on the way
+  GoalMemory blocked_;    ///< places on the path
   State state_ = State::kIdle;
   State interrupted_ = State::kExploring;  ///< what to go on with when slam tracks again
   std::string reason_ = "not started";

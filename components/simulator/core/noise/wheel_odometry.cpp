@@ -17,10 +17,10 @@ WheelOdometry::WheelOdometry(const OdometryNoiseConfig& config, std::uint64_t se
 }
 
 OdometryStep WheelOdometry::step(double distance_m, double turn_rad) {
-  const double way = std::abs(distance_m), turn = std::abs(turn_rad), scale2 = config_.scale * config_.scale;
+  const double length = std::abs(distance_m), turn = std::abs(turn_rad), scale2 = config_.scale * config_.scale;
   OdometryStep step;
-  step.distance_variance = scale2 * (config_.distance_per_metre * way + config_.distance_per_turn * turn);
-  step.turn_variance = scale2 * (config_.turn_per_turn * turn + config_.turn_per_metre * way);
+  step.distance_variance = scale2 * (config_.distance_per_metre * length + config_.distance_per_turn * turn);
+  step.turn_variance = scale2 * (config_.turn_per_turn * turn + config_.turn_per_metre * length);
   const Random random(seed_, RandomStream::kOdometry, steps_++);
   step.distance_m = wheel_ * distance_m + std::sqrt(step.distance_variance) * random.normal(0);
   step.turn_rad = wheel_ / base_ * turn_rad + std::sqrt(step.turn_variance) * random.normal(1);

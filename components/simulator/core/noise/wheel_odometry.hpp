@@ -6,7 +6,7 @@
 
 namespace lapis::simulator {
 
-/// Variances grow with the way, so that they do not depend on how often odometry is read [after Thrun, Burgard, Fox,
+/// Variances grow with the path, so that they do not depend on how often odometry is read [after Thrun, Burgard, Fox,
 /// Probabilistic Robotics, 5.4]: var(distance) = a3 |ds| + a4 |dtheta|, var(turn) = a1 |dtheta| + a2 |ds|.
 struct OdometryNoiseConfig {
   double turn_per_turn = 4e-4;       ///< a1 [rad2/rad], >= 0

@@ -57,7 +57,7 @@ struct Scene {
   bool is_lit = true;       ///< false: colours are shown as they are
   double floor_z_m = 0.0;
   std::vector<StartPose> starts;      ///< empty: anywhere
-  std::vector<Eigen::Vector2d> tour;  ///< way-points of the bundled tour; empty: none
+  std::vector<Eigen::Vector2d> tour;  ///< waypoints of the bundled tour; empty: none
   bool is_stress = false;             ///< made to be hard: views without features are on purpose
   std::vector<Credit> credits;
   std::vector<std::string> warnings;  ///< what stands in for something that was not found, one line each

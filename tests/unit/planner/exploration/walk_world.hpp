@@ -149,7 +149,7 @@ class WalkWorld {
     if (decision.chosen) target_ = decision.candidates[*decision.chosen].target_map;
   }
   static bool is_failure(const std::string& reason) {
-    return reason == "the way was blocked" || reason == "the way took too long" || reason == "it did not get on";
+    return reason == "the path was blocked" || reason == "the path took too long" || reason == "it did not get on";
   }
   using Counts = std::vector<std::pair<Eigen::Vector2d, int>>;
   static void count(const Eigen::Vector2d& of, double radius_m, Counts& counts) {

@@ -61,10 +61,10 @@ struct Planner {
     for (const auto& [id, frontier] : frontiers.frontiers()) {
       count += static_cast<int>(std::count_if(frontier.cells.begin(), frontier.cells.end(), [&](Cell c) {
         return std::none_of(tour.stops.begin(), tour.stops.end(), [&](const TourStop& stop) {
-          const Eigen::Vector2d way = world.grid.center_of(c) - stop.viewpoint.pose.p_map;
+          const Eigen::Vector2d offset = world.grid.center_of(c) - stop.viewpoint.pose.p_map;
           const double off =
-              std::remainder(std::atan2(way.y(), way.x()) - stop.viewpoint.pose.yaw_rad, 2.0 * std::numbers::pi);
-          return way.norm() <= config.range_m && std::abs(off) <= std::numbers::pi / 4.0 + 1e-9;
+              std::remainder(std::atan2(offset.y(), offset.x()) - stop.viewpoint.pose.yaw_rad, 2.0 * std::numbers::pi);
+          return offset.norm() <= config.range_m && std::abs(off) <= std::numbers::pi / 4.0 + 1e-9;
         });
       }));
     }

@@ -30,7 +30,7 @@ struct Sums {
   std::vector<double> distances, turns;  // one per run
 };
 
-/// Many runs over one way, in equal steps; what the steps of each add up to.
+/// Many runs over one path, in equal steps; what the steps of each add up to.
 Sums drive(const OdometryNoiseConfig& config, double distance_m, double turn_rad, int steps) {
   Sums sums;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
@@ -64,18 +64,18 @@ TEST(WheelOdometry, WithoutErrorsIsTheTruth) {
 
 TEST(WheelOdometry, VarianceIsProportionalToMotionWhateverTheStep) {
   const OdometryNoiseConfig c = random_only();
-  struct Way {
+  struct Drive {
     double distance_m, turn_rad;
   };
-  for (const Way way : {Way{1, 0}, Way{4, 0}, Way{-2, 0}, Way{0, 2}, Way{0, -6}, Way{3, 1.5}}) {
-    const double s = std::abs(way.distance_m), t = std::abs(way.turn_rad);
+  for (const Drive motion : {Drive{1, 0}, Drive{4, 0}, Drive{-2, 0}, Drive{0, 2}, Drive{0, -6}, Drive{3, 1.5}}) {
+    const double s = std::abs(motion.distance_m), t = std::abs(motion.turn_rad);
     for (const int steps : {1, 10, 150}) {
-      const Sums sums = drive(c, way.distance_m, way.turn_rad, steps);
+      const Sums sums = drive(c, motion.distance_m, motion.turn_rad, steps);
       EXPECT_NEAR(variance_of(sums.distances) / (4e-4 * s + 1e-5 * t), 1.0, variance_bound(kRuns)) << s << t << steps;
       EXPECT_NEAR(variance_of(sums.turns) / (4e-4 * t + 1e-4 * s), 1.0, variance_bound(kRuns)) << s << t << steps;
       const double root_n = std::sqrt(static_cast<double>(kRuns));
-      EXPECT_NEAR(mean_of(sums.distances), way.distance_m, kSigmas * std::sqrt(4e-4 * s + 1e-5 * t) / root_n);
-      EXPECT_NEAR(mean_of(sums.turns), way.turn_rad, kSigmas * std::sqrt(4e-4 * t + 1e-4 * s) / root_n);
+      EXPECT_NEAR(mean_of(sums.distances), motion.distance_m, kSigmas * std::sqrt(4e-4 * s + 1e-5 * t) / root_n);
+      EXPECT_NEAR(mean_of(sums.turns), motion.turn_rad, kSigmas * std::sqrt(4e-4 * t + 1e-4 * s) / root_n);
       EXPECT_LT(std::abs(correlation_of(sums.distances, sums.turns)), kSigmas / root_n);
     }
   }
@@ -96,7 +96,7 @@ TEST(WheelOdometry, SystematicErrorsAreConstantInARun) {
   EXPECT_NEAR(correlation_of(wheels, turns), std::sqrt(0.5), 0.07);
 }
 
-/// Normalised squared error of the pose after a winding way of 8 m.
+/// Normalised squared error of the pose after a winding path of 8 m.
 double normalised_error(const OdometryNoiseConfig& config, std::uint64_t seed) {
   OdometryNoiseConfig perfect;
   perfect.scale = 0.0;
@@ -174,7 +174,7 @@ TEST(WheelOdometry, StandingStillDoesNotDrift) {
 TEST(WheelOdometry, NoiseDependsOnSeedAndStepNumber) {
   WheelOdometry a(random_only(), 3), b(random_only(), 3), c(random_only(), 4);
   a.step(0.02, 0.01);
-  b.step(0.05, -0.2);  // another way, the same number of steps
+  b.step(0.05, -0.2);  // another path, the same number of steps
   const OdometryStep from_a = a.step(0.02, 0.01), from_b = b.step(0.02, 0.01);
   c.step(0.02, 0.01);
   EXPECT_EQ(from_a.distance_m, from_b.distance_m);

@@ -242,7 +242,7 @@ void PlannerComponent::take_decision(bool waits) {
   explorer_.take(decision, report());
   candidates_.publish(to_message(decision, decisions_, config_.method, header()));
   if (log_ && !log_->write(decision, decisions_, config_.method, stamp_)) {
-    spdlog::error("{}/{} cannot be written; exploration goes on without it", config_.output_dir, kLogFile);
+    spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, kLogFile);
     log_.reset();
   }
 }

@@ -69,7 +69,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   describe_map();
 }
 
-/// Reads the map to go on with; throws with file and remedy.
+/// Reads the map to resume; throws with file and remedy.
 void SemanticMapperComponent::load_map() {
   std::string error;
   resumed_ = mapping::load_map(config_.resume_from, error);
@@ -242,13 +242,13 @@ void SemanticMapperComponent::end_map() {
   if (mapper_ == nullptr) return;
   spdlog::warn("slam began a new map; so does the mapper");
   if (!config_.output_dir.empty()) {
-    if (const auto problem = save()) spdlog::error("map not saved: {}; mapping goes on", *problem);
+    if (const auto problem = save()) spdlog::error("map not saved: {}; mapping continues", *problem);
   }
   mapper_.reset();
   forget_resumed();
 }
 
-/// The first map of the process goes on with the saved one, if there is one.
+/// The first map of the process resumes the saved one, if there is one.
 std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t session) {
   if (resumed_ && !config_.resume_any_session && session != static_cast<std::int64_t>(note(*resumed_, "session"))) {
     spdlog::warn("{} is of another session of slam; a new map begins", config_.resume_from);
@@ -263,7 +263,7 @@ std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t 
   return std::make_unique<SemanticMapper>(config_.map, std::move(resumed_->map));
 }
 
-/// Files of the map before stay under another name; but for those of the map that is gone on with: the new ones hold
+/// Files of the map before stay under another name; but for those of the map that is resumed: the new ones hold
 /// all of it.
 void SemanticMapperComponent::set_old_files_aside() const {
   const std::filesystem::path folder(config_.output_dir);
@@ -313,7 +313,7 @@ void SemanticMapperComponent::publish(bool is_final) {
   publish_views(is_final || seconds_since(views_stamp_, stamp_) >= config_.view_period_s);
   if (config_.output_dir.empty() || seconds_since(saved_stamp_, stamp_) < config_.save_period_s) return;
   saved_stamp_ = stamp_;
-  if (const auto problem = save()) spdlog::error("map not saved: {}; mapping goes on", *problem);
+  if (const auto problem = save()) spdlog::error("map not saved: {}; mapping continues", *problem);
 }
 
 void SemanticMapperComponent::publish_tiles() {

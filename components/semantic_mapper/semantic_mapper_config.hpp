@@ -65,7 +65,7 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("re_anchor_threshold_voxels", c.map.re_anchor_threshold_voxels, config::in_range(0.0, 10.0),
         "a frame is moved when a point at its median depth is off by more");
   field("re_anchor_work_per_cycle", c.re_anchor_work_per_cycle, config::in_range(1, 1'000'000'000),
-        "frames are moved until their samples and votes exceed this; the next cycle goes on");
+        "frames are moved until their samples and votes exceed this; the next cycle continues");
   field("stored_frames", c.map.stored_frames);
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
         "between pose, depth, labels and camera info of one frame [s]");
@@ -77,7 +77,7 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("obstacle_period_s", c.obstacle_period_s, config::in_range(0.0, 60.0),
         "least time between obstacle grids, by the frames' stamps [s]");
   field("resume_from", c.resume_from, config::anything(),
-        "map.lapis of an earlier run to go on with, beside slam.resume_from; empty: none");
+        "map.lapis of an earlier run to resume, beside slam.resume_from; empty: none");
   field(
       "resume_any_session", c.resume_any_session, config::anything(),
       "with a session that slam.resume_from has made, too; false: a new map begins unless slam still runs that the map "

@@ -29,7 +29,7 @@ struct RunSummary {
   double hardest_push_m_s = 0.0;
   std::optional<PlannerEnd> planner;             ///< when the run waits for its end and it has spoken
   std::map<std::string, double> cpu_ms;          ///< by participant of lock-step
-  std::map<std::string, std::uint64_t> demoted;  ///< participants without which the run went on, from which tick on
+  std::map<std::string, std::uint64_t> demoted;  ///< participants without which the run continued, from which tick on
 };
 
 /// simulation.yaml of the run folder: what is needed to repeat the run, and how it went.

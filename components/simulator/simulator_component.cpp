@@ -100,7 +100,7 @@ void SimulatorComponent::serve() {
     return answer("paused at tick " + tick());
   });
   context_.serve(topics::kRun, [this, answer, tick](const auto&) {
-    go_on();
+    resume();
     return answer("running from tick " + tick());
   });
   context_.serve(topics::kStep, [this, answer, tick](const auto&) {
@@ -142,7 +142,7 @@ void SimulatorComponent::pause() {
   running_since_.reset();
 }
 
-void SimulatorComponent::go_on() {
+void SimulatorComponent::resume() {
   is_paused_ = false;
   steps_ = 0;
   due_ = Clock::now();

@@ -40,7 +40,7 @@ class SimulatorComponent {
   void note_map(const lapis_msgs::msg::MapDescription& message);
   void note_planner(const lapis_msgs::msg::PlannerStatus& message);
   void pause();
-  void go_on();
+  void resume();
   double wall_s() const;
   void begin();
   void work();

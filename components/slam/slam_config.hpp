@@ -72,7 +72,7 @@ void describe(Field& field, TrackerConfig& c) {
   field("ransac_error_px", c.ransac_error_px, config::in_range(0.5, 20), "PnP inlier threshold");
   field("refine_iterations", c.refine_iterations, config::in_range(1, 50), "Levenberg-Marquardt steps per round");
   field("max_blind_frames", c.max_blind_frames, config::in_range(1, 1000),
-        "frames in a row with enough features but no pose, before the map goes on where odometry says");
+        "frames in a row with enough features but no pose, before the map continues where odometry says");
   field("max_prediction_s", c.max_prediction_s, config::in_range(0.01, 5), "longest gap that the motion model bridges");
 }
 
@@ -187,7 +187,7 @@ void describe(Field& field, SlamComponentConfig& c) {
   field("output_dir", c.output_dir, config::anything(),
         "folder for slam.lapis, pose_graph.g2o and keyframes.txt; empty: none");
   field("resume_from", c.resume_from, config::anything(),
-        "slam.lapis of an earlier run, whose map is gone on with; empty: none");
+        "slam.lapis of an earlier run, whose map is resumed; empty: none");
   field("autosave_period_s", c.autosave_period_s, config::in_range(0.0, 86400.0),
         "time between saves of slam.lapis, by the frames' stamps; 0: only at the end [s]");
 }

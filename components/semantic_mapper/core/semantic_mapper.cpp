@@ -56,7 +56,7 @@ SemanticMapper::SemanticMapper(const MapperConfig& config, mapping::VoxelMap bas
       blocks_per_tile_edge_(mapping::blocks_per_tile_edge(config.resolution_m, config.tile_edge_m)),
       map_(std::move(base)), frames_before_(most_votes(map_)), store_(config.stored_frames) {
   if (map_.resolution_m() != config.resolution_m)
-    throw std::runtime_error("mapper: the map to go on with has voxels of another size");
+    throw std::runtime_error("mapper: the map to resume has voxels of another size");
   mark_all_changed();
 }
 

@@ -85,7 +85,7 @@ class SemanticMapper {
  public:
   /// Throws std::runtime_error naming the value that is out of range.
   explicit SemanticMapper(const MapperConfig& config);
-  /// Goes on with the map of an earlier run: its frames are not known any more, so that its counts stay where they are.
+  /// Resumes the map of an earlier run: its frames are not known any more, so that its counts stay where they are.
   /// Throws also when its voxels are not of config.resolution_m.
   SemanticMapper(const MapperConfig& config, mapping::VoxelMap base);
 

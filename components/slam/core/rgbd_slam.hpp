@@ -59,8 +59,8 @@ class RgbdSlam {
   /// wheel odometry.
   RgbdSlam(const SlamConfig& config, const geometry::Pose& T_map_first_camera,
            const geometry::Pose& T_base_camera = geometry::Pose::Identity());
-  /// Goes on with a saved map; `state` is sound (find_fault) and has the configuration's scale factor. It is lost until
-  /// it finds its place in that map. Ids and graph version go on.
+  /// Resumes a saved map; `state` is sound (find_fault) and has the configuration's scale factor. It is lost until
+  /// it finds its place in that map. Ids and graph version continue.
   RgbdSlam(const SlamConfig& config, const geometry::Pose& T_base_camera, SlamState state);
   ~RgbdSlam();
 
@@ -78,7 +78,7 @@ class RgbdSlam {
   void settle();
   PoseGraphSnapshot pose_graph() const;
   LoopSummary loops() const;
-  /// What has to be kept to go on later. The large parts are shared with the map, not copied.
+  /// What has to be kept to continue later. The large parts are shared with the map, not copied.
   SlamState state() const;
   /// Grows with every new key-frame and every change of a key-frame's pose.
   std::uint64_t graph_version() const;

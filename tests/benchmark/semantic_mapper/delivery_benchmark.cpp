@@ -229,7 +229,7 @@ AnchoredFrame room_frame(int index, const geometry::PinholeCamera& camera) {
           mapping::CompactFrame::make(camera, image.depth, &image.labels, {}, error).value()};
 }
 
-/// A reader comes to a map that goes on growing at 2 Hz.
+/// A reader comes to a map that keeps growing at 2 Hz.
 void join(double tile_edge_m, std::size_t blocks, int socket_buffer_bytes) {
   MapperConfig config;
   config.resolution_m = kLargeMapResolution_m;

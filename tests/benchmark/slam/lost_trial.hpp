@@ -41,7 +41,7 @@ struct TrialStep {
   std::string reason;
 };
 
-/// A stop for `cover_s` in the middle of turning, at a place of the map with room around it. The camera goes on
+/// A stop for `cover_s` in the middle of turning, at a place of the map with room around it. The camera continues
 /// turning, or turns back halfway so that it returns to what it saw (`turns_back`).
 TrialPlan covered_plan(const simulator::World& world, double radius_m, std::uint64_t seed, bool turns_back);
 /// Slowly, then once around much too fast, then slowly back over what was seen.

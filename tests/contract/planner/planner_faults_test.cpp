@@ -19,7 +19,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // slam ---------------------------------------------------------------------------------------------------------------
 
-TEST_F(PlannerContract, StandsWhileSlamIsLostAndGoesOnAfterwards) {
+TEST_F(PlannerContract, StandsWhileSlamIsLostAndContinuesAfterwards) {
   get_going();
   constexpr double kLatency_s = 3 / kRate_hz;  // a decision may be under way
   ASSERT_TRUE(ticks_until([this] { return state() == STATE_RECOVERING; }, kLatency_s + 1 / kRate_hz, kLost))
@@ -101,7 +101,7 @@ class PlannerGraphFaults : public PlannerContract {
   using Graph = lapis_msgs::msg::PoseGraph;
 
   void SetUp() override { ASSERT_TRUE(start({"progress_timeout_s=600"})) << planner->log(); }
-  /// A good graph, a bad one, and a good one again: exploration goes on, and the bad one is explained.
+  /// A good graph, a bad one, and a good one again: exploration continues, and the bad one is explained.
   void expect_explained(const std::function<void(Graph&)>& spoil, const std::string& explanation) {
     SCOPED_TRACE(explanation);
     const auto decides = [this] {
@@ -313,7 +313,7 @@ TEST_F(PlannerContract, FullDiskCostsTheFileAndNotTheExploration) {
 
 // F2 -----------------------------------------------------------------------------------------------------------------
 
-TEST_F(PlannerContract, RestartedPlannerHasTheWholeMapAndGoesOn) {
+TEST_F(PlannerContract, RestartedPlannerHasTheWholeMapAndContinues) {
   start_free();
   peers.draw(kRoomWithDoor);
   peers.pose_graph.publish(peers.graph());

@@ -96,7 +96,7 @@ TEST_F(Obstacles, GridsComeFifteenTimesASecondOfStampsAndToLateJoiners) {
 }
 
 // A robot that slam does not track goes by odometry, and its controller stands still without a map.
-TEST_F(Obstacles, GridsGoOnWhileSlamDoesNotTrack) {
+TEST_F(Obstacles, GridsContinueWhileSlamDoesNotTrack) {
   ASSERT_TRUE(map_frame(0)) << mapper.log();
   ASSERT_TRUE(probe.wait_until([&] { return grids.size() == 1; })) << mapper.log();
   auto lost = tracked(2);

@@ -1,4 +1,4 @@
-// lapis_semantic_mapper goes on with the map of an earlier run.
+// lapis_semantic_mapper resumes the map of an earlier run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

@@ -454,7 +454,7 @@ TEST_F(SimulatorContract, AResetThatConsumersWouldTakeForDisorderIsRefused) {
   ASSERT_TRUE(probe.wait_until([&] { return (reply = reset.take_reply(*number)).has_value(); })) << simulator.log();
   EXPECT_FALSE(reply->success());
   slam.answer(slam.ticks.back());
-  EXPECT_TRUE(slam.wait_for_tick(2)) << "the run goes on";
+  EXPECT_TRUE(slam.wait_for_tick(2)) << "the run continues";
 }
 
 /// A robot whose watchdog stops it at once, and again after every command, does not get anywhere.

@@ -202,7 +202,7 @@ TEST_F(SlamFaults, ClockThatJumpsBackTwiceBeginsOneSession) {
   EXPECT_LE(frames.size(), before + 2) << "the lonely frame may be told as dropped";
 }
 
-TEST_F(SlamFaults, ClockThatJumpsAheadGoesOnInTheSameSession) {
+TEST_F(SlamFaults, ClockThatJumpsAheadContinuesInTheSameSession) {
   const std::int64_t session = frames.back().session();
   for (int i = kFirstFrames; i < kFirstFrames + 6; ++i) {
     const time::Time stamp{CameraFeed::stamp(i).nanoseconds + 3'600'000'000'000};

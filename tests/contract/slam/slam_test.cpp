@@ -68,7 +68,7 @@ TEST_F(SlamContract, LateJoinerGetsGraphPathAndStatus) {
   EXPECT_EQ(status[0].state(), kTracking);
 }
 
-TEST_F(SlamContract, GarbageIsCountedAndTrackingGoesOn) {
+TEST_F(SlamContract, GarbageIsCountedAndTrackingContinues) {
   int index = 0;
   for (; index < 3; ++index) ASSERT_TRUE(track(index)) << slam.log();
   const auto spoil = [&](const std::function<void(CameraFrame&)>& change) {
@@ -195,7 +195,7 @@ TEST_F(SlamContract, FrameWithoutDepthIsCounted) {
 TEST_F(SlamContract, SilenceIsSurvivedAndEndsCleanly) {
   ASSERT_TRUE(track(0)) << slam.log();
   const auto seen = diagnostics.size();
-  EXPECT_TRUE(probe.wait_until([&] { return diagnostics.size() >= seen + 3; })) << "diagnostics go on without input";
+  EXPECT_TRUE(probe.wait_until([&] { return diagnostics.size() >= seen + 3; })) << "diagnostics continue without input";
   EXPECT_EQ(slam.stop(SIGTERM, Seconds(5)), 0) << slam.log();
 }
 

@@ -261,7 +261,7 @@ TEST(Controller, NewPathReplacesTheOldOneAndAnEmptyOneStops) {
   EXPECT_EQ(stop.command.forward_m_s, 0.0);
 }
 
-TEST(Controller, WithoutAPoseItStandsStillAtOnceAndGoesOnWithOne) {
+TEST(Controller, WithoutAPoseItStandsStillAtOnceAndContinuesWithOne) {
   KinematicWorld world(hall());
   world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");
   world.run_until([](const Decision&) { return false; }, 2.0);

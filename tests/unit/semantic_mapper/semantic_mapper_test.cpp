@@ -137,7 +137,7 @@ TEST(SemanticMapper, EqualsBuildFromRecordsAtEveryInstantAndFromScratchAfterFlus
   }
 }
 
-TEST(SemanticMapper, FramesThatTheDiskDoesNotTakeStayWhereTheyAreAndMappingGoesOn) {
+TEST(SemanticMapper, FramesThatTheDiskDoesNotTakeStayWhereTheyAreAndMappingContinues) {
   MapperConfig config;
   config.stored_frames = {0, testing::TempDir() + "/no_such_folder"};
   SemanticMapper mapper = mapper_with_tour(config);
@@ -426,7 +426,7 @@ TEST(SemanticMapper, SavedAndLoadedEqualsOriginal) {
   EXPECT_EQ(loaded->map, mapper.map());
 }
 
-// A run that was saved and gone on with: old counts stay, new frames are added, and only these follow the graph.
+// A run that was saved and resumed: old counts stay, new frames are added, and only these follow the graph.
 TEST(SemanticMapper, GoneOnWithEqualsTheSavedMapPlusTheNewFrames) {
   const SemanticMapper first = mapper_with_tour();
   std::string error;

@@ -1,4 +1,4 @@
-// A map that is saved and gone on with.
+// A map that is saved and resumed.
 #include <gtest/gtest.h>
 
 #include "slam/core/rgbd_slam.hpp"
@@ -60,7 +60,7 @@ TEST(Resume, AMapThatWasOnlyLoadedIsSavedAsItWas) {
   EXPECT_EQ(slam.pose_graph().edges.size(), saved_state().edges.size());
 }
 
-TEST(Resume, IsLostUntilItFindsItsPlaceAndThenGoesOn) {
+TEST(Resume, IsLostUntilItFindsItsPlaceAndThenContinues) {
   const SlamState saved = saved_state();
   RgbdSlam slam({}, Pose::Identity(), saved);
   RgbdFrame dark = resume_frame(kSavedFrames);
@@ -114,7 +114,7 @@ TEST(Resume, NoOdometryLeadsFromASavedKeyframe) {
   EXPECT_GE(first->from, saved.keyframes.size());
 }
 
-TEST(Resume, AStateDoesNotChangeWhileTheMapGoesOn) {
+TEST(Resume, AStateDoesNotChangeWhileTheMapContinues) {
   RgbdSlam slam({}, Pose::Identity(), saved_state());
   for (int i = kSavedFrames; i < kSavedFrames + 5; ++i) slam.process(resume_frame(i));
   const SlamState state = slam.state();

@@ -145,7 +145,7 @@ TEST_F(RgbdSlamWithOdometry, DeadReckonsInTheDarkWithGrowingCovariance) {
   EXPECT_LT(distance_m(back, 40), 0.02);
 }
 
-TEST_F(RgbdSlamWithOdometry, ResumesElsewhereByAnEdgeOfOdometry) {
+TEST_F(RgbdSlamWithOdometry, ContinuesElsewhereByAnEdgeOfOdometry) {
   const int turned = 120;  // about 120 degrees further: no common view
   feel(0, turned + 20);
   for (int i = 0; i < 5; ++i) slam_.process(room_frame(i));

@@ -116,7 +116,7 @@ TEST(StampBuffer, StreamThatHasNotBegunAnewYetIsWaitedFor) {
   EXPECT_EQ(buffer.match(at_ms(66), kTolerance, false, found), Match::kMissing);
 }
 
-TEST(StampBuffer, StreamThatGoesOnIsNotExpectedToBeginAnew) {
+TEST(StampBuffer, StreamThatContinuesIsNotExpectedToBeginAnew) {
   Buffer buffer;
   for (const auto stamp : {0, 33, 66}) push(buffer, stamp);
   std::string* found = nullptr;

@@ -334,9 +334,9 @@ void Explorer::retrace(const Report& report, const Surroundings& surroundings) {
   const bool is_there = is_at(trail_.next_back(), *report.robot);
   const bool is_at_end = !path_.empty() && is_at(path_.back(), *report.robot);
   const bool is_out_of_reach = path_.empty() && decided_at_ && is_due(report.now);
-  const bool goes_on = (is_there || is_at_end || is_out_of_reach || report.is_blocked) && trail_.step_back();
+  const bool continues = (is_there || is_at_end || is_out_of_reach || report.is_blocked) && trail_.step_back();
   const bool has_path = !path_.empty() && is_path_free(path_, *report.robot, surroundings.grid());
-  if (goes_on || (!has_path && is_due(report.now))) drive_to(trail_.next_back(), report, surroundings);
+  if (continues || (!has_path && is_due(report.now))) drive_to(trail_.next_back(), report, surroundings);
 }
 
 // Who stood in the way may have gone, or may go.

@@ -120,7 +120,7 @@ class Explorer {
   GoalMemory revisited_;  ///< old places
   GoalMemory blocked_;    ///< places on the path
   State state_ = State::kIdle;
-  State interrupted_ = State::kExploring;  ///< what to go on with when slam tracks again
+  State interrupted_ = State::kExploring;  ///< what to resume when slam tracks again
   std::string reason_ = "not started";
   std::vector<Pose2> path_;
   std::uint64_t path_number_ = 0;

@@ -29,7 +29,7 @@ enum class Measure {
 
 /// All that rays have to know about a cell.
 struct CellInformation {
-  double free = 0.0;  ///< P(free): the ray goes on
+  double free = 0.0;  ///< P(free): the ray continues
   double gain = 0.0;  ///< g, expected information for a ray that reaches the cell [nats], >= 0
 };
 

@@ -47,7 +47,7 @@ NavMap inside_of(const NavMap& map, const Room& corridor) {
   return {grid, std::move(blocked)};
 }
 
-/// Squares around the doorways of a corridor: where free space goes on just outside its polygon.
+/// Squares around the doorways of a corridor: where free space continues just outside its polygon.
 std::vector<Room> entries(const NavMap& map, const Room& corridor) {
   const Grid& grid = map.grid();
   geometry::GrayImage outside(grid.width, grid.height);

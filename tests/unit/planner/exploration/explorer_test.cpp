@@ -106,7 +106,7 @@ TEST(Explorer, AClosedRoomIsDoneAtOnce) {
   EXPECT_EQ(world.explorer.state(), State::kDone);
 }
 
-TEST(Explorer, PausesAndGoesOn) {
+TEST(Explorer, PausesAndContinues) {
   WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
   world.run(10.0);

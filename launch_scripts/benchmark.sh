@@ -13,7 +13,7 @@ that failed included, and their medians. DIR has the same as runs.csv, box plots
 figures/*.png, and the run folders. A run that DIR has already from the same programs and settings is not repeated, so a
 benchmark that was interrupted continues where it was.
 
-  --scenes NAME[:S],...  S: simulated seconds of exploration, 300 unless told (a tour takes the time that it takes);
+  --scenes NAME[:S],...  S: simulated seconds of exploration, 300 unless given (a tour takes the time that it takes);
                          default: apartment:300,large_building:600
   --methods METHOD,...   as for explore.sh; or tour (default): the robot drives the scene's tour, by replay.sh
   --runs N               seeds per scene and method, default 5

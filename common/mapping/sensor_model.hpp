@@ -60,7 +60,7 @@ class BeliefReader {
   double occupied_probability(const VoxelCounts& counts) const;
   /// True for observed voxels with P(occupied) > 0.5.
   bool is_occupied(const VoxelCounts& counts) const;
-  /// Most probable class given occupied; ties go to the smaller id; 0 when no labelled hit tells classes apart.
+  /// Most probable class given occupied; ties go to the smaller id; 0 when no labelled hit distinguishes classes.
   std::uint16_t label(const VoxelCounts& counts) const;
 
   /// P(free), P(class 1), ..., P(class C): sums to 1. O(C).

@@ -106,7 +106,7 @@ def read_pose_graph(path):
 
 
 def class_names(run):
-    """Names by class id, from what the simulator or a recording tells of them; empty when nothing does."""
+    """Names by class id, from what the simulator or a recording says of them; empty when nothing does."""
     try:
         classes = json.loads((run / "ground_truth/classes.json").read_text())["classes"]
         return {int(c["id"]): str(c["name"]) for c in classes}
@@ -239,7 +239,7 @@ def draw_coverage(run):
 
 
 def loop_closures(run):
-    """Their number by metrics.json; None where that does not tell."""
+    """Their number by metrics.json; None where that does not say."""
     try:
         return json.loads((run / "metrics.json").read_text())["loop_closures"]
     except (OSError, ValueError, KeyError, TypeError):

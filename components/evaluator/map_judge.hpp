@@ -16,8 +16,8 @@
 
 namespace lapis::evaluator {
 
-/// The map that the mapper tells, and what it is judged by: the same mapper's map from true poses, a plain fusion, and
-/// the ground truth of a simulated scene. All are in the run's map frame.
+/// The map that the mapper publishes, and what it is judged by: the same mapper's map from true poses, a plain fusion,
+/// and the ground truth of a simulated scene. All are in the run's map frame.
 class MapJudge {
  public:
   /// @param truth_folder where the simulator writes the ground truth of the scene, if there is one

@@ -23,7 +23,7 @@ struct GraphMessage {
 
 /// A pose seen from above; refused when it is not valid or more than 10 km from the origin.
 messages::Converted<Pose2> to_core(const geometry_msgs::msg::Pose& message);
-/// Mean variance of x, y and z [m^2] of a row-major covariance; 0 when it is not told, or is none.
+/// Mean variance of x, y and z [m^2] of a row-major covariance; 0 when it is not published, or is none.
 double position_variance_m2(const std::array<double, 36>& covariance);
 /// Refused when cells, size and resolution do not fit each other, or when the grid is turned.
 messages::Converted<ObstacleGrid> to_core(const nav_msgs::msg::OccupancyGrid& message);

@@ -174,7 +174,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field.moved("sensor_model", "semantic_mapper.sensor_model",
               "the planner reads it on /semantic_mapper/map_description");
   field("compared_priors", c.surroundings.compared_priors, config::in_range(0.001, 0.999),
-        "instead of the prior of the mapper's sensor model: decisions.csv tells what would have been chosen with each");
+        "instead of the prior of the mapper's sensor model: decisions.csv says what would have been chosen with each");
   field("decision_latency_frames", c.decision_latency_frames, config::in_range(1, 100),
         "from the frame that a decision is made from to the one at which it takes effect");
   field("output_dir", c.output_dir, config::anything(), "folder for decisions.csv; empty: none");

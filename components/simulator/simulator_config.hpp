@@ -90,7 +90,7 @@ void describe(Field& field, SimulatorConfig& c) {
   field("duration_s", c.duration_s, config::in_range(0.0, 1e6),
         "simulated time after which the run ends [s]; 0: never");
   field("ends_when_explored", c.ends_when_explored, config::anything(),
-        "the run ends, too, when /planner/status tells DONE or FAILED");
+        "the run ends, too, when /planner/status says DONE or FAILED");
   field("tour", c.tour, config::anything(),
         "\"bundled\", or a file with waypoints, that the robot drives by itself; empty: it obeys /cmd_vel");
   field("tour_revisit_every_m", c.tour_revisit_every_m, config::in_range(0.0, 1000.0),

@@ -180,7 +180,7 @@ bool SlamComponent::use_odometry(time::Time stamp, const geometry::Pose& T_odom_
   return true;
 }
 
-/// A frame that cannot be used is one that was not tracked, and those who wait for its pose are told so.
+/// A frame that cannot be used is one that was not tracked, and those who wait for its pose learn so.
 void SlamComponent::drop(time::Time stamp, const std::string& reason) {
   ++frames_total_;
   ++frames_dropped_;
@@ -221,7 +221,8 @@ void SlamComponent::publish_odometry(const TrackingResult& result) {
   publish_transforms(message);
 }
 
-/// A robot with odometry has odom -> base_link from there; then map -> odom is told as long as the odometry is known.
+/// A robot with odometry has odom -> base_link from there; then map -> odom is published as long as the odometry is
+/// known.
 void SlamComponent::publish_transforms(const nav_msgs::msg::Odometry& odometry) {
   if (config_.publish_odom_frame == "always" || (config_.publish_odom_frame == "auto" && !has_odometry_)) {
     transforms_.publish(to_transforms(odometry, ids_));

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """explore.sh --restart: each process is killed in turn while the robot explores. In lock-step exploration completes; by
-the wall clock the robot is also told to stand still within 300 ms of the last pose, map or path, and continues after."""
+the wall clock the robot has to stand still, too, within 300 ms of the last pose, map or path, and continues after."""
 import os
 import re
 import signal
@@ -41,7 +41,7 @@ class RestartCase(chain.ChainTest):
         os.kill(pids[0], signal.SIGKILL)
 
     def wait_for_progress(self, run, lines=2):
-        """Waits until the evaluator has told so often where the robot is."""
+        """Waits until the evaluator has reported so often where the robot is."""
         begin = len(run.lines())
         progress = re.compile(r"^\d+ s, .* m driven")
         is_going_on = run.wait_for(lambda all_lines: sum(bool(progress.match(line))

@@ -23,8 +23,8 @@ mapping::VoxelIndex voxel_of(const Eigen::Vector2d& p_map, double height_m) {
 
 Eigen::Vector2d center_of(const mapping::VoxelIndex& v) { return {(v.x + 0.5) * kEdge_m, (v.y + 0.5) * kEdge_m}; }
 
-/// True when a depth image sees nothing at, or in front of, this point of the optical frame; false, too, when it cannot
-/// tell.
+/// True when a depth image sees nothing at, or in front of, this point of the optical frame; false, too, when it does
+/// not know.
 bool looks_through(const DepthView& view, const Eigen::Vector3d& p_camera) {
   if (p_camera.z() < kNearest_m) return false;
   const Eigen::Vector2d pixel = view.camera.project(p_camera);

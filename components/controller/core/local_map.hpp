@@ -59,7 +59,7 @@ class LocalMap {
   void move_points(const PlanarPose& T_new_old);
 
   /// Obstacle points in base_link, within a distance of the robot. An occupied cell of a grid is its centre, unless
-  /// points tell what in it stands where.
+  /// points show what in it stands where.
   std::vector<Eigen::Vector2d> obstacles_near(const PlanarPose& T_map_base, double distance_m) const;
   /// True when the mapper has seen that nothing is there; what the camera alone has seen is not asked.
   bool is_known_free(const Eigen::Vector2d& p_map) const;

@@ -72,7 +72,7 @@ class RgbdSlam {
 
   /// T_odom_base at a stamp, where there is odometry.
   std::optional<geometry::Pose> odometry_at(time::Time stamp) const;
-  /// What to tell of a frame that cannot be processed: it has the pose of dead reckoning or none.
+  /// What to report of a frame that cannot be processed: it has the pose of dead reckoning or none.
   TrackingResult skip(time::Time stamp, const std::string& reason) const;
   /// Waits for optimisations under way and applies them: what the map is at the end.
   void settle();

@@ -30,7 +30,7 @@ struct TrialStep {
   TrackingState state = TrackingState::kInitializing;
   bool has_pose = false;
   bool is_keyframe = false;
-  geometry::Pose estimate = geometry::Pose::Identity();  ///< T_map_camera as told; valid when has_pose
+  geometry::Pose estimate = geometry::Pose::Identity();  ///< T_map_camera as published; valid when has_pose
   geometry::Pose truth = geometry::Pose::Identity();     ///< T_world_camera
   geometry::Pose odometry = geometry::Pose::Identity();  ///< T_odom_camera by odometry alone
   std::uint64_t graph_version = 0;

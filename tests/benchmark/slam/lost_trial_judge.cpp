@@ -31,7 +31,7 @@ std::optional<std::size_t> find(const Steps& steps, std::size_t begin, Predicate
   return static_cast<std::size_t>(found - steps.begin());
 }
 
-// Longest time that wrong poses were told as tracked.
+// Longest time that wrong poses were reported as tracked.
 double longest_wrong_s(const Steps& steps, const TrialLimits& limits, bool with_odometry) {
   const std::size_t origin = *find(steps, 0, is_tracked);
   double longest_s = 0.0, path_m = 0.0;
@@ -51,20 +51,20 @@ double longest_wrong_s(const Steps& steps, const TrialLimits& limits, bool with_
 
 void judge_jumps(const Steps& steps, const TrialLimits& limits, bool with_odometry, TrialVerdict& verdict) {
   const std::size_t origin = *find(steps, 0, is_tracked);
-  const TrialStep* told = &steps[origin];
-  const TrialStep* tracked = told;
+  const TrialStep* reported = &steps[origin];
+  const TrialStep* tracked = reported;
   for (std::size_t i = origin + 1; i < steps.size(); ++i) {
     const TrialStep& step = steps[i];
     if (!step.has_pose) continue;
-    const PoseError jump = motion_error(*told, step, &TrialStep::estimate);
-    const PoseError before = motion_error(steps[origin], *told, &TrialStep::estimate);
+    const PoseError jump = motion_error(*reported, step, &TrialStep::estimate);
+    const PoseError before = motion_error(steps[origin], *reported, &TrialStep::estimate);
     const PoseError after = motion_error(steps[origin], step, &TrialStep::estimate);
     const PoseError odometry = with_odometry ? motion_error(*tracked, step, &TrialStep::odometry) : PoseError{};
     verdict.jump.m = std::max(verdict.jump.m, jump.m);
     verdict.jump.rad = std::max(verdict.jump.rad, jump.rad);
     verdict.jumps_away = verdict.jumps_away || after.m - before.m > limits.jump_m + odometry.m ||
                          after.rad - before.rad > limits.jump_rad + odometry.rad;
-    told = &step;
+    reported = &step;
     if (is_tracked(step)) tracked = &step;
   }
 }

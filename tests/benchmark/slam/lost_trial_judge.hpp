@@ -23,10 +23,11 @@ struct TrialLimits {
 };
 
 struct TrialVerdict {
-  bool is_void = false;      ///< it says nothing: not tracked before, or no view comes back
-  bool was_lost = false;     ///< else tracked through
-  double declared_s = 0.0;   ///< covered: from the first covered frame on; else longest time that wrong poses were told
-  PoseError jump;            ///< largest differences of successive told poses from the true motion
+  bool is_void = false;   ///< it says nothing: not tracked before, or no view comes back
+  bool was_lost = false;  ///< else tracked through
+  double declared_s =
+      0.0;         ///< covered: from the first covered frame on; else longest time that wrong poses were reported
+  PoseError jump;  ///< largest differences of successive published poses from the true motion
   bool jumps_away = false;   ///< a jump beyond the limits, and not towards the truth
   bool touches_map = false;  ///< graph version, key-frames or landmarks changed in a frame that was not tracked
   double returned_s = 0.0;   ///< from the view's return to the first tracked frame

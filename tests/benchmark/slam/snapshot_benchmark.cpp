@@ -1,4 +1,4 @@
-// What it costs slam to tell others of its map: /slam/frame at 30 Hz, pose graph and path at 2 Hz, landmarks at 0.5 Hz,
+// What it costs slam to publish its map: /slam/frame at 30 Hz, pose graph and path at 2 Hz, landmarks at 0.5 Hz,
 // converted, serialised and written by Fast DDS to one reader in another process. The map is made up, with the sizes of
 // real ones; tracking and bundle adjustment are not counted.
 #include <CLI/CLI.hpp>
@@ -126,7 +126,7 @@ struct Costs {
   double frames_ms = 0.0;
   double graph_ms = 0.0;
   double landmarks_ms = 0.0;
-  double editing_ms = 0.0;        // of the map: not slam's telling
+  double editing_ms = 0.0;        // of the map: not slam's publishing
   double process_ms = 0.0;        // DDS's threads included, editing not
   double longest_frame_ms = 0.0;  // of all three, in one frame
 };
@@ -209,23 +209,23 @@ class ReaderComponent {
     context.subscribe(topics::kKeyframePath, [](const auto&) {});
     context.subscribe(topics::kLandmarks, [this](const auto& message) {
       if (auto tile = messages::from_message(message)) mirror_.apply_tile(message.session(), std::move(*tile));
-      tell();
+      report();
     });
     context.subscribe(topics::kLandmarkState, [this](const auto& message) {
       mirror_.apply_state(messages::from_message(message));
-      tell();
+      report();
     });
   }
 
  private:
-  void tell() {
-    if (!mirror_.is_consistent() || told_ == mirror_.state()->graph_version) return;
-    told_ = mirror_.state()->graph_version;
-    spdlog::info("mirrored version {}.", told_);
+  void report() {
+    if (!mirror_.is_consistent() || reported_ == mirror_.state()->graph_version) return;
+    reported_ = mirror_.state()->graph_version;
+    spdlog::info("mirrored version {}.", reported_);
   }
 
   mapping::LandmarkMirror mirror_;
-  std::uint64_t told_ = 0;
+  std::uint64_t reported_ = 0;
 };
 
 /// `seconds` of frames by the wall clock.

@@ -43,7 +43,7 @@ struct View {
 struct Run {
   int frames = 0, tracked = 0;
   std::vector<double> milliseconds;              // CPU time of each frame
-  std::vector<double> online_errors_m;           // of every frame as told at its time
+  std::vector<double> online_errors_m;           // of every frame as published at its time
   std::map<std::int64_t, geometry::Pose> truth;  // T_map_camera by stamp
   TrackingResult last;
   geometry::Pose T_last_true = geometry::Pose::Identity();

@@ -218,7 +218,7 @@ void expect_restart(const std::string& killed) {
 TEST(LockstepRestart, FirstStage) { expect_restart(kEcho); }
 TEST(LockstepRestart, LastStage) { expect_restart(kFollower); }
 
-// Each new one is told of the endpoints of the other's former life until that has dropped out of discovery.
+// Each new one hears of the endpoints of the other's former life until that has dropped out of discovery.
 TEST(LockstepRestart, BothAtOnce) {
   auto echo = std::make_unique<ChildProcess>(kEcho);
   auto follower = std::make_unique<ChildProcess>(kFollower);

@@ -198,7 +198,7 @@ class Peers {
   time::Time stamp{1'000'000'000};
   Eigen::Vector2d position{2.0, 2.0};
   double yaw_rad = 0.0;
-  double position_sigma_m = 0.0;  ///< that slam tells, each axis
+  double position_sigma_m = 0.0;  ///< that slam publishes, each axis
   bool drives = false;
 
  private:

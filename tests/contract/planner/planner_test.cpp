@@ -85,7 +85,7 @@ TEST_F(PlannerContract, InformationFromWhereSlamIsUnsureCountsLess) {
   EXPECT_LT(most_information(), 0.51 * sure);
 }
 
-TEST_F(PlannerContract, LateJoinerIsToldPathCandidatesAndStatus) {
+TEST_F(PlannerContract, LateJoinerGetsPathCandidatesAndStatus) {
   get_going();
   TopicProbe late("late");
   const auto& path = late.collect(topics::kPlannerPath);

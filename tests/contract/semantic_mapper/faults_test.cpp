@@ -1,5 +1,5 @@
-// lapis_semantic_mapper alone, with inputs and a disk that fail: what is wrong is told and counted, the map stays as it
-// is, and mapping continues.
+// lapis_semantic_mapper alone, with inputs and a disk that fail: what is wrong is reported and counted, the map stays
+// as it is, and mapping continues.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -177,7 +177,7 @@ class MapperOnABadDisk : protected TemporaryFolder, public MapperFaults {
   dds::ServiceClient<std_srvs::srv::Trigger>& saver_ = probe.client(topics::kSaveMap);
 };
 
-TEST_F(MapperOnABadDisk, SavingThatFailsIsToldAndTheOldFileStaysWhole) {
+TEST_F(MapperOnABadDisk, SavingThatFailsIsReportedAndTheOldFileStaysWhole) {
   ASSERT_TRUE(map_frame(0)) << mapper.log();
   rlimit unlimited{};
   ASSERT_EQ(prlimit(mapper.pid(), RLIMIT_FSIZE, nullptr, &unlimited), 0);

@@ -129,7 +129,7 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   EXPECT_EQ(color.back().header().frame_id(), "camera_color_optical_frame");
   EXPECT_EQ(truth.back().child_frame_id(), "base_link");
   EXPECT_EQ(odometry.back().header().frame_id(), "odom");
-  for (std::size_t i = 0; i < 20; ++i) {  // odom -> base_link is told with each reading
+  for (std::size_t i = 0; i < 20; ++i) {  // odom -> base_link is published with each reading
     ASSERT_EQ(transforms[i].transforms().size(), 1U);
     const auto& transform = transforms[i].transforms()[0];
     EXPECT_EQ(transform.header().frame_id(), "odom");

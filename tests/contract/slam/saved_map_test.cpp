@@ -129,7 +129,7 @@ TEST_F(SavedMap, IsGoneOnWithInANewSessionOfTheSameFrame) {
   EXPECT_THAT(run.frames.back().reason(), HasSubstr("looking for a place in the saved map"));
   EXPECT_GT(run.frames.back().session(), session_);
 
-  ASSERT_TRUE(run.wait_until([&] { return !run.graphs.empty(); })) << "the saved graph is told at once";
+  ASSERT_TRUE(run.wait_until([&] { return !run.graphs.empty(); })) << "the saved graph is published at once";
   const auto& saved = run.graphs.front();
   ASSERT_EQ(saved.nodes().size(), graph_.nodes().size());
   EXPECT_EQ(saved.edges().size(), graph_.edges().size());

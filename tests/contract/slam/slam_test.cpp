@@ -132,7 +132,7 @@ TEST_F(SlamContract, FrameWithoutDepthInRangeIsLostWithTheReasonAndFoundAgain) {
     return !odometry.empty() &&
            messages::from_message(odometry.back().header().stamp()) == CameraFeed::stamp(index - 1);
   })) << slam.log();
-  EXPECT_EQ(odometry.size(), tracked) << "no pose is told while lost";
+  EXPECT_EQ(odometry.size(), tracked) << "no pose is published while lost";
   EXPECT_TRUE(std::all_of(odometry.begin(), odometry.end(), is_finite));
 }
 

@@ -302,9 +302,9 @@ TEST(Controller, WhatIsRememberedStaysInFrontOfItWhenTheMapJumps) {
   KinematicWorld world(with(hall(), {low}));
   world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");
   ASSERT_LT(world.run_until([&](const Decision&) { return world.T_map_base.translation().x() > 1.1; }, 20.0), 20.0);
-  world.T_told_map = planar_pose({0.5, 0.4}, 0.3);
+  world.T_published_map = planar_pose({0.5, 0.4}, 0.3);
   Path path = straight(world.T_map_base.translation(), {4, 0}, 0.0);
-  for (PlanarPose& pose : path) pose = world.T_told_map * pose;
+  for (PlanarPose& pose : path) pose = world.T_published_map * pose;
   world.controller.set_path(path, "");
   world.run_until([](const Decision&) { return false; }, 10.0);
   EXPECT_GT(world.least_room_m, 0.0);

@@ -65,7 +65,7 @@ TEST_F(GroundTruthFolder, DamageIsNamed) {
   EXPECT_THAT(problem_of_folder(), HasSubstr("mesh.lapis"));
 }
 
-TEST(SameFrame, IsToldAtTheOriginOfTheMapHoweverFarTheWorld) {
+TEST(SameFrame, IsNoticedAtTheOriginOfTheMapHoweverFarTheWorld) {
   const auto pose = [](double x, double y, double yaw) {
     return geometry::make_pose({x, y, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ())));
   };

@@ -198,7 +198,7 @@ TEST(MissCounts, EqualPlainSumsInEveryForm) {
   }
 }
 
-TEST(MissCounts, TakingOutWhatIsNotThereIsToldInEveryForm) {
+TEST(MissCounts, TakingOutWhatIsNotThereIsReportedInEveryForm) {
   const BlockMask one{1};
   EXPECT_FALSE(MissCounts().subtract_votes(one));
   for (const std::uint32_t weight : {kOneVote, 300 * kOneVote, 70000 * kOneVote, 7u}) {

@@ -373,7 +373,7 @@ TEST(SemanticMapper, MirrorOfTheTilesEqualsTheMapThroughCorrections) {
   EXPECT_EQ(*late.map(), mapper.map());
 }
 
-TEST(SemanticMapper, ALargeMapIsToldInLargerTilesAsOneOfANewEpoch) {
+TEST(SemanticMapper, ALargeMapIsPublishedInLargerTilesAsOneOfANewEpoch) {
   MapperConfig config;
   config.resolution_m = 0.1;  // a block is a tile of 0.8 m
   mapping::VoxelMap base(0.1);
@@ -441,7 +441,7 @@ TEST(SemanticMapper, GoneOnWithEqualsTheSavedMapPlusTheNewFrames) {
   EXPECT_EQ(second.map(), built_from_records(second, saved->map));
 }
 
-TEST(SemanticMapper, GoneOnWithTellsTheWholeMap) {
+TEST(SemanticMapper, ResumedPublishesTheWholeMap) {
   const SemanticMapper first = mapper_with_tour();
   SemanticMapper second(MapperConfig{}, first.map());
   mapping::MapMirror mirror;

@@ -138,7 +138,7 @@ TEST(StampBuffer, StreamThatBeganAnewAloneIsNotHeldBack) {
   EXPECT_EQ(drain(buffer), (std::vector<std::string>{"133"}));
 }
 
-TEST(StampBuffer, TellsHowManyItForgot) {
+TEST(StampBuffer, ReportsHowManyItForgot) {
   Buffer buffer;
   EXPECT_EQ(buffer.second(), std::nullopt);
   for (const auto stamp : {0, 33, 66}) push(buffer, stamp);

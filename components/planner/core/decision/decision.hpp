@@ -49,7 +49,7 @@ struct Situation {
   const AnalysedGraph* graph = nullptr;
   const LandmarkIndex* landmarks = nullptr;
   Pose2 robot;
-  /// The field of the same map with other sensor models; what each of them would have chosen is told, too.
+  /// The field of the same map with other sensor models; what each of them would have chosen is reported, too.
   std::span<const InformationField> compared_fields = {};
 };
 

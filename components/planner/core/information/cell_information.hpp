@@ -51,7 +51,7 @@ class CellMeasure {
     double own_surplus;  ///< psi_c - phi_c
     std::size_t size = 0;
   };
-  /// Classes of one voxel that nothing tells apart: one that was hit, or those of a prior group that were not.
+  /// Classes of one voxel that nothing distinguishes: one that was hit, or those of a prior group that were not.
   struct Kind {
     double size;         ///< how many they are
     double log_share;    ///< of each, given occupied; 0 for the largest share of the voxel

@@ -11,7 +11,7 @@
 
 namespace lapis::simulator {
 
-/// A thing, or a part of the building, that label images tell apart.
+/// A thing, or a part of the building, that label images distinguish.
 struct Instance {
   std::uint16_t id = 0;        ///< as in instance images; 0 never occurs
   std::uint16_t class_id = 0;  ///< 0: unlabelled

@@ -105,7 +105,7 @@ TEST(PlannerConversions, PosesThatAreNoneAreRefused) {
   for (const double far : {1.1e4, 1e300}) EXPECT_THAT(to_core(pose(0.0, far, 0.0)).reason, HasSubstr("10 km"));
 }
 
-TEST(PlannerConversions, PositionVarianceIsTheMeanOfTheAxesOrNotTold) {
+TEST(PlannerConversions, PositionVarianceIsTheMeanOfTheAxesOrNotPublished) {
   std::array<double, 36> covariance{};
   EXPECT_EQ(position_variance_m2(covariance), 0.0);
   covariance[0] = 0.01;

@@ -96,7 +96,7 @@ TEST(Decide, InformationPerMetreIsWhatMiOnlyCompares) {
   }
 }
 
-TEST(Decide, LeavesAloneWhatItIsTold) {
+TEST(Decide, LeavesAloneWhatItIsAskedTo) {
   Explorer explorer;
   explorer.config.method = Method::kNearest;
   Memory memory;
@@ -303,7 +303,7 @@ struct LongAway : Explorer {
 };
 
 // Of the three utilities, one counts nodes as the paper does, one compares graphs of equal size; both with the gain
-// that the candidate tells.
+// that the candidate says.
 TEST(Decide, EachMethodComparesItsOwnFormOfD) {
   LongAway explorer;
   const int nodes = explorer.of_graph.factor.node_count();
@@ -386,7 +386,7 @@ InformationField field_with_prior(const Explorer& explorer, double prior_occupie
   return field;
 }
 
-TEST(Decide, TellsWhatOtherFieldsWouldHaveChosenAndChoosesTheSame) {
+TEST(Decide, ReportsWhatOtherFieldsWouldHaveChosenAndChoosesTheSame) {
   const std::vector<double> priors = {0.02, 0.1, 0.5, 0.8};
   int others = 0;
   for (const std::string& name : method_names()) {

@@ -176,7 +176,7 @@ TEST(Explorer, DrivesBackToWhereItWasTrackedWhenOdometryLeads) {
   EXPECT_LT((world.robot.p_map - place).norm(), 0.4);
 }
 
-// In a view that tells slam nothing the robot is where it was tracked last.
+// In a view that shows slam nothing the robot is where it was tracked last.
 TEST(Explorer, GoesBackFartherWhereItIsStillNotTracked) {
   WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 0.0});
   world.explorer.start();

@@ -21,7 +21,7 @@ namespace lapis::planner::test {
 /// A building drawn as text ('#' wall, '.' floor, 'G' a wall that is not seen, 'W' a window: seen through, not passed,
 /// 'O' an obstacle that only the obstacle layer knows, 'N' one that it knows only while the robot is near and that
 /// hides what is there from the map, 'D' a door that looks closed from farther than a metre, though there is a view of
-/// what lies behind, 'F' one of a place behind glass that each look tells something else of, 'R' where the robot
+/// what lies behind, 'F' one of a place behind glass of which each view shows something else, 'R' where the robot
 /// starts), a robot that follows paths exactly, and a camera that sees 90 degrees and 5 m of it. Ideal, but for what a
 /// test spoils.
 class WalkWorld {

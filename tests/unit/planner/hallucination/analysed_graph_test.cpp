@@ -75,15 +75,15 @@ TEST(AnalysedGraph, TheNewestPositionIsAsUnsureAsSlamSays) {
   const Chain chain(poses);
   double variance = 0.0;
   for (int i = 0; i < 10; ++i) variance += 0.01 * 0.01 * (1.0 + std::pow(4.0 * (10 - i), 2)) / 3.0;
-  const auto told = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, {}, variance));
-  EXPECT_NEAR(position_sigma_m(told), std::sqrt(variance), 1e-9);
-  EXPECT_GT(position_sigma_m(told), 10.0 * position_sigma_m(chain.graph()));
+  const auto reported = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, {}, variance));
+  EXPECT_NEAR(position_sigma_m(reported), std::sqrt(variance), 1e-9);
+  EXPECT_GT(position_sigma_m(reported), 10.0 * position_sigma_m(chain.graph()));
 }
 
 TEST(AnalysedGraph, EdgesOfItsOwnAreTheLeastUncertainty) {
   const Chain chain(std::vector<geometry::Pose>(5, camera_at(0, 0, 0)));
-  const auto told = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, {}, 1e-8));
-  EXPECT_EQ(position_sigma_m(told), position_sigma_m(chain.graph()));
+  const auto reported = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, {}, 1e-8));
+  EXPECT_EQ(position_sigma_m(reported), position_sigma_m(chain.graph()));
 }
 
 TEST(AnalysedGraph, PathsGoAlongEdgesAndTurnsCount) {

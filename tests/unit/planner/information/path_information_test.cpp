@@ -58,7 +58,7 @@ struct CrossedCell {
   VoxelIndex voxel;
 };
 
-/// Cells that a ray crosses, by a slab test of every voxel around it. Nothing when a chord is too short to tell.
+/// Cells that a ray crosses, by a slab test of every voxel around it. Nothing when a chord is too short to decide.
 std::vector<CrossedCell> cells_by_slabs(const Eigen::Vector3d& start, const Eigen::Vector3d& direction,
                                         double range_m) {
   std::vector<CrossedCell> cells;

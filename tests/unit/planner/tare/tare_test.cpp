@@ -91,7 +91,7 @@ TEST(Tare, CoversWhatIsAroundWithFewViews) {
   const Tour tour = planner.plan();
   EXPECT_EQ(tour.local_stops, tour.stops.size()) << "all of it is within the horizon";
   EXPECT_THAT(tour.missed, Each(Pair(_, "the tour stops at others near it")));
-  EXPECT_EQ(tour.stops.size() + tour.missed.size(), planner.frontiers.frontiers().size()) << "each is told of once";
+  EXPECT_EQ(tour.stops.size() + tour.missed.size(), planner.frontiers.frontiers().size()) << "each is reported once";
   EXPECT_LE(tour.stops.size(), 12u) << "a view covers more than one frontier";
   EXPECT_LT(planner.uncovered(tour), 0.1 * all_cells(planner.frontiers)) << "of " << all_cells(planner.frontiers);
   for (const TourStop& stop : tour.stops) {
@@ -134,7 +134,7 @@ TEST(Tare, KeepsItsGoalUnlessAnotherTourIsMuchShorter) {
   EXPECT_GT((far.plan().stops[0].viewpoint.pose.p_map - far.goal->p_map).norm(), 0.5) << "there and back";
 }
 
-TEST(Tare, LeavesAloneWhatItIsTold) {
+TEST(Tare, LeavesAloneWhatItIsAskedTo) {
   Planner planner(kCorridor);
   planner.left_alone = {planner.world.grid.center_of(planner.plan().stops[0].viewpoint.target)};
   const Tour tour = planner.plan();

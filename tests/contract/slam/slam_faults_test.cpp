@@ -101,8 +101,8 @@ TEST_F(SlamFaults, MessagesThatMakeNoSenseAreRefusedWithTheirReason) {
 
 TEST_F(SlamFaults, PosesThatAreNoneAreCountedAndNotBelieved) {
   auto& transforms = probe.advertise(topics::kStaticTransforms);
-  auto& odometry = probe.advertise(topics::kWheelOdometry);
-  ASSERT_TRUE(probe.wait_until([&] { return transforms.matched() > 0 && odometry.matched() > 0; }));
+  auto& wheel_odometry = probe.advertise(topics::kWheelOdometry);
+  ASSERT_TRUE(probe.wait_until([&] { return transforms.matched() > 0 && wheel_odometry.matched() > 0; }));
   ASSERT_TRUE(probe.wait_until_known_by("slam"));
   tf2_msgs::msg::TFMessage mount = camera_mount();
   mount.transforms()[0].transform().translation().x(std::numeric_limits<double>::quiet_NaN());
@@ -119,7 +119,7 @@ TEST_F(SlamFaults, PosesThatAreNoneAreCountedAndNotBelieved) {
     reading.header().stamp(
         messages::to_message(time::Time{CameraFeed::stamp(kFirstFrames).nanoseconds + i * 1'000'000}));
     reading.pose().pose().position().x(i % 2 == 0 ? std::numeric_limits<double>::infinity() : 0.0);
-    odometry.publish(reading);  // its quaternion is all zero
+    wheel_odometry.publish(reading);  // its quaternion is all zero
   }
   EXPECT_TRUE(wait_for_count("odometry dropped: pose has numbers that are not finite", 10)) << slam.log();
   EXPECT_TRUE(wait_for_count("odometry dropped: quaternion is not a unit one", 10)) << slam.log();

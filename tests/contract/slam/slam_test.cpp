@@ -137,9 +137,9 @@ TEST_F(SlamContract, FrameWithoutDepthInRangeIsLostWithTheReasonAndFoundAgain) {
 }
 
 TEST_F(SlamContract, OdometryCarriesThePoseOnAndMakesTheOdomFrameItsOwn) {
-  auto& odometry = probe.advertise(topics::kWheelOdometry);
+  auto& wheel_odometry = probe.advertise(topics::kWheelOdometry);
   const auto& transforms = probe.collect(topics::kTransforms);
-  ASSERT_TRUE(probe.wait_until([&] { return odometry.matched() > 0; })) << slam.log();
+  ASSERT_TRUE(probe.wait_until([&] { return wheel_odometry.matched() > 0; })) << slam.log();
   ASSERT_TRUE(probe.wait_until_known_by("slam")) << slam.log();
   const auto feel = [&](int index, const std::string& child) {
     Odometry message;
@@ -147,7 +147,7 @@ TEST_F(SlamContract, OdometryCarriesThePoseOnAndMakesTheOdomFrameItsOwn) {
     message.header().frame_id("odom");
     message.child_frame_id(child);
     message.pose().pose(messages::to_message(T_base_camera() * slow_motion(index) * T_base_camera().inverse()));
-    odometry.publish(message);
+    wheel_odometry.publish(message);
   };
   for (int i = 0; i < 4; ++i) feel(i, "base_link");
   feel(4, "wheel");

@@ -15,7 +15,7 @@ import dataclasses
 import pathlib
 import re
 
-# IDL spelling -> ROS 2 spelling. `octet` is ROS's `byte`, which type hashes tell apart from `uint8`.
+# IDL spelling -> ROS 2 spelling. `octet` is ROS's `byte`, which type hashes distinguish from `uint8`.
 PRIMITIVES = {
     "boolean": "bool", "octet": "byte", "float": "float32", "double": "float64",
     "int8": "int8", "uint8": "uint8", "int16": "int16", "uint16": "uint16",

@@ -12,7 +12,7 @@ usage: bench.sh [DATASET] [--runs N] [--out DIR]
   --out DIR  keeps results as JSON, and decision_time.png; default: out/bench. All *.json files that are in it
              are removed first
 Run it on a machine that has nothing else to do: the table names the load it found. What needs data that is not there
-is skipped, and told at the end. Exit status 1 when a benchmark failed, 2 when a replay did.
+is skipped, and reported at the end. Exit status 1 when a benchmark failed, 2 when a replay did.
 TEXT
 }
 

@@ -11,9 +11,9 @@ usage: benchmark.sh [--scenes NAME[:S],...] [--methods METHOD,...] [--runs N] [-
 Runs every scene (bundled names or files) with every method and seeds 1 to N, and prints a table with all runs, those
 that failed included, and their medians. DIR has the same as runs.csv, box plots and the explored share over time as
 figures/*.png, and the run folders. A run that DIR has already from the same programs and settings is not repeated, so a
-benchmark that was interrupted goes on where it was.
+benchmark that was interrupted continues where it was.
 
-  --scenes NAME[:S],...  S: simulated seconds of exploration, 300 unless told (a tour takes the time that it takes);
+  --scenes NAME[:S],...  S: simulated seconds of exploration, 300 unless given (a tour takes the time that it takes);
                          default: apartment:300,large_building:600
   --methods METHOD,...   as for explore.sh; or tour (default): the robot drives the scene's tour, by replay.sh
   --runs N               seeds per scene and method, default 5

@@ -14,7 +14,7 @@ wrote has the scene's ground truth, too), or drives a robot on a tour through
 a simulated building, and leaves a run folder with trajectory, pose graph, semantic map, metrics.json and figures.
 
   --scene NAME     bundled scene, scene file, or folder of a scanned building (docs/scenes.md)
-  --seed N         of the simulator: start, noise, jitter of furniture;  --tour FILE  way-points; default: the scene's
+  --seed N         of the simulator: start, noise, jitter of furniture;  --tour FILE  waypoints; default: the scene's
   --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml)
   --out DIR        run folder; default: out/<name of DATASET or scene>
   --rate X         of a data set: speed relative to the recording; of a scene: by the wall clock, X is 1.

@@ -65,7 +65,7 @@ class Schema {
     prefix_ = outer;
   }
 
-  /// A key or section of before: who still sets it is told its full path of today.
+  /// A key or section of before: who still sets it gets its full path of today.
   void moved(const std::string& former, std::string now, std::string remark = "") {
     former_.push_back({prefix_ + former, std::move(now), std::move(remark)});
   }

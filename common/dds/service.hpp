@@ -14,7 +14,7 @@ namespace lapis::dds {
 
 // Requests and replies are topics; a reply names its request by the related sample identity (ros2-interop 5.1).
 
-/// Identity of a request: the client's reply reader (or, when it does not tell, its request writer) and a number.
+/// Identity of a request: the client's reply reader (or, when it does not say, its request writer) and a number.
 struct RequestId {
   compat::rtps::SampleIdentity identity;
   Gid client{};

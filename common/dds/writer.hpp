@@ -38,7 +38,7 @@ class Writer : private compat::fdds::DataWriterListener {
   /// Number of matched readers.
   std::size_t matched() const;
   bool is_matched(const Gid& reader) const;
-  /// Number of readers that have ever matched; a change tells that a new reader has come.
+  /// Number of readers that have ever matched; a change says that a new reader has come.
   std::uint64_t total_matches() const { return total_matches_; }
   /// Readers refused because of an incompatible QoS.
   std::uint64_t incompatible() const { return incompatible_; }

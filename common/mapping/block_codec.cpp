@@ -16,7 +16,7 @@ bool has_only_whole_votes(const VoxelBlock& block) {
   VoxelCounts counts;
   for (int offset = 0; offset < kBlockVoxels; ++offset) {
     block.read(offset, counts);
-    std::uint32_t parts = counts.passes;
+    std::uint32_t parts = counts.misses;
     for (const ClassCount& hit : counts.hits) parts |= hit.count;
     if (parts % kOneVote != 0) return false;
   }
@@ -28,15 +28,15 @@ void write_voxels(const VoxelBlock& block, std::uint32_t unit, files::ByteWriter
   for (int offset = 0; offset < kBlockVoxels;) {
     if (!block.has_hits(offset)) {
       int end = offset + 1;
-      while (end < kBlockVoxels && block.passes(end) == block.passes(offset) && !block.has_hits(end)) ++end;
+      while (end < kBlockVoxels && block.misses(end) == block.misses(offset) && !block.has_hits(end)) ++end;
       out.varint(static_cast<std::uint64_t>(end - offset) << 1);
-      out.varint(block.passes(offset) / unit);
+      out.varint(block.misses(offset) / unit);
       offset = end;
       continue;
     }
     block.read(offset++, counts);
     out.varint(counts.hits.size() << 1 | 1u);
-    out.varint(counts.passes / unit);
+    out.varint(counts.misses / unit);
     for (const ClassCount& hit : counts.hits) {
       out.varint(hit.label);
       out.varint(hit.count / unit);
@@ -65,7 +65,7 @@ void read_hits(files::ByteReader& in, std::uint64_t classes, std::uint32_t unit,
 
 VoxelBlock read_voxels(files::ByteReader& reader, std::uint32_t unit) {
   files::ByteReader in = reader;  // the compiler keeps a local one in registers: late joiners wait for this loop
-  std::array<std::uint32_t, kBlockVoxels> passes{};
+  std::array<std::uint32_t, kBlockVoxels> misses{};
   thread_local std::vector<HitVote> hits;
   hits.clear();
   for (int offset = 0; offset < kBlockVoxels && in.is_good();) {
@@ -75,19 +75,19 @@ VoxelBlock read_voxels(files::ByteReader& reader, std::uint32_t unit) {
       in.fail();
       break;
     }
-    std::fill_n(passes.begin() + offset, run, read_count(in, unit));
+    std::fill_n(misses.begin() + offset, run, read_count(in, unit));
     if (head & 1u) read_hits(in, head >> 1, unit, offset, hits);
     offset += static_cast<int>(run);
   }
   reader = in;
-  return {passes, hits};
+  return {misses, hits};
 }
 
 }  // namespace
 
 void write_block(const VoxelBlock* block, files::ByteWriter& out) {
   if (block == nullptr || block->is_empty()) return out.varint(kEmpty);
-  if (block->is_uniform()) return out.varint(static_cast<std::uint64_t>(block->passes(0)) << 2 | kUniform);
+  if (block->is_uniform()) return out.varint(static_cast<std::uint64_t>(block->misses(0)) << 2 | kUniform);
   const bool is_whole = has_only_whole_votes(*block);
   out.varint(kVoxels | (is_whole ? kWholeVotes : 0));
   write_voxels(*block, is_whole ? kOneVote : 1, out);
@@ -97,9 +97,9 @@ VoxelBlock read_block(files::ByteReader& in) {
   VoxelBlock block;
   const std::uint64_t word = in.varint();
   if ((word & 3u) == kUniform) {
-    const std::uint64_t passes = word >> 2;
-    if (passes == 0 || passes > std::numeric_limits<std::uint32_t>::max()) in.fail();
-    block = VoxelBlock(static_cast<std::uint32_t>(passes));
+    const std::uint64_t misses = word >> 2;
+    if (misses == 0 || misses > std::numeric_limits<std::uint32_t>::max()) in.fail();
+    block = VoxelBlock(static_cast<std::uint32_t>(misses));
   } else if (word == kVoxels || word == (kVoxels | kWholeVotes)) {
     block = read_voxels(in, word & kWholeVotes ? kOneVote : 1);
   } else if (word != kEmpty) {

@@ -18,10 +18,10 @@ void describe(Field& field, IntegrationConfig& c) {
   field("max_height_m", c.max_height_m, config::in_range(-1000.0, 1000.0),
         "voxels whose centre is higher get no votes [m]");
   field("end_margin_voxels", c.end_margin_voxels, config::in_range(0.0, 3.0),
-        "a voxel is passed only if the ray leaves it at least this far before the measured surface");
+        "a voxel gets a miss only if the ray leaves it at least this far before the measured surface");
   field("depth_noise_per_m", c.depth_noise_per_m, config::in_range(0.0, 0.05),
         "standard deviation of depth z is this times z^2; a hit weighs less where it is not small against a voxel, and "
-        "passes keep two of them away from the surface [1/m]");
+        "misses keep two of them away from the surface [1/m]");
 }
 
 template <class Field>
@@ -32,7 +32,7 @@ void describe(Field& field, CompactFrameConfig& c) {
 template <class Field>
 void describe(Field& field, SensorModel& c) {
   field("hit_gain", c.hit_gain, config::in_range(0.01, 5.0), "log-odds gain of occupied by a first hit");
-  field("pass_gain", c.pass_gain, config::in_range(0.01, 5.0), "log-odds loss of occupied by a pass");
+  field("miss_gain", c.miss_gain, config::in_range(0.01, 5.0), "log-odds loss of occupied by a miss");
   field("label_accuracy", c.label_accuracy, config::in_range(0.05, 0.999), "probability that a label is right");
   field("fusion", c.fusion, config::one_of({"log_odds", "dirichlet", "bki"}), "rule by which counts become beliefs");
   field("prior_votes", c.prior_votes, config::in_range(0.01, 1000.0),

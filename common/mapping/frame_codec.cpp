@@ -99,7 +99,7 @@ class ColumnsReader {
   const std::uint8_t* at_;
 };
 
-constexpr std::size_t kBytesPerBlock = sizeof(BlockVotes::block) + sizeof(BlockVotes::passes) +
+constexpr std::size_t kBytesPerBlock = sizeof(BlockVotes::block) + sizeof(BlockVotes::misses) +
                                        sizeof(BlockVotes::hits_begin) + sizeof(BlockVotes::hits_end);
 constexpr std::size_t kBytesPerHit = sizeof(HitVote::offset) + sizeof(HitVote::label) + sizeof(HitVote::weight);
 
@@ -147,7 +147,7 @@ std::vector<std::uint8_t> pack(const FrameVotes& votes) {
   columns.write(votes.blocks, &BlockVotes::block);
   columns.write(votes.blocks, &BlockVotes::hits_begin);
   columns.write(votes.blocks, &BlockVotes::hits_end);
-  columns.write(votes.blocks, &BlockVotes::passes);
+  columns.write(votes.blocks, &BlockVotes::misses);
   columns.write(votes.hits, &HitVote::offset);
   columns.write(votes.hits, &HitVote::label);
   columns.write(votes.hits, &HitVote::weight);
@@ -167,7 +167,7 @@ std::optional<FrameVotes> unpack_votes(std::span<const std::uint8_t> bytes) {
   columns.read(votes.blocks, &BlockVotes::block);
   columns.read(votes.blocks, &BlockVotes::hits_begin);
   columns.read(votes.blocks, &BlockVotes::hits_end);
-  columns.read(votes.blocks, &BlockVotes::passes);
+  columns.read(votes.blocks, &BlockVotes::misses);
   columns.read(votes.hits, &HitVote::offset);
   columns.read(votes.hits, &HitVote::label);
   columns.read(votes.hits, &HitVote::weight);

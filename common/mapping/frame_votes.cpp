@@ -10,15 +10,15 @@ class VotesBuilder {
  public:
   void begin(const BlockVotes& block, const BlockMask& without) {
     current_ = block;
-    for (std::size_t i = 0; i < without.size(); ++i) current_.passes[i] &= ~without[i];
+    for (std::size_t i = 0; i < without.size(); ++i) current_.misses[i] &= ~without[i];
     current_.hits_begin = static_cast<std::uint32_t>(votes_.hits.size());
   }
   void hit(const HitVote& vote) { votes_.hits.push_back(vote); }
   void end() {
     current_.hits_end = static_cast<std::uint32_t>(votes_.hits.size());
     const auto is_zero = [](std::uint64_t word) { return word == 0; };
-    const bool has_passes = !std::all_of(current_.passes.begin(), current_.passes.end(), is_zero);
-    if (has_passes || current_.hits_end > current_.hits_begin) votes_.blocks.push_back(current_);
+    const bool has_misses = !std::all_of(current_.misses.begin(), current_.misses.end(), is_zero);
+    if (has_misses || current_.hits_end > current_.hits_begin) votes_.blocks.push_back(current_);
   }
   void whole(const BlockVotes& block, std::span<const HitVote> hits) {
     begin(block, {});
@@ -65,7 +65,7 @@ void drop_common(FrameVotes& a, FrameVotes& b) {
       ++of_b;
     } else {
       BlockMask common;
-      for (std::size_t i = 0; i < common.size(); ++i) common[i] = of_a->passes[i] & of_b->passes[i];
+      for (std::size_t i = 0; i < common.size(); ++i) common[i] = of_a->misses[i] & of_b->misses[i];
       only_a.begin(*of_a, common);
       only_b.begin(*of_b, common);
       split_hits(a.hits_of(*of_a), b.hits_of(*of_b), only_a, only_b);

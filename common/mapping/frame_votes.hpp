@@ -25,17 +25,17 @@ struct HitVote {
   bool operator==(const HitVote&) const = default;
 };
 
-/// What one frame says about one block. A voxel is in `passes` (weight kOneVote) or in the hits, never in both, and its
+/// What one frame says about one block. A voxel is in `misses` (weight kOneVote) or in the hits, never in both, and its
 /// hits weigh no more than kOneVote together.
 struct BlockVotes {
   BlockIndex block;
-  BlockMask passes{};
+  BlockMask misses{};
   std::uint32_t hits_begin = 0;  ///< range in FrameVotes::hits, sorted by offset, then label
   std::uint32_t hits_end = 0;
   bool operator==(const BlockVotes&) const = default;
 };
 
-/// What one frame says about the map: at most one pass or one vote per voxel; a vote may be split between a class and
+/// What one frame says about the map: at most one miss or one vote per voxel; a vote may be split between a class and
 /// "unlabelled". Sorted by block.
 struct FrameVotes {
   std::vector<BlockVotes> blocks;
@@ -45,10 +45,10 @@ struct FrameVotes {
     return std::span(hits).subspan(block.hits_begin, block.hits_end - block.hits_begin);
   }
   std::size_t hit_count() const { return hits.size(); }
-  std::size_t pass_count() const {
+  std::size_t miss_count() const {
     std::size_t count = 0;
     for (const BlockVotes& votes : blocks)
-      for (const std::uint64_t word : votes.passes) count += static_cast<std::size_t>(std::popcount(word));
+      for (const std::uint64_t word : votes.misses) count += static_cast<std::size_t>(std::popcount(word));
     return count;
   }
   bool operator==(const FrameVotes&) const = default;

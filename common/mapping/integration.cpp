@@ -514,18 +514,18 @@ void collect_block(const FrameBox& box, const Eigen::Vector3i& at, CellId number
     if (!is_within_heights(of_block.block, layer, config, resolution_m)) continue;
     const std::ptrdiff_t first =
         kBlockEdge * (at[0] + at[1] * marks.pitch[1]) + (kBlockEdge * at[2] + layer) * marks.pitch[2];
-    any |= of_block.passes[static_cast<std::size_t>(layer)] = marks.layer_bits(first);
+    any |= of_block.misses[static_cast<std::size_t>(layer)] = marks.layer_bits(first);
   }
   of_block.hits_begin = static_cast<std::uint32_t>(votes.hits.size());
   for (; hit != hits_end && hit->cell / kBlockVoxels == number; ++hit) {
     const auto offset = static_cast<std::uint16_t>(hit->cell % kBlockVoxels);
-    of_block.passes[offset / 64u] &= ~(std::uint64_t{1} << offset % 64u);
+    of_block.misses[offset / 64u] &= ~(std::uint64_t{1} << offset % 64u);
     if (is_within_heights(of_block.block, offset >> 6, config, resolution_m)) append_votes(*hit, offset, votes.hits);
   }
   of_block.hits_end = static_cast<std::uint32_t>(votes.hits.size());
-  const auto& passes = of_block.passes;
-  const bool is_passed = any != 0 && std::any_of(passes.begin(), passes.end(), [](std::uint64_t w) { return w != 0; });
-  if (is_passed || of_block.hits_end > of_block.hits_begin) votes.blocks.push_back(of_block);
+  const auto& misses = of_block.misses;
+  const bool has_misses = any != 0 && std::any_of(misses.begin(), misses.end(), [](std::uint64_t w) { return w != 0; });
+  if (has_misses || of_block.hits_end > of_block.hits_begin) votes.blocks.push_back(of_block);
 }
 
 /// Votes of a hit at `point` [voxels of the box] for the cells whose centres are within the kernel's length.

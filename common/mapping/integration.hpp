@@ -11,10 +11,10 @@ struct IntegrationConfig {
   double max_range_m = 5.0;      ///< Euclidean; returns beyond carve free space up to here, in [0.5, 20]
   double min_height_m = -100.0;  ///< voxels whose centre is lower (z of the map frame) get no votes
   double max_height_m = 100.0;   ///< voxels whose centre is higher get no votes; above min_height_m
-  /// A voxel is passed only if the ray leaves it at least this far before the measured surface, in [0, 3] voxels.
+  /// A voxel gets a miss only if the ray leaves it at least so far before the measured surface, in [0, 3] voxels.
   double end_margin_voxels = 0.0;
   /// Depth noise: standard deviation of depth z is this times z^2 [1/m], in [0, 0.05]. A hit is worth the probability
-  /// that the noise is less than half a voxel, and passes keep two standard deviations away from the surface.
+  /// that the noise is less than half a voxel, and misses keep two standard deviations away from the surface.
   double depth_noise_per_m = 0.0013;
   /// Length of the kernel by which hits vote for the voxels of other hits around them, in [1.5, 3]; 0: not at all.
   double kernel_length_voxels = 0.0;
@@ -40,7 +40,7 @@ inline constexpr double kMaxRangeInVoxels = 500.0;
 ///   pixels (never an average; ties go to the smaller id; unlabelled only when no pixel is labelled). Pixels weigh as
 ///   much as their labels are certain; the mean confidence of the class' pixels is its share of the vote, the rest is
 ///   an unlabelled one. Where depth noise is not small against a voxel the vote is worth less than a whole one;
-/// - otherwise a pass when a ray goes through it. There is one ray per voxel that is seen (to a measured point in it,
+/// - otherwise a miss when a ray goes through it. There is one ray per voxel that is seen (to a measured point in it,
 ///   the middle one in scan order), traversed exactly [Amanatides & Woo 1987]. Returns beyond max_range_m end rays
 ///   there without a hit. Pixels without depth say nothing.
 /// With a kernel each voxel with a hit asks the hits around it, too: a hit is worth, at the point at which its ray

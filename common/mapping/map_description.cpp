@@ -43,7 +43,7 @@ void compare(Comparison& compared, const FrameSettings& a, const FrameSettings& 
 void compare(Comparison& compared, const SensorModel& a, const SensorModel& b) {
   compared("fusion", a.fusion, b.fusion);
   compared("hit_gain", a.hit_gain, b.hit_gain);
-  compared("pass_gain", a.pass_gain, b.pass_gain);
+  compared("miss_gain", a.miss_gain, b.miss_gain);
   compared("label_accuracy", a.label_accuracy, b.label_accuracy);
   compared("prior_occupied", a.prior_occupied, b.prior_occupied);
   compared("prior_votes", a.prior_votes, b.prior_votes);

@@ -29,7 +29,7 @@ bool is_in_range(const BlockIndex& index) {
 }
 
 void write_sensor_model(const SensorModel& model, files::ByteWriter& out) {
-  for (const double value : {model.hit_gain, model.pass_gain, model.label_accuracy, model.prior_occupied,
+  for (const double value : {model.hit_gain, model.miss_gain, model.label_accuracy, model.prior_occupied,
                              model.prior_votes, model.occupancy_limit, model.share_limit})
     out.f64(value);
   out.u32(static_cast<std::uint32_t>(model.class_count));
@@ -41,7 +41,7 @@ void write_sensor_model(const SensorModel& model, files::ByteWriter& out) {
 
 SensorModel read_sensor_model(files::ByteReader& in) {
   SensorModel model;
-  for (double* value : {&model.hit_gain, &model.pass_gain, &model.label_accuracy, &model.prior_occupied,
+  for (double* value : {&model.hit_gain, &model.miss_gain, &model.label_accuracy, &model.prior_occupied,
                         &model.prior_votes, &model.occupancy_limit, &model.share_limit})
     *value = in.f64();
   model.class_count = static_cast<int>(std::min<std::uint32_t>(in.u32(), 65536u));

@@ -34,7 +34,7 @@ struct MapFile {
 std::vector<std::uint8_t> encode_map(const MapFile& file);
 
 /// Most memory of a map that is saved or loaded: half of that of the smallest machine, and 40 times what 10^8 voxels of
-/// free space take when every block has passes that differ.
+/// free space take when every block has misses that differ.
 inline constexpr std::size_t kMaxMapBytes = std::size_t{4} << 30;
 
 /// Inverse of encode_map; nothing, with the reason in `error`, for anything that is not a whole and undamaged file. The

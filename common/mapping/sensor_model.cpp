@@ -22,7 +22,7 @@ void validate(const SensorModel& m) {
           "fusion must be log_odds, dirichlet or bki");
   require(m.class_count >= 1 && m.class_count <= 65535, "class_count must be in [1, 65535]");
   require(m.hit_gain > 0.0 && m.hit_gain <= 5.0, "hit_gain must be in (0, 5]");
-  require(m.pass_gain > 0.0 && m.pass_gain <= 5.0, "pass_gain must be in (0, 5]");
+  require(m.miss_gain > 0.0 && m.miss_gain <= 5.0, "miss_gain must be in (0, 5]");
   require(m.label_accuracy > 0.0 && m.label_accuracy < 1.0, "label_accuracy must be in (0, 1)");
   require(m.prior_occupied > 0.0 && m.prior_occupied < 1.0, "prior_occupied must be in (0, 1)");
   require(m.prior_votes > 0.0 && m.prior_votes <= 1000.0, "prior_votes must be in (0, 1000]");
@@ -52,7 +52,7 @@ BeliefReader::BeliefReader(const SensorModel& model) : model_(model), by_evidenc
   priors_ = model_.class_priors.empty() ? std::vector<double>(count, 1.0 / model_.class_count) : model_.class_priors;
   constexpr double kPaperPsi = 1.0, kPaperPhi = -0.1;
   unlabelled_gain_ = model_.use_paper_increments ? kPaperPsi : model_.hit_gain;
-  pass_loss_ = model_.use_paper_increments ? -kPaperPhi : model_.pass_gain;
+  miss_loss_ = model_.use_paper_increments ? -kPaperPhi : model_.miss_gain;
   prior_log_odds_ = std::log(model_.prior_occupied / (1.0 - model_.prior_occupied));
   for (const double pi : priors_) {
     double psi = kPaperPsi, phi = kPaperPhi;
@@ -69,7 +69,7 @@ BeliefReader::BeliefReader(const SensorModel& model) : model_(model), by_evidenc
 }
 
 double BeliefReader::log_odds_by_evidence(const VoxelCounts& counts) const {
-  double common = prior_log_odds_ - pass_loss_ * votes(counts.passes);
+  double common = prior_log_odds_ - miss_loss_ * votes(counts.misses);
   for (const ClassCount& hit : counts.hits)
     common += votes(hit.count) * (is_class(hit.label) ? other_gain_[hit.label - 1u] : unlabelled_gain_);
   // ln sum_c pi_c exp(h_c surplus_c): classes without hits contribute their prior share as it is.
@@ -90,7 +90,7 @@ double BeliefReader::log_odds_by_concentration(const VoxelCounts& counts) const 
   double occupied = model_.prior_votes * model_.prior_occupied;
   for (const ClassCount& hit : counts.hits) occupied += votes(hit.count);
   const double free =
-      model_.prior_votes * (1.0 - model_.prior_occupied) + votes(counts.passes) * model_.pass_gain / model_.hit_gain;
+      model_.prior_votes * (1.0 - model_.prior_occupied) + votes(counts.misses) * model_.miss_gain / model_.hit_gain;
   return std::log(occupied / free);
 }
 

@@ -12,13 +12,13 @@ namespace lapis::mapping {
 /// (unlabelled) or of an id above the list speaks for "occupied" and for no class.
 struct SensorModel {
   double hit_gain = 0.85;       ///< l: log-odds gain of "occupied" by a first hit, in (0, 5]
-  double pass_gain = 0.4;       ///< m: log-odds loss of "occupied" by a pass, in (0, 5]
+  double miss_gain = 0.4;       ///< m: log-odds loss of "occupied" by a miss, in (0, 5]
   double label_accuracy = 0.7;  ///< a: probability that a label is right, in (1/class_count, 1)
   double prior_occupied = 0.2;  ///< P0 of a voxel that was never observed, in (0, 1)
   int class_count = 40;         ///< C, in [1, 65535]
   /// Prior share of each class given occupied, size C and sum 1; empty = uniform.
   std::vector<double> class_priors;
-  /// The paper's own increments (psi = 1, phi = -0.1 for other classes and for passes) instead of those derived from
+  /// The paper's own increments (psi = 1, phi = -0.1 for other classes and for misses) instead of those derived from
   /// l, m and a. One hit then lowers P(occupied) as soon as there are more than 18 equal classes.
   bool use_paper_increments = false;
 
@@ -42,10 +42,10 @@ SensorModel paper_sensor_model(std::vector<double> class_priors = {0.1, 0.1, 0.1
 
 /// Multi-class belief of a voxel from its counts: eq. 9-11 of the paper with one prior everywhere and the three
 /// increments psi_c = l + ln(a / pi_c) (hit, its class), phi_c = l + ln((1 - a) / (1 - pi_c)) (hit of c, other classes)
-/// and -m (pass, all classes), so that a first hit multiplies the odds of "occupied" by exp(l) for any number of
-/// classes. With h_c hits of class c, u unlabelled hits and n passes, and the free class as reference (y_0 = 0):
+/// and -m (miss, all classes), so that a first hit multiplies the odds of "occupied" by exp(l) for any number of
+/// classes. With h_c hits of class c, u unlabelled hits and n misses, and the free class as reference (y_0 = 0):
 ///   y_c = logit P0 + ln pi_c + u l - n m + sum_j h_j phi_j + h_c (psi_c - phi_c).
-/// By the Dirichlet rules with a prior of s votes the odds are those of the concentrations, a pass counting m / l
+/// By the Dirichlet rules with a prior of s votes the odds are those of the concentrations, a miss counting m / l
 /// votes:
 ///   y_c = ln (s P0 + u + sum_j h_j) - ln (s (1 - P0) + n m / l) + ln ((s P0 pi_c + h_c) / (s P0 + sum_j h_j)).
 class BeliefReader {
@@ -60,7 +60,7 @@ class BeliefReader {
   double occupied_probability(const VoxelCounts& counts) const;
   /// True for observed voxels with P(occupied) > 0.5.
   bool is_occupied(const VoxelCounts& counts) const;
-  /// Most probable class given occupied; ties go to the smaller id; 0 when no labelled hit tells classes apart.
+  /// Most probable class given occupied; ties go to the smaller id; 0 when no labelled hit distinguishes classes.
   std::uint16_t label(const VoxelCounts& counts) const;
 
   /// P(free), P(class 1), ..., P(class C): sums to 1. O(C).
@@ -84,7 +84,7 @@ class BeliefReader {
   std::vector<double> other_gain_;   ///< phi_c, index c - 1
   std::vector<double> own_surplus_;  ///< psi_c - phi_c, index c - 1
   double unlabelled_gain_ = 0.0;
-  double pass_loss_ = 0.0;
+  double miss_loss_ = 0.0;
   double prior_log_odds_ = 0.0;
 };
 

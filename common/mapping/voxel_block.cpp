@@ -15,8 +15,8 @@ constexpr auto kByKey = [](const auto& a, const auto& b) { return key(a) < key(b
 
 }  // namespace
 
-VoxelBlock::VoxelBlock(const std::array<std::uint32_t, kBlockVoxels>& passes, std::span<const HitVote> hits)
-    : passes_(passes) {
+VoxelBlock::VoxelBlock(const std::array<std::uint32_t, kBlockVoxels>& misses, std::span<const HitVote> hits)
+    : misses_(misses) {
   if (hits.empty()) return;
   hits_ = std::make_unique<Hits>();
   hits_->list.reserve(hits.size());
@@ -24,7 +24,7 @@ VoxelBlock::VoxelBlock(const std::array<std::uint32_t, kBlockVoxels>& passes, st
 }
 
 VoxelBlock::VoxelBlock(const VoxelBlock& other)
-    : passes_(other.passes_), hits_(other.hits_ ? std::make_unique<Hits>(*other.hits_) : nullptr) {}
+    : misses_(other.misses_), hits_(other.hits_ ? std::make_unique<Hits>(*other.hits_) : nullptr) {}
 
 VoxelBlock& VoxelBlock::operator=(const VoxelBlock& other) {
   if (this != &other) *this = VoxelBlock(other);
@@ -32,7 +32,7 @@ VoxelBlock& VoxelBlock::operator=(const VoxelBlock& other) {
 }
 
 void VoxelBlock::read(int offset, VoxelCounts& counts) const {
-  counts.passes = passes_.at(offset);
+  counts.misses = misses_.at(offset);
   counts.hits.clear();
   if (!has_hits(offset)) return;
   const Hit first{static_cast<std::uint16_t>(offset), 0, 0};
@@ -46,8 +46,8 @@ void VoxelBlock::add_hit(int offset, std::uint16_t label, std::uint32_t weight) 
   add({}, {&vote, 1});
 }
 
-void VoxelBlock::add(const BlockMask& passes, std::span<const HitVote> hits) {
-  passes_.add_votes(passes);
+void VoxelBlock::add(const BlockMask& misses, std::span<const HitVote> hits) {
+  misses_.add_votes(misses);
   if (hits.empty()) return;
   if (!hits_) hits_ = std::make_unique<Hits>();
   thread_local std::vector<HitVote> fresh;
@@ -79,8 +79,8 @@ void VoxelBlock::insert(std::span<const HitVote> votes) {
   }
 }
 
-bool VoxelBlock::subtract(const BlockMask& passes, std::span<const HitVote> hits) {
-  if (!passes_.subtract_votes(passes)) return false;
+bool VoxelBlock::subtract(const BlockMask& misses, std::span<const HitVote> hits) {
+  if (!misses_.subtract_votes(misses)) return false;
   if (hits.empty()) return true;
   if (!hits_) return false;
   std::vector<Hit>& list = hits_->list;
@@ -101,11 +101,11 @@ bool VoxelBlock::subtract(const BlockMask& passes, std::span<const HitVote> hits
 
 std::size_t VoxelBlock::bytes() const {
   const std::size_t hits = hits_ ? sizeof(Hits) + hits_->list.capacity() * sizeof(Hit) : 0;
-  return sizeof(VoxelBlock) + passes_.heap_bytes() + hits;
+  return sizeof(VoxelBlock) + misses_.heap_bytes() + hits;
 }
 
 bool VoxelBlock::operator==(const VoxelBlock& other) const {
-  if (!(passes_ == other.passes_) || (hits_ == nullptr) != (other.hits_ == nullptr)) return false;
+  if (!(misses_ == other.misses_) || (hits_ == nullptr) != (other.hits_ == nullptr)) return false;
   return !hits_ || hits_->list == other.hits_->list;
 }
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/mapping/frame_votes.hpp"
-#include "common/mapping/pass_counts.hpp"
+#include "common/mapping/miss_counts.hpp"
 
 namespace lapis::mapping {
 
@@ -21,48 +21,48 @@ struct ClassCount {
 
 /// Everything a voxel knows. All zero = never observed.
 struct VoxelCounts {
-  std::uint32_t passes = 0;      ///< [1/256 vote]
+  std::uint32_t misses = 0;      ///< [1/256 vote]
   std::vector<ClassCount> hits;  ///< sorted by label, no zero counts
 
-  bool is_observed() const { return passes > 0 || !hits.empty(); }
+  bool is_observed() const { return misses > 0 || !hits.empty(); }
   bool operator==(const VoxelCounts&) const = default;
 };
 
-/// Counts of 8x8x8 voxels. Passes take as few bytes as they need (PassCounts), hits eight bytes per voxel and class
+/// Counts of 8x8x8 voxels. Misses take as few bytes as they need (MissCounts), hits eight bytes per voxel and class
 /// that was seen there, plus one bit per voxel. Counts are exact up to 2^32 - 1, which is 16,777,215 one-vote frames:
 /// 155 h at 30 Hz of looking at one voxel.
 class VoxelBlock {
  public:
   VoxelBlock() = default;
-  /// Every voxel has the same passes and none has hits.
-  explicit VoxelBlock(std::uint32_t passes) : passes_(passes) {}
-  /// All counts at once: passes by offset [1/256 vote], and hits sorted by offset, then label, none of them zero.
-  VoxelBlock(const std::array<std::uint32_t, kBlockVoxels>& passes, std::span<const HitVote> hits);
+  /// Every voxel has the same misses and none has hits.
+  explicit VoxelBlock(std::uint32_t misses) : misses_(misses) {}
+  /// All counts at once: misses by offset [1/256 vote], and hits sorted by offset, then label, none of them zero.
+  VoxelBlock(const std::array<std::uint32_t, kBlockVoxels>& misses, std::span<const HitVote> hits);
   VoxelBlock(const VoxelBlock& other);
   VoxelBlock& operator=(const VoxelBlock& other);
   VoxelBlock(VoxelBlock&&) noexcept = default;
   VoxelBlock& operator=(VoxelBlock&&) noexcept = default;
   ~VoxelBlock() = default;
 
-  std::uint32_t passes(int offset) const { return passes_.at(offset); }
+  std::uint32_t misses(int offset) const { return misses_.at(offset); }
   bool has_hits(int offset) const {
     return hits_ && (hits_->voxels[static_cast<std::size_t>(offset) / 64] >> offset % 64 & 1u) != 0;
   }
-  bool is_observed(int offset) const { return passes(offset) > 0 || has_hits(offset); }
+  bool is_observed(int offset) const { return misses(offset) > 0 || has_hits(offset); }
   /// Fills `counts` (its memory is reused) with the voxel's content.
   void read(int offset, VoxelCounts& counts) const;
 
-  void add_pass(int offset, std::uint32_t weight) { passes_.add(offset, weight); }
+  void add_miss(int offset, std::uint32_t weight) { misses_.add(offset, weight); }
   void add_hit(int offset, std::uint16_t label, std::uint32_t weight);
   /// Votes of one frame: hits sorted by offset, then label, no pair of them twice.
-  void add(const BlockMask& passes, std::span<const HitVote> hits);
+  void add(const BlockMask& misses, std::span<const HitVote> hits);
   /// Inverse of add. False, and the block is unspecified, when the votes were never added.
-  [[nodiscard]] bool subtract(const BlockMask& passes, std::span<const HitVote> hits);
+  [[nodiscard]] bool subtract(const BlockMask& misses, std::span<const HitVote> hits);
 
   /// True when no voxel was ever observed.
-  bool is_empty() const { return is_uniform() && passes(0) == 0; }
-  /// True when every voxel has the same passes and none has hits.
-  bool is_uniform() const { return !hits_ && passes_.is_uniform(); }
+  bool is_empty() const { return is_uniform() && misses(0) == 0; }
+  /// True when every voxel has the same misses and none has hits.
+  bool is_uniform() const { return !hits_ && misses_.is_uniform(); }
   std::size_t bytes() const;
   bool operator==(const VoxelBlock& other) const;
 
@@ -80,7 +80,7 @@ class VoxelBlock {
 
   void insert(std::span<const HitVote> votes);
 
-  PassCounts passes_;
+  MissCounts misses_;
   std::unique_ptr<Hits> hits_;  ///< null when the block has none
 };
 

@@ -21,13 +21,13 @@ Eigen::Vector3d VoxelMap::center_of(const VoxelIndex& voxel) const {
 }
 
 void VoxelMap::add(const FrameVotes& votes) {
-  for (const BlockVotes& of_block : votes.blocks) blocks_[of_block.block].add(of_block.passes, votes.hits_of(of_block));
+  for (const BlockVotes& of_block : votes.blocks) blocks_[of_block.block].add(of_block.misses, votes.hits_of(of_block));
 }
 
 void VoxelMap::subtract(const FrameVotes& votes) {
   for (const BlockVotes& of_block : votes.blocks) {
     const auto block = blocks_.find(of_block.block);
-    if (block == blocks_.end() || !block->second.subtract(of_block.passes, votes.hits_of(of_block)))
+    if (block == blocks_.end() || !block->second.subtract(of_block.misses, votes.hits_of(of_block)))
       throw std::logic_error("VoxelMap::subtract: votes that were never added");
     if (block->second.is_empty()) blocks_.erase(block);
   }

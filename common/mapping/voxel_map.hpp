@@ -16,7 +16,7 @@ namespace lapis::mapping {
 inline constexpr double kMinResolution_m = 0.02;
 inline constexpr double kMaxResolution_m = 0.5;
 
-/// Semantic voxel map: per voxel how many frames looked through it (passes) and how many saw a surface of which class
+/// Semantic voxel map: per voxel how many frames looked through it (misses) and how many saw a surface of which class
 /// in it (hits). Log-odds updates add (eq. 11 of the paper), so these counts are all there is to know; SensorModel
 /// turns them into probabilities. Integer counts do not depend on the order of frames and can be taken out again
 /// exactly. A voxel that was never observed is unknown. The world is assumed to be static.

@@ -17,7 +17,7 @@ mapping::SensorModel to_sensor_model(const lapis_msgs::msg::MapSensorModel& mess
   mapping::SensorModel model;
   model.fusion = message.fusion();
   model.hit_gain = message.hit_gain();
-  model.pass_gain = message.pass_gain();
+  model.miss_gain = message.miss_gain();
   model.label_accuracy = message.label_accuracy();
   model.prior_occupied = message.prior_occupied();
   model.prior_votes = message.prior_votes();
@@ -33,7 +33,7 @@ lapis_msgs::msg::MapSensorModel to_message(const mapping::SensorModel& model) {
   lapis_msgs::msg::MapSensorModel message;
   message.fusion(model.fusion);
   message.hit_gain(model.hit_gain);
-  message.pass_gain(model.pass_gain);
+  message.miss_gain(model.miss_gain);
   message.label_accuracy(model.label_accuracy);
   message.prior_occupied(model.prior_occupied);
   message.prior_votes(model.prior_votes);

@@ -11,7 +11,7 @@
 namespace lapis::runtime {
 
 /// The topics of an RGB-D camera that may know classes and truth, and the clock that goes with its frames: what
-/// sensor_replay and simulator publish, so that consumers cannot tell them apart.
+/// sensor_replay and simulator publish, so that consumers cannot distinguish them.
 class CameraPublisher {
  public:
   struct Parts {

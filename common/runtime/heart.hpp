@@ -7,8 +7,8 @@
 
 namespace lapis::runtime {
 
-/// Publishes that this process lives, in which phase it is and what it does, so that a supervisor can tell one that is
-/// busy from one that hangs. On the component's thread, whose silence is what counts.
+/// Publishes that this process lives, in which phase it is and what it does, so that a supervisor can distinguish one
+/// that is busy from one that hangs. On the component's thread, whose silence is what counts.
 class Heart {
  public:
   enum class Phase { kStarting, kRunning, kEnding };

@@ -285,8 +285,8 @@ void LockstepDriver::give_up(double silence_s) {
   }
   std::erase_if(config_.stages, [this](const std::string& name) { return demoted_.contains(name); });
   if (config_.stages.empty()) return fail(reason + ", and no other participant is left");
-  spdlog::warn("{}; going on without {}", reason, joined(participants));
-  context_.status().set(Status::Level::kWarn, "lock-step goes on without " + joined(participants));
+  spdlog::warn("{}; continuing without {}", reason, joined(participants));
+  context_.status().set(Status::Level::kWarn, "lock-step continues without " + joined(participants));
   if (state_ == State::kWaiting) release_stage();
   advance();
 }

@@ -28,7 +28,7 @@ void describe(Field& field, LockstepConfig& c) {
   field("hard_timeout_s", c.hard_timeout_s, config::in_range(0.1, 3600.0),
         "time without an answer, busy or not, after which silent_participant applies [s]");
   field("silent_participant", c.silent_participant, config::one_of({"abort", "wait", "demote"}),
-        "end the run, wait for a restart (at most 60 s), or go on without it");
+        "end the run, wait for a restart (at most 60 s), or continue without it");
 }
 
 /// The clock's side of lock-step (docs/architecture.md). Its owner publishes frame and /clock, calls begin(), and
@@ -54,7 +54,7 @@ class LockstepDriver {
   double longest_tick_s() const { return longest_tick_s_; }
   /// CPU time of each participant, from one answer to the next [ms].
   const std::map<std::string, double>& cpu_ms() const { return cpu_ms_; }
-  /// Participants without which this run or one before it went on, and the tick that they did not answer.
+  /// Participants without which this run or one before it continued, and the tick that they did not answer.
   const std::map<std::string, std::uint64_t>& demoted() const { return demoted_; }
 
  private:

@@ -81,10 +81,11 @@ void LockstepParticipant::on_tick(const Tick& tick) {
   if (!has_joined_) say_busy();
 }
 
-// The driver went on without us while we were silent: from here on we run freely, as one that has been restarted does.
+// The driver continued without us while we were silent: from here on we run freely, as one that has been restarted
+// does.
 void LockstepParticipant::leave_if_demoted(const Tick& tick) {
   if (tick.run_gid() != run_ || tick.tick() <= last_due_ + 1) return;
-  spdlog::warn("lock-step goes on without this process since tick {}: it works on what comes by itself", last_due_);
+  spdlog::warn("lock-step continues without this process since tick {}: it works on what comes by itself", last_due_);
   run_ = {};
   pending_.reset();
 }

@@ -34,7 +34,7 @@ struct ComponentFactory {
   config::Schema schema;  ///< without `dds.`
   /// Adds options and positionals of its own.
   std::function<void(CLI::App&)> add_options;
-  /// A job that needs no DDS (such as --list): exit status, or nothing to go on.
+  /// A job that needs no DDS (such as --list): exit status, or nothing to continue.
   std::function<std::optional<int>()> run_tool;
   /// Builds the component; the returned functions own it: what to do at the end, once spinning stopped.
   std::function<std::function<void()>(Context&)> create;

@@ -4,7 +4,7 @@
 
 namespace lapis::time {
 
-/// Tells the time: the system's (UTC), or the one that /clock last announced.
+/// Says the time: the system's (UTC), or the one that /clock last announced.
 class Clock {
  public:
   enum class Kind { kSystem, kSimulated };

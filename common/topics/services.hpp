@@ -9,7 +9,7 @@ namespace lapis::topics {
 inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kSaveMap{"/semantic_mapper/save", "semantic_mapper",
                                                                     "save map.lapis, map.ot and map.ply now"};
 inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kPause{"/sim/pause", "simulator", "no further tick", true};
-inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kRun{"/sim/run", "simulator", "go on after a pause", true};
+inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kRun{"/sim/run", "simulator", "resume after a pause", true};
 inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kStep{"/sim/step", "simulator", "pause, but for one tick",
                                                                  true};
 inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kReset{"/sim/reset", "simulator",

@@ -184,7 +184,7 @@ void ControllerComponent::publish(Decision decision, time::Time now) {
     decision = {State::kStopped, "the command was not finite", {}, 0.0, {}};
   }
   command_.publish(to_message(decision.command));
-  local_path_.publish(to_message(decision.way, messages::header(camera_stamp_, map_frame_)));
+  local_path_.publish(to_message(decision.local_path, messages::header(camera_stamp_, map_frame_)));
   publish_status(decision, now);
 }
 

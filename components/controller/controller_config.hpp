@@ -35,8 +35,9 @@ void describe(Field& field, LocalMapConfig& c) {
   field("memory_s", c.memory_s, config::in_range(0.1, 600.0),
         "what was seen longer ago is forgotten; time without a path does not count while the robot stands [s]");
   field("stride", c.stride, config::in_range(1, 32), "every stride-th pixel of every stride-th row is used");
-  field("passes_to_clear", c.passes_to_clear, config::in_range(1, 100),
+  field("misses_to_clear", c.misses_to_clear, config::in_range(1, 100),
         "images that must look through an obstacle before it is gone");
+  field.moved("passes_to_clear", "controller.local_map.misses_to_clear");
 }
 
 template <class Field>
@@ -68,7 +69,7 @@ void describe(Field& field, ControllerComponentConfig& c) {
   field("heading_tolerance_rad", c.method.heading_tolerance_rad, config::in_range(0.01, 3.2),
         "at the path's end [rad]");
   field("patience_s", c.method.patience_s, config::in_range(0.0, 60.0),
-        "without a free way before the robot tries to recover [s]");
+        "without a free path before the robot tries to recover [s]");
   field("back_up_m", c.method.back_up_m, config::in_range(0.0, 2.0), "first, where it is known to be free [m]");
   field("back_up_speed_m_s", c.method.back_up_speed_m_s, config::in_range(0.01, 1.0), "[m/s]");
   field("recovery_turn_rad", c.method.recovery_turn_rad, config::in_range(0.0, 3.0), "to look around after that [rad]");

@@ -82,10 +82,10 @@ geometry_msgs::msg::Twist to_message(const Velocity& velocity) {
   return message;
 }
 
-nav_msgs::msg::Path to_message(const std::vector<PlanarPose>& way, const std_msgs::msg::Header& header) {
+nav_msgs::msg::Path to_message(const std::vector<PlanarPose>& path, const std_msgs::msg::Header& header) {
   nav_msgs::msg::Path message;
   message.header(header);
-  for (const PlanarPose& T_map_pose : way) {
+  for (const PlanarPose& T_map_pose : path) {
     geometry_msgs::msg::PoseStamped stamped;
     stamped.header(header);
     stamped.pose(to_message(T_map_pose));

@@ -25,7 +25,7 @@ messages::Converted<DepthView> to_core(const sensor_msgs::msg::Image& depth, con
 
 bool is_finite(const Velocity& velocity);
 geometry_msgs::msg::Twist to_message(const Velocity& velocity);
-nav_msgs::msg::Path to_message(const std::vector<PlanarPose>& way, const std_msgs::msg::Header& header);
+nav_msgs::msg::Path to_message(const std::vector<PlanarPose>& path, const std_msgs::msg::Header& header);
 lapis_msgs::msg::ControllerStatus to_message(const Decision& decision, const std_msgs::msg::Header& header);
 
 }  // namespace lapis::controller

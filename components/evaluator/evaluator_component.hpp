@@ -69,13 +69,13 @@ class EvaluatorComponent {
   ProcessCosts costs_;
   std::optional<lapis_msgs::msg::PlannerStatus> planner_;  // newest
   DecisionRecord decisions_;
-  std::optional<double> position_sigma_m_;  // newest that slam told
+  std::optional<double> position_sigma_m_;  // newest that slam published
 
   RunRecord record_;
   MapJudge maps_;
   std::vector<TimelineRow> timeline_;
   std::optional<time::Time> timeline_stamp_;
-  bool has_ended_ = false;  // lock-step told that no input follows
+  bool has_ended_ = false;  // lock-step said that no input follows
   std::optional<std::chrono::steady_clock::time_point> began_;
   std::chrono::steady_clock::time_point newest_;
   std::chrono::steady_clock::time_point reported_;  // progress

@@ -19,6 +19,8 @@ void describe(Field& field, EvaluatorConfig& c) {
   field("output_dir", c.output_dir, config::anything(), "run folder");
   field("ground_truth_dir", c.ground_truth_dir, config::anything(),
         "what the simulator knows of the scene (mesh.lapis, ideal.lapis, ...); empty: ground_truth in the run folder");
+  field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain",
+              "the evaluator reads it on /semantic_mapper/map_description");
   for (const char* former : {"resolution_m", "integration", "frame", "sensor_model"}) {
     field.moved(former, std::string("semantic_mapper.") + former,
                 "the evaluator reads it on /semantic_mapper/map_description");

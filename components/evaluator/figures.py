@@ -106,7 +106,7 @@ def read_pose_graph(path):
 
 
 def class_names(run):
-    """Names by class id, from what the simulator or a recording tells of them; empty when nothing does."""
+    """Names by class id, from what the simulator or a recording says of them; empty when nothing does."""
     try:
         classes = json.loads((run / "ground_truth/classes.json").read_text())["classes"]
         return {int(c["id"]): str(c["name"]) for c in classes}
@@ -186,7 +186,7 @@ def finish_plan(axes, title, has_map=True):
 
 
 def draw_classes(run):
-    """The map from above in the colours of its classes, with the way of the robot."""
+    """The map from above in the colours of its classes, with the path of the robot."""
     points = read_map(run / "map.ply")
     if points is None:
         raise MissingInput("map.ply is missing or unreadable")
@@ -194,7 +194,7 @@ def draw_classes(run):
     figure, axes = plt.subplots(figsize=(10, 7.5))
     seen = draw_map(axes, points, positions[:, 2].mean() + HEAD_ROOM_M, paleness=0.0)
     axes.plot(*positions[:, :2].T, color="white", linewidth=2.4)
-    way, = axes.plot(*positions[:, :2].T, color="black", linewidth=1.2)
+    driven, = axes.plot(*positions[:, :2].T, color="black", linewidth=1.2)
     start, = axes.plot(*positions[0, :2], "o", color="white", markeredgecolor="black", markersize=8)
     end, = axes.plot(*positions[-1, :2], "s", color="white", markeredgecolor="black", markersize=8)
     names = class_names(run)
@@ -202,7 +202,7 @@ def draw_classes(run):
                    key=lambda entry: (-entry[0], entry[1]))[:MAX_CLASSES]
     patches = [plt.Rectangle((0, 0), 1, 1, facecolor=colour, edgecolor="#555555", linewidth=0.5)
                for _, _, colour in named]
-    axes.legend([way, start, end, *patches], ["way of the robot", "start", "end", *(name for _, name, _ in named)],
+    axes.legend([driven, start, end, *patches], ["path of the robot", "start", "end", *(name for _, name, _ in named)],
                 loc="upper left", bbox_to_anchor=(1.01, 1.0), frameon=False)
     finish_plan(axes, f"Semantic map from above, without ceilings: {run.resolve().name}")
     return figure
@@ -239,7 +239,7 @@ def draw_coverage(run):
 
 
 def loop_closures(run):
-    """Their number by metrics.json; None where that does not tell."""
+    """Their number by metrics.json; None where that does not say."""
     try:
         return json.loads((run / "metrics.json").read_text())["loop_closures"]
     except (OSError, ValueError, KeyError, TypeError):
@@ -329,14 +329,14 @@ def draw_decision(run):
         if points is not None:
             draw_map(plan, points, positions[:, 2].mean() + HEAD_ROOM_M, paleness=0.7)
         gone = positions[stamps <= time_s]
-        way, = plan.plot(*gone[:, :2].T, color="black", linewidth=1.0)
+        driven, = plan.plot(*gone[:, :2].T, color="black", linewidth=1.0)
         robot, = plan.plot(*gone[-1:, :2].T, "*", color="black", markersize=13)
         shade = plt.get_cmap("viridis")(np.linspace(0.95, 0.05, count))
         entries = draw_candidates(plan, rows, count, shade, path)
         draw_bars(panels, rows, count, shade, path)
     except (KeyError, TypeError, ValueError) as error:
         raise MissingInput(f"{path.name} is damaged ({error})") from error
-    plan.legend(*zip((way, "way until then"), (robot, "robot"), *entries), loc="upper center",
+    plan.legend(*zip((driven, "path until then"), (robot, "robot"), *entries), loc="upper center",
                 bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False)
     finish_plan(plan, "", has_map=points is not None)
     figure.suptitle(f"Decision {number} at {time_s:.1f} s by method {method}, the one with most candidates; "

@@ -16,8 +16,8 @@
 
 namespace lapis::evaluator {
 
-/// The map that the mapper tells, and what it is judged by: the same mapper's map from true poses, a plain fusion, and
-/// the ground truth of a simulated scene. All are in the run's map frame.
+/// The map that the mapper publishes, and what it is judged by: the same mapper's map from true poses, a plain fusion,
+/// and the ground truth of a simulated scene. All are in the run's map frame.
 class MapJudge {
  public:
   /// @param truth_folder where the simulator writes the ground truth of the scene, if there is one
@@ -35,7 +35,7 @@ class MapJudge {
   /// them. Labels may be empty. Returns what is wrong with the frame, or an empty text.
   std::string add_reference_frame(const geometry::PinholeCamera& camera, const geometry::DepthImage& depth_m,
                                   const geometry::LabelImage& labels, const geometry::Pose& T_map_camera);
-  /// Looks for the ground truth of the scene, which the simulator writes while the run goes on. Returns what is wrong
+  /// Looks for the ground truth of the scene, which the simulator writes while the run continues. Returns what is wrong
   /// with it, or an empty text.
   std::string find_truth(const geometry::Pose& T_map_world);
 

@@ -9,12 +9,12 @@
 
 namespace lapis::evaluator {
 
-/// CPU time and memory of the processes of a run, as they tell them on /diagnostics: the newest values count.
+/// CPU time and memory of the processes of a run, as they publish them on /diagnostics: the newest values count.
 class ProcessCosts {
  public:
   /// @param status of a process of Lapis
   void add(const diagnostic_msgs::msg::DiagnosticStatus& status);
-  /// Fills in cpu_ms_per_frame and peak_rss_mb; without a value where a process did not tell.
+  /// Fills in cpu_ms_per_frame and peak_rss_mb; without a value where a process did not publish one.
   void write_to(RunMetrics& metrics) const;
 
  private:

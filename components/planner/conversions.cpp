@@ -94,7 +94,7 @@ geometry_msgs::msg::Point to_point(const Eigen::Vector3d& p_map) {
   return point;
 }
 
-/// Key-frames that the way would add to the pose graph.
+/// Key-frames that the path would add to the pose graph.
 Marker keyframe_marker(const Candidate& chosen, const std_msgs::msg::Header& header) {
   Marker nodes = marker("hallucinated_keyframes", visualization_msgs::msg::Marker_Constants::SPHERE_LIST, 0, header);
   nodes.scale().x(0.12);

@@ -242,7 +242,7 @@ void PlannerComponent::take_decision(bool waits) {
   explorer_.take(decision, report());
   candidates_.publish(to_message(decision, decisions_, config_.method, header()));
   if (log_ && !log_->write(decision, decisions_, config_.method, stamp_)) {
-    spdlog::error("{}/{} cannot be written; exploration goes on without it", config_.output_dir, kLogFile);
+    spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, kLogFile);
     log_.reset();
   }
 }
@@ -342,7 +342,7 @@ void PlannerComponent::publish_markers() {
 /// With each frame: the controller stops for want of it.
 void PlannerComponent::publish_status() {
   const bool has_changed = explorer_.state() != reported_state_ || explorer_.reason() != reported_reason_;
-  const bool has_decided = decisions_ != reported_decisions_;  // each decision's time is told
+  const bool has_decided = decisions_ != reported_decisions_;  // each decision's time is published
   if (reported_at_ == stamp_ && !has_changed && !has_decided) return;
   if (has_changed) spdlog::info("{}", explorer_.reason());
   reported_at_ = stamp_;

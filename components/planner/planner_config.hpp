@@ -89,11 +89,12 @@ void describe(Field& field, HallucinationConfig& c) {
         "seen again, of which it is as sure as it gets, or more; linear in between");
   field("max_probability", c.max_probability, config::in_range(0.05, 1.0),
         "of a loop closure, however many landmarks are seen again");
-  field("min_loop_way_m", c.min_loop_way_m, config::in_range(0.0, 100.0),
+  field("min_loop_path_m", c.min_loop_path_m, config::in_range(0.0, 100.0),
         "along the pose graph; nearer key-frames make no loop [m]");
+  field.moved("min_loop_way_m", "planner.hallucination.min_loop_path_m");
   field("place_radius_m", c.place_radius_m, config::in_range(0.1, 20.0), "key-frames of one place [m]");
   field("revisit_spacing_m", c.revisit_spacing_m, config::in_range(0.0, 1000.0),
-        "way after a loop closure before its place counts again [m]");
+        "path after a loop closure before its place counts again [m]");
   field("max_places", c.max_places, config::in_range(1, 8), "of a path; the most probable ones");
 }
 
@@ -117,7 +118,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("sigma_limit_voxels", c.decision.sigma_limit_voxels, config::in_range(0.01, 10.0),
         "loops count until the position at a path's end is so exact [voxels]");
   field("max_candidates", c.decision.max_candidates, config::in_range(1, 1000),
-        "whose information is computed; the ones with the shortest ways");
+        "whose information is computed; the ones with the shortest paths");
   field("view_spacing_m", c.decision.view_spacing_m, config::in_range(0.1, 10.0), "between views along a path [m]");
   field("view_columns", c.view_columns, config::in_range(1, 4096), "rays of a view, over the width of the image");
   field("view_rows", c.view_rows, config::in_range(1, 4096), "rays of a view, over its height");
@@ -126,7 +127,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("turn_cost_m_per_rad", c.decision.turn_cost_m_per_rad, config::in_range(0.0, 10.0),
         "of turning at the ends of a path [m/rad]");
   field("alternatives", c.decision.alternatives, config::in_range(0, 3),
-        "other ways to the nearest goal of each frontier, at most");
+        "other paths to the nearest goal of each frontier, at most");
   field("revisit_sigma_m", c.decision.revisit_sigma_m, config::in_range(0.0, 100.0),
         "when the position is less sure, old key-frames are goals, too; 0: never [m]");
   field("information_discount_sigma_m", c.decision.information_discount_sigma_m, config::in_range(0.0, 100.0),
@@ -155,11 +156,11 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("progress_timeout_s", c.explorer.progress_timeout_s, config::in_range(1.0, 600.0),
         "without moving a goal has failed [s]");
   field("slowest_m_s", c.explorer.slowest_m_s, config::in_range(0.01, 5.0),
-        "a way that takes longer than at this speed has failed [m/s]");
+        "a path that takes longer than at this speed has failed [m/s]");
   field("settle_s", c.explorer.settle_s, config::in_range(0.0, 60.0),
-        "after arriving, until the map tells whether the look was in vain [s]");
+        "after arriving, until the map shows whether the view has failed [s]");
   field("dead_reckoning_s", c.explorer.dead_reckoning_s, config::in_range(0.0, 10.0),
-        "by wheels alone before the robot drives back: a turn past a blank wall [s]");
+        "by odometry alone before the robot drives back: a turn past a blank wall [s]");
   field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),
         "without tracking, exploration has failed [s]");
   field("path_spacing_m", c.explorer.path_spacing_m, config::in_range(0.02, 1.0), "between poses of /planner/path [m]");
@@ -168,10 +169,12 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("patience_s", c.explorer.patience_s, config::in_range(0.0, 600.0),
         "for obstacles that may go away before exploration is over [s]");
   field("returns_home", c.explorer.returns_home, config::anything(), "drives to where it started when nothing is left");
+  field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain",
+              "the planner reads it on /semantic_mapper/map_description");
   field.moved("sensor_model", "semantic_mapper.sensor_model",
               "the planner reads it on /semantic_mapper/map_description");
   field("compared_priors", c.surroundings.compared_priors, config::in_range(0.001, 0.999),
-        "instead of the prior of the mapper's sensor model: decisions.csv tells what would have been chosen with each");
+        "instead of the prior of the mapper's sensor model: decisions.csv says what would have been chosen with each");
   field("decision_latency_frames", c.decision_latency_frames, config::in_range(1, 100),
         "from the frame that a decision is made from to the one at which it takes effect");
   field("output_dir", c.output_dir, config::anything(), "folder for decisions.csv; empty: none");

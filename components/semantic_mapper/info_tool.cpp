@@ -73,7 +73,7 @@ MapSums sums_of(const mapping::MapFile& file) {
 ordered_json describe(const mapping::SensorModel& model) {
   return {{"fusion", model.fusion},
           {"hit_gain", model.hit_gain},
-          {"pass_gain", model.pass_gain},
+          {"miss_gain", model.miss_gain},
           {"label_accuracy", model.label_accuracy},
           {"prior_occupied", model.prior_occupied},
           {"prior_votes", model.prior_votes},

@@ -69,7 +69,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   describe_map();
 }
 
-/// Reads the map to go on with; throws with file and remedy.
+/// Reads the map to resume; throws with file and remedy.
 void SemanticMapperComponent::load_map() {
   std::string error;
   resumed_ = mapping::load_map(config_.resume_from, error);
@@ -128,7 +128,7 @@ void SemanticMapperComponent::describe_map() {
   now.session = session_;
   if (described_ == now) return;
   mapping::validate(now);
-  map_description_.publish(messages::to_message(now, header(told_stamp_)));
+  map_description_.publish(messages::to_message(now, header(published_stamp_)));
   described_ = std::move(now);
 }
 
@@ -169,7 +169,7 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   for (const Match match : {depth_match, label_match, confidence_match, info_match}) {
     if (match == Match::kWait) return false;
   }
-  told_stamp_ = now;
+  published_stamp_ = now;
   if (tracked.state() != lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING) {
     drop("slam does not track");
   } else if (depth == nullptr) {
@@ -242,13 +242,13 @@ void SemanticMapperComponent::end_map() {
   if (mapper_ == nullptr) return;
   spdlog::warn("slam began a new map; so does the mapper");
   if (!config_.output_dir.empty()) {
-    if (const auto problem = save()) spdlog::error("map not saved: {}; mapping goes on", *problem);
+    if (const auto problem = save()) spdlog::error("map not saved: {}; mapping continues", *problem);
   }
   mapper_.reset();
   forget_resumed();
 }
 
-/// The first map of the process goes on with the saved one, if there is one.
+/// The first map of the process resumes the saved one, if there is one.
 std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t session) {
   if (resumed_ && !config_.resume_any_session && session != static_cast<std::int64_t>(note(*resumed_, "session"))) {
     spdlog::warn("{} is of another session of slam; a new map begins", config_.resume_from);
@@ -263,7 +263,7 @@ std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t 
   return std::make_unique<SemanticMapper>(config_.map, std::move(resumed_->map));
 }
 
-/// Files of the map before stay under another name; but for those of the map that is gone on with: the new ones hold
+/// Files of the map before stay under another name; but for those of the map that is resumed: the new ones hold
 /// all of it.
 void SemanticMapperComponent::set_old_files_aside() const {
   const std::filesystem::path folder(config_.output_dir);
@@ -290,7 +290,7 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
   saved_stamp_ = stamp;
 }
 
-/// All tiles told so far are over.
+/// All tiles published so far are over.
 void SemanticMapperComponent::begin_epoch(time::Time stamp) {
   for (const auto& [x, y, z] : published_tiles_) {
     lapis_msgs::msg::VoxelTile tile;
@@ -309,11 +309,11 @@ void SemanticMapperComponent::follow_graph(const Graph& graph) {
 
 void SemanticMapperComponent::publish(bool is_final) {
   if (is_final || seconds_since(tiles_stamp_, stamp_) >= config_.tile_period_s) publish_tiles();
-  if (seconds_since(obstacles_stamp_, told_stamp_) >= config_.obstacle_period_s) publish_obstacles();
+  if (seconds_since(obstacles_stamp_, published_stamp_) >= config_.obstacle_period_s) publish_obstacles();
   publish_views(is_final || seconds_since(views_stamp_, stamp_) >= config_.view_period_s);
   if (config_.output_dir.empty() || seconds_since(saved_stamp_, stamp_) < config_.save_period_s) return;
   saved_stamp_ = stamp_;
-  if (const auto problem = save()) spdlog::error("map not saved: {}; mapping goes on", *problem);
+  if (const auto problem = save()) spdlog::error("map not saved: {}; mapping continues", *problem);
 }
 
 void SemanticMapperComponent::publish_tiles() {
@@ -354,8 +354,8 @@ void SemanticMapperComponent::publish_tiles() {
 
 /// Also of frames that could not be integrated, for the robot has to find back to where slam tracks.
 void SemanticMapperComponent::publish_obstacles() {
-  obstacles_stamp_ = told_stamp_;
-  obstacles_.publish(to_message(obstacle_layer_->grid(), header(told_stamp_)));
+  obstacles_stamp_ = published_stamp_;
+  obstacles_.publish(to_message(obstacle_layer_->grid(), header(published_stamp_)));
 }
 
 /// True when a view is due and read by anybody, or when a reader has come since the last look.

@@ -16,7 +16,7 @@
 
 namespace lapis::semantic_mapper {
 
-/// Fuses depth and labels at the poses that slam tells, publishes the map and keeps it on disk.
+/// Fuses depth and labels at the poses that slam publishes, publishes the map and keeps it on disk.
 class SemanticMapperComponent {
  public:
   using Config = SemanticMapperComponentConfig;
@@ -92,7 +92,7 @@ class SemanticMapperComponent {
   std::int64_t session_ = 0;
   std::int64_t epoch_ = 0;
   time::Time stamp_;                       // of the newest integrated frame
-  time::Time told_stamp_;                  // of the newest frame that slam told of
+  time::Time published_stamp_;             // of the newest frame that slam published
   std::optional<time::Time> tiles_stamp_;  // published last
   std::optional<time::Time> views_stamp_;
   std::optional<time::Time> obstacles_stamp_;

@@ -33,8 +33,9 @@ struct SemanticMapperComponentConfig {
 template <class Field>
 void describe(Field& field, ObstacleConfig& c) {
   field("window_s", c.window_s, config::in_range(0.1, 600.0), "what was seen longer ago is forgotten [s]");
-  field("passes_to_clear", c.passes_to_clear, config::in_range(1, 100),
+  field("misses_to_clear", c.misses_to_clear, config::in_range(1, 100),
         "frames that must look through an obstacle before it is gone");
+  field.moved("passes_to_clear", "semantic_mapper.obstacles.misses_to_clear");
 }
 
 template <class Field>
@@ -52,6 +53,7 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("integration", c.map.integration);
   field("frame", c.frame);
   field("sensor_model", c.sensor_model);
+  field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain");
   field("kernel_length_voxels", c.kernel_length_voxels,
         config::in_range(mapping::kMinKernelLength_voxels, mapping::kMaxKernelLength_voxels),
         "of the kernel by which hits vote for the voxels of other hits around them, with sensor_model.fusion: bki");
@@ -63,7 +65,7 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("re_anchor_threshold_voxels", c.map.re_anchor_threshold_voxels, config::in_range(0.0, 10.0),
         "a frame is moved when a point at its median depth is off by more");
   field("re_anchor_work_per_cycle", c.re_anchor_work_per_cycle, config::in_range(1, 1'000'000'000),
-        "frames are moved until their samples and votes exceed this; the next cycle goes on");
+        "frames are moved until their samples and votes exceed this; the next cycle continues");
   field("stored_frames", c.map.stored_frames);
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
         "between pose, depth, labels and camera info of one frame [s]");
@@ -75,7 +77,7 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("obstacle_period_s", c.obstacle_period_s, config::in_range(0.0, 60.0),
         "least time between obstacle grids, by the frames' stamps [s]");
   field("resume_from", c.resume_from, config::anything(),
-        "map.lapis of an earlier run to go on with, beside slam.resume_from; empty: none");
+        "map.lapis of an earlier run to resume, beside slam.resume_from; empty: none");
   field(
       "resume_any_session", c.resume_any_session, config::anything(),
       "with a session that slam.resume_from has made, too; false: a new map begins unless slam still runs that the map "

@@ -29,7 +29,7 @@ geometry::Matrix6d planar_covariance(const Eigen::Matrix3d& covariance) {
   return out;
 }
 
-nav_msgs::msg::Odometry to_message(const WheelSample& sample, const SimulatorFrameIds& ids) {
+nav_msgs::msg::Odometry to_message(const OdometrySample& sample, const SimulatorFrameIds& ids) {
   nav_msgs::msg::Odometry message;
   message.header(messages::header(sample.stamp, ids.odom));
   message.child_frame_id(ids.camera.base);
@@ -85,9 +85,9 @@ SensorMessages to_messages(const SensorFrame& frame, const geometry::PinholeCame
   twist.linear().x(frame.robot.velocity.x());
   twist.linear().y(frame.robot.velocity.y());
   twist.angular().z(frame.turn_rate_rad_s);
-  for (const auto& sample : frame.wheels) {
-    out.wheels.push_back(to_message(sample, ids));
-    out.transforms.push_back(to_transforms(out.wheels.back()));
+  for (const auto& sample : frame.odometry) {
+    out.odometry.push_back(to_message(sample, ids));
+    out.transforms.push_back(to_transforms(out.odometry.back()));
   }
   for (const auto& sample : frame.imu) out.imu.push_back(to_message(sample, ids));
   return out;

@@ -8,7 +8,7 @@
 
 namespace lapis::simulator {
 
-/// Frame and wheels' frame as they go on the wire, with the robot's namespace.
+/// Frame and odometry frame as they go on the wire, with the robot's namespace.
 struct SimulatorFrameIds {
   messages::CameraFrameIds camera;
   std::string odom;
@@ -17,8 +17,8 @@ struct SimulatorFrameIds {
 /// The messages of all that was sensed since the last frame.
 struct SensorMessages {
   messages::CameraMessages camera;
-  std::vector<nav_msgs::msg::Odometry> wheels;
-  std::vector<tf2_msgs::msg::TFMessage> transforms;  ///< odom -> base_link, one with each of `wheels`
+  std::vector<nav_msgs::msg::Odometry> odometry;
+  std::vector<tf2_msgs::msg::TFMessage> transforms;  ///< odom -> base_link, one with each of `odometry`
   std::vector<sensor_msgs::msg::Imu> imu;
 };
 

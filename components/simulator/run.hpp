@@ -39,7 +39,7 @@ class Run {
   /// Number of frames so far, and the time of the last one.
   std::uint64_t frames() const { return step_ ? step_->frame.tick : 0; }
   time::Time stamp() const { return step_ ? step_->frame.stamp : time::Time{}; }
-  /// True when contact with an obstacle began or ended with the last frame; the first one tells, too.
+  /// True when contact with an obstacle began or ended with the last frame; the first one counts, too.
   bool has_contact_changed() const { return has_contact_changed_; }
   /// Contacts so far.
   std::uint64_t collisions() const { return collisions_; }

@@ -64,7 +64,7 @@ std::string to_yaml(const RunSummary& summary, const World& world, const StartPo
   for (const auto& [name, tick] : summary.demoted) {
     text += (text.back() == '{' ? "" : ", ") + name + ": " + std::to_string(tick);
   }
-  text += "}  # participants without which the run went on, from which tick on\n";
+  text += "}  # participants without which the run continued, from which tick on\n";
   return text;
 }
 

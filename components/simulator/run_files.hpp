@@ -29,7 +29,7 @@ struct RunSummary {
   double hardest_push_m_s = 0.0;
   std::optional<PlannerEnd> planner;             ///< when the run waits for its end and it has spoken
   std::map<std::string, double> cpu_ms;          ///< by participant of lock-step
-  std::map<std::string, std::uint64_t> demoted;  ///< participants without which the run went on, from which tick on
+  std::map<std::string, std::uint64_t> demoted;  ///< participants without which the run continued, from which tick on
 };
 
 /// simulation.yaml of the run folder: what is needed to repeat the run, and how it went.
@@ -41,7 +41,7 @@ std::filesystem::path truth_folder(const SimulatorConfig& config);
 mapping::MapDescription default_map(const SimulatorConfig& config);
 void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const StartPose& start,
             const SimulatorConfig& config);
-/// Writes the ground truth of a scene, as far as it does not depend on the run's way, into a folder whose parent
+/// Writes the ground truth of a scene, as far as it does not depend on the run's path, into a folder whose parent
 /// exists.
 /// @throws std::runtime_error naming the file that cannot be written
 void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config, double resolution_m,

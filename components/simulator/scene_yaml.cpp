@@ -293,9 +293,9 @@ SceneSpec read_scene_yaml(const std::filesystem::path& file) {
 
 std::vector<Eigen::Vector2d> read_tour_yaml(const std::filesystem::path& file) {
   YamlEntry root(file, load_yaml(file), "tour");
-  auto way_points = polygon(root, "tour");
+  auto waypoints = polygon(root, "tour");
   root.done();
-  return way_points;
+  return waypoints;
 }
 
 mapping::LabelList read_label_list(const std::filesystem::path& file) {

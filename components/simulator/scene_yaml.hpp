@@ -13,7 +13,7 @@ namespace lapis::simulator {
 ///   building makes sense is checked by build_scene.
 SceneSpec read_scene_yaml(const std::filesystem::path& file);
 
-/// Reads the way-points of a tour: "tour: [[x, y], ...]".
+/// Reads the waypoints of a tour: "tour: [[x, y], ...]".
 /// @throws std::runtime_error naming file and line
 std::vector<Eigen::Vector2d> read_tour_yaml(const std::filesystem::path& file);
 

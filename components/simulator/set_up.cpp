@@ -88,7 +88,7 @@ SensorConfig sensor_config(const SimulatorConfig& config) {
   out.depth.noise_multiplier = noise.depth_multiplier;
   out.labels.model = noise.labels == "none" ? LabelModel::kNone : LabelModel::kDefault;
   if (!noise.color) out.color.sigma = 0.0;
-  if (!noise.wheels) out.wheels.scale = 0.0;
+  if (!noise.odometry) out.odometry.scale = 0.0;
   out.has_imu = config.imu;
   apply_drift(noise.drift == "hard" ? DriftPreset::kHard : DriftPreset::kNominal, out);
   return out;
@@ -169,13 +169,13 @@ TourConfig tour_config(const SimulatorConfig& config) {
 
 std::optional<TourFollower> plan_tour(const World& world, const StartPose& start, const SimulatorConfig& config) {
   if (config.tour.empty()) return std::nullopt;
-  const auto way_points = config.tour == "bundled" ? world.scene().tour : read_tour_yaml(config.tour);
-  if (way_points.empty()) {
+  const auto waypoints = config.tour == "bundled" ? world.scene().tour : read_tour_yaml(config.tour);
+  if (waypoints.empty()) {
     throw std::runtime_error("scene " + world.scene().name + " has no tour; give a file with --tour FILE");
   }
   const TourConfig setting = tour_config(config);
   const NavMap& map = world.nav_map();
-  Tour tour = plan_tour(map, start.position, way_points, setting);
+  Tour tour = plan_tour(map, start.position, waypoints, setting);
   if (config.tour_revisit_every_m > 0.0) {
     const auto more = with_revisits(map, tour, config.tour_revisit_every_m, setting.path);
     tour = plan_tour(map, start.position, more, setting);

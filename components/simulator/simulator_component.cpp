@@ -51,7 +51,7 @@ void describe_scene(const World& world) {
 void SimulatorComponent::add_options(CLI::App& app, Config& config) {
   app.add_option("scene", config.scene, "name of a bundled scene, or a file or folder (docs/scenes.md)");
   app.add_option("--seed", config.seed, "draws start, noise, systematic errors, label confusion, jitter");
-  app.add_option("--tour", config.tour, "\"bundled\" or a file with way-points: the robot drives by itself");
+  app.add_option("--tour", config.tour, "\"bundled\" or a file with waypoints: the robot drives by itself");
   app.add_option("--duration", config.duration_s, "end after this much simulated time [s]");
   app.add_option("--mode", config.mode, "lockstep or freerun");
   app.add_flag("--validate", config.validate, "check the scene, print a table, write its navigation map, and exit");
@@ -67,7 +67,7 @@ std::optional<int> SimulatorComponent::run_tool(const Config& config) { return r
 SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), world_(load_world(config, context)), start_(start_pose(world_, config)),
       tour_(plan_tour(world_, start_, config)), camera_(context, {.has_labels = true, .has_ground_truth = true}),
-      wheels_(context.advertise(topics::kWheelOdometry)), transforms_(context.advertise(topics::kTransforms)),
+      odometry_(context.advertise(topics::kWheelOdometry)), transforms_(context.advertise(topics::kTransforms)),
       collision_(context.advertise(topics::kCollision)) {
   if (!config_.output_dir.empty()) {
     files::require_writable_folder(config_.output_dir, "simulator.output_dir");
@@ -100,7 +100,7 @@ void SimulatorComponent::serve() {
     return answer("paused at tick " + tick());
   });
   context_.serve(topics::kRun, [this, answer, tick](const auto&) {
-    go_on();
+    resume();
     return answer("running from tick " + tick());
   });
   context_.serve(topics::kStep, [this, answer, tick](const auto&) {
@@ -142,7 +142,7 @@ void SimulatorComponent::pause() {
   running_since_.reset();
 }
 
-void SimulatorComponent::go_on() {
+void SimulatorComponent::resume() {
   is_paused_ = false;
   steps_ = 0;
   due_ = Clock::now();
@@ -238,7 +238,7 @@ void SimulatorComponent::tick() {
 /// Nothing in the last tick, which has no frame.
 void SimulatorComponent::publish_again() {
   if (has_ended_) return;
-  for (const auto& message : run_->messages()->wheels) wheels_.publish(message);
+  for (const auto& message : run_->messages()->odometry) odometry_.publish(message);
   for (const auto& message : run_->messages()->transforms) transforms_.publish(message);
   for (const auto& message : run_->messages()->imu) imu_->publish(message);
   camera_.publish(run_->messages()->camera);

@@ -40,7 +40,7 @@ class SimulatorComponent {
   void note_map(const lapis_msgs::msg::MapDescription& message);
   void note_planner(const lapis_msgs::msg::PlannerStatus& message);
   void pause();
-  void go_on();
+  void resume();
   double wall_s() const;
   void begin();
   void work();
@@ -61,7 +61,7 @@ class SimulatorComponent {
   const StartPose start_;
   const std::optional<TourFollower> tour_;  // at its beginning
   runtime::CameraPublisher camera_;
-  dds::Publisher<nav_msgs::msg::Odometry>& wheels_;
+  dds::Publisher<nav_msgs::msg::Odometry>& odometry_;
   dds::Publisher<tf2_msgs::msg::TFMessage>& transforms_;
   dds::Publisher<std_msgs::msg::Bool>& collision_;
   dds::Publisher<sensor_msgs::msg::Imu>* imu_ = nullptr;

@@ -14,7 +14,7 @@ struct NoiseConfig {
   double depth_multiplier = 1.0;
   std::string labels = "default";
   bool color = true;
-  bool wheels = true;
+  bool odometry = true;
   std::string drift = "nominal";
 };
 
@@ -59,9 +59,10 @@ void describe(Field& field, NoiseConfig& c) {
   field("depth_multiplier", c.depth_multiplier, config::in_range(0.0, 10.0), "scales its standard deviations");
   field("labels", c.labels, config::one_of({"none", "default"}), "model of the segmentation");
   field("color", c.color, config::anything(), "noise of the colour camera");
-  field("wheels", c.wheels, config::anything(), "noise and systematic errors of wheel odometry");
+  field("odometry", c.odometry, config::anything(), "noise and systematic errors of wheel odometry");
+  field.moved("wheels", "simulator.noise.odometry");
   field("drift", c.drift, config::one_of({"nominal", "hard"}),
-        "how hard localisation is: texture, blur, noise and dropouts of depth, and wheel noise together");
+        "how hard localisation is: texture, blur, noise and dropouts of depth, and noise of odometry together");
 }
 
 template <class Field>
@@ -89,11 +90,11 @@ void describe(Field& field, SimulatorConfig& c) {
   field("duration_s", c.duration_s, config::in_range(0.0, 1e6),
         "simulated time after which the run ends [s]; 0: never");
   field("ends_when_explored", c.ends_when_explored, config::anything(),
-        "the run ends, too, when /planner/status tells DONE or FAILED");
+        "the run ends, too, when /planner/status says DONE or FAILED");
   field("tour", c.tour, config::anything(),
-        "\"bundled\", or a file with way-points, that the robot drives by itself; empty: it obeys /cmd_vel");
+        "\"bundled\", or a file with waypoints, that the robot drives by itself; empty: it obeys /cmd_vel");
   field("tour_revisit_every_m", c.tour_revisit_every_m, config::in_range(0.0, 1000.0),
-        "after so much way each, the tour goes back to an old place and comes back; 0: never [m]");
+        "after a path of this length each, the tour goes back to an old place and comes back; 0: never [m]");
   field("start", c.start, config::anything(), "\"x y yaw_deg\" [m, m, deg]; empty: drawn by the seed");
   field("output_dir", c.output_dir, config::anything(),
         "run folder for simulation.yaml and ground_truth/; empty: none");

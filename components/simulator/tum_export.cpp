@@ -93,7 +93,7 @@ int export_tum(const SimulatorConfig& config) {
     }
     is_over = tour->is_finished() || (config.duration_s > 0.0 && frame.stamp.seconds() >= config.duration_s);
     if (frame.tick % kProgressFrames == 0) {
-      std::cout << "frame " << frame.tick << ", way-point " << tour->leg() << '\n' << std::flush;
+      std::cout << "frame " << frame.tick << ", waypoint " << tour->leg() << '\n' << std::flush;
     }
   }
   writer.finish();

@@ -50,7 +50,7 @@ std::optional<JoinedFrame> FrameInput::oldest(const runtime::Cycle& cycle) {
   const auto info_match = info_.match(stamp, tolerance_, is_last_chance, info);
   if (depth_match == Match::kWait || info_match == Match::kWait) return std::nullopt;
   const bool is_whole = depth != nullptr && info != nullptr;
-  if (!is_whole && !known && !is_last_chance) return std::nullopt;  // the next colour image tells what is near
+  if (!is_whole && !known && !is_last_chance) return std::nullopt;  // the next colour image shows what is near
   const auto frame_id = [](const auto& message) { return message.header().frame_id(); };
   JoinedFrame frame{stamp, std::visit(frame_id, color), &color, depth, info, ""};
   if (depth == nullptr) {

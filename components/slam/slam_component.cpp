@@ -45,7 +45,7 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
 
-/// Reads the map to go on with; throws with file and remedy.
+/// Reads the map to resume; throws with file and remedy.
 void SlamComponent::load_map() {
   std::string error;
   resumed_ = read_slam_file(config_.resume_from, error);
@@ -109,7 +109,7 @@ bool SlamComponent::prepare(const JoinedFrame& first) {
   return true;
 }
 
-/// Files of the map before stay under another name; but for the file that is gone on with: the new one holds all of it.
+/// Files of the map before stay under another name; but for the file that is resumed: the new one holds all of it.
 void SlamComponent::set_old_files_aside() {
   for (const char* name : {kGraphFile, kKeyframesFile, kMapFile}) {
     const auto file = std::filesystem::path(config_.output_dir) / name;
@@ -119,7 +119,7 @@ void SlamComponent::set_old_files_aside() {
   }
 }
 
-/// The first map of the process goes on with the saved one, if there is one.
+/// The first map of the process resumes the saved one, if there is one.
 std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
   if (!resumed_) return std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, frame_.T_base_camera);
   saved_camera_ = resumed_->state.keyframes.back().camera;
@@ -180,7 +180,7 @@ bool SlamComponent::use_odometry(time::Time stamp, const geometry::Pose& T_odom_
   return true;
 }
 
-/// A frame that cannot be used is one that was not tracked, and those who wait for its pose are told so.
+/// A frame that cannot be used is one that was not tracked, and those who wait for its pose learn so.
 void SlamComponent::drop(time::Time stamp, const std::string& reason) {
   ++frames_total_;
   ++frames_dropped_;
@@ -195,7 +195,7 @@ void SlamComponent::end_map() {
   if (slam_ == nullptr) return;  // none has begun since the camera last started anew
   spdlog::warn("the camera's stamps went back, so it has started anew: a new map begins");
   slam_->settle();
-  if (const auto problem = write_files()) spdlog::error("{}; tracking goes on", *problem);
+  if (const auto problem = write_files()) spdlog::error("{}; tracking continues", *problem);
   slam_.reset();
   save_stamp_.reset();
   saved_version_ = 0;
@@ -221,7 +221,8 @@ void SlamComponent::publish_odometry(const TrackingResult& result) {
   publish_transforms(message);
 }
 
-/// A robot with odometry has odom -> base_link from there; then map -> odom is told as long as the odometry is known.
+/// A robot with odometry has odom -> base_link from there; then map -> odom is published as long as the odometry is
+/// known.
 void SlamComponent::publish_transforms(const nav_msgs::msg::Odometry& odometry) {
   if (config_.publish_odom_frame == "always" || (config_.publish_odom_frame == "auto" && !has_odometry_)) {
     transforms_.publish(to_transforms(odometry, ids_));
@@ -262,7 +263,7 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   }
   context_.status().value("frames", frames_total_);
   context_.status().value("frames_tracked", frames_tracked_);
-  context_.status().value("wheel_slips", slam_->slip_count());
+  context_.status().value("odometry_slips", slam_->slip_count());
   const bool has_changed = !reported_ || reported_->second != result.state;
   const bool was_tracking = !reported_ || reported_->second == TrackingState::kTracking;
   if (has_changed && !is_tracking && was_tracking) spdlog::warn("tracking lost: {}", result.reason);
@@ -305,7 +306,7 @@ void SlamComponent::note_save(const std::optional<std::string>& problem) {
   if (!problem) return;
   saved_version_ = 0;
   context_.status().count("map not saved");
-  spdlog::error("map not saved: {}; tracking goes on", *problem);
+  spdlog::error("map not saved: {}; tracking continues", *problem);
 }
 
 SlamFile SlamComponent::saved_map() const { return {session_, slam_->state()}; }

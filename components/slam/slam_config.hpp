@@ -61,7 +61,7 @@ void describe(Field& field, SurfaceConfig& c) {
 template <class Field>
 void describe(Field& field, TrackerConfig& c) {
   field("min_matches", c.min_matches, config::in_range(6, 500),
-        "projection matches below which the next way of matching is tried");
+        "projection matches below which the next kind of matching is tried");
   field("min_inliers", c.min_inliers, config::in_range(6, 200), "fewer after the refinement is lost");
   field("min_inlier_share", c.min_inlier_share, config::in_range(0.0, 1.0),
         "of the matches; with fewer the view repeats itself or is noise");
@@ -72,7 +72,7 @@ void describe(Field& field, TrackerConfig& c) {
   field("ransac_error_px", c.ransac_error_px, config::in_range(0.5, 20), "PnP inlier threshold");
   field("refine_iterations", c.refine_iterations, config::in_range(1, 50), "Levenberg-Marquardt steps per round");
   field("max_blind_frames", c.max_blind_frames, config::in_range(1, 1000),
-        "frames in a row with enough features but no pose, before the map goes on where odometry says");
+        "frames in a row with enough features but no pose, before the map continues where odometry says");
   field("max_prediction_s", c.max_prediction_s, config::in_range(0.01, 5), "longest gap that the motion model bridges");
 }
 
@@ -118,7 +118,7 @@ void describe(Field& field, LoopConfig& c) {
         "key-frames within which a second one has to say the same");
   field("max_disagreement_m", c.max_disagreement_m, config::in_range(0.01, 2), "between the two [m]");
   field("max_disagreement_rad", c.max_disagreement_rad, config::in_range(0.01, 1), "between the two [rad]");
-  field("spacing_m", c.spacing_m, config::in_range(0, 100), "way between pairs of loops [m]");
+  field("spacing_m", c.spacing_m, config::in_range(0, 100), "path between pairs of loops [m]");
   field("latency_frames", c.latency_frames, config::in_range(1, 1000), "from a loop to the corrected map");
 }
 
@@ -133,7 +133,7 @@ void describe(Field& field, RelocalizationConfig& c) {
         "frames that have to find the same pose again, unless motion leads there");
   field("near_m", c.near_m, config::in_range(0.01, 5), "distance of poses that are the same [m]");
   field("near_rad", c.near_rad, config::in_range(0.01, 3), "angle of poses that are the same [rad]");
-  field("speed_m_s", c.speed_m_s, config::in_range(0, 10), "between such frames, when no wheels tell [m/s]");
+  field("speed_m_s", c.speed_m_s, config::in_range(0, 10), "between such frames, without odometry [m/s]");
   field("patience_s", c.patience_s, config::in_range(0, 10),
         "without a pose, after which one that can be reached from the last is still believed at once [s]");
   field("memory_s", c.memory_s, config::in_range(0.01, 10), "longest time between such frames [s]");
@@ -141,10 +141,10 @@ void describe(Field& field, RelocalizationConfig& c) {
 
 template <class Field>
 void describe(Field& field, OdometryConfig& c) {
-  field("distance_sigma", c.distance_sigma, config::in_range(0, 1), "of wheel odometry along the way, after 1 m [m]");
+  field("distance_sigma", c.distance_sigma, config::in_range(0, 1), "of wheel odometry along the path, after 1 m [m]");
   field("turn_sigma", c.turn_sigma, config::in_range(0, 1), "of its heading, after a turn of 1 rad [rad]");
   field("turn_sigma_per_m", c.turn_sigma_per_m, config::in_range(0, 1), "of its heading, after 1 m [rad]");
-  field("scale_sigma", c.scale_sigma, config::in_range(0, 0.5), "share of way and turn by which the wheels always err");
+  field("scale_sigma", c.scale_sigma, config::in_range(0, 0.5), "share of path and turn by which odometry always errs");
   field("vertical_sigma", c.vertical_sigma, config::in_range(0, 1), "how far the floor rises or sinks in 1 m [m]");
   field("tilt_sigma", c.tilt_sigma, config::in_range(0, 1), "change of roll and pitch in 1 m [rad]");
   field("least_sigma", c.least_sigma, config::in_range(1e-6, 0.1), "of every motion [m], [rad]");
@@ -152,7 +152,7 @@ void describe(Field& field, OdometryConfig& c) {
   field("max_speed_m_s", c.max_speed_m_s, config::in_range(0.1, 50), "faster steps are no motion of the robot [m/s]");
   field("max_turn_rate_rad_s", c.max_turn_rate_rad_s, config::in_range(0.1, 100), "the same [rad/s]");
   field("max_disagreement", c.max_disagreement, config::in_range(1, 100),
-        "with vision between key-frames, in sigmas; wheels that disagree more have slipped and are left out");
+        "with vision between key-frames, in sigmas; odometry that disagrees more counts as slip and is left out");
 }
 
 template <class Field>
@@ -187,7 +187,7 @@ void describe(Field& field, SlamComponentConfig& c) {
   field("output_dir", c.output_dir, config::anything(),
         "folder for slam.lapis, pose_graph.g2o and keyframes.txt; empty: none");
   field("resume_from", c.resume_from, config::anything(),
-        "slam.lapis of an earlier run, whose map is gone on with; empty: none");
+        "slam.lapis of an earlier run, whose map is resumed; empty: none");
   field("autosave_period_s", c.autosave_period_s, config::in_range(0.0, 86400.0),
         "time between saves of slam.lapis, by the frames' stamps; 0: only at the end [s]");
 }

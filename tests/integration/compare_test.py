@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""compare.sh: variants side by side, what is done is not done again, and a run that fails is told."""
+"""compare.sh: variants side by side, what is done is not done again, and a run that fails is reported."""
 import chain
 
 
@@ -30,7 +30,7 @@ class CompareTest(chain.ChainTest):
         for row in rows:
             self.assertIn(row, again)
 
-    def test_a_variant_that_cannot_run_is_told(self):
+    def test_a_variant_that_cannot_run_is_reported(self):
         output = self.compare("good", "bad semantic_mapper.resolution_m=7", status=1)
         self.assertIn("semantic_mapper.resolution_m", output)
 

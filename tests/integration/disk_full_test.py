@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""No space left while a map is saved: the error is clear, the old file stays whole, the process goes on."""
+"""No space left while a map is saved: the error is clear, the old file stays whole, the process continues."""
 import errno
 import signal
 import unittest
@@ -114,7 +114,7 @@ class MapperDiskFullTest(DiskFullTest):
         self.assertIn("No space left on device", answer)
         before = self.saved_map()
         frames = self.integrated()
-        self.assertTrue(self.mapper.wait_for_text("mapping goes on"), self.mapper.output())
+        self.assertTrue(self.mapper.wait_for_text("mapping continues"), self.mapper.output())
         self.wait_for_frames(frames + 20)
         self.assertIn("save refused", self.save())
         self.assertEqual(self.saved_map(), before, "the old file has been touched")

@@ -51,9 +51,9 @@ class ExploreCase(chain.ChainTest):
         decisions = collections.defaultdict(list)
         for row in table(folder / "decisions.csv"):
             decisions[int(row["decision"])].append(row)
-        told = chain.metrics_of(folder)["decisions"]
-        self.assertGreater(told, 5)
-        self.assertLessEqual(max(decisions), told)
+        reported = chain.metrics_of(folder)["decisions"]
+        self.assertGreater(reported, 5)
+        self.assertLessEqual(max(decisions), reported)
         for number, rows in decisions.items():
             self.assertEqual([int(row["candidate"]) for row in rows], list(range(len(rows))), number)
             possible = [row for row in rows if not row["rejection"]]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Each process is killed in turn while a recording plays in real time: the others go on, and the restarted one soon
+"""Each process is killed in turn while a recording plays in real time: the others continue, and the restarted one soon
 publishes what it computed from inputs that are newer than its restart."""
 import time
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""replay.sh when something goes wrong: it says what, ends everything it started, and its status tells."""
+"""replay.sh when something goes wrong: it says what, ends everything it started, and its status says so."""
 import os
 import signal
 

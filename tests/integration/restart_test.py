@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 """explore.sh --restart: each process is killed in turn while the robot explores. In lock-step exploration completes; by
-the wall clock the robot is also told to stand still within 300 ms of the last pose, map or path, and goes on after."""
+the wall clock the robot has to stand still, too, within 300 ms of the last pose, map or path, and continues after."""
 import os
 import re
 import signal
@@ -41,7 +41,7 @@ class RestartCase(chain.ChainTest):
         os.kill(pids[0], signal.SIGKILL)
 
     def wait_for_progress(self, run, lines=2):
-        """Waits until the evaluator has told so often where the robot is."""
+        """Waits until the evaluator has reported so often where the robot is."""
         begin = len(run.lines())
         progress = re.compile(r"^\d+ s, .* m driven")
         is_going_on = run.wait_for(lambda all_lines: sum(bool(progress.match(line))
@@ -112,7 +112,7 @@ class LongRestartTest(RestartCase):
         scene.write_text(chain.FLAT.replace("[4.12, 0, 5.6, 3]", "[4.12, 0, 10, 3]"), encoding="utf-8")
         run = self.explore("--scene", scene, "--method", "nearest", "--duration", "200",
                            "--set", "semantic_mapper.save_period_s=1")
-        for victim in VICTIMS:  # soon one after the other: who dies when all is explored has nothing to go on with
+        for victim in VICTIMS:  # soon one after the other: who dies when all is explored has nothing to resume
             self.wait_for_progress(run, lines=2 if victim == "slam" else 1)
             if victim == "semantic_mapper":
                 self.wait_for_saved_maps(run)
@@ -127,7 +127,7 @@ class LongRestartTest(RestartCase):
         for victim in VICTIMS:
             self.assertIn("is started again", self.log_of(victim))
             self.assertIn(f"  {victim}: 1\n", manifest.split("restarts:\n")[1])
-        # The mapper goes on with its map, slam begins another one.
+        # The mapper resumes its map, slam begins another one.
         self.assertRegex(self.log_of("semantic_mapper"), r"map\.lapis: [1-9]\d* frames, [1-9]\d* blocks")
         self.assertTrue((self.folder / "run/map.1.lapis").is_file())
 

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""A recording goes on in an earlier run's maps: slam finds its place there, and the others take the new session."""
+"""A recording continues in an earlier run's maps: slam finds its place there, and the others take the new session."""
 import json
 import subprocess
 

@@ -14,7 +14,7 @@ int main() {
   lapis::test::TopicProbe probe("camera");
   lapis::test::CameraFeed feed(probe);
   probe.participant().announce_graph();
-  constexpr int kTurningPoint = 60;  // there and back again, stamps go on
+  constexpr int kTurningPoint = 60;  // there and back again, stamps continue
   auto due = std::chrono::steady_clock::now();
   for (int index = 0; stopped == 0; ++index) {
     const int phase = index % (2 * kTurningPoint);

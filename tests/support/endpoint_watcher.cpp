@@ -19,7 +19,7 @@ std::string text_of(const Bytes& bytes) {
   return std::string(bytes.begin(), bytes.end());
 }
 
-// The last byte of an entity id tells the kind (DDSI-RTPS 2.3, table 9.1).
+// The last byte of an entity id says the kind (DDSI-RTPS 2.3, table 9.1).
 bool has_key(const dds::Gid& gid) {
   constexpr std::uint8_t kWriterWithKey = 0x02;
   constexpr std::uint8_t kReaderWithKey = 0x07;
@@ -108,7 +108,7 @@ class EndpointWatcher::Listener : public compat::fdds::DomainParticipantListener
     std::erase_if(participants, [&](const SeenParticipant& participant) { return participant.gid == gid; });
   }
   void add(SeenEndpoint endpoint) {
-    // DDS tells of the participant's own endpoints, too.
+    // DDS announces the participant's own endpoints, too.
     if (std::equal(own_.begin(), own_.begin() + dds::kGidPrefixBytes, endpoint.gid.begin())) return;
     const std::lock_guard lock(mutex);
     endpoints.push_back(std::move(endpoint));

@@ -9,7 +9,7 @@
 
 namespace lapis::test {
 
-/// A writer or reader as DDS discovery tells others of it. History depth is not part of that.
+/// A writer or reader as DDS discovery announces it to others. History depth is not part of that.
 struct SeenEndpoint {
   bool is_writer = false;
   std::string topic;  ///< DDS name, "rt/slam/odometry"

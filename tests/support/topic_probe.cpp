@@ -42,7 +42,8 @@ bool TopicProbe::wait_until_matched(std::size_t peers, Seconds deadline) {
       deadline);
 }
 
-// Discovery tells of readers in the order of their creation, and reliably. So who sends to the newest knows all others.
+// Discovery announces readers in the order of their creation, and reliably. So who sends to the newest knows all
+// others.
 bool TopicProbe::wait_until_known_by(const std::string& component, Seconds deadline) {
   using Graph = rmw_dds_common::msg::ParticipantEntitiesInfo;
   bool is_known = false;

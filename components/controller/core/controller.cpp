@@ -93,7 +93,7 @@ Decision Controller::decide(time::Time now, double elapsed_s) {
     lost_at_.reset();
     return follow(now, elapsed_s);
   }
-  way_.reset();
+  local_path_.reset();
   moved_at_.reset();
   if (track_) return stop_for(*stale, now);
   recovery_ = Recovery::kNone;
@@ -119,7 +119,7 @@ Decision Controller::follow(time::Time now, double elapsed_s) {
   is_arrived_ = track_->left_m() <= config_.look_ahead_m && to_end_m <= tolerance_m;
   if (is_arrived_) return align(elapsed_s);
   const Obstacles obstacles = map_.obstacles_near(T_map_base_, planner_.fan().reach_m());
-  way_ = find_way(obstacles);
+  local_path_ = find_local_path(obstacles);
   const Recovery next = next_phase(obstacles, now);
   if (next != recovery_) enter(next, now);
   return recovery_ == Recovery::kNone ? drive(obstacles, elapsed_s) : recover(elapsed_s);
@@ -127,7 +127,7 @@ Decision Controller::follow(time::Time now, double elapsed_s) {
 
 /// Where the path ends the robot turns to the last pose's heading.
 Decision Controller::align(double elapsed_s) {
-  way_.reset();
+  local_path_.reset();
   moved_at_.reset();
   const double error_rad = wrapped(yaw_of(track_->end()) - yaw_of(T_map_base_));
   if (std::abs(error_rad) <= config_.heading_tolerance_rad) {
@@ -138,35 +138,37 @@ Decision Controller::align(double elapsed_s) {
   return {State::kFollowing, "turns to the heading at the path's end", command, 0.0, {}};
 }
 
-/// Towards a point of the path some way ahead; where no way leads there, towards one beyond what may stand in the way,
-/// or towards a nearer one.
-std::optional<Way> Controller::find_way(const Obstacles& obstacles) const {
+/// Towards a point some distance ahead on the path; where no free path leads there, towards one beyond what may stand
+/// in the way, or towards a nearer one.
+std::optional<LocalPath> Controller::find_local_path(const Obstacles& obstacles) const {
   for (const double share : {1.0, 2.0, 0.5}) {
-    if (auto way = planner_.choose(obstacles, goal_ahead(share * config_.look_ahead_m), way_)) return way;
+    if (auto local_path = planner_.choose(obstacles, goal_ahead(share * config_.look_ahead_m), local_path_))
+      return local_path;
   }
   return std::nullopt;
 }
 
 Decision Controller::drive(const Obstacles& obstacles, double elapsed_s) const {
   Velocity wanted;
-  if (way_->heading_rad != 0.0) {
-    wanted.turn_rad_s = turn_rate(way_->heading_rad);
+  if (local_path_->heading_rad != 0.0) {
+    wanted.turn_rad_s = turn_rate(local_path_->heading_rad);
   } else {
-    wanted.forward_m_s = speed_limit(*way_, obstacles);
-    wanted.turn_rad_s = way_->curvature_per_m * wanted.forward_m_s;
+    wanted.forward_m_s = speed_limit(*local_path_, obstacles);
+    wanted.turn_rad_s = local_path_->curvature_per_m * wanted.forward_m_s;
   }
   Decision decision{State::kFollowing, "follows the path", ramped(last_, wanted, elapsed_s, limits_), 0.0, {}};
-  for (const PlanarPose& T_base_pose : way_->poses) decision.way.push_back(T_map_base_ * T_base_pose);
+  for (const PlanarPose& T_base_pose : local_path_->poses) decision.local_path.push_back(T_map_base_ * T_base_pose);
   return decision;
 }
 
-/// The robot can stop before the end of the path, of the free way, and of what it drives on until it has steered.
-double Controller::speed_limit(const Way& way, const Obstacles& obstacles) const {
+/// The robot can stop before the end of the path, of the free path, and of what it drives on until it has steered.
+double Controller::speed_limit(const LocalPath& local_path, const Obstacles& obstacles) const {
   double limit = limits_.max_speed_m_s;
   const double turn_limit = kTurnShare * limits_.max_turn_rate_rad_s;
-  if (std::abs(way.curvature_per_m) * limit > turn_limit) limit = turn_limit / std::abs(way.curvature_per_m);
+  if (std::abs(local_path.curvature_per_m) * limit > turn_limit)
+    limit = turn_limit / std::abs(local_path.curvature_per_m);
   limit = std::min(limit, std::max(kCreep_m_s, stopping_speed(track_->left_m(), limits_)));
-  limit = std::min(limit, stopping_speed(way.free_length_m, limits_));
+  limit = std::min(limit, stopping_speed(local_path.free_length_m, limits_));
   if (last_.forward_m_s > kCreep_m_s) {
     const double ahead_m = planner_.free_length_m(obstacles, last_.turn_rad_s / last_.forward_m_s);
     limit = std::min(limit, stopping_speed(ahead_m, limits_));
@@ -187,25 +189,25 @@ Controller::Recovery Controller::next_phase(const Obstacles& obstacles, time::Ti
   const PlanarPose T_phase_base = T_map_phase_.inverse() * T_map_base_;
   switch (recovery_) {
     case Recovery::kNone:
-      if (!way_) return has_tried() ? Recovery::kNoWay : Recovery::kWaiting;
+      if (!local_path_) return has_tried() ? Recovery::kNoPath : Recovery::kWaiting;
       if (is_stuck(now)) return has_tried() || !may_back_up(obstacles) ? Recovery::kStuck : Recovery::kBackingUp;
       return Recovery::kNone;
     case Recovery::kWaiting:
-      if (way_) return Recovery::kNone;
+      if (local_path_) return Recovery::kNone;
       if (phase_s < config_.patience_s) return Recovery::kWaiting;
       return may_back_up(obstacles) ? Recovery::kBackingUp : Recovery::kTurning;
     case Recovery::kBackingUp:
       if (T_phase_base.translation().norm() < config_.back_up_m && phase_s < kPhasePatience_s && may_back_up(obstacles))
         return Recovery::kBackingUp;
       tried_at_ = T_map_phase_.translation();
-      return way_ ? Recovery::kNone : Recovery::kTurning;
+      return local_path_ ? Recovery::kNone : Recovery::kTurning;
     case Recovery::kTurning:
-      if (way_) return Recovery::kNone;
+      if (local_path_) return Recovery::kNone;
       if (std::abs(yaw_of(T_phase_base)) < config_.recovery_turn_rad && phase_s < kPhasePatience_s)
         return Recovery::kTurning;
       tried_at_ = T_map_base_.translation();
-      return Recovery::kNoWay;
-    case Recovery::kNoWay: return way_ ? Recovery::kNone : Recovery::kNoWay;
+      return Recovery::kNoPath;
+    case Recovery::kNoPath: return local_path_ ? Recovery::kNone : Recovery::kNoPath;
     case Recovery::kStuck: return Recovery::kStuck;
   }
   return Recovery::kNone;
@@ -222,28 +224,28 @@ void Controller::enter(Recovery phase, time::Time now) {
 Decision Controller::recover(double elapsed_s) const {
   Decision decision{State::kFollowing, "", ramped(last_, recovery_velocity(), elapsed_s, limits_), 0.0, {}};
   switch (recovery_) {
-    case Recovery::kTurning: decision.reason = "no free way: looks around"; break;
-    case Recovery::kBackingUp: decision.reason = "no free way: backs up"; break;
-    case Recovery::kNoWay:
+    case Recovery::kTurning: decision.reason = "no free path: looks around"; break;
+    case Recovery::kBackingUp: decision.reason = "no free path: backs up"; break;
+    case Recovery::kNoPath:
       decision.state = State::kBlocked;
-      decision.reason = "no free way along the path";
+      decision.reason = "no free path along the planner's path";
       break;
     case Recovery::kStuck:
       decision.state = State::kBlocked;
-      decision.reason = "no progress, although the way looks free";
+      decision.reason = "no progress, although the path looks free";
       break;
-    default: decision.reason = "no free way: waits";
+    default: decision.reason = "no free path: waits";
   }
   return decision;
 }
 
-/// Who is blocked looks where it wants to go, so that it sees when the way is free again.
+/// Who is blocked looks where it wants to go, so that it sees when the path is free again.
 Velocity Controller::recovery_velocity() const {
   const double aside_rad = bearing(goal_ahead(config_.look_ahead_m));
   switch (recovery_) {
     case Recovery::kTurning: return {0.0, turns_left_ ? limits_.max_turn_rate_rad_s : -limits_.max_turn_rate_rad_s};
     case Recovery::kBackingUp: return {-std::min(config_.back_up_speed_m_s, stopping_speed(kRearRoom_m, limits_)), 0.0};
-    case Recovery::kNoWay: return {0.0, std::abs(aside_rad) > kAside_rad ? turn_rate(aside_rad) : 0.0};
+    case Recovery::kNoPath: return {0.0, std::abs(aside_rad) > kAside_rad ? turn_rate(aside_rad) : 0.0};
     default: return {};
   }
 }

@@ -21,7 +21,7 @@ struct ControllerConfig {
   double slowest_share = 0.4;          ///< of the full speed, beside an obstacle, in [0.05, 1]
   double goal_tolerance_m = 0.15;      ///< in [0.01, 2]
   double heading_tolerance_rad = 0.1;  ///< in [0.01, 3.2]
-  double patience_s = 1.0;             ///< without a free way before the robot tries to recover, in [0, 60]
+  double patience_s = 1.0;             ///< without a free path before the robot tries to recover, in [0, 60]
   double back_up_m = 0.3;              ///< in [0, 2]
   double back_up_speed_m_s = 0.15;     ///< in [0.01, 1]
   double recovery_turn_rad = 1.6;      ///< in [0, 3]
@@ -40,8 +40,8 @@ struct Decision {
   State state = State::kIdle;
   std::string reason;
   Velocity command;
-  double distance_to_goal_m = 0.0;  ///< along the path
-  std::vector<PlanarPose> way;      ///< that is being driven, in the map frame
+  double distance_to_goal_m = 0.0;     ///< along the path
+  std::vector<PlanarPose> local_path;  ///< that is being driven, in the map frame
 };
 
 /// Follows a path among obstacles, and stops when what it needs to know is old. `now` is of one clock for all calls.
@@ -50,7 +50,7 @@ class Controller {
   /// Throws std::runtime_error naming the value that is out of range.
   Controller(const ControllerConfig& config, const RobotLimits& limits);
 
-  /// In the map frame. Empty: the robot stands still, for that reason. The same path again: it goes on where it is;
+  /// In the map frame. Empty: the robot stands still, for that reason. The same path again: it continues where it is;
   /// when it was blocked, it tries again.
   void set_path(std::vector<PlanarPose> path, const std::string& reason_if_empty);
   void note_planner(time::Time now) { watchdog_.note(Input::kPlanner, now); }
@@ -65,8 +65,8 @@ class Controller {
   Decision step(time::Time now);
 
  private:
-  /// What is tried when there is no free way: wait, back up, look around; then it is the planner's turn.
-  enum class Recovery { kNone, kWaiting, kBackingUp, kTurning, kNoWay, kStuck };
+  /// What is tried when there is no free path: wait, back up, look around; then it is the planner's turn.
+  enum class Recovery { kNone, kWaiting, kBackingUp, kTurning, kNoPath, kStuck };
 
   Decision decide(time::Time now, double elapsed_s);
   Decision stop_for(Input stale, time::Time now);
@@ -77,8 +77,8 @@ class Controller {
   Velocity recovery_velocity() const;
   Recovery next_phase(const Obstacles& obstacles, time::Time now);
   void enter(Recovery phase, time::Time now);
-  std::optional<Way> find_way(const Obstacles& obstacles) const;
-  double speed_limit(const Way& way, const Obstacles& obstacles) const;
+  std::optional<LocalPath> find_local_path(const Obstacles& obstacles) const;
+  double speed_limit(const LocalPath& local_path, const Obstacles& obstacles) const;
   bool may_back_up(const Obstacles& obstacles) const;
   bool is_stuck(time::Time now);
   bool has_tried() const;
@@ -98,9 +98,9 @@ class Controller {
   std::string idle_reason_ = "no path yet";
   bool is_arrived_ = false;  // at the path's end, but for its heading
   std::optional<time::Time> last_step_;
-  Velocity last_;                      // command
-  std::optional<Way> way_;             // of the last step
-  std::optional<time::Time> lost_at_;  // since when there is no pose
+  Velocity last_;                        // command
+  std::optional<LocalPath> local_path_;  // of the last step
+  std::optional<time::Time> lost_at_;    // since when there is no pose
 
   Recovery recovery_ = Recovery::kNone;
   time::Time phase_began_;

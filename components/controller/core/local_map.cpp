@@ -23,8 +23,8 @@ mapping::VoxelIndex voxel_of(const Eigen::Vector2d& p_map, double height_m) {
 
 Eigen::Vector2d center_of(const mapping::VoxelIndex& v) { return {(v.x + 0.5) * kEdge_m, (v.y + 0.5) * kEdge_m}; }
 
-/// True when a depth image sees nothing at, or in front of, this point of the optical frame; false, too, when it cannot
-/// tell.
+/// True when a depth image sees nothing at, or in front of, this point of the optical frame; false, too, when it does
+/// not know.
 bool looks_through(const DepthView& view, const Eigen::Vector3d& p_camera) {
   if (p_camera.z() < kNearest_m) return false;
   const Eigen::Vector2d pixel = view.camera.project(p_camera);
@@ -98,9 +98,9 @@ void LocalMap::look_through(const DepthView& view, const PlanarPose& T_map_base)
   for (auto& [voxel, point] : points_) {
     const Eigen::Vector2d p_base = T_base_map * center_of(voxel);
     const Eigen::Vector3d p_camera = T_camera_base * Eigen::Vector3d(p_base.x(), p_base.y(), (voxel.z + 0.5) * kEdge_m);
-    if (looks_through(view, p_camera)) ++point.passes;
+    if (looks_through(view, p_camera)) ++point.misses;
   }
-  std::erase_if(points_, [this](const auto& entry) { return entry.second.passes >= config_.passes_to_clear; });
+  std::erase_if(points_, [this](const auto& entry) { return entry.second.misses >= config_.misses_to_clear; });
 }
 
 void LocalMap::add_hits(const DepthView& view, const PlanarPose& T_map_base) {

@@ -20,7 +20,7 @@ struct LocalMapConfig {
   double max_height_m = 1.2;  ///< what is higher is passed under, in [-1, 10]
   double memory_s = 20.0;     ///< what was seen longer ago is forgotten, in [0.1, 600]
   int stride = 4;             ///< every stride-th pixel of every stride-th row is used, in [1, 32]
-  int passes_to_clear = 3;    ///< images that must look through an obstacle before it is gone, in [1, 100]
+  int misses_to_clear = 3;    ///< images that must look through an obstacle before it is gone, in [1, 100]
 };
 
 /// A depth image and where its camera sits on the robot.
@@ -59,7 +59,7 @@ class LocalMap {
   void move_points(const PlanarPose& T_new_old);
 
   /// Obstacle points in base_link, within a distance of the robot. An occupied cell of a grid is its centre, unless
-  /// points tell what in it stands where.
+  /// points show what in it stands where.
   std::vector<Eigen::Vector2d> obstacles_near(const PlanarPose& T_map_base, double distance_m) const;
   /// True when the mapper has seen that nothing is there; what the camera alone has seen is not asked.
   bool is_known_free(const Eigen::Vector2d& p_map) const;
@@ -67,7 +67,7 @@ class LocalMap {
  private:
   struct Point {
     double seen_s = 0.0;  ///< time that counts of the last hit
-    int passes = 0;       ///< images that looked through it since
+    int misses = 0;       ///< images that looked through it since
   };
   struct Look {
     PlanarPose T_map_base;

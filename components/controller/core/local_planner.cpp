@@ -13,7 +13,7 @@ constexpr double kScale_m = 0.1;         // a path that misses the goal by this 
 constexpr double kTurnScale_rad = 1.0;   // so does turning on the spot by this much more
 constexpr double kProgress =
     0.3;  // share of the distance to the goal: a path that brings the robot nearer by less is none
-constexpr double kFaith = 1.2;  // what was chosen before counts so much more, or two equal ways alternate
+constexpr double kFaith = 1.2;  // what was chosen before counts so much more, or two equal paths alternate
 constexpr double kSameHeading_rad = 0.3;
 
 struct Approach {
@@ -34,8 +34,8 @@ Approach nearest_to(const Eigen::Vector2d& goal, const FanPath& path, std::size_
 
 }  // namespace
 
-std::optional<Way> LocalPlanner::choose(std::span<const Eigen::Vector2d> obstacles, const Eigen::Vector2d& goal,
-                                        const std::optional<Way>& last) const {
+std::optional<LocalPath> LocalPlanner::choose(std::span<const Eigen::Vector2d> obstacles, const Eigen::Vector2d& goal,
+                                              const std::optional<LocalPath>& last) const {
   std::vector<Candidate> candidates;
   for (int i = 0; i < kHeadings; ++i) {
     const double heading = wrapped(2.0 * std::numbers::pi * i / kHeadings);
@@ -52,7 +52,7 @@ std::optional<Way> LocalPlanner::choose(std::span<const Eigen::Vector2d> obstacl
   const auto best = std::max_element(candidates.begin(), candidates.end(),
                                      [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
   if (best == candidates.end()) return std::nullopt;
-  return way_of(*best);
+  return local_path_of(*best);
 }
 
 /// Adds the groups that have a free path to the goal. A path that an obstacle cuts while it comes nearer does not
@@ -82,16 +82,16 @@ void LocalPlanner::rate_groups(std::span<const Eigen::Vector2d> obstacles, const
                [](const Candidate& candidate) { return candidate.score > 0.0; });
 }
 
-Way LocalPlanner::way_of(const Candidate& candidate) const {
+LocalPath LocalPlanner::local_path_of(const Candidate& candidate) const {
   const FanPath& path = fan_.paths()[candidate.path];
-  Way way{candidate.heading_rad,
-          path.group,
-          path.curvature_per_m,
-          PathFan::kStep_m * static_cast<double>(candidate.free_poses - 1),
-          {}};
+  LocalPath local_path{candidate.heading_rad,
+                       path.group,
+                       path.curvature_per_m,
+                       PathFan::kStep_m * static_cast<double>(candidate.free_poses - 1),
+                       {}};
   const PlanarPose T_base_heading = planar_pose({0.0, 0.0}, candidate.heading_rad);
-  for (std::size_t i = 0; i < candidate.free_poses; ++i) way.poses.push_back(T_base_heading * path.poses[i]);
-  return way;
+  for (std::size_t i = 0; i < candidate.free_poses; ++i) local_path.poses.push_back(T_base_heading * path.poses[i]);
+  return local_path;
 }
 
 double LocalPlanner::free_length_m(std::span<const Eigen::Vector2d> obstacles, double curvature_per_m) const {

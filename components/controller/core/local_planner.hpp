@@ -9,8 +9,8 @@
 
 namespace lapis::controller {
 
-/// Which way to go now.
-struct Way {
+/// What to drive now.
+struct LocalPath {
   double heading_rad = 0.0;  ///< turn on the spot by so much first; 0: drive
   std::size_t group = 0;
   double curvature_per_m = 0.0;   ///< to drive with after that
@@ -25,9 +25,9 @@ class LocalPlanner {
 
   const PathFan& fan() const { return fan_; }
   /// All points in base_link; `last` is what was chosen in the cycle before. Nothing when no free path leads nearer.
-  std::optional<Way> choose(std::span<const Eigen::Vector2d> obstacles, const Eigen::Vector2d& goal,
-                            const std::optional<Way>& last) const;
-  /// How far the robot can go on with this curvature [m].
+  std::optional<LocalPath> choose(std::span<const Eigen::Vector2d> obstacles, const Eigen::Vector2d& goal,
+                                  const std::optional<LocalPath>& last) const;
+  /// How far the robot can continue with this curvature [m].
   double free_length_m(std::span<const Eigen::Vector2d> obstacles, double curvature_per_m) const;
 
  private:
@@ -39,7 +39,7 @@ class LocalPlanner {
   };
   void rate_groups(std::span<const Eigen::Vector2d> obstacles, const Eigen::Vector2d& goal, double heading_rad,
                    std::vector<Candidate>& candidates) const;
-  Way way_of(const Candidate& candidate) const;
+  LocalPath local_path_of(const Candidate& candidate) const;
 
   PathFan fan_;
 };

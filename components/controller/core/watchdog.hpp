@@ -21,7 +21,7 @@ struct WatchdogConfig {
 /// the mapper's obstacles, and a planner.
 enum class Input : std::size_t { kCamera, kPose, kView, kMap, kPlanner };
 
-/// Knows how old every input is. Times of arrival are told by the caller on any one clock; stamps are those of the
+/// Knows how old every input is. Times of arrival are given by the caller on any one clock; stamps are those of the
 /// data, and are compared with the camera's newest: so an input that lags behind is old, too, however late it came.
 /// Both are compared in both directions: after a clock has jumped everything is old until it comes anew.
 class Watchdog {

@@ -4,12 +4,12 @@
 
 namespace lapis::evaluator {
 
-void DecisionRecord::add(const DecisionCounts& told) {
-  if (told.decisions < last_.decisions) last_ = {};
-  if (told.decisions > last_.decisions) times_s_.push_back(told.last_time_s);
-  decisions_ += static_cast<std::int64_t>(told.decisions - last_.decisions);
-  unlike_mi_only_ += static_cast<std::int64_t>(told.unlike_mi_only - last_.unlike_mi_only);
-  last_ = told;
+void DecisionRecord::add(const DecisionCounts& reported) {
+  if (reported.decisions < last_.decisions) last_ = {};
+  if (reported.decisions > last_.decisions) times_s_.push_back(reported.last_time_s);
+  decisions_ += static_cast<std::int64_t>(reported.decisions - last_.decisions);
+  unlike_mi_only_ += static_cast<std::int64_t>(reported.unlike_mi_only - last_.unlike_mi_only);
+  last_ = reported;
 }
 
 void DecisionRecord::write_to(RunMetrics& metrics) const {

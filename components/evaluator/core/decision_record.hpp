@@ -14,11 +14,11 @@ struct DecisionCounts {
   double last_time_s = 0.0;          ///< wall time that the last one took
 };
 
-/// The decisions of a run, from what the planner tells after each of them.
+/// The decisions of a run, from what the planner reports after each of them.
 class DecisionRecord {
  public:
   /// Counts that are smaller than before are those of a planner that was restarted.
-  void add(const DecisionCounts& told);
+  void add(const DecisionCounts& reported);
   /// Fills in what RunMetrics has of decisions.
   void write_to(RunMetrics& metrics) const;
 

@@ -47,7 +47,7 @@ struct RunMetrics {
   std::optional<std::int64_t> loop_closures;
   TrajectoryFigures online;                 ///< every frame's pose as published at its time
   TrajectoryFigures keyframes;              ///< final, optimised key-frames (RPE and heading are not written)
-  std::optional<double> correction_rmse_m;  ///< of key-frames, from the pose told at their time to the final one
+  std::optional<double> correction_rmse_m;  ///< of key-frames, from the pose published at their time to the final one
   std::optional<double> ate_at_80_m;
   std::optional<double> ate_per_metre;
   MapFigures map;                                ///< reference: the run's own frames at true poses

@@ -7,22 +7,22 @@
 
 namespace lapis::evaluator {
 
-/// What slam told of one frame. Poses are of the camera's optical frame.
+/// What slam published of one frame. Poses are of the camera's optical frame.
 struct FrameRecord {
   time::Time stamp;
   std::int64_t session = 0;                      ///< of slam
   std::optional<geometry::Pose> T_map_camera;    ///< none: not tracked
-  std::optional<geometry::Pose> T_world_camera;  ///< true pose; none: not told
+  std::optional<geometry::Pose> T_world_camera;  ///< true pose; none: not published
 };
 
 /// What became of a run's frames: which of them slam tracked, and where the camera was, by slam's word and in truth.
 /// The run is judged in the frame of slam's first map: poses of a later session have another origin.
 class RunRecord {
  public:
-  /// A frame of the camera, whether slam tells of it or not: one that it had to drop, or never got, is a frame without
+  /// A frame of the camera, whether slam publishes it or not: one that it had to drop, or never got, is a frame without
   /// a pose. Lock-step may repeat a stamp.
   void count_camera_frame(time::Time stamp);
-  /// Told on change, and lock-step may repeat it: a collision is the beginning of a contact.
+  /// Published on change, and lock-step may repeat it: a collision is the beginning of a contact.
   void count_contact(bool is_in_contact);
   /// False for a frame of a later session: it counts as lost.
   bool add(const FrameRecord& frame);
@@ -62,7 +62,7 @@ class RunRecord {
   std::int64_t frames_judged_ = 0;          // that slam answered, tracked or not
   std::int64_t frames_tracked_ = 0;
   double lost_time_s_ = 0.0;
-  std::optional<std::int64_t> collisions_;  // none when nobody tells contacts
+  std::optional<std::int64_t> collisions_;  // none when nobody publishes contacts
   bool is_in_contact_ = false;
 };
 

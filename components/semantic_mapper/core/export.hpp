@@ -39,7 +39,7 @@ struct Octree {
 Octree encode_octree(const mapping::VoxelMap& map, const mapping::BeliefReader& reader,
                      const mapping::LabelList& labels);
 
-/// The same leaves as OctoMap's compact binary tree (.bt), which tells occupied from free and nothing else.
+/// The same leaves as OctoMap's compact binary tree (.bt), which distinguishes occupied from free and nothing else.
 std::vector<std::uint8_t> encode_binary_octree(const mapping::VoxelMap& map, const mapping::BeliefReader& reader);
 
 }  // namespace lapis::semantic_mapper

@@ -44,11 +44,11 @@ class Sum {
     VoxelBlock& block = block_at(mapping::block_of(voxel));
     const int offset = mapping::offset_in_block(voxel);
     block.read(offset, before_);
-    checked_sum(before_.passes, counts.passes);
+    checked_sum(before_.misses, counts.misses);
     for (const mapping::ClassCount& hit : counts.hits)
       for (const mapping::ClassCount& old : before_.hits)
         if (old.label == hit.label) checked_sum(old.count, hit.count);
-    block.add_pass(offset, counts.passes);
+    block.add_miss(offset, counts.misses);
     for (const mapping::ClassCount& hit : counts.hits) block.add_hit(offset, hit.label, hit.count);
   }
   std::map<BlockIndex, VoxelBlock> take() { return std::move(blocks_); }

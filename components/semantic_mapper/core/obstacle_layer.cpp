@@ -12,8 +12,8 @@ ObstacleLayer::ObstacleLayer(const ObstacleConfig& config, const mapping::Height
     : config_(config), band_(band), resolution_m_(resolution_m) {
   if (!(config.window_s >= 0.1 && config.window_s <= 600.0))
     throw std::runtime_error("obstacles: window_s must be in [0.1, 600]");
-  if (config.passes_to_clear < 1 || config.passes_to_clear > 100)
-    throw std::runtime_error("obstacles: passes_to_clear must be in [1, 100]");
+  if (config.misses_to_clear < 1 || config.misses_to_clear > 100)
+    throw std::runtime_error("obstacles: misses_to_clear must be in [1, 100]");
 }
 
 bool ObstacleLayer::touches_band(const BlockIndex& index) const {
@@ -33,24 +33,24 @@ void ObstacleLayer::add(time::Time stamp, const mapping::FrameVotes& votes) {
     if (!touches_band(of_block.block)) continue;
     Block& block = blocks_[of_block.block];
     block.newest = stamp.nanoseconds;
-    add_passes(of_block, block);
+    add_misses(of_block, block);
     for (std::uint32_t i = of_block.hits_begin; i < of_block.hits_end; ++i) {
       block.seen[votes.hits[i].offset] = stamp.nanoseconds;
-      block.passes_since_hit[votes.hits[i].offset] = 0;
+      block.misses_since_hit[votes.hits[i].offset] = 0;
     }
   }
   forget();
 }
 
-void ObstacleLayer::add_passes(const mapping::BlockVotes& votes, Block& block) const {
-  const auto cleared = static_cast<std::uint8_t>(config_.passes_to_clear);
+void ObstacleLayer::add_misses(const mapping::BlockVotes& votes, Block& block) const {
+  const auto cleared = static_cast<std::uint8_t>(config_.misses_to_clear);
   const std::int64_t oldest = oldest_stamp();
-  for (std::size_t word = 0; word < votes.passes.size(); ++word) {
-    for (std::uint64_t bits = votes.passes[word]; bits != 0; bits &= bits - 1) {
+  for (std::size_t word = 0; word < votes.misses.size(); ++word) {
+    for (std::uint64_t bits = votes.misses[word]; bits != 0; bits &= bits - 1) {
       const std::size_t offset = word * 64 + static_cast<std::size_t>(std::countr_zero(bits));
-      std::uint8_t& passes = block.passes_since_hit[offset];
-      if (block.seen[offset] < oldest) passes = cleared;  // what was there before is forgotten
-      if (passes < cleared) ++passes;
+      std::uint8_t& misses = block.misses_since_hit[offset];
+      if (block.seen[offset] < oldest) misses = cleared;  // what was there before is forgotten
+      if (misses < cleared) ++misses;
       block.seen[offset] = newest_.nanoseconds;
     }
   }
@@ -70,7 +70,7 @@ OccupancyGrid ObstacleLayer::grid() const {
       if (block.seen[i] < oldest) continue;
       const mapping::VoxelIndex voxel = mapping::voxel_at(index, offset);
       if (!mapping::is_in_band(voxel.z, resolution_m_, band_)) continue;
-      cells.push_back({voxel.x, voxel.y, block.passes_since_hit[i] < config_.passes_to_clear ? kOccupied : kFree});
+      cells.push_back({voxel.x, voxel.y, block.misses_since_hit[i] < config_.misses_to_clear ? kOccupied : kFree});
     }
   }
   return make_grid(cells, resolution_m_);

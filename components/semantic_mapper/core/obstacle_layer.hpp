@@ -15,11 +15,11 @@ namespace lapis::semantic_mapper {
 
 struct ObstacleConfig {
   double window_s = 10.0;   ///< what was seen longer ago is forgotten, in [0.1, 600]
-  int passes_to_clear = 3;  ///< frames that must look through an obstacle before it is gone, in [1, 100]
+  int misses_to_clear = 3;  ///< frames that must look through an obstacle before it is gone, in [1, 100]
 };
 
 /// What stands in the way now, beside a map that takes the world to be static: newest evidence wins. A voxel of the
-/// band is occupied from a hit on until `passes_to_clear` frames have looked through it without another hit, or until
+/// band is occupied from a hit on until `misses_to_clear` frames have looked through it without another hit, or until
 /// it has not been seen for `window_s`. The poses are those at which the frames were integrated; a correction of the
 /// pose graph reaches the layer with the frames that follow.
 class ObstacleLayer {
@@ -39,11 +39,11 @@ class ObstacleLayer {
     Block() { seen.fill(std::numeric_limits<std::int64_t>::min()); }
     std::int64_t newest = 0;                                             ///< stamp of the last vote [ns]
     std::array<std::int64_t, mapping::kBlockVoxels> seen;                ///< stamp of the voxel's last vote [ns]
-    std::array<std::uint8_t, mapping::kBlockVoxels> passes_since_hit{};  ///< passes_to_clear: free
+    std::array<std::uint8_t, mapping::kBlockVoxels> misses_since_hit{};  ///< misses_to_clear: free
   };
 
   bool touches_band(const mapping::BlockIndex& index) const;
-  void add_passes(const mapping::BlockVotes& votes, Block& block) const;
+  void add_misses(const mapping::BlockVotes& votes, Block& block) const;
   void forget();
   std::int64_t oldest_stamp() const;  ///< of the window [ns]
 

@@ -17,7 +17,7 @@ struct OctreeLeaf {
   mapping::VoxelIndex corner;    ///< its voxel of least x, y, z; (0, 0, 0) begins at the origin of the map frame
   std::int32_t edge_voxels = 1;  ///< a power of two
   bool is_occupied = false;
-  double probability = 0.0;  ///< P(occupied); a .bt file tells no more than 0 or 1
+  double probability = 0.0;  ///< P(occupied); a .bt file says no more than 0 or 1
   geometry::Rgb8 color{};    ///< of a ColorOcTree; grey otherwise
 };
 

@@ -40,7 +40,7 @@ const MapperConfig& validated(const MapperConfig& config) {
 std::size_t most_votes(const mapping::VoxelMap& map) {
   std::uint32_t most = 0;
   map.for_each_observed([&most](const mapping::VoxelIndex&, const mapping::VoxelCounts& counts) {
-    most = std::max(most, counts.passes);
+    most = std::max(most, counts.misses);
     for (const mapping::ClassCount& hit : counts.hits) most = std::max(most, hit.count);
   });
   return (most + mapping::kOneVote - 1) / mapping::kOneVote;
@@ -56,7 +56,7 @@ SemanticMapper::SemanticMapper(const MapperConfig& config, mapping::VoxelMap bas
       blocks_per_tile_edge_(mapping::blocks_per_tile_edge(config.resolution_m, config.tile_edge_m)),
       map_(std::move(base)), frames_before_(most_votes(map_)), store_(config.stored_frames) {
   if (map_.resolution_m() != config.resolution_m)
-    throw std::runtime_error("mapper: the map to go on with has voxels of another size");
+    throw std::runtime_error("mapper: the map to resume has voxels of another size");
   mark_all_changed();
 }
 
@@ -82,7 +82,7 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
 }
 
 void SemanticMapper::store(StoredFrame frame, const mapping::CompactFrame& samples, const mapping::FrameVotes& votes) {
-  frame.work = samples.samples() + votes.hit_count() + votes.pass_count();
+  frame.work = samples.samples() + votes.hit_count() + votes.miss_count();
   credit_ += static_cast<std::int64_t>(frame.work * 3 / 4);
   store_.add(samples, votes);
   frames_of_keyframe_[frame.keyframe_id].push_back(frames_.size());
@@ -132,7 +132,7 @@ bool SemanticMapper::move_frame(std::size_t index) {
   mapping::FrameVotes come = mapping::compute_votes(*samples, wanted, config_.integration, config_.resolution_m);
   if (!store_.replace_votes(index, come)) return false;
   frames_[index].T_map_camera = wanted;
-  frames_[index].work = samples->samples() + come.hit_count() + come.pass_count();
+  frames_[index].work = samples->samples() + come.hit_count() + come.miss_count();
   mapping::drop_common(*gone, come);
   map_.subtract(*gone);
   map_.add(come);

@@ -85,7 +85,7 @@ class SemanticMapper {
  public:
   /// Throws std::runtime_error naming the value that is out of range.
   explicit SemanticMapper(const MapperConfig& config);
-  /// Goes on with the map of an earlier run: its frames are not known any more, so that its counts stay where they are.
+  /// Resumes the map of an earlier run: its frames are not known any more, so that its counts stay where they are.
   /// Throws also when its voxels are not of config.resolution_m.
   SemanticMapper(const MapperConfig& config, mapping::VoxelMap base);
 
@@ -121,7 +121,7 @@ class SemanticMapper {
   std::vector<mapping::BlockIndex> changed_blocks() const;
   /// Doubles the edge of the tiles while there are too many for a late joiner: the cost of reliable samples grows with
   /// the square of their number (docs/decisions/0029-late-joiners.md). When it returns true, all tiles are other ones
-  /// and will be told again: the caller has to begin a new epoch.
+  /// and will be published again: the caller has to begin a new epoch.
   bool enlarge_tiles();
   /// Edge of the tiles now [m]; at least config().tile_edge_m.
   double tile_edge_m() const { return blocks_per_tile_edge_ * mapping::kBlockEdge * config_.resolution_m; }

@@ -13,13 +13,13 @@ void apply_drift(DriftPreset preset, SensorConfig& config) {
   config.color.shutter += scales.blur;
   config.depth.extra_dropout += scales.dropout;
   config.depth.noise_multiplier *= scales.depth;
-  config.wheels.scale *= scales.wheel;
+  config.odometry.scale *= scales.odometry;
 }
 
 Sensors::Sensors(const SensorConfig& config, const geometry::PinholeCamera& camera, const mapping::LabelList& labels,
                  std::uint64_t seed)
     : focal_px_(camera.fx), color_(config.color, seed), depth_(config.depth, seed),
-      labels_(config.labels, labels, seed), wheels_(config.wheels, seed), imu_(config.imu, seed) {}
+      labels_(config.labels, labels, seed), odometry_(config.odometry, seed), imu_(config.imu, seed) {}
 
 CameraImages Sensors::see(const RenderedFrame& ideal, const View& view) const {
   // A camera that turns left sees the world move right; what driving adds is small and differs from pixel to pixel.
@@ -35,15 +35,15 @@ void Sensors::feel(const Motion& motion) {
   felt_push_m_s_ += motion.acceleration * motion.duration_s;
 }
 
-WheelSample Sensors::read_wheels(time::Time stamp, time::Duration period) {
-  const WheelStep step = wheels_.step(rolled_m_, turned_rad_);
+OdometrySample Sensors::read_odometry(time::Time stamp, time::Duration period) {
+  const OdometryStep step = odometry_.step(rolled_m_, turned_rad_);
   rolled_m_ = turned_rad_ = 0.0;
   const double period_s = period.seconds();
-  WheelSample out;
+  OdometrySample out;
   out.stamp = stamp;
-  out.position = wheels_.position();
-  out.yaw_rad = wheels_.yaw_rad();
-  out.pose_covariance = wheels_.covariance();
+  out.position = odometry_.position();
+  out.yaw_rad = odometry_.yaw_rad();
+  out.pose_covariance = odometry_.covariance();
   out.velocity = {step.distance_m / period_s, step.turn_rad / period_s};
   out.velocity_covariance.diagonal() << step.distance_variance, 0.0, step.turn_variance;
   out.velocity_covariance /= period_s * period_s;

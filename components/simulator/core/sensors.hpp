@@ -23,12 +23,12 @@ struct SensorConfig {
   ColorNoiseConfig color;
   DepthNoiseConfig depth;
   LabelNoiseConfig labels;
-  WheelNoiseConfig wheels;
+  OdometryNoiseConfig odometry;
   ImuNoiseConfig imu;
   bool has_imu = false;
 };
 
-/// Makes localisation as hard as the preset says: visual difficulty and wheel noise together.
+/// Makes localisation as hard as the preset says: visual difficulty and noise of odometry together.
 void apply_drift(DriftPreset preset, SensorConfig& config);
 
 /// What the camera and a segmentation of its images give.
@@ -39,7 +39,7 @@ struct CameraImages {
 };
 
 /// Wheel odometry: pose since the start, in the frame in which the robot began.
-struct WheelSample {
+struct OdometrySample {
   time::Time stamp;
   Eigen::Vector2d position{0, 0};
   double yaw_rad = 0.0;
@@ -74,7 +74,7 @@ class Sensors {
   /// The robot has moved: added up until odometry and IMU are read.
   void feel(const Motion& motion);
   /// Odometry of what the wheels rolled in the period that ends now.
-  WheelSample read_wheels(time::Time stamp, time::Duration period);
+  OdometrySample read_odometry(time::Time stamp, time::Duration period);
   /// Mean of what the body felt in the period that ends now.
   ImuSample read_imu(time::Time stamp, time::Duration period);
 
@@ -83,7 +83,7 @@ class Sensors {
   ColorNoise color_;
   DepthNoise depth_;
   LabelNoise labels_;
-  WheelOdometry wheels_;
+  WheelOdometry odometry_;
   ImuNoise imu_;
   double rolled_m_ = 0.0;  // since the last odometry
   double turned_rad_ = 0.0;

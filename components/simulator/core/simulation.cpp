@@ -7,8 +7,8 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr time::Duration kWheelPeriod{20'000'000};  // 50 Hz
-constexpr time::Duration kImuPeriod{5'000'000};     // 200 Hz
+constexpr time::Duration kOdometryPeriod{20'000'000};  // 50 Hz
+constexpr time::Duration kImuPeriod{5'000'000};        // 200 Hz
 
 /// First multiple of `period` after `t`.
 time::Time next_multiple(time::Time t, time::Duration period) {
@@ -56,13 +56,14 @@ void Simulation::drive_to(time::Time stamp, SensorFrame& frame) {
   while (robot_.state().stamp < stamp) {
     const time::Time now = robot_.state().stamp;
     const time::Time imu_due = next_multiple(now, kImuPeriod);
-    const time::Time until = std::min(stamp, config_.sensors.has_imu ? imu_due : next_multiple(now, kWheelPeriod));
+    const time::Time until = std::min(stamp, config_.sensors.has_imu ? imu_due : next_multiple(now, kOdometryPeriod));
     const Motion motion = robot_.advance(until);
     frame.is_in_contact |= motion.is_in_contact;
     frame.push_m_s = std::max(frame.push_m_s, motion.push_m_s);
     frame.turn_rate_rad_s = motion.turn_rate_rad_s;
     sensors_.feel(motion);
-    if (until == next_multiple(now, kWheelPeriod)) frame.wheels.push_back(sensors_.read_wheels(until, kWheelPeriod));
+    if (until == next_multiple(now, kOdometryPeriod))
+      frame.odometry.push_back(sensors_.read_odometry(until, kOdometryPeriod));
     if (config_.sensors.has_imu && until == imu_due) frame.imu.push_back(sensors_.read_imu(until, kImuPeriod));
   }
 }

@@ -34,7 +34,7 @@ struct SensorFrame {
   double turn_rate_rad_s = 0.0;  ///< of the base
   bool is_in_contact = false;
   double push_m_s = 0.0;  ///< greatest speed towards what it touches
-  std::vector<WheelSample> wheels;
+  std::vector<OdometrySample> odometry;
   std::vector<ImuSample> imu;
 };
 

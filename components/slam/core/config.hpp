@@ -37,7 +37,7 @@ struct SurfaceConfig {
 };
 
 struct TrackerConfig {
-  int min_matches = 30;            ///< projection matches below which the next way of matching is tried [6, 500]
+  int min_matches = 30;            ///< projection matches below which the next kind of matching is tried [6, 500]
   int min_inliers = 15;            ///< fewer after the refinement is lost [6, 200]
   double min_inlier_share = 0.45;  ///< of the matches; with fewer the view repeats itself, or is noise [0, 1]
   int local_keyframes = 5;         ///< key-frames whose landmarks form the local map [1, 50]
@@ -45,7 +45,7 @@ struct TrackerConfig {
   int ransac_iterations = 200;     ///< PnP [10, 10000]
   double ransac_error_px = 4.0;    ///< PnP inlier threshold [0.5, 20]
   int refine_iterations = 4;       ///< Levenberg-Marquardt steps per round [1, 50]
-  int max_blind_frames = 8;        ///< in a row with enough features, before the map goes on by odometry [1, 1000]
+  int max_blind_frames = 8;        ///< in a row with enough features, before the map continues by odometry [1, 1000]
   double max_prediction_s = 0.5;   ///< longest gap that the motion model bridges [0.01, 5]
 };
 
@@ -85,7 +85,7 @@ struct LoopConfig {
   int confirm_within = 3;              ///< key-frames, in which a second one has to say the same [1, 100]
   double max_disagreement_m = 0.1;     ///< between the two [0.01, 2]
   double max_disagreement_rad = 0.05;  ///< between the two [0.01, 1]
-  double spacing_m = 5.0;              ///< way between pairs of loops along one passage [0, 100]
+  double spacing_m = 5.0;              ///< path between pairs of loops along one passage [0, 100]
   int latency_frames = 15;             ///< from a loop to the corrected map [1, 1000]
 };
 
@@ -97,7 +97,7 @@ struct RelocalizationConfig {
   int confirmations = 2;         ///< frames that have to find the same again, unless motion leads there [0, 100]
   double near_m = 0.25;          ///< what "the same" is, and where motion leads [0.01, 5]
   double near_rad = 0.2;         ///< the same [0.01, 3]
-  double speed_m_s = 1.0;        ///< between frames, when no wheels tell [0, 10]
+  double speed_m_s = 1.0;        ///< between frames, without odometry [0, 10]
   double patience_s = 2.0;       ///< without a pose, after which one within reach of the last is still believed [0, 10]
   double memory_s = 0.5;         ///< longest time between frames that confirm each other [0.01, 10]
 };
@@ -106,17 +106,17 @@ struct RelocalizationConfig {
 /// square root. Right for a robot with wheels on floors without steps; a robot that climbs wants a larger
 /// vertical_sigma and tilt_sigma.
 struct OdometryConfig {
-  double distance_sigma = 0.02;       ///< along the way [m] after 1 m [0, 1]
+  double distance_sigma = 0.02;       ///< along the path [m] after 1 m [0, 1]
   double turn_sigma = 0.02;           ///< of the heading [rad] after a turn of 1 rad [0, 1]
   double turn_sigma_per_m = 0.01;     ///< of the heading [rad] after 1 m [0, 1]
-  double scale_sigma = 0.01;          ///< share of way and turn by which the wheels always err [0, 0.5]
+  double scale_sigma = 0.01;          ///< share of path and turn by which odometry always errs [0, 0.5]
   double vertical_sigma = 0.001;      ///< [m] after 1 m [0, 1]
   double tilt_sigma = 0.0005;         ///< of roll and pitch [rad] after 1 m [0, 1]
   double least_sigma = 1e-4;          ///< of every motion [m], [rad] [1e-6, 0.1]
   double max_gap_s = 0.2;             ///< between readings that belong together [0.01, 5]
   double max_speed_m_s = 5.0;         ///< faster steps are no motion of the robot [0.1, 50]
   double max_turn_rate_rad_s = 15.0;  ///< the same [0.1, 100]
-  double max_disagreement = 8.0;      ///< with vision, in sigmas; wheels that disagree more have slipped [1, 100]
+  double max_disagreement = 8.0;      ///< with vision, in sigmas; odometry that disagrees more is slip [1, 100]
 };
 
 struct SlamConfig {

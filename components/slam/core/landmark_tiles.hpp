@@ -25,7 +25,7 @@ class LandmarkTiles {
 
   /// Follows the map to `graph_version`, which grows from call to call, and returns the tiles that differ from those
   /// returned before, ascending. Landmarks of the map are never fewer than at the call before. A tile that has lost its
-  /// last landmark is returned empty and goes on to exist. Afterwards every landmark with observations is in the one
+  /// last landmark is returned empty and continues to exist. Afterwards every landmark with observations is in the one
   /// tile around the position that it was sent with, at most `tolerance_m` from where it is. Left out are positions
   /// that are not finite or beyond mapping::kMaxLandmarkCoordinate_m.
   std::vector<mapping::LandmarkTile> update(const Map& map, std::uint64_t graph_version);

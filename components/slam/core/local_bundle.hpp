@@ -8,7 +8,7 @@
 
 namespace lapis::slam {
 
-/// Relative pose of two key-frames as something else than features gives it: surfaces, wheels.
+/// Relative pose of two key-frames as something else than features gives it: surfaces, odometry.
 struct KeyframeLink {
   KeyframeId from = 0;
   KeyframeId to = 0;

@@ -10,19 +10,19 @@ namespace {
 using geometry::Matrix6d;
 using geometry::Pose;
 
-// A key-frame has up to four edges that use an observation of its (two along the way, a pair of loops), where a chain
+// A key-frame has up to four edges that use an observation of its (two along the path, a pair of loops), where a chain
 // has two: docs/decisions/0025.
 constexpr double kLoopShare = 0.5;
 // Squared Mahalanobis distance of a loop from what the chain of edges says: 99.9 % of six degrees of freedom, for
 // errors three times as large as the chain believes.
 constexpr double kChainGate = 9.0 * 22.46;
 
-double way_m(const Map& map, KeyframeId from, KeyframeId to) {
-  double way = 0.0;
+double path_m(const Map& map, KeyframeId from, KeyframeId to) {
+  double length_m = 0.0;
   for (KeyframeId id = from; id < to; ++id) {
-    way += (map.keyframe(id + 1).T_map_camera.translation() - map.keyframe(id).T_map_camera.translation()).norm();
+    length_m += (map.keyframe(id + 1).T_map_camera.translation() - map.keyframe(id).T_map_camera.translation()).norm();
   }
-  return way;
+  return length_m;
 }
 
 }  // namespace
@@ -48,7 +48,7 @@ std::vector<PoseGraphEdge> LoopDetector::add(const Map& map, const SlamGraph& gr
       agrees(map, *pending_, *found)) {
     if (revisits_.empty() || revisits_.back().to != pending_->to) revisits_.push_back({pending_->from, pending_->to});
     revisits_.push_back({found->from, id});
-    if (!closed_ || way_m(map, *closed_, id) >= config_.loop.spacing_m) {
+    if (!closed_ || path_m(map, *closed_, id) >= config_.loop.spacing_m) {
       loops = {*pending_, *found};
       closed_ = id;
     }

@@ -40,7 +40,7 @@ class MotionModel {
   std::optional<Expected> expect(const Map& map, time::Time stamp) const;
   /// T_map_camera at a stamp; none before the first update and when neither odometry nor velocity reaches so far.
   std::optional<geometry::Pose> predict(const Map& map, time::Time stamp) const;
-  /// Where odometry alone says the camera is; the covariance grows with the way since the last update.
+  /// Where odometry alone says the camera is; the covariance grows with the path since the last update.
   std::optional<RelativeCamera> dead_reckon(time::Time stamp) const;
   /// Motion of the camera between two stamps by odometry, with the covariance in the tangent of the later pose.
   std::optional<OdometryMotion> odometry_between(time::Time from, time::Time to) const;

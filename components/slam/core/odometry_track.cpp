@@ -15,18 +15,18 @@ using geometry::Pose;
 
 double squared(double x) { return x * x; }
 
-// Random walk with the way and the turn [after Thrun, Burgard, Fox, Probabilistic Robotics, 5.4], and a share of both
+// Random walk with the path and the turn [after Thrun, Burgard, Fox, Probabilistic Robotics, 5.4], and a share of both
 // for what the wheels' size and distance are not known to.
-Matrix6d motion_covariance(const OdometryConfig& c, double way_m, double turned_rad) {
-  const double along = squared(c.distance_sigma) * way_m + squared(c.scale_sigma * way_m);
+Matrix6d motion_covariance(const OdometryConfig& c, double path_m, double turned_rad) {
+  const double along = squared(c.distance_sigma) * path_m + squared(c.scale_sigma * path_m);
   const double yaw =
-      squared(c.turn_sigma) * turned_rad + squared(c.turn_sigma_per_m) * way_m + squared(c.scale_sigma * turned_rad);
+      squared(c.turn_sigma) * turned_rad + squared(c.turn_sigma_per_m) * path_m + squared(c.scale_sigma * turned_rad);
   const double least = squared(c.least_sigma);
   Matrix6d covariance = Matrix6d::Zero();
-  // Sideways a robot errs because its heading does, on average half of the way.
-  covariance.diagonal() << along + least, 0.25 * yaw * squared(way_m) + least,
-      squared(c.vertical_sigma) * way_m + least, squared(c.tilt_sigma) * way_m + least,
-      squared(c.tilt_sigma) * way_m + least, yaw + least;
+  // Sideways a robot errs because its heading does, on average half of the path.
+  covariance.diagonal() << along + least, 0.25 * yaw * squared(path_m) + least,
+      squared(c.vertical_sigma) * path_m + least, squared(c.tilt_sigma) * path_m + least,
+      squared(c.tilt_sigma) * path_m + least, yaw + least;
   return covariance;
 }
 
@@ -46,7 +46,7 @@ bool OdometryTrack::add(time::Time stamp, const Pose& T_odom_base) {
   Reading reading{stamp, T_odom_base};
   if (!readings_.empty()) {
     const Pose step = readings_.back().T_odom_base.inverse() * T_odom_base;
-    reading.way_m = readings_.back().way_m + step.translation().norm();
+    reading.path_m = readings_.back().path_m + step.translation().norm();
     reading.turned_rad = readings_.back().turned_rad + geometry::rotation_angle(step.linear());
   }
   readings_.push_back(reading);
@@ -82,7 +82,7 @@ std::optional<OdometryTrack::Reading> OdometryTrack::at(time::Time stamp) const 
   const Reading& b = *after;
   const double share = (stamp - a.stamp).seconds() / (b.stamp - a.stamp).seconds();
   const geometry::Vector6d step = geometry::se3_log(a.T_odom_base.inverse() * b.T_odom_base);
-  return Reading{stamp, a.T_odom_base * geometry::se3_exp(share * step), a.way_m + share * (b.way_m - a.way_m),
+  return Reading{stamp, a.T_odom_base * geometry::se3_exp(share * step), a.path_m + share * (b.path_m - a.path_m),
                  a.turned_rad + share * (b.turned_rad - a.turned_rad)};
 }
 
@@ -91,7 +91,7 @@ std::optional<OdometryMotion> OdometryTrack::between(time::Time from, time::Time
   const auto b = at(to);
   if (!a || !b || to < from) return std::nullopt;
   return OdometryMotion{a->T_odom_base.inverse() * b->T_odom_base,
-                        motion_covariance(config_, b->way_m - a->way_m, b->turned_rad - a->turned_rad)};
+                        motion_covariance(config_, b->path_m - a->path_m, b->turned_rad - a->turned_rad)};
 }
 
 }  // namespace lapis::slam

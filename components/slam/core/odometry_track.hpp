@@ -10,7 +10,7 @@
 
 namespace lapis::slam {
 
-/// How the robot has moved between two stamps, as its wheels say.
+/// How the robot has moved between two stamps, as odometry says.
 struct OdometryMotion {
   geometry::Pose T_from_to = geometry::Pose::Identity();       ///< of base_link
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< right perturbation (translation, rotation)
@@ -47,7 +47,7 @@ class OdometryTrack {
   struct Reading {
     time::Time stamp;
     geometry::Pose T_odom_base;
-    double way_m = 0.0;       // since the track began, forwards and backwards alike
+    double path_m = 0.0;      // since the track began, forwards and backwards alike
     double turned_rad = 0.0;  // the same
   };
   bool continues(time::Time stamp, const geometry::Pose& T_odom_base) const;

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::uint32_t kSeed = 20241;   // any: the sampled bits are a property of the method
 constexpr std::size_t kCommonWord = 16;  // votes of words that fewer entries have always count
-constexpr double kCommonShare = 0.25;    // of the key-frames: a word with more entries tells nothing
+constexpr double kCommonShare = 0.25;    // of the key-frames: a word with more entries says nothing
 constexpr KeyframeId kNeighbours = 2;    // in time, of a better candidate
 
 bool is_near(KeyframeId a, KeyframeId b) { return (a > b ? a - b : b - a) <= kNeighbours; }

@@ -81,16 +81,16 @@ void relax_translations(const PoseGraphTopology& topology, const Pattern& patter
     const PoseGraphEdge& edge = graph.edges[i];
     const double weight = edge.information.topLeftCorner<3, 3>().trace();
     const Pose &from = graph.nodes[ends.from].T_map_camera, &to = graph.nodes[ends.to].T_map_camera;
-    const Eigen::RowVector3d way = (from.linear() * edge.T_from_to.translation()).transpose();
+    const Eigen::RowVector3d offset = (from.linear() * edge.T_from_to.translation()).transpose();
     const int a = topology.free[ends.from], b = topology.free[ends.to];
     if (a >= 0) {
       equations.add_diagonal(a, Scalar(weight));
-      right.row(a) -= weight * way;
+      right.row(a) -= weight * offset;
       if (b < 0) right.row(a) += weight * to.translation().transpose();
     }
     if (b >= 0) {
       equations.add_diagonal(b, Scalar(weight));
-      right.row(b) += weight * way;
+      right.row(b) += weight * offset;
       if (a < 0) right.row(b) += weight * from.translation().transpose();
     }
     if (a >= 0 && b >= 0) equations.add_pair(static_cast<std::size_t>(pattern.free.of_edge[i]), Scalar(-weight));

@@ -7,7 +7,7 @@ namespace lapis::slam {
 /// Adds a node for every id that only edges name, in the order of ids, with the identity for a pose. Returns how many.
 std::size_t add_missing_nodes(PoseGraphSnapshot& graph);
 
-/// Edges between ids that do not follow one another become loop closures: files do not tell edge types apart.
+/// Edges between ids that do not follow one another become loop closures: files do not distinguish edge types.
 void mark_loop_closures(PoseGraphSnapshot& graph);
 
 /// Poses by chaining edges from the first node of each connected part, over as few as possible (breadth-first); over

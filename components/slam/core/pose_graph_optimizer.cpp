@@ -27,7 +27,7 @@ class Minimizer {
   Minimizer(const OptimizerOptions& options, const PoseGraphTopology& topology, const PoseGraphSnapshot& graph)
       : options_(options), problem_(topology, graph), poses_(PoseGraphProblem<Space>::poses_of(graph)) {}
 
-  /// Returns true when a step promised or brought too little to go on.
+  /// Returns true when a step promised or brought too little to continue.
   bool minimize(const std::vector<double>& weights, int max_iterations) {
     double chi2 = problem_.chi2(poses_, weights);
     bool is_linearized = false;

@@ -23,10 +23,10 @@ class Relocalizer {
  private:
   bool motion_leads_to(const Map& map, const MotionModel& motion, time::Time stamp,
                        const geometry::Pose& T_map_camera) const;
-  /// Whether the camera can be there, not long after it was seen last, when nothing tells how it moved.
+  /// Whether the camera can be there, not long after it was seen last, when nothing says how it moved.
   bool is_within_reach(const Map& map, const MotionModel& motion, time::Time stamp,
                        const geometry::Pose& T_map_camera) const;
-  /// Whether clearly more than half of what the frame has in common with the place agrees, and tells the pose well:
+  /// Whether clearly more than half of what the frame has in common with the place agrees, and gives the pose well:
   /// parts that repeat themselves, such as the floor of a corridor, do neither.
   bool is_distinct(const TrackOutcome& outcome) const;
   bool confirms(const MotionModel& motion, time::Time stamp, const geometry::Pose& T_map_camera) const;

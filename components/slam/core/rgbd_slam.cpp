@@ -138,8 +138,8 @@ class RgbdSlam::Implementation {
     return outcome;
   }
 
-  // The view has changed altogether, or there is nothing to see. When there is, and the wheels tell where, the map goes
-  // on from there.
+  // The view has changed altogether, or there is nothing to see. When there is, and odometry says where, the map
+  // continues there.
   TrackingResult continue_blind(const Frame& frame, const std::string& reason) {
     TrackingResult result = without_vision(frame.input->stamp, reason, &frame);
     const bool could_start = frame.features_with_depth >= config_.tracker.min_matches;
@@ -176,8 +176,8 @@ class RgbdSlam::Implementation {
     return result;
   }
 
-  // Vision and wheels together, each as sure as it is: a bare wall says nothing of the way along it. Wheels that slip
-  // lose their weight (Huber).
+  // Vision and odometry together, each as sure as it is: a bare wall says nothing of the path along it. Odometry of
+  // wheels that slip loses its weight (Huber).
   RelativeCamera fuse(const RelativeCamera& seen, const std::optional<RelativeCamera>& reckoned) const {
     constexpr double kMostSigmas = 3.0;
     if (!reckoned) return seen;
@@ -186,9 +186,9 @@ class RgbdSlam::Implementation {
     const geometry::Vector6d difference = geometry::se3_log(T_map_seen.inverse() * T_map_reckoned);
     const Matrix6d sum = seen.covariance + reckoned->covariance;
     const double sigmas = std::sqrt(difference.dot(sum.inverse() * difference));
-    const Matrix6d wheels = std::min(1.0, kMostSigmas / sigmas) * reckoned->covariance.inverse();
-    const Matrix6d together = (seen.covariance.inverse() + wheels).inverse();
-    return {seen.reference, seen.T_reference_camera * geometry::se3_exp(together * wheels * difference), together};
+    const Matrix6d odometry = std::min(1.0, kMostSigmas / sigmas) * reckoned->covariance.inverse();
+    const Matrix6d together = (seen.covariance.inverse() + odometry).inverse();
+    return {seen.reference, seen.T_reference_camera * geometry::se3_exp(together * odometry * difference), together};
   }
 
   TrackingResult start_map(const Frame& frame) {
@@ -251,7 +251,7 @@ class RgbdSlam::Implementation {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
       graph_.add_link(
           {outcome->reference, id, outcome->alignment.T_reference_camera, outcome->alignment.surface_information});
-      if (previous >= saved_keyframes_) add_wheel_edge(previous, id, *outcome);
+      if (previous >= saved_keyframes_) add_odometry_edge(previous, id, *outcome);
     }
     add_landmarks(id);
     graph_.follow(map_, adjust_local_map(config_, graph_.links(), map_));
@@ -282,8 +282,8 @@ class RgbdSlam::Implementation {
     optimize();
   }
 
-  // Wheels that slipped are left out: vision is sure of its pose, and theirs is another one.
-  void add_wheel_edge(KeyframeId from, KeyframeId to, const TrackOutcome& outcome) {
+  // Odometry of wheels that slipped is left out: vision is sure of its pose, and odometry gives another one.
+  void add_odometry_edge(KeyframeId from, KeyframeId to, const TrackOutcome& outcome) {
     const auto motion = motion_.odometry_between(map_.keyframe(from).stamp, map_.keyframe(to).stamp);
     motion_.forget_before(map_.keyframe(to).stamp);
     if (!motion) return;

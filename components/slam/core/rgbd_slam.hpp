@@ -59,8 +59,8 @@ class RgbdSlam {
   /// wheel odometry.
   RgbdSlam(const SlamConfig& config, const geometry::Pose& T_map_first_camera,
            const geometry::Pose& T_base_camera = geometry::Pose::Identity());
-  /// Goes on with a saved map; `state` is sound (find_fault) and has the configuration's scale factor. It is lost until
-  /// it finds its place in that map. Ids and graph version go on.
+  /// Resumes a saved map; `state` is sound (find_fault) and has the configuration's scale factor. It is lost until
+  /// it finds its place in that map. Ids and graph version continue.
   RgbdSlam(const SlamConfig& config, const geometry::Pose& T_base_camera, SlamState state);
   ~RgbdSlam();
 
@@ -72,20 +72,20 @@ class RgbdSlam {
 
   /// T_odom_base at a stamp, where there is odometry.
   std::optional<geometry::Pose> odometry_at(time::Time stamp) const;
-  /// What to tell of a frame that cannot be processed: it has the pose of dead reckoning or none.
+  /// What to report of a frame that cannot be processed: it has the pose of dead reckoning or none.
   TrackingResult skip(time::Time stamp, const std::string& reason) const;
   /// Waits for optimisations under way and applies them: what the map is at the end.
   void settle();
   PoseGraphSnapshot pose_graph() const;
   LoopSummary loops() const;
-  /// What has to be kept to go on later. The large parts are shared with the map, not copied.
+  /// What has to be kept to continue later. The large parts are shared with the map, not copied.
   SlamState state() const;
   /// Grows with every new key-frame and every change of a key-frame's pose.
   std::uint64_t graph_version() const;
   std::size_t keyframe_count() const;
   std::size_t landmark_count() const;
   const Map& map() const;
-  /// Motions of the wheels between key-frames that were left out (OdometryConfig::max_disagreement).
+  /// Motions of odometry between key-frames that were left out (OdometryConfig::max_disagreement).
   std::size_t slip_count() const;
 
  private:

@@ -21,7 +21,7 @@ struct LandmarkState {
   double finest_distance_m = 0.0;                   ///< as Landmark's
 };
 
-/// All that RgbdSlam has to know to go on with a map, and nothing that it can work out again.
+/// All that RgbdSlam has to know to resume a map, and nothing that it can work out again.
 struct SlamState {
   double scale_factor = 0.0;  ///< FeatureConfig::scale_factor that the features' octaves count in
   std::uint64_t graph_version = 0;

@@ -201,7 +201,7 @@ mapping::VoxelMap large_map(std::size_t blocks) {
   std::vector<mapping::VoxelBlock> patterns(64);
   for (mapping::VoxelBlock& block : patterns) {
     for (int offset = 0; offset < mapping::kBlockVoxels; ++offset) {
-      block.add_pass(offset, mapping::kOneVote * (1 + static_cast<std::uint32_t>(random() % 40)));
+      block.add_miss(offset, mapping::kOneVote * (1 + static_cast<std::uint32_t>(random() % 40)));
       if (random() % 2 == 0)
         block.add_hit(offset, static_cast<std::uint16_t>(1 + random() % 40),
                       mapping::kOneVote * (1 + static_cast<std::uint32_t>(random() % 40)));
@@ -229,7 +229,7 @@ AnchoredFrame room_frame(int index, const geometry::PinholeCamera& camera) {
           mapping::CompactFrame::make(camera, image.depth, &image.labels, {}, error).value()};
 }
 
-/// A reader comes to a map that goes on growing at 2 Hz.
+/// A reader comes to a map that keeps growing at 2 Hz.
 void join(double tile_edge_m, std::size_t blocks, int socket_buffer_bytes) {
   MapperConfig config;
   config.resolution_m = kLargeMapResolution_m;

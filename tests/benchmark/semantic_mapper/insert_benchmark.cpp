@@ -102,7 +102,7 @@ void insert_beside_octomap(benchmark::State& state, double resolution_m, int str
     const IntegrationReport report = mapper.integrate(std::move(frame));
     total_s.push_back(cpu_s() - begin_s);
     state.SetIterationTime(total_s.back());
-    votes += report.votes.hit_count() + report.votes.pass_count();
+    votes += report.votes.hit_count() + report.votes.miss_count();
     ++i;
   }
   octomap::OcTree tree(resolution_m);

@@ -28,7 +28,7 @@ struct Maps {
   IdealMap noisy_labels;
 };
 
-/// Pose of the camera as a localisation with a slow error of `size_m` would tell it.
+/// Pose of the camera as a localisation with a slow error of `size_m` would report it.
 geometry::Pose with_error(const geometry::Pose& T, double size_m, double time_s) {
   const double phase = kTurnsOfError_rad_per_s * time_s;
   const Eigen::Vector3d shift(size_m * std::cos(phase), size_m * std::sin(phase), 0.0);

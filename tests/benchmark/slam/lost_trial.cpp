@@ -60,20 +60,20 @@ class Rig {
     return T_world_base * T_base_camera(config_.mount);
   }
 
-  // Drives to the next frame's stamp; what the wheels said on the way.
-  std::vector<simulator::WheelSample> advance(const DriveCommand& command) {
-    constexpr std::int64_t kWheelPeriod_ns = 20'000'000;
+  // Drives to the next frame's stamp; what odometry said on the way.
+  std::vector<simulator::OdometrySample> advance(const DriveCommand& command) {
+    constexpr std::int64_t kOdometryPeriod_ns = 20'000'000;
     const time::Time stamp{std::llround(static_cast<double>(++tick_) * 1e9 / config_.camera_rate_hz)};
     const double yaw_before_rad = robot().yaw_rad;
     if (!robot_.command(command)) throw std::runtime_error("a command is not finite");
-    std::vector<simulator::WheelSample> wheels;
+    std::vector<simulator::OdometrySample> odometry;
     while (robot().stamp < stamp) {
-      const time::Time due{(robot().stamp.nanoseconds / kWheelPeriod_ns + 1) * kWheelPeriod_ns};
+      const time::Time due{(robot().stamp.nanoseconds / kOdometryPeriod_ns + 1) * kOdometryPeriod_ns};
       sensors_.feel(robot_.advance(std::min(stamp, due)));
-      if (robot().stamp == due) wheels.push_back(sensors_.read_wheels(due, {kWheelPeriod_ns}));
+      if (robot().stamp == due) odometry.push_back(sensors_.read_odometry(due, {kOdometryPeriod_ns}));
     }
     turned_rad_ = std::remainder(robot().yaw_rad - yaw_before_rad, 2.0 * std::numbers::pi);
-    return wheels;
+    return odometry;
   }
 
   RgbdFrame see() const {
@@ -170,7 +170,7 @@ TrialPlan corridor_plan(const simulator::World& world, const simulator::TourConf
 }
 
 std::vector<TrialStep> drive_trial(const simulator::World& world, const simulator::SimulationConfig& simulation,
-                                   const SlamConfig& config, const TrialPlan& plan, bool with_wheels) {
+                                   const SlamConfig& config, const TrialPlan& plan, bool with_odometry) {
   const Pose T_base_camera = geometry::T_base_camera(simulation.mount);
   const FeatureExtractor extractor(config.features);
   RgbdSlam slam(config, T_base_camera, T_base_camera);
@@ -178,9 +178,9 @@ std::vector<TrialStep> drive_trial(const simulator::World& world, const simulato
   std::vector<TrialStep> steps;
   Pose T_odom_base = Pose::Identity();
   while (!plan.is_over(rig.robot())) {
-    for (const auto& wheel : rig.advance(plan.command(rig.robot()))) {
-      T_odom_base = planar(wheel.position, wheel.yaw_rad, 0.0);
-      if (with_wheels) slam.add_odometry(wheel.stamp, T_odom_base);
+    for (const auto& reading : rig.advance(plan.command(rig.robot()))) {
+      T_odom_base = planar(reading.position, reading.yaw_rad, 0.0);
+      if (with_odometry) slam.add_odometry(reading.stamp, T_odom_base);
     }
     TrialStep step;
     step.t_s = rig.robot().stamp.seconds();
@@ -196,7 +196,7 @@ std::vector<TrialStep> drive_trial(const simulator::World& world, const simulato
     step.is_keyframe = result.is_keyframe;
     step.estimate = result.T_map_keyframe * result.T_keyframe_camera;
     step.truth = rig.T_world_camera();
-    step.wheels = T_odom_base * T_base_camera;
+    step.odometry = T_odom_base * T_base_camera;
     step.graph_version = slam.graph_version();
     step.keyframes = slam.keyframe_count();
     step.landmarks = slam.landmark_count();

@@ -30,9 +30,9 @@ struct TrialStep {
   TrackingState state = TrackingState::kInitializing;
   bool has_pose = false;
   bool is_keyframe = false;
-  geometry::Pose estimate = geometry::Pose::Identity();  ///< T_map_camera as told; valid when has_pose
+  geometry::Pose estimate = geometry::Pose::Identity();  ///< T_map_camera as published; valid when has_pose
   geometry::Pose truth = geometry::Pose::Identity();     ///< T_world_camera
-  geometry::Pose wheels = geometry::Pose::Identity();    ///< T_odom_camera by the wheels alone
+  geometry::Pose odometry = geometry::Pose::Identity();  ///< T_odom_camera by odometry alone
   std::uint64_t graph_version = 0;
   std::size_t keyframes = 0;
   std::size_t landmarks = 0;
@@ -41,8 +41,8 @@ struct TrialStep {
   std::string reason;
 };
 
-/// A stop for `cover_s` in the middle of turning, at a place of the map with room around it. The camera goes on
-/// turning, or turns back half-way so that it returns to what it saw (`turns_back`).
+/// A stop for `cover_s` in the middle of turning, at a place of the map with room around it. The camera continues
+/// turning, or turns back halfway so that it returns to what it saw (`turns_back`).
 TrialPlan covered_plan(const simulator::World& world, double radius_m, std::uint64_t seed, bool turns_back);
 /// Slowly, then once around much too fast, then slowly back over what was seen.
 TrialPlan spin_plan(const simulator::World& world, double radius_m, std::uint64_t seed);
@@ -51,6 +51,6 @@ TrialPlan corridor_plan(const simulator::World& world, const simulator::TourConf
 
 /// Drives the plan. Frames that are covered are not rendered.
 std::vector<TrialStep> drive_trial(const simulator::World& world, const simulator::SimulationConfig& simulation,
-                                   const SlamConfig& config, const TrialPlan& plan, bool with_wheels);
+                                   const SlamConfig& config, const TrialPlan& plan, bool with_odometry);
 
 }  // namespace lapis::slam::benchmark

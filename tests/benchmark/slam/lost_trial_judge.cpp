@@ -31,15 +31,15 @@ std::optional<std::size_t> find(const Steps& steps, std::size_t begin, Predicate
   return static_cast<std::size_t>(found - steps.begin());
 }
 
-// Longest time that wrong poses were told as tracked.
-double longest_wrong_s(const Steps& steps, const TrialLimits& limits, bool with_wheels) {
+// Longest time that wrong poses were reported as tracked.
+double longest_wrong_s(const Steps& steps, const TrialLimits& limits, bool with_odometry) {
   const std::size_t origin = *find(steps, 0, is_tracked);
-  double longest_s = 0.0, way_m = 0.0;
+  double longest_s = 0.0, path_m = 0.0;
   std::optional<double> since_s;
   for (std::size_t i = origin + 1; i < steps.size(); ++i) {
-    way_m += difference(steps[i - 1].truth, steps[i].truth).m;
-    const double allowed_m = limits.wrong_m + limits.drift * way_m +
-                             (with_wheels ? motion_error(steps[origin], steps[i], &TrialStep::wheels).m : 0.0);
+    path_m += difference(steps[i - 1].truth, steps[i].truth).m;
+    const double allowed_m = limits.wrong_m + limits.drift * path_m +
+                             (with_odometry ? motion_error(steps[origin], steps[i], &TrialStep::odometry).m : 0.0);
     const bool is_wrong =
         is_tracked(steps[i]) && motion_error(steps[origin], steps[i], &TrialStep::estimate).m > allowed_m;
     if (!is_wrong) since_s.reset();
@@ -49,22 +49,22 @@ double longest_wrong_s(const Steps& steps, const TrialLimits& limits, bool with_
   return longest_s;
 }
 
-void judge_jumps(const Steps& steps, const TrialLimits& limits, bool with_wheels, TrialVerdict& verdict) {
+void judge_jumps(const Steps& steps, const TrialLimits& limits, bool with_odometry, TrialVerdict& verdict) {
   const std::size_t origin = *find(steps, 0, is_tracked);
-  const TrialStep* told = &steps[origin];
-  const TrialStep* tracked = told;
+  const TrialStep* reported = &steps[origin];
+  const TrialStep* tracked = reported;
   for (std::size_t i = origin + 1; i < steps.size(); ++i) {
     const TrialStep& step = steps[i];
     if (!step.has_pose) continue;
-    const PoseError jump = motion_error(*told, step, &TrialStep::estimate);
-    const PoseError before = motion_error(steps[origin], *told, &TrialStep::estimate);
+    const PoseError jump = motion_error(*reported, step, &TrialStep::estimate);
+    const PoseError before = motion_error(steps[origin], *reported, &TrialStep::estimate);
     const PoseError after = motion_error(steps[origin], step, &TrialStep::estimate);
-    const PoseError wheels = with_wheels ? motion_error(*tracked, step, &TrialStep::wheels) : PoseError{};
+    const PoseError odometry = with_odometry ? motion_error(*tracked, step, &TrialStep::odometry) : PoseError{};
     verdict.jump.m = std::max(verdict.jump.m, jump.m);
     verdict.jump.rad = std::max(verdict.jump.rad, jump.rad);
-    verdict.jumps_away = verdict.jumps_away || after.m - before.m > limits.jump_m + wheels.m ||
-                         after.rad - before.rad > limits.jump_rad + wheels.rad;
-    told = &step;
+    verdict.jumps_away = verdict.jumps_away || after.m - before.m > limits.jump_m + odometry.m ||
+                         after.rad - before.rad > limits.jump_rad + odometry.rad;
+    reported = &step;
     if (is_tracked(step)) tracked = &step;
   }
 }
@@ -110,10 +110,10 @@ void judge_return(const Steps& steps, std::size_t lost, const TrialLimits& limit
   verdict.returned_s = returned ? std::max(0.0, steps[*tracked].t_s - steps[*returned].t_s) : 0.0;
   verdict.before = motion_error(origin, steps[lost - 1], &TrialStep::estimate);
   verdict.returned = motion_error(origin, steps[*tracked], &TrialStep::estimate);
-  verdict.wheels = motion_error(steps[lost - 1], steps[*tracked], &TrialStep::wheels);
+  verdict.odometry = motion_error(steps[lost - 1], steps[*tracked], &TrialStep::odometry);
 }
 
-std::string failure_of(const TrialVerdict& v, const TrialLimits& limits, bool with_wheels) {
+std::string failure_of(const TrialVerdict& v, const TrialLimits& limits, bool with_odometry) {
   std::string failure;
   const auto add = [&](bool fails, const char* what) {
     if (fails) failure += (failure.empty() ? "" : ", ") + std::string(what);
@@ -122,21 +122,21 @@ std::string failure_of(const TrialVerdict& v, const TrialLimits& limits, bool wi
   add(v.jumps_away, "jump");
   add(v.touches_map, "map touched");
   add(v.returned_s > limits.returned_s, "returned late");
-  const PoseError wheels = with_wheels ? v.wheels : PoseError{};
-  add(v.returned.m > v.before.m + limits.jump_m + wheels.m ||
-          v.returned.rad > v.before.rad + limits.jump_rad + wheels.rad,
+  const PoseError odometry = with_odometry ? v.odometry : PoseError{};
+  add(v.returned.m > v.before.m + limits.jump_m + odometry.m ||
+          v.returned.rad > v.before.rad + limits.jump_rad + odometry.rad,
       "error on return");
   return failure;
 }
 
 }  // namespace
 
-TrialVerdict judge(const Steps& steps, const TrialLimits& limits, bool is_covered, bool with_wheels) {
+TrialVerdict judge(const Steps& steps, const TrialLimits& limits, bool is_covered, bool with_odometry) {
   TrialVerdict verdict;
   const auto begin = find(steps, 0, is_tracked);
   verdict.is_void = !begin.has_value();
   if (verdict.is_void) return verdict;
-  verdict.declared_s = longest_wrong_s(steps, limits, with_wheels);
+  verdict.declared_s = longest_wrong_s(steps, limits, with_odometry);
   auto lost = find(steps, *begin, [](const TrialStep& s) { return !is_tracked(s); });
   if (is_covered) {
     const std::size_t covered = *find(steps, 0, [](const TrialStep& s) { return s.is_covered; });
@@ -147,10 +147,10 @@ TrialVerdict judge(const Steps& steps, const TrialLimits& limits, bool is_covere
   }
   verdict.was_lost = lost.has_value();
   if (lost) judge_return(steps, *lost, limits, is_covered, verdict);
-  judge_jumps(steps, limits, with_wheels, verdict);
+  judge_jumps(steps, limits, with_odometry, verdict);
   verdict.touches_map = touches_map(steps);
   verdict.end = motion_error(steps[*begin], steps.back(), &TrialStep::estimate);
-  verdict.failure = failure_of(verdict, limits, with_wheels);
+  verdict.failure = failure_of(verdict, limits, with_odometry);
   return verdict;
 }
 

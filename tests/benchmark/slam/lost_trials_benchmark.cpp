@@ -20,7 +20,7 @@ struct Options {
   std::vector<std::string> kinds{"covered", "spin", "corridor"};
   int first = 1, last = 100;
   std::vector<std::string> overrides;
-  bool no_wheels = false;
+  bool no_odometry = false;
   bool with_frames = false;
 };
 
@@ -53,7 +53,7 @@ void print_frames(const std::vector<TrialStep>& steps) {
 
 void print_header() {
   std::printf("%-9s %5s %4s %9s | %14s | %4s | %9s | %14s %14s %14s %14s | %s\n", "kind", "trial", "lost", "declared",
-              "jump", "map", "returned", "before", "returned", "wheels", "end", "");
+              "jump", "map", "returned", "before", "returned", "odometry", "end", "");
 }
 
 std::string text_of(const PoseError& error) {
@@ -66,7 +66,7 @@ void print_row(const std::string& kind, int trial, const TrialVerdict& v) {
   const std::string verdict = v.is_void ? "void" : v.failure.empty() ? "pass" : "FAIL: " + v.failure;
   std::printf("%-9s %5d %4s %7.2f s | %s | %4s | %7.2f s | %s %s %s %s | %s\n", kind.c_str(), trial,
               v.was_lost ? "yes" : "no", v.declared_s, text_of(v.jump).c_str(), v.touches_map ? "yes" : "no",
-              v.returned_s, text_of(v.before).c_str(), text_of(v.returned).c_str(), text_of(v.wheels).c_str(),
+              v.returned_s, text_of(v.before).c_str(), text_of(v.returned).c_str(), text_of(v.odometry).c_str(),
               text_of(v.end).c_str(), verdict.c_str());
   std::fflush(stdout);
 }
@@ -89,9 +89,9 @@ class Course {
     auto simulation = simulator::simulation_config(setting_.simulated);
     simulation.seed = static_cast<std::uint64_t>(trial);
     const auto steps =
-        drive_trial(world_, simulation, setting_.slam.method, plan(simulation.seed), !options_.no_wheels);
+        drive_trial(world_, simulation, setting_.slam.method, plan(simulation.seed), !options_.no_odometry);
     if (options_.with_frames) print_frames(steps);
-    return judge(steps, {}, kind_ == "covered", !options_.no_wheels);
+    return judge(steps, {}, kind_ == "covered", !options_.no_odometry);
   }
 
  private:
@@ -99,7 +99,7 @@ class Course {
     const double radius_m = setting_.simulated.robot.radius_m;
     if (kind_ == "corridor") return corridor_plan(world_, simulator::tour_config(setting_.simulated), seed);
     if (kind_ == "spin") return spin_plan(world_, radius_m, seed);
-    return covered_plan(world_, radius_m, seed, options_.no_wheels || seed % 2 == 0);
+    return covered_plan(world_, radius_m, seed, options_.no_odometry || seed % 2 == 0);
   }
 
   std::string kind_;
@@ -136,7 +136,7 @@ int run(const Options& options) {
     summary += "; " + kind + " " + std::to_string(tally.passed) + " of " + std::to_string(tally.trials) + " (lost in " +
                std::to_string(tally.lost) + ", void " + std::to_string(tally.voids) + ")";
   }
-  std::printf("%s: passed%s\n", options.no_wheels ? "without wheels" : "with wheels", summary.substr(1).c_str());
+  std::printf("%s: passed%s\n", options.no_odometry ? "without odometry" : "with odometry", summary.substr(1).c_str());
   return is_good ? 0 : 1;
 }
 
@@ -144,7 +144,7 @@ constexpr const char* kHelp =
     R"(Getting lost and found again, without DDS: trials in simulated scenes, drawn by their number; a row each.
   covered   the robot turns at some place of the apartment; its camera is covered for 5 s, by black without depth or by
             grey with noise and depth. Every other trial turns back meanwhile, to what the camera saw before. The others
-            turn on, to a view that is new: there only wheels can help, so without wheels all turn back.
+            turn on, to a view that is new: there only odometry can help, so without odometry all turn back.
   spin      it turns once around at 3 to 6 rad/s
   corridor  it drives from the office of blank_corridor 2.5 to 6 m into the corridor, turns round and drives back
 Exit status 1 when less than 95 % of any kind pass. docs/evaluation.md says what is measured.)";
@@ -160,7 +160,7 @@ int main(int argc, char** argv) {
   app.add_option("--first", options.first, "number of the first trial");
   app.add_option("--last", options.last, "number of the last trial");
   app.add_option("--set", options.overrides, "slam.KEY=VALUE, simulator.KEY=VALUE or robot.KEY=VALUE");
-  app.add_flag("--no-wheels", options.no_wheels, "slam gets no wheel odometry");
+  app.add_flag("--no-odometry", options.no_odometry, "slam gets no wheel odometry");
   app.add_flag("--frames", options.with_frames, "also a line for each frame");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);

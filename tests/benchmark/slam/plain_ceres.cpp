@@ -40,10 +40,10 @@ struct PlanarError {
 
   template <class T>
   bool operator()(const T* from, const T* to, T* residual) const {
-    const Eigen::Matrix<T, 2, 1> way(to[0] - from[0], to[1] - from[1]);
+    const Eigen::Matrix<T, 2, 1> offset(to[0] - from[0], to[1] - from[1]);
     const T turn = to[2] - from[2] - T(angle);
     Eigen::Map<Eigen::Matrix<T, 3, 1>> e(residual);
-    e.template head<2>() = Eigen::Rotation2D<T>(-from[2] - T(angle)) * way -
+    e.template head<2>() = Eigen::Rotation2D<T>(-from[2] - T(angle)) * offset -
                            (Eigen::Rotation2Dd(-angle) * Eigen::Vector2d(x, y)).cast<T>();
     e[2] = turn - T(2.0 * M_PI) * ceres::floor((turn + T(M_PI)) / T(2.0 * M_PI));
     e = root.cast<T>() * e;

@@ -1,4 +1,4 @@
-// What it costs slam to tell others of its map: /slam/frame at 30 Hz, pose graph and path at 2 Hz, landmarks at 0.5 Hz,
+// What it costs slam to publish its map: /slam/frame at 30 Hz, pose graph and path at 2 Hz, landmarks at 0.5 Hz,
 // converted, serialised and written by Fast DDS to one reader in another process. The map is made up, with the sizes of
 // real ones; tracking and bundle adjustment are not counted.
 #include <CLI/CLI.hpp>
@@ -54,7 +54,7 @@ class Stopwatch {
   double begin_ms_;
 };
 
-/// A map that grows along a way through a building: rows of 30 m, 4 m apart, a key-frame every 0.35 m.
+/// A map that grows along a path through a building: rows of 30 m, 4 m apart, a key-frame every 0.35 m.
 class GrowingMap {
  public:
   void add_keyframe() {
@@ -104,8 +104,8 @@ class GrowingMap {
 
  private:
   static Eigen::Vector3d position(double index) {
-    const double way_m = 0.35 * index;
-    return {std::fmod(way_m, 30.0), 4.0 * std::floor(way_m / 30.0), 1.0};
+    const double path_m = 0.35 * index;
+    return {std::fmod(path_m, 30.0), 4.0 * std::floor(path_m / 30.0), 1.0};
   }
   /// Moves the newest landmarks along x by a size of that order.
   void move(int newest, double size_m) {
@@ -126,7 +126,7 @@ struct Costs {
   double frames_ms = 0.0;
   double graph_ms = 0.0;
   double landmarks_ms = 0.0;
-  double editing_ms = 0.0;        // of the map: not slam's telling
+  double editing_ms = 0.0;        // of the map: not slam's publishing
   double process_ms = 0.0;        // DDS's threads included, editing not
   double longest_frame_ms = 0.0;  // of all three, in one frame
 };
@@ -209,23 +209,23 @@ class ReaderComponent {
     context.subscribe(topics::kKeyframePath, [](const auto&) {});
     context.subscribe(topics::kLandmarks, [this](const auto& message) {
       if (auto tile = messages::from_message(message)) mirror_.apply_tile(message.session(), std::move(*tile));
-      tell();
+      report();
     });
     context.subscribe(topics::kLandmarkState, [this](const auto& message) {
       mirror_.apply_state(messages::from_message(message));
-      tell();
+      report();
     });
   }
 
  private:
-  void tell() {
-    if (!mirror_.is_consistent() || told_ == mirror_.state()->graph_version) return;
-    told_ = mirror_.state()->graph_version;
-    spdlog::info("mirrored version {}.", told_);
+  void report() {
+    if (!mirror_.is_consistent() || reported_ == mirror_.state()->graph_version) return;
+    reported_ = mirror_.state()->graph_version;
+    spdlog::info("mirrored version {}.", reported_);
   }
 
   mapping::LandmarkMirror mirror_;
-  std::uint64_t told_ = 0;
+  std::uint64_t reported_ = 0;
 };
 
 /// `seconds` of frames by the wall clock.

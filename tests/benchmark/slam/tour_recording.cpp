@@ -10,8 +10,8 @@
 namespace lapis::slam::benchmark {
 namespace {
 
+using simulator::OdometrySample;
 using simulator::SimulatorConfig;
-using simulator::WheelSample;
 
 template <class Value>
 void write(std::ostream& out, const Value* values, std::size_t count) {
@@ -53,7 +53,7 @@ void drive(const SimulatorConfig& config, const std::function<void(const TourFra
   while (!is_over) {
     const simulator::SensorFrame sensed = simulation.next(command);
     if (!T_map_world) T_map_world = sensed.T_world_base.inverse();
-    take({to_frame(sensed.stamp, pinhole_camera(config.robot.camera), sensed.images), sensed.wheels,
+    take({to_frame(sensed.stamp, pinhole_camera(config.robot.camera), sensed.images), sensed.odometry,
           *T_map_world * sensed.T_world_base * T_base_camera});
     command = tour->command(sensed.robot);
     if (const auto problem = tour->stalled(); !problem.empty()) throw std::runtime_error(problem);
@@ -62,12 +62,12 @@ void drive(const SimulatorConfig& config, const std::function<void(const TourFra
 }
 
 void write(std::ostream& out, const TourFrame& tour_frame) {
-  const auto& [frame, wheels, T_start_camera] = tour_frame;
-  const std::uint64_t count = wheels.size();
+  const auto& [frame, odometry, T_start_camera] = tour_frame;
+  const std::uint64_t count = odometry.size();
   write(out, &frame.stamp, 1);
   write(out, T_start_camera.matrix().data(), 16);
   write(out, &count, 1);
-  write(out, wheels.data(), wheels.size());
+  write(out, odometry.data(), odometry.size());
   write(out, frame.gray.pixels.data(), frame.gray.pixels.size());
   std::vector<std::uint16_t> depth_mm;
   for (const float z : frame.depth.pixels) depth_mm.push_back(static_cast<std::uint16_t>(std::lround(1e3F * z)));
@@ -75,13 +75,13 @@ void write(std::ostream& out, const TourFrame& tour_frame) {
 }
 
 bool read(std::istream& in, TourFrame& tour_frame) {
-  auto& [frame, wheels, T_start_camera] = tour_frame;
+  auto& [frame, odometry, T_start_camera] = tour_frame;
   std::uint64_t count = 0;
   if (!read(in, &frame.stamp, 1)) return false;
   read(in, T_start_camera.matrix().data(), 16);
   read(in, &count, 1);
-  wheels.resize(count);
-  read(in, wheels.data(), wheels.size());
+  odometry.resize(count);
+  read(in, odometry.data(), odometry.size());
   read(in, frame.gray.pixels.data(), frame.gray.pixels.size());
   geometry::Image<std::uint16_t> depth_mm(frame.depth.width, frame.depth.height);
   if (!read(in, depth_mm.pixels.data(), depth_mm.pixels.size())) return false;

@@ -17,8 +17,8 @@ namespace lapis::slam::benchmark {
 /// What slam gets for one frame of a tour, and where the camera truly was.
 struct TourFrame {
   RgbdFrame frame;
-  std::vector<simulator::WheelSample> wheels;  ///< since the frame before
-  geometry::Pose T_start_camera;               ///< true; from where base_link began
+  std::vector<simulator::OdometrySample> odometry;  ///< since the frame before
+  geometry::Pose T_start_camera;                    ///< true; from where base_link began
 };
 
 /// Colour and depth as slam gets them.

@@ -27,7 +27,7 @@ struct Options {
   std::vector<int> seeds{1, 2, 3, 4, 5};
   std::vector<std::string> overrides;
   std::string folder;
-  bool no_wheels = false;
+  bool no_odometry = false;
   bool with_loops = false;
   int wrong_loop_seeds = 0;
 };
@@ -43,7 +43,7 @@ struct View {
 struct Run {
   int frames = 0, tracked = 0;
   std::vector<double> milliseconds;              // CPU time of each frame
-  std::vector<double> online_errors_m;           // of every frame as told at its time
+  std::vector<double> online_errors_m;           // of every frame as published at its time
   std::map<std::int64_t, geometry::Pose> truth;  // T_map_camera by stamp
   TrackingResult last;
   geometry::Pose T_last_true = geometry::Pose::Identity();
@@ -83,9 +83,9 @@ double nees(const geometry::Pose& estimate, const geometry::Pose& truth, const g
   return error.dot(information * error) / 6.0;
 }
 
-geometry::Pose pose_of(const simulator::WheelSample& wheel) {
-  return geometry::make_pose({wheel.position.x(), wheel.position.y(), 0.0},
-                             Eigen::Quaterniond(Eigen::AngleAxisd(wheel.yaw_rad, Eigen::Vector3d::UnitZ())));
+geometry::Pose pose_of(const simulator::OdometrySample& reading) {
+  return geometry::make_pose({reading.position.x(), reading.position.y(), 0.0},
+                             Eigen::Quaterniond(Eigen::AngleAxisd(reading.yaw_rad, Eigen::Vector3d::UnitZ())));
 }
 
 View make_view(const RgbdFrame& frame, const geometry::Pose& T_map_camera) {
@@ -166,14 +166,14 @@ Recall recall_of(const Run& run) {
 // What slam says of a tour. The truth is brought into its map by the first frame with a pose, as the evaluator does: a
 // robot that begins in front of a bare wall has moved before there is a map.
 Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, const std::string& folder,
-         bool with_wheels) {
+         bool with_odometry) {
   Run run;
   const geometry::Pose T_base_camera = geometry::T_base_camera(camera_mount(scene.robot.camera));
   RgbdSlam slam(config, T_base_camera, T_base_camera);
   std::optional<geometry::Pose> T_map_start;
   play_tour(scene, folder, [&](const TourFrame& tour_frame) {
-    for (const auto& wheel : tour_frame.wheels) {
-      if (with_wheels) slam.add_odometry(wheel.stamp, pose_of(wheel));
+    for (const auto& reading : tour_frame.odometry) {
+      if (with_odometry) slam.add_odometry(reading.stamp, pose_of(reading));
     }
     const double before_ms = cpu_ms();
     const TrackingResult result = slam.process(tour_frame.frame);
@@ -275,7 +275,7 @@ int run(const Options& options) {
       simulated.scene = scene;
       simulated.seed = seed;
       try {
-        const Run tour = play(simulated, slam.method, options.folder, !options.no_wheels);
+        const Run tour = play(simulated, slam.method, options.folder, !options.no_odometry);
         print_row(scene, seed, tour);
         if (options.with_loops) print_loops(tour);
         if (options.wrong_loop_seeds > 0) spoil(tour, options.wrong_loop_seeds);
@@ -307,7 +307,7 @@ int main(int argc, char** argv) {
       "--recordings", options.folder,
       "keep the frames of tours here, 0.7 MB each, and read them the next time instead of rendering; they know "
       "the configuration, not the simulator: empty the folder when that changes");
-  app.add_flag("--no-wheels", options.no_wheels, "slam gets no wheel odometry");
+  app.add_flag("--no-odometry", options.no_odometry, "slam gets no wheel odometry");
   app.add_flag("--loops", options.with_loops, "also a row for each loop");
   app.add_option("--wrong-loops", options.wrong_loop_seeds,
                  "also rows for 10, 20 and 30 % wrong loops in the final graph, so many seeds each")

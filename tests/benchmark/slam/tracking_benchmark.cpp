@@ -92,15 +92,15 @@ class Race {
   double bytes_ = 0.0, first_bytes_ = 0.0;  // that slam holds: now, after the first key-frame
 };
 
-geometry::Pose pose_of(const simulator::WheelSample& wheel) {
-  return geometry::make_pose({wheel.position.x(), wheel.position.y(), 0.0},
-                             Eigen::Quaterniond(Eigen::AngleAxisd(wheel.yaw_rad, Eigen::Vector3d::UnitZ())));
+geometry::Pose pose_of(const simulator::OdometrySample& reading) {
+  return geometry::make_pose({reading.position.x(), reading.position.y(), 0.0},
+                             Eigen::Quaterniond(Eigen::AngleAxisd(reading.yaw_rad, Eigen::Vector3d::UnitZ())));
 }
 
 Times race_on_tour(const SlamConfig& config, const simulator::SimulatorConfig& simulated, const std::string& folder) {
   Race race(config, geometry::T_base_camera(camera_mount(simulated.robot.camera)));
   play_tour(simulated, folder, [&](const TourFrame& tour_frame) {
-    for (const auto& wheel : tour_frame.wheels) race.add_odometry(wheel.stamp, pose_of(wheel));
+    for (const auto& reading : tour_frame.odometry) race.add_odometry(reading.stamp, pose_of(reading));
     race.run(tour_frame.frame);
   });
   return race.finish();

@@ -66,7 +66,7 @@ TEST(LockstepSilence, AbortNamesTheOneThatNeverCame) {
   EXPECT_THAT(run.driver().failure(), HasSubstr("lockstep.stages"));
 }
 
-TEST_F(LockstepLoss, DemoteGoesOnWithout) {
+TEST_F(LockstepLoss, DemoteContinuesWithout) {
   ASSERT_NO_FATAL_FAILURE(begin("demote"));
   follower.stop(SIGKILL);
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(run->step()) << i;
@@ -86,7 +86,7 @@ TEST_F(LockstepLoss, ADemotedOneThatComesBackWorksByItself) {
   const auto has_followed = [&] {
     return !run->frames.empty() && messages::from_message(run->frames.back().header().stamp()) > left_behind;
   };
-  // Ticks go on until then: a process that was stopped for so long may have to be discovered again first.
+  // Ticks continue until then: a process that was stopped for so long may have to be discovered again first.
   EXPECT_TRUE(run->wait_until([&] {
     if (!has_followed()) run->step();
     return has_followed();
@@ -218,7 +218,7 @@ void expect_restart(const std::string& killed) {
 TEST(LockstepRestart, FirstStage) { expect_restart(kEcho); }
 TEST(LockstepRestart, LastStage) { expect_restart(kFollower); }
 
-// Each new one is told of the endpoints of the other's former life until that has dropped out of discovery.
+// Each new one hears of the endpoints of the other's former life until that has dropped out of discovery.
 TEST(LockstepRestart, BothAtOnce) {
   auto echo = std::make_unique<ChildProcess>(kEcho);
   auto follower = std::make_unique<ChildProcess>(kFollower);
@@ -241,7 +241,7 @@ TEST(LockstepRestart, NewDriverFindsOldParticipants) {
   for (int life = 0; life < 2; ++life) {
     Driven run(two_stages("abort", 20.0, 5.0));
     ASSERT_TRUE(run.wait_for(State::kIdle)) << echo.log() << follower.log();
-    run.ticks = static_cast<std::size_t>(life) * 100;  // stamps go on
+    run.ticks = static_cast<std::size_t>(life) * 100;  // stamps continue
     const auto before = run.frames.size();
     for (int i = 0; i < 3; ++i) ASSERT_TRUE(run.step()) << life << echo.log() << follower.log();
     ASSERT_TRUE(run.wait_until([&] { return run.frames.size() >= before + 3; }));
@@ -255,7 +255,7 @@ TEST(LockstepRestart, NewDriverAndNewFollowerDoNotWaitForTheEarlierRun) {
     ChildProcess follower(kFollower);
     Driven run(two_stages("abort", 20.0, 5.0));
     ASSERT_TRUE(run.wait_for(State::kIdle)) << life << echo.log() << follower.log();
-    run.ticks = static_cast<std::size_t>(life) * 100;  // stamps go on
+    run.ticks = static_cast<std::size_t>(life) * 100;  // stamps continue
     for (int i = 0; i < 3; ++i) ASSERT_TRUE(run.step()) << life << echo.log() << follower.log();
     ASSERT_TRUE(run.wait_until([&] { return run.frames.size() >= 3; }));
     EXPECT_EQ(run.frames.back().reason(), "");

@@ -40,7 +40,7 @@ struct Speaking {
 };
 
 /// All that the controller needs, played by the test: a depth camera in a hall, slam, mapper and planner, and a robot
-/// that does at once what it is told.
+/// that does at once what it is asked.
 class Surroundings {
  public:
   explicit Surroundings(runtime::Context& context)

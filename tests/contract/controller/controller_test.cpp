@@ -54,7 +54,7 @@ TEST_F(LockstepController, StandsStillWithoutAPose) {
   }
   EXPECT_EQ(statuses.back().state(), Constants::STATE_STOPPED);
   EXPECT_THAT(statuses.back().reason(), HasSubstr("no pose for more than"));
-  EXPECT_LE(ticks_until(false, 1.0), 0.5) << "and goes on with one";
+  EXPECT_LE(ticks_until(false, 1.0), 0.5) << "and continues with one";
 }
 
 TEST_F(LockstepController, StandsStillWithoutDepthImages) {
@@ -66,7 +66,7 @@ TEST_F(LockstepController, StandsStillWithoutAMap) {
   get_going();
   EXPECT_LE(ticks_until(true, 2.0, {.map = false}), kStopWithin_s);
   EXPECT_THAT(statuses.back().reason(), HasSubstr("no map for more than 0.22 s"));
-  EXPECT_LE(ticks_until(false, 1.0), 0.5) << "and goes on with one";
+  EXPECT_LE(ticks_until(false, 1.0), 0.5) << "and continues with one";
 }
 
 TEST_F(LockstepController, StandsStillWithAMapThatComesButIsOld) {
@@ -81,7 +81,7 @@ TEST_F(LockstepController, StandsStillWithoutAPlanner) {
   get_going();
   EXPECT_LE(ticks_until(true, 2.0, {.planner = false}), kStopWithin_s);
   EXPECT_THAT(statuses.back().reason(), HasSubstr("no sign of life of the planner"));
-  EXPECT_LE(ticks_until(false, 1.0), 0.5) << "and goes on with one";
+  EXPECT_LE(ticks_until(false, 1.0), 0.5) << "and continues with one";
 }
 
 TEST_F(LockstepController, MissingTwoMessagesInARowIsNoReasonToStop) {
@@ -195,7 +195,7 @@ class FreeController : public ControllerContract {
     }
     return false;
   }
-  /// From the last whole frame until it stands still, when then only `who` speaks [s]. In between it has to go on. A
+  /// From the last whole frame until it stands still, when then only `who` speaks [s]. In between it has to continue. A
   /// silence counts only if commands came all the time: else the machine was busy.
   double seconds_until_still(
       const Speaking& who, const std::function<void()>& spoil = [] {}) {
@@ -216,7 +216,7 @@ class FreeController : public ControllerContract {
       const double stopped_s = std::chrono::duration<double>(Clock::now() - last).count();
       world.spoil_pose = {};
       world.spoil_view = {};
-      EXPECT_TRUE(frames_until([&] { return !is_zero(commands.back()); }, {})) << "and goes on with all";
+      EXPECT_TRUE(frames_until([&] { return !is_zero(commands.back()); }, {})) << "and continues with all";
       if (longest_gap_s <= kLongestGap_s) return stopped_s;
     }
     ADD_FAILURE() << "commands come less than " << 1.0 / kLongestGap_s << " times a second: the machine is too busy";

@@ -111,7 +111,7 @@ TEST_F(EvaluatorContract, WritesTheRunFolderWhenItIsStopped) {
   EXPECT_THAT(metrics, HasSubstr("\"frames_total\": 4"));
   EXPECT_THAT(metrics, HasSubstr("\"frames_tracked\": 4"));
   EXPECT_THAT(metrics, Not(HasSubstr("nan")));
-  EXPECT_THAT(metrics, HasSubstr("\"collisions\": null"));  // nobody told of contacts
+  EXPECT_THAT(metrics, HasSubstr("\"collisions\": null"));  // nobody published contacts
   for (const char* file : {"trajectory_estimate.txt", "trajectory_ground_truth.txt", "timeline.csv"}) {
     EXPECT_FALSE(read(std::filesystem::path(folder) / file).empty()) << file;
   }

@@ -14,7 +14,7 @@ namespace lapis::test {
 /// column of eight voxels from the ground up.
 inline mapping::VoxelMap drawn_map(const std::vector<std::string>& lines, double resolution_m) {
   struct Votes {
-    std::array<std::uint32_t, mapping::kBlockVoxels> passes{};
+    std::array<std::uint32_t, mapping::kBlockVoxels> misses{};
     std::map<std::uint16_t, mapping::HitVote> hits;
   };
   std::map<mapping::BlockIndex, Votes> blocks;
@@ -28,7 +28,7 @@ inline mapping::VoxelMap drawn_map(const std::vector<std::string>& lines, double
       for (std::uint16_t z = 0; z < mapping::kBlockEdge; ++z) {
         const auto voxel = static_cast<std::uint16_t>(64 * z + 8 * (y & 7) + (x & 7));
         if (what == '#') votes.hits[voxel] = {voxel, 1, 3 * mapping::kOneVote};
-        if (what == '.') votes.passes[voxel] = 3 * mapping::kOneVote;
+        if (what == '.') votes.misses[voxel] = 3 * mapping::kOneVote;
       }
     }
   }
@@ -36,7 +36,7 @@ inline mapping::VoxelMap drawn_map(const std::vector<std::string>& lines, double
   for (const auto& [index, votes] : blocks) {
     std::vector<mapping::HitVote> hits;
     for (const auto& entry : votes.hits) hits.push_back(entry.second);
-    map.set_block(index, mapping::VoxelBlock(votes.passes, hits));
+    map.set_block(index, mapping::VoxelBlock(votes.misses, hits));
   }
   return map;
 }

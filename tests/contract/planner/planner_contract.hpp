@@ -175,8 +175,8 @@ class Peers {
   }
   std_msgs::msg::Header header() const { return messages::header(stamp, "map"); }
   void follow(const nav_msgs::msg::Path& path) {
-    way_.clear();
-    for (const auto& pose : path.poses()) way_.push_back(*messages::from_message(pose.pose()));
+    path_.clear();
+    for (const auto& pose : path.poses()) path_.push_back(*messages::from_message(pose.pose()));
   }
 
   dds::Publisher<lapis_msgs::msg::MapDescription>& map_description;
@@ -198,24 +198,24 @@ class Peers {
   time::Time stamp{1'000'000'000};
   Eigen::Vector2d position{2.0, 2.0};
   double yaw_rad = 0.0;
-  double position_sigma_m = 0.0;  ///< that slam tells, each axis
+  double position_sigma_m = 0.0;  ///< that slam publishes, each axis
   bool drives = false;
 
  private:
   // 0.6 m/s; poses of a path are nearer to each other than it comes in a tick, or it turns at once.
   void drive() {
     double left_m = 0.6 / kRate_hz;
-    while (drives && !way_.empty() && left_m > 0.0) {
-      left_m -= (way_.front().translation().head<2>() - position).norm();
-      position = way_.front().translation().head<2>();
-      yaw_rad = std::atan2(way_.front()(1, 0), way_.front()(0, 0));
-      way_.erase(way_.begin());
+    while (drives && !path_.empty() && left_m > 0.0) {
+      left_m -= (path_.front().translation().head<2>() - position).norm();
+      position = path_.front().translation().head<2>();
+      yaw_rad = std::atan2(path_.front()(1, 0), path_.front()(0, 0));
+      path_.erase(path_.begin());
     }
   }
 
   std::set<mapping::TileIndex> tiles_;
   std::uint64_t map_version_ = 0, graph_version_ = 0;
-  std::vector<geometry::Pose> way_;
+  std::vector<geometry::Pose> path_;
 };
 
 /// The real planner and its peers, in lock-step or by the wall clock.

@@ -19,7 +19,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // slam ---------------------------------------------------------------------------------------------------------------
 
-TEST_F(PlannerContract, StandsWhileSlamIsLostAndGoesOnAfterwards) {
+TEST_F(PlannerContract, StandsWhileSlamIsLostAndContinuesAfterwards) {
   get_going();
   constexpr double kLatency_s = 3 / kRate_hz;  // a decision may be under way
   ASSERT_TRUE(ticks_until([this] { return state() == STATE_RECOVERING; }, kLatency_s + 1 / kRate_hz, kLost))
@@ -32,14 +32,14 @@ TEST_F(PlannerContract, StandsWhileSlamIsLostAndGoesOnAfterwards) {
   ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
 }
 
-TEST_F(PlannerContract, DrivesBackByWheelsToWhereSlamWasLastSure) {
+TEST_F(PlannerContract, DrivesBackByOdometryToWhereSlamWasLastSure) {
   peers.drives = true;
   get_going();
   ASSERT_TRUE(ticks_until([this] { return (peers.position - Eigen::Vector2d(2, 2)).norm() > 0.5; })) << reason();
   const Eigen::Vector2d last_tracked = peers.position;
-  peers.position.x() -= 0.5;  // a slip that only the wheels know of
+  peers.position.x() -= 0.5;  // a slip that only odometry knows of
   ASSERT_TRUE(ticks_until([this] { return state() == STATE_RECOVERING && has_path(); }, 4.0, kReckoning)) << reason();
-  EXPECT_EQ(reason(), "slam reckons by wheels alone");
+  EXPECT_EQ(reason(), "slam reckons by odometry alone");
   EXPECT_LT((goal() - last_tracked).norm(), 0.3);
 }
 
@@ -101,7 +101,7 @@ class PlannerGraphFaults : public PlannerContract {
   using Graph = lapis_msgs::msg::PoseGraph;
 
   void SetUp() override { ASSERT_TRUE(start({"progress_timeout_s=600"})) << planner->log(); }
-  /// A good graph, a bad one, and a good one again: exploration goes on, and the bad one is explained.
+  /// A good graph, a bad one, and a good one again: exploration continues, and the bad one is explained.
   void expect_explained(const std::function<void(Graph&)>& spoil, const std::string& explanation) {
     SCOPED_TRACE(explanation);
     const auto decides = [this] {
@@ -251,7 +251,7 @@ TEST_F(PlannerContract, BlockedControllerGetsAnotherGoal) {
   ASSERT_TRUE(tick());
   peers.say_blocked();
   ASSERT_TRUE(ticks_until([this] { return stands(); }, 1.0)) << reason() << planner->log();
-  EXPECT_EQ(reason(), "the way was blocked");
+  EXPECT_EQ(reason(), "the path was blocked");
   peers.controller.publish({});
   ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
   EXPECT_NE(goal().x() > 2.5, went_right) << "the other door";
@@ -313,7 +313,7 @@ TEST_F(PlannerContract, FullDiskCostsTheFileAndNotTheExploration) {
 
 // F2 -----------------------------------------------------------------------------------------------------------------
 
-TEST_F(PlannerContract, RestartedPlannerHasTheWholeMapAndGoesOn) {
+TEST_F(PlannerContract, RestartedPlannerHasTheWholeMapAndContinues) {
   start_free();
   peers.draw(kRoomWithDoor);
   peers.pose_graph.publish(peers.graph());

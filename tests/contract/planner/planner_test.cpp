@@ -39,7 +39,7 @@ TEST_F(PlannerContract, SaysWhatEveryCandidateIsWorthOrWhyItIsRejected) {
   ASSERT_TRUE(start()) << planner->log();
   Drawing lines = kRoomWithDoor;
   for (std::string& line : lines) line.resize(40, ' ');
-  for (std::size_t i = 4; i < 12; ++i) lines[i].replace(30, 8, "........");  // seen, but there is no way
+  for (std::size_t i = 4; i < 12; ++i) lines[i].replace(30, 8, "........");  // seen, but there is no path
   peers.pose_graph.publish(peers.graph());
   peers.draw(lines);
   ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
@@ -85,7 +85,7 @@ TEST_F(PlannerContract, InformationFromWhereSlamIsUnsureCountsLess) {
   EXPECT_LT(most_information(), 0.51 * sure);
 }
 
-TEST_F(PlannerContract, LateJoinerIsToldPathCandidatesAndStatus) {
+TEST_F(PlannerContract, LateJoinerGetsPathCandidatesAndStatus) {
   get_going();
   TopicProbe late("late");
   const auto& path = late.collect(topics::kPlannerPath);

@@ -1,5 +1,5 @@
-// lapis_semantic_mapper alone, with inputs and a disk that fail: what is wrong is told and counted, the map stays as it
-// is, and mapping goes on.
+// lapis_semantic_mapper alone, with inputs and a disk that fail: what is wrong is reported and counted, the map stays
+// as it is, and mapping continues.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -75,7 +75,7 @@ class MapperFaults : public MapperContract {
   }
 };
 
-TEST_F(MapperFaults, GarbageIsCountedAndMappingGoesOn) {
+TEST_F(MapperFaults, GarbageIsCountedAndMappingContinues) {
   ASSERT_TRUE(map_frame(0)) << mapper.log();
   int index = 1;
   for (const Spoiled& spoiled : kSpoiled) {
@@ -153,7 +153,7 @@ class MapperOnABadDisk : protected TemporaryFolder, public MapperFaults {
     EXPECT_TRUE(probe.wait_until([&] { return (reply = saver_.take_reply(*call)).has_value(); })) << mapper.log();
     return reply.value_or(std_srvs::srv::Trigger_Response{});
   }
-  /// Saving fails for that reason between the two, mapping goes on, and the old file is as it was.
+  /// Saving fails for that reason between the two, mapping continues, and the old file is as it was.
   void expect_refusal(const char* reason, const std::function<void()>& fail, const std::function<void()>& repair) {
     SCOPED_TRACE(reason);
     ASSERT_TRUE(save().success());
@@ -163,7 +163,7 @@ class MapperOnABadDisk : protected TemporaryFolder, public MapperFaults {
     EXPECT_FALSE(refused.success());
     EXPECT_THAT(refused.message(), HasSubstr(file().string()));
     EXPECT_THAT(refused.message(), HasSubstr(reason));
-    EXPECT_TRUE(map_frame(index_++)) << "mapping goes on" << mapper.log();
+    EXPECT_TRUE(map_frame(index_++)) << "mapping continues" << mapper.log();
     repair();
     EXPECT_EQ(bytes(), before);
     EXPECT_FALSE(fs::exists(file().string() + ".part"));
@@ -177,7 +177,7 @@ class MapperOnABadDisk : protected TemporaryFolder, public MapperFaults {
   dds::ServiceClient<std_srvs::srv::Trigger>& saver_ = probe.client(topics::kSaveMap);
 };
 
-TEST_F(MapperOnABadDisk, SavingThatFailsIsToldAndTheOldFileStaysWhole) {
+TEST_F(MapperOnABadDisk, SavingThatFailsIsReportedAndTheOldFileStaysWhole) {
   ASSERT_TRUE(map_frame(0)) << mapper.log();
   rlimit unlimited{};
   ASSERT_EQ(prlimit(mapper.pid(), RLIMIT_FSIZE, nullptr, &unlimited), 0);
@@ -205,7 +205,7 @@ struct SavedHugeMap {
   SavedHugeMap() {
     constexpr std::int32_t kEdge = 58;  // blocks
     mapping::VoxelBlock seen(20 * mapping::kOneVote), torn = seen;
-    torn.add_pass(7, mapping::kOneVote);
+    torn.add_miss(7, mapping::kOneVote);
     for (std::int32_t i = 0; i < kEdge * kEdge * kEdge; ++i) {
       const mapping::BlockIndex index{100 + i % kEdge, i / kEdge % kEdge, i / kEdge / kEdge};
       saved.map.set_block(index, i % 8 == 0 ? torn : seen);

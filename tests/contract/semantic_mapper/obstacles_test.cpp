@@ -95,8 +95,8 @@ TEST_F(Obstacles, GridsComeFifteenTimesASecondOfStampsAndToLateJoiners) {
   EXPECT_EQ(seen.back(), grids.back());
 }
 
-// A robot that slam does not track goes by wheels, and its controller stands still without a map.
-TEST_F(Obstacles, GridsGoOnWhileSlamDoesNotTrack) {
+// A robot that slam does not track goes by odometry, and its controller stands still without a map.
+TEST_F(Obstacles, GridsContinueWhileSlamDoesNotTrack) {
   ASSERT_TRUE(map_frame(0)) << mapper.log();
   ASSERT_TRUE(probe.wait_until([&] { return grids.size() == 1; })) << mapper.log();
   auto lost = tracked(2);

@@ -1,4 +1,4 @@
-// lapis_semantic_mapper goes on with the map of an earlier run.
+// lapis_semantic_mapper resumes the map of an earlier run.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -57,7 +57,7 @@ TEST_F(SavedSemanticMap, IsGoneOnWithAsIfItHadNeverEnded) {
 
   ASSERT_NO_FATAL_FAILURE(save_a_map({output(), resume()}, 4, 7, 2));
   const mapping::MapFile resumed = load(file());
-  EXPECT_EQ(mirrored_, expected.map) << "the whole map is told, and the new frames are added to it";
+  EXPECT_EQ(mirrored_, expected.map) << "the whole map is published, and the new frames are added to it";
   EXPECT_EQ(resumed.map, expected.map);
   EXPECT_EQ(mapping::LabelList::united(base.labels, resumed.labels), resumed.labels) << "no name is lost";
   EXPECT_EQ(resumed.provenance.at("frames"), "7");

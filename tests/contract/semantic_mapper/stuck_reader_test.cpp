@@ -56,11 +56,11 @@ TEST_F(StuckReader, CostsOthersNoDataAndTheMapperNoMemory) {
 int read_map() {
   TopicProbe probe("reader");
   MapClient client(probe);
-  std::size_t told = 0;
-  const auto is_new = [&] { return client.has_map() && client.states.size() > told; };
+  std::size_t published = 0;
+  const auto is_new = [&] { return client.has_map() && client.states.size() > published; };
   while (true) {
     if (!probe.wait_until(is_new, Seconds(1))) continue;
-    told = client.states.size();
+    published = client.states.size();
     std::cout << "map of " << client.states.back().frames_integrated() << " frames" << std::endl;
   }
 }

@@ -97,7 +97,7 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   const auto& labels = probe.collect(topics::kLabels);
   const auto& info = probe.collect(topics::kColorInfo);
   const auto& truth = probe.collect(topics::kGroundTruth);
-  const auto& wheels = probe.collect(topics::kWheelOdometry);
+  const auto& odometry = probe.collect(topics::kWheelOdometry);
   const auto& transforms = probe.collect(topics::kTransforms);
   const auto& mount = probe.collect(topics::kStaticTransforms);
   const auto& names = probe.collect(topics::kLabelInfo);
@@ -105,7 +105,7 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
                                                 "robot.camera.rate_hz=5"}));
   ASSERT_TRUE(probe.wait_until([&] {
     return std::min({color.size(), depth.size(), labels.size(), info.size(), truth.size()}) > 5 &&
-           std::min(wheels.size(), transforms.size()) > 20;
+           std::min(odometry.size(), transforms.size()) > 20;
   })) << simulator.log();
   // It began when the readers were there: nothing is missing from the first frame on.
   for (std::size_t i = 0; i < 5; ++i) {
@@ -128,23 +128,23 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   EXPECT_LT((*metres)(320, 180), 2.5F);
   EXPECT_EQ(color.back().header().frame_id(), "camera_color_optical_frame");
   EXPECT_EQ(truth.back().child_frame_id(), "base_link");
-  EXPECT_EQ(wheels.back().header().frame_id(), "odom");
-  for (std::size_t i = 0; i < 20; ++i) {  // odom -> base_link is told with each reading
+  EXPECT_EQ(odometry.back().header().frame_id(), "odom");
+  for (std::size_t i = 0; i < 20; ++i) {  // odom -> base_link is published with each reading
     ASSERT_EQ(transforms[i].transforms().size(), 1U);
     const auto& transform = transforms[i].transforms()[0];
     EXPECT_EQ(transform.header().frame_id(), "odom");
     EXPECT_EQ(transform.child_frame_id(), "base_link");
-    const auto reading = std::find_if(wheels.begin(), wheels.end(), [&](const auto& m) {
+    const auto reading = std::find_if(odometry.begin(), odometry.end(), [&](const auto& m) {
       return stamp_of(m) == messages::from_message(transform.header().stamp());
     });
-    ASSERT_NE(reading, wheels.end());
+    ASSERT_NE(reading, odometry.end());
     const auto T_odom_base = messages::from_message(transform.transform());
     const auto expected = messages::from_message(reading->pose().pose());
     ASSERT_TRUE(T_odom_base && expected);
     EXPECT_TRUE(T_odom_base->isApprox(*expected, 1e-12));
   }
-  for (std::size_t i = 1; i < wheels.size(); ++i) {
-    EXPECT_EQ((stamp_of(wheels[i]) - stamp_of(wheels[i - 1])).nanoseconds, 20'000'000);
+  for (std::size_t i = 1; i < odometry.size(); ++i) {
+    EXPECT_EQ((stamp_of(odometry[i]) - stamp_of(odometry[i - 1])).nanoseconds, 20'000'000);
   }
   EXPECT_EQ(simulator.stop(SIGTERM), 0) << simulator.log();
   EXPECT_THAT(summary(), HasSubstr("exit_reason: \"stopped\""));
@@ -454,17 +454,17 @@ TEST_F(SimulatorContract, AResetThatConsumersWouldTakeForDisorderIsRefused) {
   ASSERT_TRUE(probe.wait_until([&] { return (reply = reset.take_reply(*number)).has_value(); })) << simulator.log();
   EXPECT_FALSE(reply->success());
   slam.answer(slam.ticks.back());
-  EXPECT_TRUE(slam.wait_for_tick(2)) << "the run goes on";
+  EXPECT_TRUE(slam.wait_for_tick(2)) << "the run continues";
 }
 
 /// A robot whose watchdog stops it at once, and again after every command, does not get anywhere.
-TEST_F(SimulatorContract, ATourThatIsStuckEndsTheRunAndNamesTheWayPoint) {
+TEST_F(SimulatorContract, ATourThatIsStuckEndsTheRunAndNamesTheWaypoint) {
   ChildProcess simulator(kSimulator,
                          with_stages("[]", {"--tour", "bundled", "--set", "robot.camera.rate_hz=0.1", "--set",
                                             "robot.command_timeout_s=0.05", "--set", "robot.max_speed_m_s=0.01"}));
   EXPECT_EQ(simulator.wait(Seconds(60)), 1) << simulator.log();
-  EXPECT_THAT(simulator.log(), HasSubstr("way-point 1"));
-  EXPECT_THAT(summary(), HasSubstr("way-point 1"));
+  EXPECT_THAT(simulator.log(), HasSubstr("waypoint 1"));
+  EXPECT_THAT(summary(), HasSubstr("waypoint 1"));
 }
 
 TEST_F(SimulatorContract, GroundTruthThatCannotBeWrittenEndsTheRun) {

@@ -1,4 +1,4 @@
-// What lapis_slam tells of its landmarks: tiles and the state that announces them, read as a planner reads them.
+// What lapis_slam publishes of its landmarks: tiles and the state that announces them, read as a planner reads them.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -39,7 +39,7 @@ struct LandmarkClient {
       mirror.apply_state(messages::from_message(message));
     });
   }
-  /// True when all landmarks of the newest version that slam told of are here.
+  /// True when all landmarks of the newest version that slam announced are here.
   bool is_up_to_date(const TrackedFrame& newest) const {
     return mirror.is_consistent() && mirror.state()->session == newest.session() &&
            mirror.state()->graph_version == newest.graph_version();

@@ -1,4 +1,4 @@
-// lapis_slam saves its map and goes on with it.
+// lapis_slam saves its map and resumes it.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -129,7 +129,7 @@ TEST_F(SavedMap, IsGoneOnWithInANewSessionOfTheSameFrame) {
   EXPECT_THAT(run.frames.back().reason(), HasSubstr("looking for a place in the saved map"));
   EXPECT_GT(run.frames.back().session(), session_);
 
-  ASSERT_TRUE(run.wait_until([&] { return !run.graphs.empty(); })) << "the saved graph is told at once";
+  ASSERT_TRUE(run.wait_until([&] { return !run.graphs.empty(); })) << "the saved graph is published at once";
   const auto& saved = run.graphs.front();
   ASSERT_EQ(saved.nodes().size(), graph_.nodes().size());
   EXPECT_EQ(saved.edges().size(), graph_.edges().size());
@@ -178,7 +178,7 @@ TEST_F(SavedMap, OfAKilledProcessIsTheOneThatItSavedByItself) {
   ASSERT_TRUE(run.finds_its_place(index)) << run.frames.back().reason() << run.log();
 }
 
-TEST_F(SavedMap, ThatCannotBeWrittenIsCountedAndTrackingGoesOn) {
+TEST_F(SavedMap, ThatCannotBeWrittenIsCountedAndTrackingContinues) {
   const fs::path folder = folder_.path() / "gone";
   Slam run(folder, {"slam.autosave_period_s=0.2"});
   ASSERT_TRUE(run.is_ready()) << run.log();

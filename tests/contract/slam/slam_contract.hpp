@@ -72,7 +72,8 @@ class SlamContract : public ::testing::Test {
         std::find_if(odometry.rbegin(), odometry.rend(), [&](const auto& m) { return stamp_of(m) == stamp; });
     return at == odometry.rend() ? nullptr : &*at;
   }
-  /// Compares the pose told for `stamp` with where the camera is, when it was at `T_box_first` in a map's first frame.
+  /// Compares the pose published for `stamp` with where the camera is, when it was at `T_box_first` in a map's first
+  /// frame.
   void expect_pose(time::Time stamp, const geometry::Pose& T_box_first, const geometry::Pose& T_box_camera) {
     const auto* message = odometry_at(stamp);
     ASSERT_NE(message, nullptr) << "no pose for " << time::to_string(stamp) << slam.log();

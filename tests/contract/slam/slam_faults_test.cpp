@@ -101,8 +101,8 @@ TEST_F(SlamFaults, MessagesThatMakeNoSenseAreRefusedWithTheirReason) {
 
 TEST_F(SlamFaults, PosesThatAreNoneAreCountedAndNotBelieved) {
   auto& transforms = probe.advertise(topics::kStaticTransforms);
-  auto& wheels = probe.advertise(topics::kWheelOdometry);
-  ASSERT_TRUE(probe.wait_until([&] { return transforms.matched() > 0 && wheels.matched() > 0; }));
+  auto& wheel_odometry = probe.advertise(topics::kWheelOdometry);
+  ASSERT_TRUE(probe.wait_until([&] { return transforms.matched() > 0 && wheel_odometry.matched() > 0; }));
   ASSERT_TRUE(probe.wait_until_known_by("slam"));
   tf2_msgs::msg::TFMessage mount = camera_mount();
   mount.transforms()[0].transform().translation().x(std::numeric_limits<double>::quiet_NaN());
@@ -119,7 +119,7 @@ TEST_F(SlamFaults, PosesThatAreNoneAreCountedAndNotBelieved) {
     reading.header().stamp(
         messages::to_message(time::Time{CameraFeed::stamp(kFirstFrames).nanoseconds + i * 1'000'000}));
     reading.pose().pose().position().x(i % 2 == 0 ? std::numeric_limits<double>::infinity() : 0.0);
-    wheels.publish(reading);  // its quaternion is all zero
+    wheel_odometry.publish(reading);  // its quaternion is all zero
   }
   EXPECT_TRUE(wait_for_count("odometry dropped: pose has numbers that are not finite", 10)) << slam.log();
   EXPECT_TRUE(wait_for_count("odometry dropped: quaternion is not a unit one", 10)) << slam.log();
@@ -199,10 +199,10 @@ TEST_F(SlamFaults, ClockThatJumpsBackTwiceBeginsOneSession) {
   ASSERT_TRUE(wait_for_answer(next)) << slam.log();
   EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
   EXPECT_EQ(frames.back().session(), session + 1);
-  EXPECT_LE(frames.size(), before + 2) << "the lonely frame may be told as dropped";
+  EXPECT_LE(frames.size(), before + 2) << "the lonely frame may be reported as dropped";
 }
 
-TEST_F(SlamFaults, ClockThatJumpsAheadGoesOnInTheSameSession) {
+TEST_F(SlamFaults, ClockThatJumpsAheadContinuesInTheSameSession) {
   const std::int64_t session = frames.back().session();
   for (int i = kFirstFrames; i < kFirstFrames + 6; ++i) {
     const time::Time stamp{CameraFeed::stamp(i).nanoseconds + 3'600'000'000'000};
@@ -220,7 +220,7 @@ TEST_F(SlamFaults, ClockThatJumpsAheadGoesOnInTheSameSession) {
   EXPECT_EQ(frames.size(), static_cast<std::size_t>(kFirstFrames + 6));
 }
 
-// Each message is lost with a probability of 30 %. Who has lost its partners is told so, the others are tracked.
+// Each message is lost with a probability of 30 %. Who has lost its partners is reported so, the others are tracked.
 TEST_F(SlamFaults, ThirtyPercentOfTheMessagesLost) {
   std::mt19937 random(11);
   const auto is_lost = [&random] { return random() % 10 < 3; };
@@ -379,7 +379,8 @@ TEST_F(SlamFaults, CoveredCameraIsLostAtOnceAndFindsItsMapAgain) {
   }
 }
 
-// 180 degrees per second at 30 Hz, once around. What is told is right; where nothing is known nothing is told.
+// 180 degrees per second at 30 Hz, once around. What is published is right; where nothing is known nothing is
+// published.
 TEST_F(SlamFaults, FastSpinNeverGivesAWrongPose) {
   const auto spin = [](int i) {
     const double angle = 3.14159265358979 * i / 30.0;
@@ -387,13 +388,13 @@ TEST_F(SlamFaults, FastSpinNeverGivesAWrongPose) {
            geometry::make_pose(Eigen::Vector3d::Zero(),
                                Eigen::Quaterniond(Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitY())));
   };
-  std::size_t told = 0;
+  std::size_t published = 0;
   for (int i = 0; i <= 60; ++i) {
     const int index = kFirstFrames + i;
     ASSERT_TRUE(answers(feed.frame(CameraFeed::stamp(index), spin(i)), index)) << slam.log();
     EXPECT_EQ(frames.back().session(), frames.front().session());
     if (frames.back().state() != kTracking) continue;
-    ++told;
+    ++published;
     const auto* message = odometry_at(CameraFeed::stamp(index));
     ASSERT_NE(message, nullptr);
     const auto T_true = T_base_camera() * slow_motion(0).inverse() * spin(i) * T_base_camera().inverse();
@@ -401,7 +402,7 @@ TEST_F(SlamFaults, FastSpinNeverGivesAWrongPose) {
     EXPECT_LT(error.translation().norm(), 0.05) << i;
     EXPECT_LT(geometry::so3_log(error.linear()).norm(), 0.03) << i;
   }
-  EXPECT_EQ(odometry.size(), kFirstFrames + told);
+  EXPECT_EQ(odometry.size(), kFirstFrames + published);
   EXPECT_EQ(frames.back().state(), kTracking) << "the first view again: " << frames.back().reason();
 }
 

@@ -68,7 +68,7 @@ TEST_F(SlamContract, LateJoinerGetsGraphPathAndStatus) {
   EXPECT_EQ(status[0].state(), kTracking);
 }
 
-TEST_F(SlamContract, GarbageIsCountedAndTrackingGoesOn) {
+TEST_F(SlamContract, GarbageIsCountedAndTrackingContinues) {
   int index = 0;
   for (; index < 3; ++index) ASSERT_TRUE(track(index)) << slam.log();
   const auto spoil = [&](const std::function<void(CameraFrame&)>& change) {
@@ -132,14 +132,14 @@ TEST_F(SlamContract, FrameWithoutDepthInRangeIsLostWithTheReasonAndFoundAgain) {
     return !odometry.empty() &&
            messages::from_message(odometry.back().header().stamp()) == CameraFeed::stamp(index - 1);
   })) << slam.log();
-  EXPECT_EQ(odometry.size(), tracked) << "no pose is told while lost";
+  EXPECT_EQ(odometry.size(), tracked) << "no pose is published while lost";
   EXPECT_TRUE(std::all_of(odometry.begin(), odometry.end(), is_finite));
 }
 
 TEST_F(SlamContract, OdometryCarriesThePoseOnAndMakesTheOdomFrameItsOwn) {
-  auto& wheels = probe.advertise(topics::kWheelOdometry);
+  auto& wheel_odometry = probe.advertise(topics::kWheelOdometry);
   const auto& transforms = probe.collect(topics::kTransforms);
-  ASSERT_TRUE(probe.wait_until([&] { return wheels.matched() > 0; })) << slam.log();
+  ASSERT_TRUE(probe.wait_until([&] { return wheel_odometry.matched() > 0; })) << slam.log();
   ASSERT_TRUE(probe.wait_until_known_by("slam")) << slam.log();
   const auto feel = [&](int index, const std::string& child) {
     Odometry message;
@@ -147,13 +147,13 @@ TEST_F(SlamContract, OdometryCarriesThePoseOnAndMakesTheOdomFrameItsOwn) {
     message.header().frame_id("odom");
     message.child_frame_id(child);
     message.pose().pose(messages::to_message(T_base_camera() * slow_motion(index) * T_base_camera().inverse()));
-    wheels.publish(message);
+    wheel_odometry.publish(message);
   };
   for (int i = 0; i < 4; ++i) feel(i, "base_link");
   feel(4, "wheel");
   EXPECT_TRUE(wait_for_count("child frame is 'wheel'", 1)) << slam.log();
   ASSERT_TRUE(track(0)) << slam.log();
-  const int index = 1;  // what the wheels said before there was a frame carries the first pose on
+  const int index = 1;  // what odometry said before there was a frame carries the first pose on
   auto blind = feed.frame(index);
   std::fill(blind.color->data().begin(), blind.color->data().end(), std::uint8_t{0});
   ASSERT_TRUE(answers(blind, index)) << slam.log();
@@ -195,7 +195,7 @@ TEST_F(SlamContract, FrameWithoutDepthIsCounted) {
 TEST_F(SlamContract, SilenceIsSurvivedAndEndsCleanly) {
   ASSERT_TRUE(track(0)) << slam.log();
   const auto seen = diagnostics.size();
-  EXPECT_TRUE(probe.wait_until([&] { return diagnostics.size() >= seen + 3; })) << "diagnostics go on without input";
+  EXPECT_TRUE(probe.wait_until([&] { return diagnostics.size() >= seen + 3; })) << "diagnostics continue without input";
   EXPECT_EQ(slam.stop(SIGTERM, Seconds(5)), 0) << slam.log();
 }
 

@@ -123,7 +123,7 @@ TEST(Controller, StopsForOrAvoidsWhatAppearsInFrontOfItAtFullSpeed) {
   }
 }
 
-TEST(Controller, FindsItsWayRoundSomethingWideThatAppearsNearIt) {
+TEST(Controller, FindsAPathRoundSomethingWideThatAppearsNearIt) {
   KinematicWorld world(hall());
   const Path path = straight({0, 0}, {6, 0}, 0.0);
   world.controller.set_path(path, "");
@@ -174,20 +174,20 @@ TEST(Controller, SlowsDownBesideObstacles) {
   EXPECT_LT(fastest({wall(-1, 0.35, 7, 0.5), wall(-1, -0.5, 7, -0.35)}), 0.5);
 }
 
-TEST(Controller, ClosedWayIsWaitedForBackedUpFromAndReported) {
+TEST(Controller, ClosedPathIsWaitedForBackedUpFromAndReported) {
   KinematicWorld world(with(hall(), closed_corridor()));
   world.knows_floor = true;
   world.controller.set_path(straight({0, 0}, {5, 0}, 0.0), "");
   const auto until = [&](const std::string& reason, double limit_s) {
     return world.run_until([&](const Decision& d) { return d.reason == reason; }, limit_s);
   };
-  EXPECT_LT(until("no free way: waits", 15.0), 15.0) << world.last.reason;
-  EXPECT_NEAR(until("no free way: backs up", 2.0), 1.0, 0.1) << "patience";
+  EXPECT_LT(until("no free path: waits", 15.0), 15.0) << world.last.reason;
+  EXPECT_NEAR(until("no free path: backs up", 2.0), 1.0, 0.1) << "patience";
   const Eigen::Vector2d before = world.T_map_base.translation();
   EXPECT_LT(world.run_until([](const Decision& d) { return d.command.forward_m_s >= 0.0; }, 6.0), 6.0);
   EXPECT_GT((world.T_map_base.translation() - before).norm(), 0.05) << "as far as there is room";
   EXPECT_LT(world.run_until(State::kBlocked, 15.0), 15.0) << world.last.reason;
-  EXPECT_EQ(world.last.reason, "no free way along the path");
+  EXPECT_EQ(world.last.reason, "no free path along the planner's path");
   EXPECT_EQ(world.last.command.forward_m_s, 0.0);
   EXPECT_GT(world.least_room_m, 0.0) << "touched";
 }
@@ -199,7 +199,7 @@ TEST(Controller, LooksAroundInsteadOfBackingUpIntoTheUnknown) {
   const double took_s = world.run_until(
       [&](const Decision& d) {
         EXPECT_GE(d.command.forward_m_s, 0.0);
-        has_looked |= d.reason == "no free way: looks around";
+        has_looked |= d.reason == "no free path: looks around";
         return d.state == State::kBlocked;
       },
       20.0);
@@ -208,7 +208,7 @@ TEST(Controller, LooksAroundInsteadOfBackingUpIntoTheUnknown) {
 }
 
 // What stood so near that its lower half is below the image is believed until it is forgotten.
-TEST(Controller, GoesOnWhenTheWayIsFreeAgain) {
+TEST(Controller, ContinuesWhenThePathIsFreeAgain) {
   KinematicWorld world(with(hall(), closed_corridor()));
   const Path path = straight({0, 0}, {4, 0}, 0.0);
   world.controller.set_path(path, "");
@@ -225,7 +225,7 @@ TEST(Controller, PressedAgainstGlassItBacksUpAndThenReportsThatItIsStuck) {
   world.controller.set_path(straight({0, 0}, {5, 0}, 0.0), "");
   EXPECT_LT(world.run_until([](const Decision& d) { return d.command.forward_m_s < 0.0; }, 20.0), 20.0);
   EXPECT_LT(world.run_until(State::kBlocked, 40.0), 40.0) << world.last.reason;
-  EXPECT_EQ(world.last.reason, "no progress, although the way looks free");
+  EXPECT_EQ(world.last.reason, "no progress, although the path looks free");
   world.controller.set_path(straight({1, 0}, {-2, 0}, 3.14), "");
   EXPECT_LT(world.run_until(State::kIdle, 20.0), 20.0) << "a new path is a new try: " << world.last.reason;
 }
@@ -261,7 +261,7 @@ TEST(Controller, NewPathReplacesTheOldOneAndAnEmptyOneStops) {
   EXPECT_EQ(stop.command.forward_m_s, 0.0);
 }
 
-TEST(Controller, WithoutAPoseItStandsStillAtOnceAndGoesOnWithOne) {
+TEST(Controller, WithoutAPoseItStandsStillAtOnceAndContinuesWithOne) {
   KinematicWorld world(hall());
   world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");
   world.run_until([](const Decision&) { return false; }, 2.0);
@@ -302,9 +302,9 @@ TEST(Controller, WhatIsRememberedStaysInFrontOfItWhenTheMapJumps) {
   KinematicWorld world(with(hall(), {low}));
   world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");
   ASSERT_LT(world.run_until([&](const Decision&) { return world.T_map_base.translation().x() > 1.1; }, 20.0), 20.0);
-  world.T_told_map = planar_pose({0.5, 0.4}, 0.3);
+  world.T_published_map = planar_pose({0.5, 0.4}, 0.3);
   Path path = straight(world.T_map_base.translation(), {4, 0}, 0.0);
-  for (PlanarPose& pose : path) pose = world.T_told_map * pose;
+  for (PlanarPose& pose : path) pose = world.T_published_map * pose;
   world.controller.set_path(path, "");
   world.run_until([](const Decision&) { return false; }, 10.0);
   EXPECT_GT(world.least_room_m, 0.0);

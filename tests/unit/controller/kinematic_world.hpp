@@ -32,7 +32,7 @@ class KinematicWorld {
     now = now + time::Duration::from_seconds(1.0 / kRate_hz);
     controller.note_camera(now, now);
     controller.note_planner(now);
-    frames_.push_back({T_told_map * T_map_base, {image(), camera, T_base_camera()}, now});
+    frames_.push_back({T_published_map * T_map_base, {image(), camera, T_base_camera()}, now});
     if (frames_.size() > late_frames) {
       const Frame& frame = frames_.front();
       if (has_pose) controller.set_pose(frame.T_map_base, frame.stamp, now);
@@ -73,9 +73,9 @@ class KinematicWorld {
   RobotLimits limits;
   geometry::PinholeCamera camera{160, 90, 80, 80, 79.5, 44.5};
   PlanarPose T_map_base = PlanarPose::Identity();
-  PlanarPose T_told_map = PlanarPose::Identity();  ///< error of the poses that slam tells
-  std::size_t late_frames = 0;                     ///< so late come pose and depth image; the camera's stamp does not
-  Velocity velocity;                               ///< of the drives
+  PlanarPose T_published_map = PlanarPose::Identity();  ///< error of the poses that slam publishes
+  std::size_t late_frames = 0;  ///< so late come pose and depth image; the camera's stamp does not
+  Velocity velocity;            ///< of the drives
   time::Time now{1'000'000'000};
   bool has_pose = true;
   bool knows_floor = false;  ///< the mapper's grid says that all but boxes is free; else it knows nothing

@@ -49,7 +49,7 @@ TEST(PathFan, IsSymmetricAndHasAStraightPath) {
   EXPECT_TRUE(straight.poses.back().translation().isApprox(Eigen::Vector2d(kConfig.length_m, 0.0)));
 }
 
-TEST(PathFan, PathAlongACurvatureIsTheOneThatGoesOnWithIt) {
+TEST(PathFan, PathAlongACurvatureIsTheOneThatContinuesWithIt) {
   for (const double curvature : {-2.5, -0.9, -0.2, 0.0, 0.05, 0.5, 1.1, 2.2}) {
     const FanPath& path = fan().paths()[fan().path_along(curvature)];
     EXPECT_NEAR(path.curvature_per_m, curvature, 0.25) << curvature;

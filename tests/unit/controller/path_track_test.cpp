@@ -21,7 +21,7 @@ TEST(PathTrack, FollowsTheRobotAndNeverGoesBack) {
 
 TEST(PathTrack, LooksOnlyAsFarAheadAsTheWindow) {
   PathTrack track({planar_pose({0, 0}, 0), planar_pose({4, 0}, 0), planar_pose({4, 0.2}, 0), planar_pose({0, 0.2}, 0)});
-  track.advance({0.5, 0.2}, 1.0);  // its way back passes here, too
+  track.advance({0.5, 0.2}, 1.0);  // its path back passes here, too
   EXPECT_DOUBLE_EQ(track.progress_m(), 0.5);
 }
 

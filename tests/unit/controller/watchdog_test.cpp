@@ -62,7 +62,7 @@ TEST(Watchdog, LagOfTheStampsCountsHoweverOftenSomethingArrives) {
 TEST(Watchdog, TheSameStampAgainIsNothingNew) {
   Watchdog dog({});
   note_all(dog, 0.0);
-  for (double t = 0.0; t < 0.25; t += 0.05) {  // everybody goes on sending, but the clock stands still
+  for (double t = 0.0; t < 0.25; t += 0.05) {  // everybody keeps sending, but the clock stands still
     for (const Input input : {Input::kCamera, Input::kPose, Input::kView, Input::kMap}) {
       dog.note(input, at(t), stamp(0.0));
     }

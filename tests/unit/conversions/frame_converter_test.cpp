@@ -94,7 +94,7 @@ TEST(FrameConverter, CompressedColorThatIsNoImageIsRefused) {
   EXPECT_FALSE(converter.convert(message, depth(), camera_info(), {}));
 }
 
-// The radial model of the camera info pulls pixels of the right edge inwards; a ramp tells from where.
+// The radial model of the camera info pulls pixels of the right edge inwards; a ramp shows from where.
 TEST(FrameConverter, DistortionIsTakenOutOfColorAndDepthByTheCalibrationOfTheFrame) {
   FrameConverter converter;
   auto millimetres = depth();

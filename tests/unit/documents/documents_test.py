@@ -28,6 +28,32 @@ def meanings_of(name):
     return {path: meaning for path, meaning in keys.items() if not path.startswith(SHARED)}
 
 
+RENAMED = {  # keys of before, by the component that refuses them
+    "controller": {"controller.local_map.passes_to_clear": "controller.local_map.misses_to_clear"},
+    "semantic_mapper": {
+        "semantic_mapper.obstacles.passes_to_clear": "semantic_mapper.obstacles.misses_to_clear",
+        "semantic_mapper.sensor_model.pass_gain": "semantic_mapper.sensor_model.miss_gain",
+    },
+    "simulator": {"simulator.noise.wheels": "simulator.noise.odometry"},
+    "planner": {
+        "planner.hallucination.min_loop_way_m": "planner.hallucination.min_loop_path_m",
+        "planner.sensor_model.pass_gain": "semantic_mapper.sensor_model.miss_gain",
+    },
+    "evaluator": {"evaluator.sensor_model.pass_gain": "semantic_mapper.sensor_model.miss_gain"},
+}
+
+
+class FormerKeys(unittest.TestCase):
+    def test_each_is_refused_with_its_name_of_today(self):
+        for name, keys in RENAMED.items():
+            for former, now in keys.items():
+                with self.subTest(former):
+                    run = subprocess.run([BIN / f"lapis_{name}", "--set", f"{former}=1", "--check-config"],
+                                         capture_output=True, text=True)
+                    self.assertEqual(run.returncode, 2, run.stderr)
+                    self.assertIn(f"{former}: is now '{now}'", run.stdout + run.stderr)
+
+
 class Facts(unittest.TestCase):
     """No fact is configured in two processes: what one has to know of another comes with the data.
 

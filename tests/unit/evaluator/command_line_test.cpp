@@ -55,7 +55,7 @@ class CommandLine : public ::testing::Test {
     mapping::FrameVotes votes;
     for (int y = 0; y < width; ++y) {
       const int front = mapping::offset_in_block({3, y, 0});
-      block.passes[static_cast<std::size_t>(front / 64)] |= std::uint64_t{1} << (front % 64);
+      block.misses[static_cast<std::size_t>(front / 64)] |= std::uint64_t{1} << (front % 64);
       votes.hits.push_back({static_cast<std::uint16_t>(mapping::offset_in_block({4, y, 0})), 1});
     }
     block.hits_end = static_cast<std::uint32_t>(votes.hits.size());

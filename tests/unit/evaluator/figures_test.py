@@ -63,7 +63,7 @@ def write_decisions(path):
     header = "decision,time_s,method,candidate,x_m,y_m,yaw_rad,cost_m,path_information_nats,d_optimality,utility," \
              "is_chosen,is_chosen_by_mi_only,rejection"
     rows = [f"{d},{5 * d}.0,lapis,{c},{c},{d},0.5,{1 + c},{100 - c},1.5,{0 if d == 2 and c == 3 else 2.5 - c},"
-            f"{int(c == 0)},{int(c == 1)},{'no way' if d == 2 and c == 3 else ''}"
+            f"{int(c == 0)},{int(c == 1)},{'no path' if d == 2 and c == 3 else ''}"
             for d, count in ((1, 3), (2, 4), (3, 1)) for c in range(count)]
     path.write_text("\n".join([header, *rows]) + "\n")
 

@@ -20,7 +20,7 @@ class GroundTruthFolder : public ::testing::Test {
     mapping::MapFile file{mapping::VoxelMap(0.25), {}, mapping::LabelList::from_names({{1, "wall"}}), {}};
     mapping::VoxelBlock block;
     block.add_hit(mapping::offset_in_block({3, 2, 1}), 1, 32 * mapping::kOneVote);
-    block.add_pass(mapping::offset_in_block({4, 2, 1}), mapping::kOneVote);
+    block.add_miss(mapping::offset_in_block({4, 2, 1}), mapping::kOneVote);
     file.map.set_block({0, 0, 0}, block);
     EXPECT_FALSE(mapping::save_map((folder / "mesh.lapis").string(), file));
     write("classes.json", R"({"top_classes": [1, 7]})");
@@ -65,7 +65,7 @@ TEST_F(GroundTruthFolder, DamageIsNamed) {
   EXPECT_THAT(problem_of_folder(), HasSubstr("mesh.lapis"));
 }
 
-TEST(SameFrame, IsToldAtTheOriginOfTheMapHoweverFarTheWorld) {
+TEST(SameFrame, IsNoticedAtTheOriginOfTheMapHoweverFarTheWorld) {
   const auto pose = [](double x, double y, double yaw) {
     return geometry::make_pose({x, y, 0}, Eigen::Quaterniond(Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ())));
   };

@@ -115,7 +115,7 @@ TEST(Metrics, TrajectoryFiguresOfADriftingWalk) {
   EXPECT_FALSE(trajectory_figures({}, estimate).ate_raw_rmse_m);
 }
 
-TEST(Metrics, AteUpToAWayIsThatOfThePosesBefore) {
+TEST(Metrics, AteUpToAPathLengthIsThatOfThePosesBefore) {
   Trajectory reference, estimate;  // 1 m/s; the estimate is 1 m beside at the start, and 5 m from 3 s on
   for (int i = 0; i <= 10; ++i) {
     const auto pose = [i](double y) { return geometry::make_pose({1.0 * i, y, 0}, Eigen::Quaterniond::Identity()); };
@@ -128,14 +128,14 @@ TEST(Metrics, AteUpToAWayIsThatOfThePosesBefore) {
   EXPECT_FALSE(ate_raw_rmse_up_to(10.1, reference, estimate));
 }
 
-TEST(Metrics, DecisionsAreCountedOnceWhateverIsToldTwice) {
+TEST(Metrics, DecisionsAreCountedOnceWhateverIsReportedTwice) {
   DecisionRecord record;
   RunMetrics metrics;
   record.add({});
   record.write_to(metrics);
   EXPECT_FALSE(metrics.decisions || metrics.decision_time_p50_s || metrics.decisions_unlike_mi_only_share);
-  for (const DecisionCounts& told : {DecisionCounts{1, 0, 0.1}, {1, 0, 0.1}, {2, 1, 0.3}, {2, 1, 0.3}})
-    record.add(told);
+  for (const DecisionCounts& reported : {DecisionCounts{1, 0, 0.1}, {1, 0, 0.1}, {2, 1, 0.3}, {2, 1, 0.3}})
+    record.add(reported);
   record.add({1, 1, 0.5});  // a planner that was restarted
   record.add({2, 1, 0.7});
   record.write_to(metrics);

@@ -30,7 +30,7 @@ bool is_inside(double u, double v) {
   return u >= 0.0 && v >= 0.0 && u <= kRectifiedWidth - 1 && v <= kRectifiedHeight - 1;
 }
 
-// Recorded images whose pixels hold their own coordinates tell where each rectified pixel was taken from.
+// Recorded images whose pixels hold their own coordinates show where each rectified pixel was taken from.
 void expect_pixels_from_where_the_lens_put_them(const geometry::LensCamera& lens) {
   geometry::ColorImage color(kRectifiedWidth, kRectifiedHeight);
   geometry::GrayImage gray(kRectifiedWidth, kRectifiedHeight);

@@ -52,14 +52,14 @@ class BenchmarkTableTest(unittest.TestCase):
         self.assertEqual([row["hardest push m/s"] for row in rows], ["0.25"] * 4)
         self.assertEqual([row["commit"] for row in rows], ["abc123"] * 3 + ["-"])
 
-    def test_a_run_that_failed_is_told_and_is_in_no_median(self):
+    def test_a_run_that_failed_is_reported_and_is_in_no_median(self):
         status, rows = self.table("runs.csv", self.run_folder("flat/tare/seed_1"),
                                   self.run_folder("flat/tare/seed_2", has_succeeded=False, explored_share=0.1))
         self.assertEqual(status, 1)
         self.assertEqual([row["outcome"] for row in rows], ["done", "FAILED", "1 done, 1 FAILED"])
         self.assertEqual(rows[-1]["explored %"], "90.0")
 
-    def test_a_run_without_metrics_is_told_by_its_manifest(self):
+    def test_a_run_without_metrics_is_reported_by_its_manifest(self):
         folder = self.folder / "somewhere"
         folder.mkdir()
         (folder / "manifest.yaml").write_text('version: "lapis 0.1.0"\nrun:\n  commit: "abc123"\n  method: "tare"\n'

@@ -23,13 +23,13 @@ PlainVotes plain(const FrameVotes& votes) {
   PlainVotes p;
   for (const BlockVotes& block : votes.blocks) {
     for (int offset = 0; offset < kBlockVoxels; ++offset) {
-      const bool is_passed = block.passes[static_cast<std::size_t>(offset / 64)] >> (offset % 64) & 1u;
-      if (is_passed) p.passes.insert(voxel_at(block.block, offset));
+      const bool is_miss = block.misses[static_cast<std::size_t>(offset / 64)] >> (offset % 64) & 1u;
+      if (is_miss) p.misses.insert(voxel_at(block.block, offset));
     }
     for (const HitVote& hit : votes.hits_of(block))
       EXPECT_TRUE(p.hits[voxel_at(block.block, hit.offset)].emplace(hit.label, hit.weight).second);
   }
-  for (const auto& [voxel, ballot] : p.hits) EXPECT_FALSE(p.passes.contains(voxel));
+  for (const auto& [voxel, ballot] : p.hits) EXPECT_FALSE(p.misses.contains(voxel));
   return p;
 }
 
@@ -101,11 +101,11 @@ TEST(ComputeVotes, EqualsSlabTestOfEveryVoxelAndRay) {
             for (int x = -reach; x <= reach; ++x) {
               const VoxelIndex v{center.x + x, center.y + y, center.z + z};
               const double leave = exit_of(v, r, T.translation(), ray);
-              if (leave >= 0.0 && leave <= t_end) expected.passes.insert(v);
+              if (leave >= 0.0 && leave <= t_end) expected.misses.insert(v);
             }
       }
-    for (const auto& [voxel, label] : expected.hits) expected.passes.erase(voxel);
-    EXPECT_EQ(got.passes, expected.passes) << "trial " << trial;
+    for (const auto& [voxel, label] : expected.hits) expected.misses.erase(voxel);
+    EXPECT_EQ(got.misses, expected.misses) << "trial " << trial;
     EXPECT_EQ(got.hits, expected.hits) << "trial " << trial;
   }
 }
@@ -130,7 +130,7 @@ TEST(ComputeVotes, EqualsItsPlainestFormToTheLastVote) {
       const CompactFrame frame = frame_of(camera, image.depth, &image.labels, r < 0.1 ? 3 : 1, certainty);
       const PlainVotes expected = test::PlainIntegration(frame, T, config, r).votes();
       ASSERT_EQ(plain(compute_votes(frame, T, config, r)), expected) << r;
-      ASSERT_GT(expected.passes.size(), 100u);
+      ASSERT_GT(expected.misses.size(), 100u);
     }
   }
 }
@@ -232,7 +232,7 @@ TEST(ComputeVotes, AKernelLetsNeighboursOutvoteALoneLabelAndAddsNoVoxels) {
   EXPECT_EQ(sharp.hits.at({4, 0, 0}), test::whole_vote(7));
   EXPECT_EQ(smooth.hits.at({4, 0, 0}), test::whole_vote(4));
   EXPECT_EQ(smooth.hits.size(), sharp.hits.size());
-  EXPECT_EQ(smooth.passes, sharp.passes);
+  EXPECT_EQ(smooth.misses, sharp.misses);
 }
 
 TEST(SparseKernel, FallsFromOneToZero) {
@@ -248,7 +248,7 @@ TEST(ComputeVotes, FarReturnsCarveWithoutHitAndMissingDepthSaysNothing) {
   s.depth = geometry::DepthImage(9, 1, 40.0f);
   const PlainVotes far = plain(compute_votes(frame_of(s.camera, s.depth), s.T, exact_config(), 0.5));
   EXPECT_TRUE(far.hits.empty());
-  EXPECT_EQ(far.passes.size(), 10u);  // 5 m from x = 0.1 leaves cells 0..9
+  EXPECT_EQ(far.misses.size(), 10u);  // 5 m from x = 0.1 leaves cells 0..9
   s.depth = geometry::DepthImage(9, 1, 0.0f);
   EXPECT_TRUE(compute_votes(frame_of(s.camera, s.depth), s.T, exact_config(), 0.5).blocks.empty());
   s.depth = geometry::DepthImage(9, 1, 0.1f);  // below min_range_m
@@ -267,11 +267,11 @@ TEST(ComputeVotes, NothingOutsideTheHeightLimits) {
   const PlainVotes cut = plain(compute_votes(frame, T, config, 0.1));
   PlainVotes expected;
   const auto is_inside = [](const VoxelIndex& v) { return v.z >= 5 && v.z < 15; };
-  for (const VoxelIndex& v : all.passes)
-    if (is_inside(v)) expected.passes.insert(v);
+  for (const VoxelIndex& v : all.misses)
+    if (is_inside(v)) expected.misses.insert(v);
   for (const auto& [v, label] : all.hits)
     if (is_inside(v)) expected.hits[v] = label;
-  EXPECT_EQ(cut.passes, expected.passes);
+  EXPECT_EQ(cut.misses, expected.misses);
   EXPECT_EQ(cut.hits, expected.hits);
   EXPECT_LT(cut.hits.size(), all.hits.size());
 }
@@ -284,14 +284,14 @@ TEST(ComputeVotes, FreeSpaceIsFreeAndSurfacesAreNeverPassed) {
   const auto image = lapis::test::render(room, camera, T);
   const VoxelMap grid(0.1);
   const PlainVotes got = plain(compute_votes(frame_of(camera, image.depth, &image.labels), T, exact_config(), 0.1));
-  for (const VoxelIndex& voxel : got.passes) {
+  for (const VoxelIndex& voxel : got.misses) {
     const Eigen::Vector3d center = grid.center_of(voxel);
     for (const lapis::test::Box& box : room) {
       const Eigen::Vector3d inside = (center - box.low).cwiseMin(box.high - center);
       EXPECT_LT(inside.minCoeff(), 0.1) << "a voxel deep inside a box was passed";
     }
   }
-  EXPECT_GT(got.passes.size(), 5000u);
+  EXPECT_GT(got.misses.size(), 5000u);
 }
 
 TEST(ComputeVotes, IsDeterministic) {

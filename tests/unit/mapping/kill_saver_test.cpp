@@ -21,7 +21,7 @@ MapFile large_map(unsigned seed) {
   std::mt19937 random(seed);
   for (std::int32_t x = 0; x < 400; ++x) {
     VoxelBlock block;
-    for (int offset = 0; offset < kBlockVoxels; ++offset) block.add_pass(offset, static_cast<std::uint32_t>(random()));
+    for (int offset = 0; offset < kBlockVoxels; ++offset) block.add_miss(offset, static_cast<std::uint32_t>(random()));
     file.map.set_block({x, 0, 0}, std::move(block));
   }
   return file;

@@ -192,7 +192,7 @@ TEST_F(MapFileTest, AFewBytesThatClaimGigabytesTakeNoMemory) {
 TEST_F(MapFileTest, AMapBeyondTheMemoryForMapsIsRefused) {
   MapFile file{VoxelMap(0.1), {}, {}, {}};
   VoxelBlock block(kOneVote);
-  block.add_pass(0, kOneVote);  // half a kilobyte in memory, nearly nothing in a file
+  block.add_miss(0, kOneVote);  // half a kilobyte in memory, nearly nothing in a file
   for (std::int32_t x = 0; x < 10'000; ++x) file.map.set_block({x, 0, 0}, block);
   const std::vector<std::uint8_t> bytes = encode_map(file);
   EXPECT_LT(bytes.size(), 100'000u);
@@ -207,7 +207,7 @@ TEST_F(MapFileTest, AMapBeyondTheMemoryForMapsIsRefused) {
 TEST_F(MapFileTest, HundredMillionVoxelsAreSavedAndLoaded) {
   MapFile file{VoxelMap(0.05), {}, {}, {}};
   VoxelBlock seen(20 * kOneVote), torn(20 * kOneVote);
-  torn.add_pass(7, kOneVote);
+  torn.add_miss(7, kOneVote);
   constexpr std::int32_t kEdge = 58;  // blocks
   for (std::int32_t i = 0; i < kEdge * kEdge * kEdge; ++i)
     file.map.set_block({i % kEdge, i / kEdge % kEdge, i / kEdge / kEdge}, i % 8 == 0 ? torn : seen);

@@ -158,7 +158,7 @@ TEST(MapMirror, WhatIsServedIsAlwaysAVersionAsAWholeAlsoAcrossARestartWithGaps) 
         published.insert({{publisher->epoch(), publisher->state().version}, publisher->map()});
       }
     }
-    // In the end a late reader is told all; before, anything may happen.
+    // In the end a late reader gets all; before, anything may happen.
     auto sent = samples;
     sent.insert(sent.end(), samples.begin(), samples.end());
     std::erase_if(sent, [&](const auto&) { return random() % 3 == 0; });

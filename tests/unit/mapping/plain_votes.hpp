@@ -17,7 +17,7 @@ inline Ballot whole_vote(int label) { return {{label, kOneVote}}; }
 
 /// Votes voxel by voxel.
 struct PlainVotes {
-  std::set<VoxelIndex> passes;
+  std::set<VoxelIndex> misses;
   std::map<VoxelIndex, Ballot> hits;
   bool operator==(const PlainVotes&) const = default;
 };
@@ -63,9 +63,9 @@ class PlainIntegration {
       const std::uint32_t middle = deciding[deciding.size() / 2];
       if (is_hit) votes.hits[index] = majority(cell.hits, weight_at(frame_.depth_mm()[middle] * 1e-3));
       if (is_hit) points[index] = camera_ + ray_of(middle);
-      pass(middle, is_hit, votes.passes);
+      miss(middle, is_hit, votes.misses);
     }
-    for (const auto& [index, ballot] : votes.hits) votes.passes.erase(index);
+    for (const auto& [index, ballot] : votes.hits) votes.misses.erase(index);
     if (config_.kernel_length_voxels > 0.0) smooth(points, votes);
     return votes;
   }
@@ -162,7 +162,7 @@ class PlainIntegration {
     votes.hits = std::move(smoothed);
   }
 
-  void pass(std::uint32_t sample, bool is_hit, std::set<VoxelIndex>& passes) const {
+  void miss(std::uint32_t sample, bool is_hit, std::set<VoxelIndex>& misses) const {
     Eigen::Vector3d ray = ray_of(sample);
     const double range = ray.norm(), depth_m = frame_.depth_mm()[sample] * 1e-3;
     const double noise_m = config_.depth_noise_per_m * depth_m * depth_m;
@@ -182,7 +182,7 @@ class PlainIntegration {
     while (true) {
       const auto first = std::min_element(t_exit.begin(), t_exit.end());  // the lowest axis of equals
       if (*first > fixed(t_end)) return;
-      passes.insert(voxel(cell));
+      misses.insert(voxel(cell));
       const auto axis = static_cast<int>(first - t_exit.begin());
       cell[axis] += ray[axis] > 0.0 ? 1 : -1;
       *first += t_cell[static_cast<std::size_t>(axis)];

@@ -12,8 +12,8 @@
 namespace lapis::mapping {
 namespace {
 
-VoxelCounts counts(std::uint32_t passes, std::vector<std::pair<std::uint16_t, std::uint32_t>> hits) {
-  VoxelCounts c{passes * kOneVote, {}};
+VoxelCounts counts(std::uint32_t misses, std::vector<std::pair<std::uint16_t, std::uint32_t>> hits) {
+  VoxelCounts c{misses * kOneVote, {}};
   for (const auto& [label, n] : hits) c.hits.push_back({label, n * kOneVote});
   return c;
 }
@@ -31,8 +31,8 @@ double logit(double p) { return std::log(p / (1.0 - p)); }
 std::vector<double> brute_force_log_odds(const SensorModel& m, const VoxelCounts& c) {
   const double pi = 1.0 / m.class_count;
   std::vector<double> y(static_cast<std::size_t>(m.class_count), logit(m.prior_occupied) + std::log(pi));
-  for (std::uint32_t i = 0; i < c.passes / kOneVote; ++i)
-    for (double& v : y) v -= m.pass_gain;
+  for (std::uint32_t i = 0; i < c.misses / kOneVote; ++i)
+    for (double& v : y) v -= m.miss_gain;
   for (const ClassCount& hit : c.hits)
     for (std::uint32_t i = 0; i < hit.count / kOneVote; ++i)
       for (std::size_t k = 0; k < y.size(); ++k) {

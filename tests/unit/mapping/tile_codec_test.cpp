@@ -74,7 +74,7 @@ TEST(TileCodec, EmptyAndUniformBlocksAreOneWord) {
   VoxelMap map(0.25);
   EXPECT_EQ(encode_tile(map, {0, 0, 0}, 1)->size(), 12u + 1u);
   VoxelBlock uniform;
-  for (int offset = 0; offset < kBlockVoxels; ++offset) uniform.add_pass(offset, 3 * kOneVote);
+  for (int offset = 0; offset < kBlockVoxels; ++offset) uniform.add_miss(offset, 3 * kOneVote);
   map.set_block({0, 0, 0}, uniform);
   EXPECT_EQ(encode_tile(map, {0, 0, 0}, 1)->size(), 12u + 2u);
 }
@@ -84,7 +84,7 @@ TEST(TileCodec, LargeTilesAreCompressedBelowTheLimit) {
   for (const BlockIndex& index : blocks_of({0, 0, 0}, 5)) {
     VoxelBlock block;
     for (int offset = 0; offset < kBlockVoxels; ++offset) {
-      block.add_pass(offset, static_cast<std::uint32_t>(offset) * 1000 + 1);
+      block.add_miss(offset, static_cast<std::uint32_t>(offset) * 1000 + 1);
       for (std::uint16_t label = 1; label <= 6; ++label) block.add_hit(offset, label, label * 70'000u);
     }
     map.set_block(index, block);

@@ -18,13 +18,13 @@ using test::random_votes;
 
 /// The plainest possible map: what VoxelMap must agree with.
 struct ReferenceMap {
-  std::map<VoxelIndex, std::uint64_t> passes;
+  std::map<VoxelIndex, std::uint64_t> misses;
   std::map<VoxelIndex, std::map<int, std::uint64_t>> hits;
   void add(const FrameVotes& votes) {
     for (const BlockVotes& block : votes.blocks) {
       for (int offset = 0; offset < kBlockVoxels; ++offset)
-        if (block.passes[static_cast<std::size_t>(offset / 64)] >> (offset % 64) & 1u)
-          passes[voxel_at(block.block, offset)] += kOneVote;
+        if (block.misses[static_cast<std::size_t>(offset / 64)] >> (offset % 64) & 1u)
+          misses[voxel_at(block.block, offset)] += kOneVote;
       for (std::uint32_t i = block.hits_begin; i < block.hits_end; ++i)
         hits[voxel_at(block.block, votes.hits[i].offset)][votes.hits[i].label] += votes.hits[i].weight;
     }
@@ -71,7 +71,7 @@ TEST(VoxelMap, EqualsPlainReferenceSums) {
   std::size_t observed = 0;
   map.for_each_observed([&](const VoxelIndex& voxel, const VoxelCounts& counts) {
     ++observed;
-    EXPECT_EQ(counts.passes, reference.passes[voxel]);
+    EXPECT_EQ(counts.misses, reference.misses[voxel]);
     ASSERT_EQ(counts.hits.size(), reference.hits[voxel].size());
     auto expected = reference.hits[voxel].begin();
     for (const ClassCount& hit : counts.hits) {
@@ -81,7 +81,7 @@ TEST(VoxelMap, EqualsPlainReferenceSums) {
     }
   });
   std::set<VoxelIndex> expected;
-  for (const auto& [voxel, count] : reference.passes)
+  for (const auto& [voxel, count] : reference.misses)
     if (count > 0) expected.insert(voxel);
   for (const auto& [voxel, classes] : reference.hits)
     if (!classes.empty()) expected.insert(voxel);
@@ -120,7 +120,7 @@ TEST(FrameVotes, WithoutWhatIsCommonTheyMakeTheSameMap) {
   std::mt19937 random(8);
   for (const FrameVotes& before : many_votes(9, 40)) {
     FrameVotes after = random() % 3 == 0 ? random_votes(random, kOneVote, 3) : before;
-    for (BlockVotes& block : after.blocks) block.passes[random() % 8] ^= random();
+    for (BlockVotes& block : after.blocks) block.misses[random() % 8] ^= random();
     for (HitVote& hit : after.hits) hit.label = static_cast<std::uint16_t>(hit.label + (random() % 4 == 0 ? 1 : 0));
     VoxelMap map(0.1), expected(0.1);
     map.add(before);
@@ -129,8 +129,8 @@ TEST(FrameVotes, WithoutWhatIsCommonTheyMakeTheSameMap) {
     drop_common(gone, come);
     for (const BlockVotes& a : gone.blocks)
       for (const BlockVotes& b : come.blocks)
-        for (std::size_t i = 0; i < a.passes.size(); ++i)
-          EXPECT_TRUE(!(a.block == b.block) || (a.passes[i] & b.passes[i]) == 0);
+        for (std::size_t i = 0; i < a.misses.size(); ++i)
+          EXPECT_TRUE(!(a.block == b.block) || (a.misses[i] & b.misses[i]) == 0);
     map.subtract(gone);
     map.add(come);
     ASSERT_EQ(map, expected);
@@ -164,11 +164,11 @@ TEST(VoxelMap, ManyClassesInOneVoxelAreAllKept) {
 }
 
 /// Counts of one byte, two and four, parts of votes and numbers for whole blocks, in any order.
-TEST(PassCounts, EqualPlainSumsInEveryForm) {
+TEST(MissCounts, EqualPlainSumsInEveryForm) {
   std::mt19937 random(9);
   const auto number = [&random](int low, int high) { return std::uniform_int_distribution<int>(low, high)(random); };
   for (int trial = 0; trial < 40; ++trial) {
-    PassCounts counts;
+    MissCounts counts;
     std::array<std::uint32_t, kBlockVoxels> plain{};
     std::vector<BlockMask> added;
     for (int step = 0; step < 700; ++step) {
@@ -185,7 +185,7 @@ TEST(PassCounts, EqualPlainSumsInEveryForm) {
       counts.add(offset, weight);
       plain[static_cast<std::size_t>(offset)] += weight;
     }
-    PassCounts copy(counts);
+    MissCounts copy(counts);
     for (int offset = 0; offset < kBlockVoxels; ++offset)
       ASSERT_EQ(copy.at(offset), plain[static_cast<std::size_t>(offset)]) << trial;
     for (const BlockMask& mask : added) {
@@ -198,11 +198,11 @@ TEST(PassCounts, EqualPlainSumsInEveryForm) {
   }
 }
 
-TEST(PassCounts, TakingOutWhatIsNotThereIsToldInEveryForm) {
+TEST(MissCounts, TakingOutWhatIsNotThereIsReportedInEveryForm) {
   const BlockMask one{1};
-  EXPECT_FALSE(PassCounts().subtract_votes(one));
+  EXPECT_FALSE(MissCounts().subtract_votes(one));
   for (const std::uint32_t weight : {kOneVote, 300 * kOneVote, 70000 * kOneVote, 7u}) {
-    PassCounts counts;
+    MissCounts counts;
     counts.add(5, weight);
     EXPECT_FALSE(counts.subtract_votes(one)) << weight;
   }
@@ -216,21 +216,21 @@ TEST(VoxelBlock, OfAllCountsAtOnceEqualsTheSumInTheFewestBytes) {
   for (const Case& c :
        {Case{kOneVote, 1, 0}, {kOneVote, 255, 1}, {kOneVote, 60'000, 2}, {kOneVote, 70'000, 4}, {1, 9, 4}}) {
     std::mt19937 random(c.most);
-    std::array<std::uint32_t, kBlockVoxels> passes{};
+    std::array<std::uint32_t, kBlockVoxels> misses{};
     std::vector<HitVote> hits;
     VoxelBlock expected;
     for (int offset = 0; offset < kBlockVoxels; ++offset) {
       const std::uint32_t count =
           c.unit * (c.most == 1 || offset == 7 ? c.most : static_cast<std::uint32_t>(random() % (c.most + 1)));
-      passes[static_cast<std::size_t>(offset)] = count;
-      expected.add_pass(offset, count);
+      misses[static_cast<std::size_t>(offset)] = count;
+      expected.add_miss(offset, count);
       for (auto label = static_cast<std::uint16_t>(random() % 3); label < 2; ++label) {
         hits.push_back({static_cast<std::uint16_t>(offset), label, 1 + static_cast<std::uint32_t>(offset) * kOneVote});
         expected.add_hit(offset, label, hits.back().weight);
       }
     }
-    EXPECT_EQ(VoxelBlock(passes, hits), expected) << c.most;
-    EXPECT_EQ(PassCounts(passes).heap_bytes(), c.bytes_per_voxel * kBlockVoxels) << c.most;
+    EXPECT_EQ(VoxelBlock(misses, hits), expected) << c.most;
+    EXPECT_EQ(MissCounts(misses).heap_bytes(), c.bytes_per_voxel * kBlockVoxels) << c.most;
     EXPECT_TRUE(VoxelBlock({}, {}).is_empty());
   }
 }
@@ -244,16 +244,16 @@ TEST(VoxelMap, HundredMillionFreeVoxelsTakeFewBytes) {
     for (int y = 0; y < kEdge; ++y)
       for (int x = 0; x < kEdge; ++x) {
         votes.blocks.push_back({{x, y, z}, {}, 0, 0});
-        votes.blocks.back().passes.fill(~std::uint64_t{0});
+        votes.blocks.back().misses.fill(~std::uint64_t{0});
       }
   for (int frame = 0; frame < 20; ++frame) map.add(votes);
   const double voxels = std::pow(kEdge * kBlockEdge, 3);
   EXPECT_GT(voxels, 99.8e6);
   std::cout << "uniform blocks: " << static_cast<double>(map.bytes()) / voxels << " bytes per voxel\n";
   EXPECT_LT(map.bytes(), 20'000'000u);
-  EXPECT_EQ(map.read({1, 2, 3}).passes, 20 * kOneVote);
+  EXPECT_EQ(map.read({1, 2, 3}).misses, 20 * kOneVote);
   VoxelMap torn(0.05);  // the same when every block has one voxel less
-  for (BlockVotes& block : votes.blocks) block.passes[3] = 1;
+  for (BlockVotes& block : votes.blocks) block.misses[3] = 1;
   for (int frame = 0; frame < 3; ++frame) torn.add(votes);
   std::cout << "one byte per voxel: " << static_cast<double>(torn.bytes()) / voxels << " bytes per voxel\n";
   EXPECT_LT(torn.bytes(), 125'000'000u);

@@ -20,7 +20,7 @@ mapping::MapDescription description() {
   out.frames = {{0.3, 4.0, -2.0, 3.0, 1.0, 0.002, 2.5}, 3};
   out.sensor_model.fusion = "bki";
   out.sensor_model.hit_gain = 0.7;
-  out.sensor_model.pass_gain = 0.3;
+  out.sensor_model.miss_gain = 0.3;
   out.sensor_model.label_accuracy = 0.9;
   out.sensor_model.prior_occupied = 0.1;
   out.sensor_model.prior_votes = 3.0;

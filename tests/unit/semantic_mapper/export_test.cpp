@@ -28,9 +28,9 @@ struct Fixture {
     block.add_hit(mapping::offset_in_block(v), label, kOneVote * static_cast<std::uint32_t>(votes));
     map.set_block(mapping::block_of(v), block);
   }
-  void pass(const VoxelIndex& v, int votes) {
+  void miss(const VoxelIndex& v, int votes) {
     mapping::VoxelBlock block = content(v);
-    block.add_pass(mapping::offset_in_block(v), kOneVote * static_cast<std::uint32_t>(votes));
+    block.add_miss(mapping::offset_in_block(v), kOneVote * static_cast<std::uint32_t>(votes));
     map.set_block(mapping::block_of(v), block);
   }
   mapping::VoxelBlock content(const VoxelIndex& v) const {
@@ -43,8 +43,8 @@ Fixture small_scene() {
   Fixture f;
   // Eight siblings of one octree node, clamped to the same occupancy but of two classes: must not be merged.
   for (int i = 0; i < 8; ++i) f.hit({i & 1, i >> 1 & 1, i >> 2}, i < 4 ? 1 : 7, 1000);
-  f.pass({-3, 5, 2}, 4);
-  f.pass({-4, 5, 2}, 9);
+  f.miss({-3, 5, 2}, 4);
+  f.miss({-4, 5, 2}, 9);
   f.hit({-3, 6, 2}, 0, 5);
   return f;
 }
@@ -128,11 +128,11 @@ TEST(Export, AVoxelThatIsNeitherNorIsFreeInBothOctrees) {
   Fixture f;
   mapping::SensorModel model;
   model.hit_gain = 0.5;
-  model.pass_gain = 0.25;
+  model.miss_gain = 0.25;
   model.prior_occupied = 0.5;
   f.reader = mapping::BeliefReader(model);
   f.hit({1, 2, 3}, 0, 1);
-  f.pass({1, 2, 3}, 2);
+  f.miss({1, 2, 3}, 2);
   ASSERT_EQ(f.reader.occupancy_log_odds(f.map.read({1, 2, 3})), 0.0);
   const auto p = f.map.center_of({1, 2, 3});
   const auto full = encode_octree(f.map, f.reader, f.labels).file, binary = encode_binary_octree(f.map, f.reader);

@@ -69,7 +69,7 @@ TEST_F(FileTools, InfoCountsWhatTheMapHolds) {
   block.add_hit(mapping::offset_in_block({1, 2, 3}), 7, 5 * mapping::kOneVote);
   block.add_hit(mapping::offset_in_block({1, 2, 4}), 1, 3 * mapping::kOneVote);
   block.add_hit(mapping::offset_in_block({1, 2, 4}), 7, mapping::kOneVote / 2);
-  block.add_pass(mapping::offset_in_block({4, 2, 3}), mapping::kOneVote);
+  block.add_miss(mapping::offset_in_block({4, 2, 3}), mapping::kOneVote);
   map.set_block({0, 0, 0}, block);
   const std::string file = save("map.lapis", map);
   const auto result = info(file);

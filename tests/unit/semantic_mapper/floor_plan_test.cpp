@@ -18,11 +18,11 @@ bool is_equal(const OccupancyGrid& a, const OccupancyGrid& b) {
          a.width == b.width && a.height == b.height && a.cells == b.cells;
 }
 
-void add(mapping::VoxelMap& map, const VoxelIndex& v, int hits, int passes) {
+void add(mapping::VoxelMap& map, const VoxelIndex& v, int hits, int misses) {
   const auto* old = map.find(mapping::block_of(v));
   mapping::VoxelBlock block = old != nullptr ? *old : mapping::VoxelBlock{};
   block.add_hit(mapping::offset_in_block(v), 1, kOneVote * static_cast<std::uint32_t>(hits));
-  block.add_pass(mapping::offset_in_block(v), kOneVote * static_cast<std::uint32_t>(passes));
+  block.add_miss(mapping::offset_in_block(v), kOneVote * static_cast<std::uint32_t>(misses));
   map.set_block(mapping::block_of(v), block);
 }
 

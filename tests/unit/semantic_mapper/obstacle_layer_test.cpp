@@ -70,7 +70,7 @@ TEST(ObstacleLayer, FollowsAMovedObstacleBothWaysHoweverLongItStood) {
 }
 
 TEST(ObstacleLayer, WhatIsNotLookedAtStaysForTheWindowAndIsThenForgotten) {
-  Scene scene({.window_s = 10.0, .passes_to_clear = 3});
+  Scene scene({.window_s = 10.0, .misses_to_clear = 3});
   scene.look_for(1.0, room_with({Scene::box_at(0.0)}));
   scene.look_for(9.8, room_with({}), M_PI);  // away: nobody knows that it is gone
   EXPECT_EQ(scene.cell(kFront_x, 0.05), kOccupied);
@@ -90,7 +90,7 @@ TEST(ObstacleLayer, LookingOverALowObstacleDoesNotClearIt) {
     const mapping::VoxelIndex above{18, 0, 8};
     votes.blocks.push_back({mapping::block_of(above), {}, 0, 0});
     const int offset = mapping::offset_in_block(above);
-    votes.blocks[0].passes[static_cast<std::size_t>(offset) / 64] |= std::uint64_t{1} << (offset % 64);
+    votes.blocks[0].misses[static_cast<std::size_t>(offset) / 64] |= std::uint64_t{1} << (offset % 64);
     scene.layer.add(scene.now, votes);
   }
   EXPECT_EQ(scene.cell(kFront_x, 0.05), kOccupied);
@@ -104,7 +104,7 @@ TEST(ObstacleLayer, OnlyTheBandCounts) {
 }
 
 TEST(ObstacleLayer, MemoryIsBoundedByTheWindow) {
-  Scene scene({.window_s = 1.0, .passes_to_clear = 3});
+  Scene scene({.window_s = 1.0, .misses_to_clear = 3});
   scene.look_for(2.0, room_with({}));
   const std::size_t bytes = scene.layer.bytes();
   for (int turn = 0; turn < 8; ++turn) scene.look_for(2.0, room_with({}), turn * M_PI / 4);

@@ -137,7 +137,7 @@ TEST(SemanticMapper, EqualsBuildFromRecordsAtEveryInstantAndFromScratchAfterFlus
   }
 }
 
-TEST(SemanticMapper, FramesThatTheDiskDoesNotTakeStayWhereTheyAreAndMappingGoesOn) {
+TEST(SemanticMapper, FramesThatTheDiskDoesNotTakeStayWhereTheyAreAndMappingContinues) {
   MapperConfig config;
   config.stored_frames = {0, testing::TempDir() + "/no_such_folder"};
   SemanticMapper mapper = mapper_with_tour(config);
@@ -336,7 +336,7 @@ TEST(SemanticMapper, WallOfFortyClassesStandsAfterThreeFramesLookThroughIt) {
   }
   const mapping::BeliefReader reader{mapping::SensorModel{}};
   const mapping::VoxelCounts wall = mapper.map().read(mapper.map().index_of({2.125, 0.125, 1.1}));
-  EXPECT_EQ(wall.passes, 3 * mapping::kOneVote);
+  EXPECT_EQ(wall.misses, 3 * mapping::kOneVote);
   EXPECT_TRUE(reader.is_occupied(wall));
   EXPECT_EQ(reader.label(wall), 1);
 }
@@ -373,7 +373,7 @@ TEST(SemanticMapper, MirrorOfTheTilesEqualsTheMapThroughCorrections) {
   EXPECT_EQ(*late.map(), mapper.map());
 }
 
-TEST(SemanticMapper, ALargeMapIsToldInLargerTilesAsOneOfANewEpoch) {
+TEST(SemanticMapper, ALargeMapIsPublishedInLargerTilesAsOneOfANewEpoch) {
   MapperConfig config;
   config.resolution_m = 0.1;  // a block is a tile of 0.8 m
   mapping::VoxelMap base(0.1);
@@ -426,7 +426,7 @@ TEST(SemanticMapper, SavedAndLoadedEqualsOriginal) {
   EXPECT_EQ(loaded->map, mapper.map());
 }
 
-// A run that was saved and gone on with: old counts stay, new frames are added, and only these follow the graph.
+// A run that was saved and resumed: old counts stay, new frames are added, and only these follow the graph.
 TEST(SemanticMapper, GoneOnWithEqualsTheSavedMapPlusTheNewFrames) {
   const SemanticMapper first = mapper_with_tour();
   std::string error;
@@ -441,7 +441,7 @@ TEST(SemanticMapper, GoneOnWithEqualsTheSavedMapPlusTheNewFrames) {
   EXPECT_EQ(second.map(), built_from_records(second, saved->map));
 }
 
-TEST(SemanticMapper, GoneOnWithTellsTheWholeMap) {
+TEST(SemanticMapper, ResumedPublishesTheWholeMap) {
   const SemanticMapper first = mapper_with_tour();
   SemanticMapper second(MapperConfig{}, first.map());
   mapping::MapMirror mirror;
@@ -454,7 +454,7 @@ TEST(SemanticMapper, GoneOnWithTellsTheWholeMap) {
 TEST(SemanticMapper, AFullMapTakesNoMoreFrames) {
   mapping::VoxelMap full(0.25);
   mapping::VoxelBlock block;
-  block.add_pass(0, 0xffffff00u);
+  block.add_miss(0, 0xffffff00u);
   full.set_block({0, 0, 0}, block);
   SemanticMapper mapper(MapperConfig{}, full);
   EXPECT_EQ(mapper.integrate(tour().frames[0]).status, IntegrationStatus::kMapIsFull);

@@ -155,7 +155,7 @@ TEST_F(Dataset, ToleranceIsChecked) {
               HasSubstr("max_stamp_difference_s: must be from 0"));
 }
 
-// ---- bad data: a value with a reason, the replay goes on
+// ---- bad data: a value with a reason, the replay continues
 // -------------------------------------------------------------
 
 TEST_F(Dataset, FrameWithoutUsableColourIsSkippedWithAReason) {

@@ -1,5 +1,5 @@
 // A process that saves all the time is killed at random instants: slam.lapis is always one of the maps that it saved,
-// and can be gone on with. LAPIS_KILLS says how often, instead of 10 times; more when none of them hit a half-written
+// and can be resumed. LAPIS_KILLS says how often, instead of 10 times; more when none of them hit a half-written
 // file.
 #include <chrono>
 #include <cstdlib>

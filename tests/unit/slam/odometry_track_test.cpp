@@ -45,7 +45,7 @@ TEST(OdometryTrack, CarriesOnForHalfAGapAndNoFurther) {
   EXPECT_FALSE(OdometryTrack({}).between(at_s(0.0), at_s(0.0)));
 }
 
-TEST(OdometryTrack, VarianceGrowsWithTheWayAlsoOnTheSpotAndBackwards) {
+TEST(OdometryTrack, VarianceGrowsWithThePathAlsoOnTheSpotAndBackwards) {
   OdometryConfig config;
   config.scale_sigma = 0.0;
   config.least_sigma = 1e-6;

@@ -66,7 +66,7 @@ TEST_F(RelocalizerTest, ManyMatchesMakeASmallMajorityDistinct) {
   EXPECT_TRUE(believes(1.5, many));
 }
 
-TEST_F(RelocalizerTest, WheelsThatLeadElsewhereMakeAPlaceAwaitConfirmation) {
+TEST_F(RelocalizerTest, OdometryThatLeadsElsewhereMakesAPlaceAwaitConfirmation) {
   for (int i = 0; i <= 20; ++i) ASSERT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose::Identity()));
   EXPECT_FALSE(believes(1.5, found(1.5)));
   EXPECT_TRUE(believes(1.6, found(0.1, 46)));

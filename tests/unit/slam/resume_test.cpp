@@ -1,4 +1,4 @@
-// A map that is saved and gone on with.
+// A map that is saved and resumed.
 #include <gtest/gtest.h>
 
 #include "slam/core/rgbd_slam.hpp"
@@ -60,7 +60,7 @@ TEST(Resume, AMapThatWasOnlyLoadedIsSavedAsItWas) {
   EXPECT_EQ(slam.pose_graph().edges.size(), saved_state().edges.size());
 }
 
-TEST(Resume, IsLostUntilItFindsItsPlaceAndThenGoesOn) {
+TEST(Resume, IsLostUntilItFindsItsPlaceAndThenContinues) {
   const SlamState saved = saved_state();
   RgbdSlam slam({}, Pose::Identity(), saved);
   RgbdFrame dark = resume_frame(kSavedFrames);
@@ -98,23 +98,23 @@ TEST(Resume, StampsFromBeforeTheSavedOnesAreNoProblem) {
   }
 }
 
-// Wheels that were read before and after the stamp of the newest saved key-frame, in another run, do not tell how the
+// Odometry that was read before and after the stamp of the newest saved key-frame, in another run, does not say how the
 // robot got from there to here.
 TEST(Resume, NoOdometryLeadsFromASavedKeyframe) {
   const SlamState saved = saved_state();
   RgbdSlam slam({}, Pose::Identity(), saved);
-  const auto is_wheels = [](const PoseGraphEdge& edge) { return edge.type == EdgeType::kWheelOdometry; };
+  const auto is_odometry = [](const PoseGraphEdge& edge) { return edge.type == EdgeType::kWheelOdometry; };
   for (int i = kSavedFrames - 40; i < kSavedFrames + 100; ++i) {
     slam.add_odometry(resume_stamp(i), test::room_path(i));
     if (i >= kSavedFrames) slam.process(resume_frame(i));
   }
   const auto edges = slam.pose_graph().edges;
-  const auto first = std::find_if(edges.begin(), edges.end(), is_wheels);
+  const auto first = std::find_if(edges.begin(), edges.end(), is_odometry);
   ASSERT_NE(first, edges.end());
   EXPECT_GE(first->from, saved.keyframes.size());
 }
 
-TEST(Resume, AStateDoesNotChangeWhileTheMapGoesOn) {
+TEST(Resume, AStateDoesNotChangeWhileTheMapContinues) {
   RgbdSlam slam({}, Pose::Identity(), saved_state());
   for (int i = kSavedFrames; i < kSavedFrames + 5; ++i) slam.process(resume_frame(i));
   const SlamState state = slam.state();

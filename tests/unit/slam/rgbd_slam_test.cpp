@@ -116,7 +116,7 @@ TEST(RgbdSlam, IsLostWithAReasonInTheDarkAndRecovers) {
 }
 
 // Odometry of a robot that carries the camera through the room.
-class RgbdSlamOnWheels : public ::testing::Test {
+class RgbdSlamWithOdometry : public ::testing::Test {
  protected:
   static Pose T_base_camera() { return Pose(Eigen::Translation3d(0.1, 0.2, 0.3)); }
   void feel(int from, int to) {
@@ -125,7 +125,7 @@ class RgbdSlamOnWheels : public ::testing::Test {
   RgbdSlam slam_{{}, test::room_path(0), T_base_camera()};
 };
 
-TEST_F(RgbdSlamOnWheels, DeadReckonsInTheDarkWithGrowingCovariance) {
+TEST_F(RgbdSlamWithOdometry, DeadReckonsInTheDarkWithGrowingCovariance) {
   feel(0, 40);
   for (int i = 0; i < 10; ++i) ASSERT_EQ(slam_.process(room_frame(i)).state, TrackingState::kTracking);
   const auto version = slam_.graph_version();
@@ -145,7 +145,7 @@ TEST_F(RgbdSlamOnWheels, DeadReckonsInTheDarkWithGrowingCovariance) {
   EXPECT_LT(distance_m(back, 40), 0.02);
 }
 
-TEST_F(RgbdSlamOnWheels, GoesOnElsewhereByAnEdgeOfTheWheels) {
+TEST_F(RgbdSlamWithOdometry, ContinuesElsewhereByAnEdgeOfOdometry) {
   const int turned = 120;  // about 120 degrees further: no common view
   feel(0, turned + 20);
   for (int i = 0; i < 5; ++i) slam_.process(room_frame(i));
@@ -166,7 +166,7 @@ TEST_F(RgbdSlamOnWheels, GoesOnElsewhereByAnEdgeOfTheWheels) {
   EXPECT_EQ(next.keyframe_id, graph.nodes.back().id);
 }
 
-TEST_F(RgbdSlamOnWheels, TheGraphStaysConnectedWhenOdometryBeganAfterTheLastKeyframe) {
+TEST_F(RgbdSlamWithOdometry, TheGraphStaysConnectedWhenOdometryBeganAfterTheLastKeyframe) {
   const int turned = 120;
   slam_.process(room_frame(0));  // the only key-frame
   feel(1, turned + 20);
@@ -182,23 +182,23 @@ TEST_F(RgbdSlamOnWheels, TheGraphStaysConnectedWhenOdometryBeganAfterTheLastKeyf
   EXPECT_LT(geometry::se3_log(graph.edges[0].T_from_to.inverse() * between).norm(), 1e-9);
 }
 
-TEST_F(RgbdSlamOnWheels, KeyframesHaveEdgesOfVisionAndOfWheels) {
+TEST_F(RgbdSlamWithOdometry, KeyframesHaveEdgesOfVisionAndOfOdometry) {
   feel(0, 60);
   for (int i = 0; i < 60; ++i) slam_.process(room_frame(i));
   const PoseGraphSnapshot graph = slam_.pose_graph();
   ASSERT_GE(graph.nodes.size(), 3U);
-  std::size_t wheels = 0;
+  std::size_t odometry = 0;
   for (const PoseGraphEdge& edge : graph.edges) {
     if (edge.type != EdgeType::kWheelOdometry) continue;
-    ++wheels;
+    ++odometry;
     EXPECT_EQ(edge.to, edge.from + 1);
     const Pose between = graph.nodes[edge.from].T_map_camera.inverse() * graph.nodes[edge.to].T_map_camera;
     EXPECT_LT(geometry::se3_log(edge.T_from_to.inverse() * between).norm(), 0.01);
   }
-  EXPECT_EQ(wheels, graph.nodes.size() - 1);
+  EXPECT_EQ(odometry, graph.nodes.size() - 1);
 }
 
-TEST_F(RgbdSlamOnWheels, WheelsThatSlipAreLeftOut) {
+TEST_F(RgbdSlamWithOdometry, OdometryOfWheelsThatSlipIsLeftOut) {
   constexpr int kFirst = 20, kLast = 24;  // readings in which they spin, 5 cm each
   for (int i = 0; i <= 60; ++i) {
     const double spun_m = 0.05 * std::clamp(i - kFirst + 1, 0, kLast - kFirst + 1);
@@ -211,16 +211,16 @@ TEST_F(RgbdSlamOnWheels, WheelsThatSlipAreLeftOut) {
     EXPECT_LT(distance_m(result, i), 0.02) << "frame " << i;
   }
   const PoseGraphSnapshot graph = slam_.pose_graph();
-  std::size_t wheels = 0;
+  std::size_t odometry = 0;
   for (const PoseGraphEdge& edge : graph.edges) {
     if (edge.type != EdgeType::kWheelOdometry) continue;
-    ++wheels;
+    ++odometry;
     const Pose between = graph.nodes[edge.from].T_map_camera.inverse() * graph.nodes[edge.to].T_map_camera;
     EXPECT_LT(geometry::se3_log(edge.T_from_to.inverse() * between).norm(), 0.03) << edge.from;
   }
   EXPECT_GE(slam_.slip_count(), 1U);
   EXPECT_LE(slam_.slip_count(), 2U) << "they spin within one or two key-frames";
-  EXPECT_EQ(wheels + slam_.slip_count(), graph.nodes.size() - 1);
+  EXPECT_EQ(odometry + slam_.slip_count(), graph.nodes.size() - 1);
 }
 
 TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {

@@ -66,7 +66,7 @@ TEST(RobustOptimizer, KeepsEveryTrueLoopClosure) {
   }
 }
 
-TEST(RobustOptimizer, OneTrueLoopClosureAfterALongWayIsTaken) {
+TEST(RobustOptimizer, OneTrueLoopClosureAfterALongPathIsTaken) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Laps laps(150, 149, seed);
     PoseGraphSnapshot plain = laps.graph;

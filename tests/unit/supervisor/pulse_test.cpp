@@ -34,7 +34,7 @@ TEST(Pulse, AnnouncedWorkMayTakeItsTimeAndNoLonger) {
   EXPECT_TRUE(pulse.is_hung(132.1, kUsual_s));
 }
 
-TEST(Pulse, OneThatIsAskedToEndHasThatTimeAlthoughItGoesOnSayingThatItRuns) {
+TEST(Pulse, OneThatIsAskedToEndHasThatTimeAlthoughItContinuesSayingThatItRuns) {
   Pulse pulse(100.0);
   pulse.hear(101.0, {Phase::kRunning, "", 0.0});
   pulse.ask_to_end(102.0);

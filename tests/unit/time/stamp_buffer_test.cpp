@@ -116,7 +116,7 @@ TEST(StampBuffer, StreamThatHasNotBegunAnewYetIsWaitedFor) {
   EXPECT_EQ(buffer.match(at_ms(66), kTolerance, false, found), Match::kMissing);
 }
 
-TEST(StampBuffer, StreamThatGoesOnIsNotExpectedToBeginAnew) {
+TEST(StampBuffer, StreamThatContinuesIsNotExpectedToBeginAnew) {
   Buffer buffer;
   for (const auto stamp : {0, 33, 66}) push(buffer, stamp);
   std::string* found = nullptr;
@@ -138,7 +138,7 @@ TEST(StampBuffer, StreamThatBeganAnewAloneIsNotHeldBack) {
   EXPECT_EQ(drain(buffer), (std::vector<std::string>{"133"}));
 }
 
-TEST(StampBuffer, TellsHowManyItForgot) {
+TEST(StampBuffer, ReportsHowManyItForgot) {
   Buffer buffer;
   EXPECT_EQ(buffer.second(), std::nullopt);
   for (const auto stamp : {0, 33, 66}) push(buffer, stamp);

@@ -17,9 +17,9 @@ geometry::Pose camera_pose(const Situation& s, const Pose2& pose) {
   return T_map_base * s.T_base_camera;
 }
 
-ViewPath views_along(const Situation& s, const std::vector<Pose2>& way) {
+ViewPath views_along(const Situation& s, const std::vector<Pose2>& path) {
   ViewPath views;
-  for (const Pose2& pose : way) views.push_back(camera_pose(s, pose));
+  for (const Pose2& pose : path) views.push_back(camera_pose(s, pose));
   return views;
 }
 
@@ -34,7 +34,7 @@ std::vector<Candidate*> open_ones(std::vector<Candidate>& candidates) {
 void add_information(const Situation& s, const std::vector<Candidate*>& open) {
   std::vector<ViewPath> paths, goals;
   for (const Candidate* candidate : open) {
-    paths.push_back(views_along(s, candidate->way));
+    paths.push_back(views_along(s, candidate->path));
     goals.push_back({paths.back().back()});
   }
   const std::vector<double> of_paths = path_information(s.field, s.view, std::span<const ViewPath>(paths));
@@ -82,7 +82,7 @@ std::string add_gain(const Situation& s, const DecisionConfig& config, Candidate
 void discount_information(const Situation& s, double limit_m, Candidate& candidate) {
   const double robot = std::pow(position_sigma_m(*s.graph) / limit_m, 2);
   const double end = std::pow(candidate.gain.end_sigma_m / limit_m, 2);
-  const auto last = static_cast<double>(candidate.way.size() - 1);
+  const auto last = static_cast<double>(candidate.path.size() - 1);
   double sum = 0.0;
   for (double i = 0.0; i <= last; i += 1.0) sum += 1.0 / (1.0 + std::lerp(robot, end, last > 0.0 ? i / last : 1.0));
   candidate.value.path_information *= sum / (last + 1.0);

@@ -22,12 +22,12 @@ struct DecisionConfig {
   TareConfig tare;
   GraphConfig graph;
   HallucinationConfig hallucination;
-  int max_candidates = 20;           ///< whose information is computed; the ones with the shortest ways; in [1, 1000]
+  int max_candidates = 20;           ///< whose information is computed; the ones with the shortest paths; in [1, 1000]
   double view_spacing_m = 0.75;      ///< between views along a path, in [0.1, 10]
   double node_spacing_m = 1.0;       ///< between hallucinated key-frames, in [0.2, 10]
   double sigma_limit_voxels = 0.5;   ///< of the position at a path's end: what is more exact is of no use; in (0, 10]
   double turn_cost_m_per_rad = 0.5;  ///< of turning at the path's ends, in [0, 10]
-  int alternatives = 0;              ///< other ways to the nearest goal of each frontier, at most; in [0, 3]
+  int alternatives = 0;              ///< other paths to the nearest goal of each frontier, at most; in [0, 3]
   /// When the position's sigma [m] is larger, old key-frames with many landmarks are goals, too, for methods that count
   /// loops; 0: never.
   double revisit_sigma_m = 0.0;
@@ -49,15 +49,15 @@ struct Situation {
   const AnalysedGraph* graph = nullptr;
   const LandmarkIndex* landmarks = nullptr;
   Pose2 robot;
-  /// The field of the same map with other sensor models; what each of them would have chosen is told, too.
+  /// The field of the same map with other sensor models; what each of them would have chosen is reported, too.
   std::span<const InformationField> compared_fields = {};
 };
 
 enum class CandidateKind {
-  kFrontier,     ///< the best way to a place from which a frontier is seen
-  kAlternative,  ///< another way to such a place
-  kCloserLook,   ///< the best way to a place near a frontier that cannot be seen from there, as the map is
-  kRevisit,      ///< the best way to an old key-frame
+  kFrontier,     ///< the best path to a place from which a frontier is seen
+  kAlternative,  ///< another path to such a place
+  kCloserLook,   ///< the best path to a place near a frontier that cannot be seen from there, as the map is
+  kRevisit,      ///< the best path to an old key-frame
 };
 
 /// Loop closure that a path may bring.
@@ -70,14 +70,15 @@ struct ExpectedLoop {
 /// Reason why a candidate was not judged, although it can be driven to.
 inline constexpr const char* kOutranked = "others come before it (planner.max_candidates)";
 
-/// A way to a place from which there is something to see.
+/// A path to a place from which there is something to see.
 struct Candidate {
   CandidateKind kind = CandidateKind::kFrontier;
   std::uint32_t frontier = 0;  ///< 0: a revisit
   Pose2 goal;
-  Eigen::Vector2d target_map{0, 0};     ///< what is looked at from there, or the place that is revisited [m]
-  std::vector<Eigen::Vector2d> points;  ///< corners of the way from the robot to the goal [m]; empty when there is none
-  std::vector<Pose2> way;               ///< views along it
+  Eigen::Vector2d target_map{0, 0};  ///< what is looked at from there, or the place that is revisited [m]
+  std::vector<Eigen::Vector2d>
+      points;               ///< corners of the path from the robot to the goal [m]; empty when there is none
+  std::vector<Pose2> path;  ///< views along it
   PathValue value;
   ExpectedGain gain;
   std::vector<Eigen::Vector3d> nodes_map;  ///< hallucinated key-frames [m]
@@ -100,12 +101,12 @@ struct Decision {
 struct Memory {
   std::vector<Eigen::Vector2d> left_alone;  ///< targets [m, map]
   std::vector<Eigen::Vector2d> revisited;   ///< old places to leave alone [m, map]
-  std::vector<VainLook> vain_looks;
+  std::vector<FailedView> failed_views;
   double radius_m = 0.75;     ///< what lies nearer to such places is meant, too
   std::optional<Pose2> goal;  ///< current one
 };
 
-/// Chooses where to go: candidates in front of every frontier, their ways, what the map and the pose graph would gain
+/// Chooses where to go: candidates in front of every frontier, their paths, what the map and the pose graph would gain
 /// by them, and the best by the method's utility. Deterministic; ties go to the smaller frontier id.
 Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config);
 

@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kSameGoal_m = 0.5;       // goals nearer to each other are one
 constexpr std::size_t kMostRevisits = 5;  // of a decision, the nearest
-constexpr double kPass_m = 0.75;          // way past an old place, in its direction
+constexpr double kPass_m = 0.75;          // path past an old place, in its direction
 constexpr double kSameHeading_rad = 0.5;
 constexpr double kLikely = 0.5;  // probability of a loop closure at the place itself
 
@@ -27,18 +27,18 @@ Candidate rejected(const Frontier& frontier, std::string reason) {
   return candidate;
 }
 
-// Turning at both ends of a way; corners in between are driven through.
-double turning(const Pose2& robot, const std::vector<Pose2>& way) {
-  if (way.size() < 2) return turn_between(robot.yaw_rad, way.back().yaw_rad);
-  return turn_between(robot.yaw_rad, way.front().yaw_rad) +
-         turn_between(way[way.size() - 2].yaw_rad, way.back().yaw_rad);
+// Turning at both ends of a path; corners in between are driven through.
+double turning(const Pose2& robot, const std::vector<Pose2>& path) {
+  if (path.size() < 2) return turn_between(robot.yaw_rad, path.back().yaw_rad);
+  return turn_between(robot.yaw_rad, path.front().yaw_rad) +
+         turn_between(path[path.size() - 2].yaw_rad, path.back().yaw_rad);
 }
 
-void set_way(const Situation& s, const DecisionConfig& config, const Path& path, Candidate& candidate) {
+void set_path(const Situation& s, const DecisionConfig& config, const Path& path, Candidate& candidate) {
   candidate.points = points_of(s.grid, path);
   candidate.points.front() = s.robot.p_map;
-  candidate.way = poses_along(candidate.points, config.view_spacing_m, candidate.goal.yaw_rad);
-  candidate.value.cost_m = path.length_m + config.turn_cost_m_per_rad * turning(s.robot, candidate.way);
+  candidate.path = poses_along(candidate.points, config.view_spacing_m, candidate.goal.yaw_rad);
+  candidate.value.cost_m = path.length_m + config.turn_cost_m_per_rad * turning(s.robot, candidate.path);
 }
 
 Candidate candidate_at(const Situation& s, const CostTree& tree, std::uint32_t frontier, const Viewpoint& viewpoint,
@@ -47,7 +47,7 @@ Candidate candidate_at(const Situation& s, const CostTree& tree, std::uint32_t f
   candidate.frontier = frontier;
   candidate.goal = viewpoint.pose;
   candidate.target_map = s.grid.center_of(viewpoint.target);
-  set_way(s, config, straightened(s.grid, config.path, tree.path_to(viewpoint.cell)), candidate);
+  set_path(s, config, straightened(s.grid, config.path, tree.path_to(viewpoint.cell)), candidate);
   return candidate;
 }
 
@@ -70,8 +70,8 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
     for (const Viewpoint& viewpoint : found.viewpoints) {
       Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
       if (sight == Sight::kNotNeeded) candidate.kind = CandidateKind::kCloserLook;
-      if (is_looked_at(memory.vain_looks, candidate.target_map, candidate.goal.p_map, memory.radius_m))
-        candidate.rejection = "was looked at from here in vain";
+      if (is_failed_view(memory.failed_views, candidate.target_map, candidate.goal.p_map, memory.radius_m))
+        candidate.rejection = "the view from here has failed";
       if (is_one_of(memory.left_alone, candidate, memory)) candidate.rejection = kLeftAlone;
     }
   }
@@ -85,7 +85,7 @@ std::vector<Candidate> propose_tour(const Situation& s, const CostTree& tree, co
   const double fov_rad = 2.0 * std::atan(0.5 * camera.width / camera.fx);
   const Tour tour = plan_tour(
       {s.grid, s.frontiers, tree, s.robot, fov_rad, config.path, config.viewpoints, config.turn_cost_m_per_rad,
-       memory.left_alone, memory.vain_looks, memory.radius_m, memory.goal, config.keep_factor},
+       memory.left_alone, memory.failed_views, memory.radius_m, memory.goal, config.keep_factor},
       config.tare);
   std::vector<Candidate> candidates;
   for (const TourStop& stop : tour.stops) {
@@ -97,7 +97,7 @@ std::vector<Candidate> propose_tour(const Situation& s, const CostTree& tree, co
   return candidates;
 }
 
-// Keeps what is being driven to and those with the shortest ways, but of every frontier the nearest one before the
+// Keeps what is being driven to and those with the shortest paths, but of every frontier the nearest one before the
 // second of any.
 void reject_far_ones(std::vector<Candidate>& candidates, const Memory& memory, int most) {
   std::vector<std::pair<int, double>> rank(candidates.size());  // place within the frontier, cost
@@ -147,7 +147,7 @@ std::vector<OldPlace> old_places(const Situation& s, const CostTree& tree, const
   std::vector<std::pair<int, int>> ranked;  // less landmarks, node
   for (int node = 0; node < s.graph->factor.node_count(); ++node) {
     const int landmarks = s.landmarks->shared_landmarks(node);
-    const bool is_old = s.graph->way_from_newest_m[static_cast<std::size_t>(node)] >= config.min_loop_way_m;
+    const bool is_old = s.graph->path_from_newest_m[static_cast<std::size_t>(node)] >= config.min_loop_path_m;
     if (is_old && loop_probability(landmarks, config) >= kLikely) ranked.emplace_back(-landmarks, node);
   }
   std::sort(ranked.begin(), ranked.end());
@@ -162,10 +162,10 @@ std::vector<OldPlace> old_places(const Situation& s, const CostTree& tree, const
   return places;
 }
 
-bool passes(const std::vector<Pose2>& way, const Pose2& pose, double apart_m) {
-  return std::any_of(way.begin(), way.end(), [&](const Pose2& on_way) {
-    return (on_way.p_map - pose.p_map).norm() < apart_m &&
-           turn_between(on_way.yaw_rad, pose.yaw_rad) < kSameHeading_rad;
+bool passes(const std::vector<Pose2>& path, const Pose2& pose, double apart_m) {
+  return std::any_of(path.begin(), path.end(), [&](const Pose2& on_path) {
+    return (on_path.p_map - pose.p_map).norm() < apart_m &&
+           turn_between(on_path.yaw_rad, pose.yaw_rad) < kSameHeading_rad;
   });
 }
 
@@ -173,14 +173,14 @@ bool is_open_line(const PlanningGrid& grid, Cell from, Cell to) {
   return walk_line(from, to, [&](Cell c, double) { return grid.is_traversable(c); });
 }
 
-/// The way to a candidate's goal past the first old place that is not too far off: through it and on in its direction,
+/// The path to a candidate's goal past the first old place that is not too far off: through it and on in its direction,
 /// so that the camera sees what the key-frame saw.
 std::optional<Path> path_past(const Situation& s, const CostTree& tree, const std::vector<OldPlace>& places,
                               const DecisionConfig& config, const Candidate& candidate, double direct_m) {
   if (places.empty()) return std::nullopt;
   const CostTree from_goal = grow_cost_tree(s.grid, config.path, {s.grid.cell_of(candidate.goal.p_map)});
   for (const OldPlace& place : places) {
-    if (passes(candidate.way, place.pose, config.path.min_apart_m)) continue;
+    if (passes(candidate.path, place.pose, config.path.min_apart_m)) continue;
     const Eigen::Vector2d heading(std::cos(place.pose.yaw_rad), std::sin(place.pose.yaw_rad));
     const Cell beyond = s.grid.cell_of(place.pose.p_map + kPass_m * heading);
     if (!is_open_line(s.grid, place.cell, beyond) || !from_goal.cost_m(beyond)) continue;
@@ -196,7 +196,7 @@ std::optional<Path> path_past(const Situation& s, const CostTree& tree, const st
   return std::nullopt;
 }
 
-/// Other ways to a candidate's goal: around other obstacles, then past an old place.
+/// Other paths to a candidate's goal: around other obstacles, then past an old place.
 void add_alternatives(const Situation& s, const CostTree& tree, const std::vector<OldPlace>& places,
                       const DecisionConfig& config, const Candidate& candidate, std::vector<Candidate>& all) {
   const Cell from = s.grid.cell_of(s.robot.p_map), to = s.grid.cell_of(candidate.goal.p_map);
@@ -210,7 +210,7 @@ void add_alternatives(const Situation& s, const CostTree& tree, const std::vecto
   for (const Path& path : paths) {
     Candidate& other = all.emplace_back(candidate);
     other.kind = CandidateKind::kAlternative;
-    set_way(s, config, path, other);
+    set_path(s, config, path, other);
   }
 }
 

@@ -7,8 +7,8 @@
 
 namespace lapis::planner {
 
-/// All candidates of a decision with their ways, those that are out of the question with the reason. Without options:
-/// viewpoints of every frontier, of which the ones with the shortest ways stay open; for kTare the stops of its tour.
+/// All candidates of a decision with their paths, those that are out of the question with the reason. Without options:
+/// viewpoints of every frontier, of which the ones with the shortest paths stay open; for kTare the stops of its tour.
 /// What is being driven to stays open, too.
 /// @param tree from the robot's cell
 std::vector<Candidate> propose(const Situation& situation, const CostTree& tree, const Memory& memory,

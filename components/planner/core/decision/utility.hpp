@@ -11,7 +11,7 @@ enum class Method {
   kPaper,     ///< D (1 + MI / Cost), all loops in D [Zhang, Bong & Beltrame 2024, eq. 24-25]
   kFixedN,    ///< the same, D from the expected change of the log-determinant at equal number of nodes
   kJoint,     ///< (MI + beta d / 2 expected change of the log-determinant by loops) / Cost, all in nats
-  kSsmi,      ///< MI of the goal's view alone, every ray for itself, whatever the way costs
+  kSsmi,      ///< MI of the goal's view alone, every ray for itself, whatever the path costs
   kTare,      ///< the first stop of the tour that TARE would drive (tare.hpp)
   kNearest,   ///< the nearest frontier
   kMiOnly,    ///< MI / Cost
@@ -28,7 +28,7 @@ bool counts_loops(Method method);
 
 struct UtilityConfig {
   double beta = 1.0;           ///< what a nat about the trajectory counts against one about the map, in [0, 100]
-  double least_cost_m = 0.25;  ///< shorter ways count as this long, > 0
+  double least_cost_m = 0.25;  ///< shorter paths count as this long, > 0
 };
 
 /// Degrees of freedom of a pose.

@@ -16,7 +16,7 @@ constexpr double kLeastDecisionTime_s = 0.5;  // from one decision to the next, 
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
 
-// Who stands in a way may go, however often that happens.
+// Who stands in a path may go, however often that happens.
 GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
   config.radius_m = kBlockedRadius_m;
   config.max_failures = std::numeric_limits<int>::max();
@@ -34,7 +34,7 @@ void Explorer::start() {
     memory_.clear();
     revisited_.clear();
     blocked_.clear();
-    looks_.forgive();
+    failed_views_.forgive();
     losses_.clear();
   }
   empty_decisions_ = 0;
@@ -66,7 +66,7 @@ void Explorer::forget_map() {
   revisited_.clear();
   blocked_.clear();
   nothing_since_.reset();
-  looks_.clear();
+  failed_views_.clear();
   losses_.clear();
   home_.reset();
   trail_.clear();
@@ -125,7 +125,8 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
 }
 
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
-  for (const VainLook& look : looks_.judge(surroundings, report.now)) memory_.add_failure(look.target_map, report.now);
+  for (const FailedView& view : failed_views_.judge(surroundings, report.now))
+    memory_.add_failure(view.target_map, report.now);
   may_change_ = surroundings.grid().has_passing_obstacles();
   const bool may_decide = !chosen_at_ || (report.now - *chosen_at_).seconds() >= kLeastDecisionTime_s;
   if (!goal_) return may_decide;
@@ -137,11 +138,11 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   const bool is_late = goal_->deadline && report.now > *goal_->deadline;
   if (report.is_blocked || is_late || stands_still(report)) {
     note_failure(report, surroundings);
-    reason_ = report.is_blocked ? "the way was blocked" : is_late ? "the way took too long" : "it did not get on";
+    reason_ = report.is_blocked ? "the path was blocked" : is_late ? "the path took too long" : "it did not get on";
     drop_goal();
     return may_decide;
   }
-  return may_decide && (is_due(report.now) || !is_way_free(path_, *report.robot, surroundings.grid()));
+  return may_decide && (is_due(report.now) || !is_path_free(path_, *report.robot, surroundings.grid()));
 }
 
 bool Explorer::is_due(time::Time now) const {
@@ -169,11 +170,11 @@ void Explorer::note_vanished(const Decision& decision, time::Time now) {
   if (!is_there) await({*goal_->target_map, trail_.newest()->p_map}, now, config_.memory.expiry_s);
 }
 
-/// Leaves the target alone until then, when it is judged whether the look was in vain.
-void Explorer::await(const VainLook& look, time::Time now, double seconds) {
+/// Leaves the target alone until then, when it is judged whether the view has failed.
+void Explorer::await(const FailedView& view, time::Time now, double seconds) {
   const time::Time due = now + time::Duration::from_seconds(seconds);
-  looks_.await(look, due);
-  memory_.leave_alone(look.target_map, due);
+  failed_views_.await(view, due);
+  memory_.leave_alone(view.target_map, due);
 }
 
 bool Explorer::is_at(const Pose2& place, const Pose2& robot) const {
@@ -189,7 +190,7 @@ bool Explorer::stands_still(const Report& report) {
   return (report.now - goal_->moved_at).seconds() > config_.progress_timeout_s;
 }
 
-// The target is left alone, and ways no longer lead through what stopped the robot.
+// The target is left alone, and paths no longer lead through what stopped the robot.
 void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
   add_failure(report.now);
   const auto place = place_ahead(path_, *report.robot);
@@ -209,7 +210,7 @@ Memory Explorer::memory(time::Time now) const {
   Memory memory;
   memory.left_alone = memory_.left_alone(now);
   memory.revisited = revisited_.left_alone(now);
-  memory.vain_looks = looks_.in_vain();
+  memory.failed_views = failed_views_.all();
   memory.radius_m = config_.memory.radius_m;
   if (goal_) memory.goal = goal_->pose;
   return memory;
@@ -250,7 +251,7 @@ void Explorer::set_deadline(const Candidate& chosen, bool is_detour, time::Time 
 
 void Explorer::follow(const Decision& decision, time::Time now) {
   const Candidate& chosen = decision.candidates[*decision.chosen];
-  if (!goal_) goal_ = Goal{.moved_from = chosen.way.front(), .moved_at = now};
+  if (!goal_) goal_ = Goal{.moved_from = chosen.path.front(), .moved_at = now};
   set_deadline(chosen, is_detour(decision), now);
   goal_->pose = chosen.goal;
   goal_->target_map = chosen.target_map;
@@ -282,7 +283,8 @@ void Explorer::end_or_look_around(const Decision& decision, time::Time now) {
   enter(config_.returns_home ? State::kReturning : State::kDone, "nothing is left that can be reached");
 }
 
-// By wheels it goes on for a moment: where it would turn back at once, it would never get past a view of a blank wall.
+// By odometry it continues for a moment: where it would turn back at once, it would never get past a view of a blank
+// wall.
 bool Explorer::is_briefly_untracked(const Report& report) {
   if (report.tracking == Tracking::kTracking) {
     untracked_since_.reset();
@@ -305,7 +307,7 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
     interrupted_ = state_;
     lost_at_ = report.now;
     trail_.turn_back();
-    enter(State::kRecovering, report.tracking == Tracking::kLost ? "slam is lost" : "slam reckons by wheels alone");
+    enter(State::kRecovering, report.tracking == Tracking::kLost ? "slam is lost" : "slam reckons by odometry alone");
   }
   if ((report.now - *lost_at_).seconds() > config_.lost_timeout_s) {
     drop_goal();
@@ -326,15 +328,15 @@ void Explorer::note_loss(time::Time now) {
   losses_.push_back(*goal_->target_map);
 }
 
-// Back along the way that was tracked, as far as need be: at its end is what slam lost itself in. A place to which no
-// way leads, or none the whole way, is passed over.
+// Back along the path that was tracked, as far as need be: at its end is what slam lost itself in. A place to which no
+// path leads, or none all along, is passed over.
 void Explorer::retrace(const Report& report, const Surroundings& surroundings) {
   const bool is_there = is_at(trail_.next_back(), *report.robot);
   const bool is_at_end = !path_.empty() && is_at(path_.back(), *report.robot);
   const bool is_out_of_reach = path_.empty() && decided_at_ && is_due(report.now);
-  const bool goes_on = (is_there || is_at_end || is_out_of_reach || report.is_blocked) && trail_.step_back();
-  const bool has_way = !path_.empty() && is_way_free(path_, *report.robot, surroundings.grid());
-  if (goes_on || (!has_way && is_due(report.now))) drive_to(trail_.next_back(), report, surroundings);
+  const bool continues = (is_there || is_at_end || is_out_of_reach || report.is_blocked) && trail_.step_back();
+  const bool has_path = !path_.empty() && is_path_free(path_, *report.robot, surroundings.grid());
+  if (continues || (!has_path && is_due(report.now))) drive_to(trail_.next_back(), report, surroundings);
 }
 
 // Who stood in the way may have gone, or may go.
@@ -349,27 +351,27 @@ bool Explorer::may_yet_return(const Report& report, Surroundings& surroundings) 
 
 void Explorer::go_home(const Report& report, Surroundings& surroundings) {
   if (!goal_) goal_ = Goal{.pose = *home_, .moved_from = *report.robot, .moved_at = report.now};
-  const bool has_way = !path_.empty();
-  if (has_way && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m) {
+  const bool has_path = !path_.empty();
+  if (has_path && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m) {
     drop_goal();
     return enter(State::kDone, "is back where it started");
   }
   if (report.is_blocked) note_failure(report, surroundings);
-  const bool is_wanted = !has_way || !is_way_free(path_, *report.robot, surroundings.grid());
+  const bool is_wanted = !has_path || !is_path_free(path_, *report.robot, surroundings.grid());
   if (report.is_blocked || (is_wanted && is_due(report.now))) drive_to(*home_, report, surroundings);
   if (!path_.empty()) reason_ = "drives back to where it started";
-  if (!has_way && !path_.empty()) goal_->moved_at = report.now;  // a way has opened
+  if (!has_path && !path_.empty()) goal_->moved_at = report.now;  // a path has opened
   if (!stands_still(report) || may_yet_return(report, surroundings)) return;
-  const std::string trouble = path_.empty() ? "no way back is known" : "it does not get on to where it started";
+  const std::string trouble = path_.empty() ? "no path back is known" : "it does not get on to where it started";
   drop_goal();
   enter(State::kFailed, trouble);
 }
 
 void Explorer::drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings) {
   decided_at_ = report.now;
-  std::vector<Pose2> way = way_to(to, *report.robot, surroundings.grid(), config_.path, config_.path_spacing_m);
-  if (way.empty()) reason_ = "no way back is known";
-  if (!way.empty() || !path_.empty()) set_path(std::move(way));
+  std::vector<Pose2> path = pose_path_to(to, *report.robot, surroundings.grid(), config_.path, config_.path_spacing_m);
+  if (path.empty()) reason_ = "no path back is known";
+  if (!path.empty() || !path_.empty()) set_path(std::move(path));
 }
 
 }  // namespace lapis::planner

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "planner/core/decision/decision.hpp"
+#include "planner/core/exploration/failed_views.hpp"
 #include "planner/core/exploration/goal_memory.hpp"
-#include "planner/core/exploration/looks.hpp"
 #include "planner/core/exploration/surroundings.hpp"
 #include "planner/core/exploration/trail.hpp"
 
@@ -30,9 +30,9 @@ struct ExplorerConfig {
   double goal_tolerance_m = 0.3;    ///< in [0.05, 2]
   double goal_tolerance_rad = 0.3;  ///< in [0.05, 0.5]
   double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
-  double slowest_m_s = 0.15;        ///< a way that takes longer than at this speed has failed, in [0.01, 5]
-  double settle_s = 1.5;            ///< after arriving, until the map tells whether the look was in vain, in [0, 60]
-  double dead_reckoning_s = 2.0;    ///< by wheels alone, before it drives back: a turn past a blank wall, in [0, 10]
+  double slowest_m_s = 0.15;        ///< a path that takes longer than at this speed has failed, in [0.01, 5]
+  double settle_s = 1.5;            ///< after arriving, until the map shows whether the view has failed, in [0, 60]
+  double dead_reckoning_s = 2.0;    ///< by odometry alone, before it drives back: a turn past a blank wall, in [0, 10]
   double lost_timeout_s = 60.0;     ///< without tracking, exploration has failed, in [1, 3600]
   double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
   int confirmations = 3;      ///< looks around, a full turn in all, that find nothing before it is over, in [2, 12]
@@ -47,7 +47,7 @@ struct Report {
   time::Time now;
   std::optional<Pose2> robot;  ///< nothing while slam has no pose
   Tracking tracking = Tracking::kLost;
-  bool is_blocked = false;  ///< the controller finds no way; only true when it speaks of the newest path
+  bool is_blocked = false;  ///< the controller finds no path; only true when it speaks of the newest path
 };
 
 /// The mission: when to decide, what to do with the decision, and when it is over.
@@ -68,7 +68,7 @@ class Explorer {
   /// What decide() has to leave alone, and what is being driven to.
   Memory memory(time::Time now) const;
   /// Acts on a decision that was wanted. One that came too late changes nothing, nor does one that was made before the
-  /// way was found blocked: the goal that it did not know to have failed is judged first.
+  /// path was found blocked: the goal that it did not know to have failed is judged first.
   void take(const Decision& decision, const Report& report);
 
   State state() const { return state_; }
@@ -81,7 +81,7 @@ class Explorer {
  private:
   struct Goal {
     Pose2 pose = {};
-    std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< none: a look around, or the way home
+    std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< none: a look around, or the path home
     CandidateKind kind = CandidateKind::kFrontier;
     time::Time set_out_at = {};  ///< from where none was left for another
     std::optional<time::Time> deadline = std::nullopt;
@@ -106,7 +106,7 @@ class Explorer {
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
   void note_arrival(time::Time now);
   void note_vanished(const Decision& decision, time::Time now);
-  void await(const VainLook& look, time::Time now, double seconds);
+  void await(const FailedView& view, time::Time now, double seconds);
   bool is_active() const;
   bool may_yet_return(const Report& report, Surroundings& surroundings);
   bool is_at(const Pose2& place, const Pose2& robot) const;
@@ -118,14 +118,14 @@ class Explorer {
   ExplorerConfig config_;
   GoalMemory memory_;     ///< targets of frontiers
   GoalMemory revisited_;  ///< old places
-  GoalMemory blocked_;    ///< places on the way
+  GoalMemory blocked_;    ///< places on the path
   State state_ = State::kIdle;
-  State interrupted_ = State::kExploring;  ///< what to go on with when slam tracks again
+  State interrupted_ = State::kExploring;  ///< what to resume when slam tracks again
   std::string reason_ = "not started";
   std::vector<Pose2> path_;
   std::uint64_t path_number_ = 0;
   std::optional<Goal> goal_;
-  Looks looks_;
+  FailedViews failed_views_;
   std::vector<Eigen::Vector2d> losses_;  ///< targets on the way to which slam stopped tracking [m, map]
   std::optional<Pose2> home_;
   Trail trail_;

@@ -14,7 +14,8 @@ struct GoalMemoryConfig {
   int max_failures = 3;    ///< after so many it is left alone for good, in [1, 100]
 };
 
-/// Targets that were driven to in vain. Frontiers change their ids while they creep forward, so places are remembered.
+/// Targets for which the robot set out, and failed. Frontiers change their ids while they creep forward, so places are
+/// remembered.
 class GoalMemory {
  public:
   explicit GoalMemory(const GoalMemoryConfig& config) : config_(config) {}

@@ -13,14 +13,14 @@ inline bool has_moved(const Pose2& from, const Pose2& to) {
   return (to.p_map - from.p_map).norm() > kMotion_m || turn_between(to.yaw_rad, from.yaw_rad) > kMotion_rad;
 }
 
-/// Poses at which slam tracked, the newest ones: the way back from where it stopped to.
+/// Poses at which slam tracked, the newest ones: the path back from where it stopped to.
 class Trail {
  public:
   void add(const Pose2& tracked);
-  /// Slam stopped tracking: the way back begins with the pose at which it last did.
+  /// Slam stopped tracking: the path back begins with the pose at which it last did.
   void turn_back();
   bool is_empty() const { return poses_.empty(); }
-  /// Next one on the way back; there is one.
+  /// Next one on the path back; there is one.
   const Pose2& next_back() const { return poses_.back(); }
   /// That one has been reached. False when there is none before it.
   bool step_back();

@@ -35,43 +35,43 @@ std::optional<std::vector<Keyframe>> select(std::span<const Keyframe> keyframes,
 }
 
 double edge_length_m(const std::vector<Keyframe>& keyframes, int a, int b) {
-  return way_between(keyframes[index(a)].T_map_camera, keyframes[index(b)].T_map_camera);
+  return path_between(keyframes[index(a)].T_map_camera, keyframes[index(b)].T_map_camera);
 }
 
 // Dijkstra's algorithm.
-std::vector<double> ways_from(int root, const WeightedGraph& graph, const std::vector<Keyframe>& keyframes) {
+std::vector<double> path_lengths_from(int root, const WeightedGraph& graph, const std::vector<Keyframe>& keyframes) {
   std::vector<std::vector<std::pair<int, double>>> neighbours(keyframes.size());
   for (const WeightedEdge& edge : graph.edges()) {
     const double length = edge_length_m(keyframes, edge.a, edge.b);
     neighbours[index(edge.a)].emplace_back(edge.b, length);
     neighbours[index(edge.b)].emplace_back(edge.a, length);
   }
-  std::vector<double> ways(keyframes.size(), std::numeric_limits<double>::infinity());
+  std::vector<double> lengths(keyframes.size(), std::numeric_limits<double>::infinity());
   using Entry = std::pair<double, int>;
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;
-  ways[index(root)] = 0.0;
+  lengths[index(root)] = 0.0;
   open.emplace(0.0, root);
   while (!open.empty()) {
-    const auto [way, node] = open.top();
+    const auto [so_far, node] = open.top();
     open.pop();
-    if (way > ways[index(node)]) continue;
+    if (so_far > lengths[index(node)]) continue;
     for (const auto& [neighbour, length] : neighbours[index(node)]) {
-      if (way + length >= ways[index(neighbour)]) continue;
-      ways[index(neighbour)] = way + length;
-      open.emplace(way + length, neighbour);
+      if (so_far + length >= lengths[index(neighbour)]) continue;
+      lengths[index(neighbour)] = so_far + length;
+      open.emplace(so_far + length, neighbour);
     }
   }
-  return ways;
+  return lengths;
 }
 
 std::vector<double> travelled(const std::vector<Keyframe>& keyframes) {
-  std::vector<double> way{0.0};
+  std::vector<double> sums{0.0};
   for (int i = 1; i < static_cast<int>(keyframes.size()); ++i)
-    way.push_back(way.back() + edge_length_m(keyframes, i - 1, i));
-  return way;
+    sums.push_back(sums.back() + edge_length_m(keyframes, i - 1, i));
+  return sums;
 }
 
-// Effective resistance between neighbours counts every way through the graph, so it needs no choice of edges.
+// Effective resistance between neighbours counts every path through the graph, so it needs no choice of edges.
 double calibrate_odometry(const LaplacianFactor& factor, const std::vector<Keyframe>& keyframes) {
   std::vector<double> values;
   const std::size_t first = keyframes.size() - std::min(keyframes.size() - 1, kNewestNeighbours);
@@ -119,7 +119,7 @@ double calibrate_loops(const AnalysedGraph& graph) {
 
 }  // namespace
 
-double way_between(const geometry::Pose& a, const geometry::Pose& b) {
+double path_between(const geometry::Pose& a, const geometry::Pose& b) {
   const Eigen::Matrix3d R = a.linear().transpose() * b.linear();
   return (a.translation() - b.translation()).norm() + kMetresPerRadian * geometry::rotation_angle(R);
 }
@@ -153,7 +153,7 @@ std::variant<AnalysedGraph, GraphError> analyse_graph(std::span<const Keyframe> 
   AnalysedGraph graph{std::get<LaplacianFactor>(std::move(factor)), *std::move(selected), {}, {}, {}};
   graph.loops = loops_of(graph, edges, config.criterion);
   const int newest = static_cast<int>(graph.keyframes.size()) - 1;
-  graph.way_from_newest_m = ways_from(newest, part.graph, graph.keyframes);
+  graph.path_from_newest_m = path_lengths_from(newest, part.graph, graph.keyframes);
   graph.travelled_m = travelled(graph.keyframes);
   graph.odometry_weight_metres = calibrate_odometry(graph.factor, graph.keyframes);
   graph.loop_weight = calibrate_loops(graph);

@@ -17,11 +17,11 @@ struct Keyframe {
   geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< camera optical frame
 };
 
-/// A radian of turning counts as so many metres of way: a view changes by both.
+/// A radian of turning counts as so many metres of path: a view changes by both.
 inline constexpr double kMetresPerRadian = 0.5;
 
-/// Way from one pose to another: distance, and the angle between them times kMetresPerRadian [m].
-double way_between(const geometry::Pose& a, const geometry::Pose& b);
+/// Path from one pose to another: distance, and the angle between them times kMetresPerRadian [m].
+double path_between(const geometry::Pose& a, const geometry::Pose& b);
 
 struct GraphConfig {
   Criterion criterion = Criterion::kD;  ///< of the edges' weights
@@ -40,11 +40,11 @@ struct AnalysedGraph {
   LaplacianFactor factor;
   std::vector<Keyframe> keyframes;  ///< by id
   std::vector<LoopClosure> loops;
-  /// Shortest way along edges, also those that were thinned out, from the newest key-frame to each node [m].
-  std::vector<double> way_from_newest_m;
-  /// Way through all key-frames up to each, in the order of ids [m].
+  /// Shortest path along edges, also those that were thinned out, from the newest key-frame to each node [m].
+  std::vector<double> path_from_newest_m;
+  /// Path through all key-frames up to each, in the order of ids [m].
   std::vector<double> travelled_m;
-  /// Weight of an odometry edge, times its length [m]: the median of what joins neighbouring key-frames, all ways
+  /// Weight of an odometry edge, times its length [m]: the median of what joins neighbouring key-frames, all paths
   /// through the graph together.
   double odometry_weight_metres = 0.0;
   /// Median of the loop closures' weights; without any, that of an odometry edge of half a metre.

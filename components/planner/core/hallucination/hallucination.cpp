@@ -14,10 +14,10 @@ class PlaceFinder {
  public:
   PlaceFinder(const AnalysedGraph& graph, const HallucinationConfig& config) : graph_(graph), config_(config) {}
 
-  void look(int node, double way_m, std::span<const Covisibility> seen) {
+  void look(int node, double path_m, std::span<const Covisibility> seen) {
     const Covisibility* best = nullptr;
     for (const Covisibility& one : seen) {
-      if ((best == nullptr || one.landmarks > best->landmarks) && may_close(one.keyframe, way_m)) best = &one;
+      if ((best == nullptr || one.landmarks > best->landmarks) && may_close(one.keyframe, path_m)) best = &one;
     }
     if (best == nullptr) return;
     const double probability = loop_probability(best->landmarks, config_);
@@ -34,15 +34,15 @@ class PlaceFinder {
  private:
   bool is_same_place(int a, int b) const {
     const auto& keyframes = graph_.keyframes;
-    const Eigen::Vector3d way =
+    const Eigen::Vector3d offset =
         keyframes[index(a)].T_map_camera.translation() - keyframes[index(b)].T_map_camera.translation();
-    return way.norm() < config_.place_radius_m;
+    return offset.norm() < config_.place_radius_m;
   }
 
-  bool may_close(int keyframe, double way_m) const {
-    if (graph_.way_from_newest_m[index(keyframe)] + way_m < config_.min_loop_way_m) return false;
+  bool may_close(int keyframe, double path_m) const {
+    if (graph_.path_from_newest_m[index(keyframe)] + path_m < config_.min_loop_path_m) return false;
     return std::none_of(graph_.loops.begin(), graph_.loops.end(), [&](const LoopClosure& loop) {
-      const double since = graph_.travelled_m.back() - graph_.travelled_m[index(loop.newer)] + way_m;
+      const double since = graph_.travelled_m.back() - graph_.travelled_m[index(loop.newer)] + path_m;
       return since < config_.revisit_spacing_m && is_same_place(loop.older, keyframe);
     });
   }
@@ -92,13 +92,13 @@ Hallucination hallucinate(const AnalysedGraph& graph, const LandmarkIndex& landm
   PlaceFinder finder(graph, config);
   const int first = graph.factor.node_count();
   const geometry::Pose* before = &graph.keyframes.back().T_map_camera;
-  double way_m = 0.0;
+  double path_m = 0.0;
   for (const geometry::Pose& pose : T_map_cameras) {
     const int node = result.graph.node_count++;
-    const double length = std::max(way_between(*before, pose), kLeastHallucinatedLength_m);
+    const double length = std::max(path_between(*before, pose), kLeastHallucinatedLength_m);
     result.graph.edges.push_back({{first + node - 1, first + node, graph.odometry_weight_metres / length}});
-    way_m += length;
-    finder.look(node, way_m, landmarks.predict(camera, pose, field, config.covisibility));
+    path_m += length;
+    finder.look(node, path_m, landmarks.predict(camera, pose, field, config.covisibility));
     before = &pose;
   }
   result.places = finder.most_probable();

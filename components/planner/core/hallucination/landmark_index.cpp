@@ -55,12 +55,12 @@ bool is_on_image(const geometry::PinholeCamera& camera, const Eigen::Vector3d& p
 
 double free_probability(const InformationField& field, const Eigen::Vector3d& from_map, const Eigen::Vector3d& to_map) {
   const double step_m = 0.5 * field.resolution_m();
-  const Eigen::Vector3d way = to_map - from_map;
-  const double length = way.norm() - 1.5 * field.resolution_m();
+  const Eigen::Vector3d ray = to_map - from_map;
+  const double length = ray.norm() - 1.5 * field.resolution_m();
   double probability = 1.0;
   mapping::VoxelIndex last = voxel_of(from_map, field.resolution_m());
   for (double t = step_m; t < length && probability > 0.0; t += step_m) {
-    const mapping::VoxelIndex voxel = voxel_of(from_map + way.normalized() * t, field.resolution_m());
+    const mapping::VoxelIndex voxel = voxel_of(from_map + ray.normalized() * t, field.resolution_m());
     if (voxel == last) continue;
     probability *= field.cell(voxel).free;
     last = voxel;

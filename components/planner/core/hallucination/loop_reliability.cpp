@@ -20,26 +20,26 @@ struct Stretch {
 
 std::vector<Stretch> stretches_of(const std::vector<Keyframe>& keyframes, double length_m) {
   std::vector<Stretch> stretches;
-  double way_m = 0.0;
+  double path_m = 0.0;
   std::size_t begin = 2;  // a graph has two key-frames
   for (std::size_t i = begin; i < keyframes.size(); ++i) {
-    way_m += way_between(keyframes[i - 1].T_map_camera, keyframes[i].T_map_camera);
-    if (way_m < length_m) continue;
+    path_m += path_between(keyframes[i - 1].T_map_camera, keyframes[i].T_map_camera);
+    if (path_m < length_m) continue;
     stretches.push_back({begin, i + 1});
     begin = i + 1;
-    way_m = 0.0;
+    path_m = 0.0;
   }
   return stretches;
 }
 
 std::vector<geometry::Pose> nodes_of(const std::vector<Keyframe>& keyframes, const Stretch& stretch, double spacing_m) {
   std::vector<geometry::Pose> nodes;
-  double way_m = 0.0;
+  double path_m = 0.0;
   for (std::size_t i = stretch.begin; i < stretch.end; ++i) {
-    way_m += way_between(keyframes[i - 1].T_map_camera, keyframes[i].T_map_camera);
-    if (way_m < spacing_m && i + 1 < stretch.end) continue;
+    path_m += path_between(keyframes[i - 1].T_map_camera, keyframes[i].T_map_camera);
+    if (path_m < spacing_m && i + 1 < stretch.end) continue;
     nodes.push_back(keyframes[i].T_map_camera);
-    way_m = 0.0;
+    path_m = 0.0;
   }
   return nodes;
 }

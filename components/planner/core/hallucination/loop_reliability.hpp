@@ -18,7 +18,7 @@ struct FinishedRun {
   geometry::PinholeCamera camera;
 };
 
-/// A place that a stretch of the way was predicted to see again, and what came of it.
+/// A place that a stretch of the path was predicted to see again, and what came of it.
 struct LoopOutcome {
   int landmarks = 0;  ///< predicted to be seen again
   bool has_closed = false;
@@ -30,7 +30,7 @@ struct LoopOutcomes {
   int unexpected = 0;  ///< of these, far from every place that was predicted
 };
 
-/// Cuts the way into stretches of `stretch_m`. For each, hallucinates its own key-frames, `node_spacing_m` apart, on
+/// Cuts the path into stretches of `stretch_m`. For each, hallucinates its own key-frames, `node_spacing_m` apart, on
 /// the graph and the landmarks as they were when it began (the map: as in the end), and looks which of the places did
 /// close: slam has a loop from a key-frame of the stretch to one within the place's radius. The first stretches see
 /// nothing again and give no outcomes. Probabilities of `config` play no part. The error names what is wrong with the

@@ -81,7 +81,7 @@ class ShareDivergence {
 CellMeasure::CellMeasure(const mapping::SensorModel& model, Measure measure)
     : reader_(model), unclamped_reader_(without_occupancy_limit(model)), measure_(measure) {
   group_priors();
-  for (std::uint32_t n = 0; n < kVotesInTable; ++n) by_passes_.push_back(compute({n * kOneVote, {}}));
+  for (std::uint32_t n = 0; n < kVotesInTable; ++n) by_misses_.push_back(compute({n * kOneVote, {}}));
 }
 
 void CellMeasure::group_priors() {
@@ -104,8 +104,8 @@ void CellMeasure::group_priors() {
 
 CellInformation CellMeasure::of(const VoxelCounts& counts) const {
   const bool is_in_table =
-      counts.hits.empty() && counts.passes % kOneVote == 0 && counts.passes / kOneVote < kVotesInTable;
-  return is_in_table ? by_passes_[counts.passes / kOneVote] : compute(counts);
+      counts.hits.empty() && counts.misses % kOneVote == 0 && counts.misses / kOneVote < kVotesInTable;
+  return is_in_table ? by_misses_[counts.misses / kOneVote] : compute(counts);
 }
 
 CellInformation CellMeasure::compute(const VoxelCounts& counts) const {
@@ -113,8 +113,8 @@ CellInformation CellMeasure::compute(const VoxelCounts& counts) const {
   const double p_occupied = probability(log_odds), p_free = 1.0 - p_occupied;
   if (measure_ == Measure::kCsqmi) return {p_free, std::max(csqmi(p_occupied), 0.0)};
   VoxelCounts after = counts;
-  after.passes += kOneVote;
-  const double pass = occupancy_divergence(reader_.occupancy_log_odds(after), log_odds);
+  after.misses += kOneVote;
+  const double miss = occupancy_divergence(reader_.occupancy_log_odds(after), log_odds);
   double hit = 0.0;
   if (measure_ == Measure::kSemantic) {
     hit = mean_hit_divergence(counts);
@@ -123,7 +123,7 @@ CellInformation CellMeasure::compute(const VoxelCounts& counts) const {
     after.hits.push_back({0, kOneVote});
     hit = occupancy_divergence(reader_.occupancy_log_odds(after), log_odds);
   }
-  return {p_free, std::max(p_free * pass + p_occupied * hit, 0.0)};  // rounding may fall below 0
+  return {p_free, std::max(p_free * miss + p_occupied * hit, 0.0)};  // rounding may fall below 0
 }
 
 double CellMeasure::clamped(double log_odds) const {

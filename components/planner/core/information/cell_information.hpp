@@ -12,7 +12,7 @@ namespace lapis::planner {
 /// What it is worth to observe a cell. A ray that reaches a cell either passes it or ends in it; o = P(occupied).
 enum class Measure {
   /// Semantic mutual information [Zhang, Bong & Beltrame 2024, eq. 13-14]: g = sum_z P(z) KL(b_z || b) over the
-  /// outcomes z (pass, or a hit of class c); b is the belief about free space and all classes as BeliefReader gives it,
+  /// outcomes z (miss, or a hit of class c); b is the belief about free space and all classes as BeliefReader gives it,
   /// b_z what it will give after one more whole vote. Where nothing is clamped this is the paper's h; a clamped belief
   /// that stays clamped gains nothing. By fusion rules other than log_odds it is the same with their own beliefs.
   kSemantic,
@@ -29,7 +29,7 @@ enum class Measure {
 
 /// All that rays have to know about a cell.
 struct CellInformation {
-  double free = 0.0;  ///< P(free): the ray goes on
+  double free = 0.0;  ///< P(free): the ray continues
   double gain = 0.0;  ///< g, expected information for a ray that reaches the cell [nats], >= 0
 };
 
@@ -51,7 +51,7 @@ class CellMeasure {
     double own_surplus;  ///< psi_c - phi_c
     std::size_t size = 0;
   };
-  /// Classes of one voxel that nothing tells apart: one that was hit, or those of a prior group that were not.
+  /// Classes of one voxel that nothing distinguishes: one that was hit, or those of a prior group that were not.
   struct Kind {
     double size;         ///< how many they are
     double log_share;    ///< of each, given occupied; 0 for the largest share of the voxel
@@ -72,7 +72,7 @@ class CellMeasure {
   Measure measure_;
   std::vector<PriorGroup> groups_;
   std::vector<std::size_t> group_of_;       ///< index label - 1
-  std::vector<CellInformation> by_passes_;  ///< of voxels without hits, by whole votes
+  std::vector<CellInformation> by_misses_;  ///< of voxels without hits, by whole votes
 };
 
 }  // namespace lapis::planner

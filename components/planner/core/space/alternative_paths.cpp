@@ -25,13 +25,13 @@ std::vector<Cell> cells_on(const Path& path) {
   return cells;
 }
 
-/// True when a cell that is not free lies inside the loop of two ways with common ends. Rows are filled between pairs
+/// True when a cell that is not free lies inside the loop of two paths with common ends. Rows are filled between pairs
 /// of crossings (even-odd rule); a step between rows crosses the lower one at the end that lies in it.
 bool encloses_obstacle(const PlanningGrid& grid, const std::vector<Cell>& a, const std::vector<Cell>& b) {
   std::vector<Cell> crossings;
-  for (const std::vector<Cell>* way : {&a, &b})
-    for (std::size_t i = 1; i < way->size(); ++i)
-      if ((*way)[i].y != (*way)[i - 1].y) crossings.push_back(std::min((*way)[i], (*way)[i - 1]));
+  for (const std::vector<Cell>* cells : {&a, &b})
+    for (std::size_t i = 1; i < cells->size(); ++i)
+      if ((*cells)[i].y != (*cells)[i - 1].y) crossings.push_back(std::min((*cells)[i], (*cells)[i - 1]));
   std::sort(crossings.begin(), crossings.end());
   for (std::size_t i = 0; i + 1 < crossings.size(); i += 2)
     for (Cell c = crossings[i] + Cell{1, 0}; c < crossings[i + 1]; ++c.x)
@@ -39,10 +39,10 @@ bool encloses_obstacle(const PlanningGrid& grid, const std::vector<Cell>& a, con
   return false;
 }
 
-/// Largest distance of a cell of `way` to the nearest one of `other` [cells].
-double largest_gap(const std::vector<Cell>& way, const std::vector<Cell>& other) {
+/// Largest distance of a cell of `cells` to the nearest one of `other` [cells].
+double largest_gap(const std::vector<Cell>& cells, const std::vector<Cell>& other) {
   std::int64_t largest = 0;
-  for (const Cell& c : way) {
+  for (const Cell& c : cells) {
     std::int64_t gap = std::numeric_limits<std::int64_t>::max();
     for (const Cell& o : other) gap = std::min(gap, squared_distance(c, o));
     largest = std::max(largest, gap);
@@ -50,13 +50,13 @@ double largest_gap(const std::vector<Cell>& way, const std::vector<Cell>& other)
   return std::sqrt(static_cast<double>(largest));
 }
 
-/// Raises the cost of cells within `radius` [cells] of a way, of each one once.
-void raise_cost(const std::vector<Cell>& way, double radius, SparseGrid<float>& surcharge) {
+/// Raises the cost of cells within `radius` [cells] of a path, of each one once.
+void raise_cost(const std::vector<Cell>& cells, double radius, SparseGrid<float>& surcharge) {
   const int reach = static_cast<int>(radius);
   std::vector<Cell> around;
-  Cell last = way.front();
-  for (const Cell& middle : way) {
-    if (middle != way.front() && middle != way.back() && distance(middle, last) < 0.5 * radius) continue;
+  Cell last = cells.front();
+  for (const Cell& middle : cells) {
+    if (middle != cells.front() && middle != cells.back() && distance(middle, last) < 0.5 * radius) continue;
     last = middle;
     for (Cell step{0, -reach}; step.y <= reach; ++step.y)
       for (step.x = -reach; step.x <= reach; ++step.x)
@@ -71,7 +71,7 @@ void raise_cost(const std::vector<Cell>& way, double radius, SparseGrid<float>& 
 
 std::vector<Path> find_alternatives(const PlanningGrid& grid, const PathConfig& config, Cell from, Cell to, int count) {
   std::vector<Path> found;
-  std::vector<std::vector<Cell>> ways;  // of `found`
+  std::vector<std::vector<Cell>> found_cells;  // of `found`
   if (!grid.is_traversable(to)) return found;
   const double apart = config.min_apart_m / grid.resolution_m();
   SparseGrid<float> surcharge;
@@ -80,13 +80,13 @@ std::vector<Path> find_alternatives(const PlanningGrid& grid, const PathConfig& 
     query.surcharge = &surcharge;
     Path path = straightened(grid, config, grow_cost_tree(grid, config, query).path_to(to));
     if (path.cells.empty()) break;
-    std::vector<Cell> way = cells_on(path);
-    raise_cost(way, apart, surcharge);
-    const bool is_distinct = std::all_of(ways.begin(), ways.end(), [&](const std::vector<Cell>& other) {
-      return largest_gap(way, other) >= apart && encloses_obstacle(grid, way, other);
+    std::vector<Cell> cells = cells_on(path);
+    raise_cost(cells, apart, surcharge);
+    const bool is_distinct = std::all_of(found_cells.begin(), found_cells.end(), [&](const std::vector<Cell>& other) {
+      return largest_gap(cells, other) >= apart && encloses_obstacle(grid, cells, other);
     });
     if (!is_distinct || (!found.empty() && path.length_m > config.max_detour * found.front().length_m)) continue;
-    ways.push_back(std::move(way));
+    found_cells.push_back(std::move(cells));
     found.push_back(std::move(path));
   }
   return found;

@@ -72,7 +72,7 @@ std::vector<Pose2> poses_along(std::span<const Eigen::Vector2d> points, double s
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
   const double intervals = std::ceil(length / spacing_m - 1e-9);
   std::vector<Pose2> poses;
-  double begin = 0.0;  // of the line, along the way
+  double begin = 0.0;  // of the line, along the path
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Eigen::Vector2d line = points[i] - points[i - 1];
     const double end = begin + line.norm(), yaw = std::atan2(line.y(), line.x());

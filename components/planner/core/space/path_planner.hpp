@@ -13,9 +13,9 @@ enum class PathStatus {
   kNoPath,              ///< the goal cannot be reached within the bound
 };
 
-/// A way through the grid.
+/// A path through the grid.
 struct Path {
-  std::vector<Cell> cells;  ///< corners: the way goes straight between their centres
+  std::vector<Cell> cells;  ///< corners: the path goes straight between their centres
   double length_m = 0.0;
   double cost_m = 0.0;  ///< integral of cost_per_metre along the lines
 };
@@ -34,7 +34,7 @@ PathResult find_path(const PlanningGrid& grid, const PathConfig& config, Cell fr
 Path straightened(const PlanningGrid& grid, const PathConfig& config, std::span<const Cell> cells);
 
 /// Poses along straight lines between `points` [m, map frame], both ends included, equally spaced by at most
-/// `spacing_m` along the way, headed along the line that follows; the last pose has `final_yaw_rad`. At least one
+/// `spacing_m` along the path, headed along the line that follows; the last pose has `final_yaw_rad`. At least one
 /// point.
 std::vector<Pose2> poses_along(std::span<const Eigen::Vector2d> points, double spacing_m, double final_yaw_rad);
 

@@ -62,7 +62,7 @@ class PathSearch {
     return cost_per_metre(grid_, config_, c) + surcharge;
   }
 
-  /// Length of the shortest way over an empty grid [m].
+  /// Length of the shortest path over an empty grid [m].
   double least_cost(Cell c) const {
     if (!query_.to) return 0.0;
     const double x = std::abs(c.x - query_.to->x), y = std::abs(c.y - query_.to->y);

@@ -50,7 +50,7 @@ inline constexpr double kMaxReach_m = 1000.0;
 /// traversable when it is free, its clearance is at least footprint radius + margin, and unknown cells, whose edges
 /// count, are at least the footprint radius away: what stands there, nobody knows. Passable are these and, unless
 /// something is seen there, cells on which the robot has stood, with unknown ones beside them or themselves unknown:
-/// under and just around itself its camera does not see the floor, and without them there may be no way back.
+/// under and just around itself its camera does not see the floor, and without them there may be no path back.
 class PlanningGrid {
  public:
   /// @param resolution_m edge of a cell: that of the map.
@@ -82,7 +82,7 @@ class PlanningGrid {
   bool is_traversable(Cell c) const {
     return state(c) == mapping::kFree && has_room(c) && to_unknown_.squared(c) >= unknown_squared_;
   }
-  /// Ways may lead there; goals are traversable.
+  /// Paths may lead there; goals are traversable.
   bool is_passable(Cell c) const { return is_traversable(c) || (driven_.at(c) && is_unhindered(c)); }
 
   const GridConfig& config() const { return config_; }

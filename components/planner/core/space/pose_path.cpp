@@ -32,8 +32,8 @@ auto nearest_pose(std::span<const Pose2> path, const Pose2& robot) {
 
 }  // namespace
 
-std::vector<Pose2> way_to(const Pose2& place, const Pose2& robot, const PlanningGrid& grid, const PathConfig& config,
-                          double spacing_m) {
+std::vector<Pose2> pose_path_to(const Pose2& place, const Pose2& robot, const PlanningGrid& grid,
+                                const PathConfig& config, double spacing_m) {
   const CostTree tree = grow_cost_tree(grid, config, {grid.cell_of(robot.p_map)});
   const auto end = nearest_reached(grid, tree, place.p_map);
   if (!end) return {};
@@ -43,7 +43,7 @@ std::vector<Pose2> way_to(const Pose2& place, const Pose2& robot, const Planning
   return poses_along(points, spacing_m, place.yaw_rad);
 }
 
-bool is_way_free(std::span<const Pose2> path, const Pose2& robot, const PlanningGrid& grid) {
+bool is_path_free(std::span<const Pose2> path, const Pose2& robot, const PlanningGrid& grid) {
   return std::all_of(nearest_pose(path, robot), path.end(), [&](const Pose2& pose) {
     return distance(robot, pose) < kPathTolerance_m || grid.is_passable(grid.cell_of(pose.p_map));
   });

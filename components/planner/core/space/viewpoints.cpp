@@ -62,10 +62,10 @@ std::vector<Viewpoint> one_per_sector(const PlanningGrid& grid, const CostTree& 
 
 }  // namespace
 
-bool is_looked_at(std::span<const VainLook> vain_looks, const Eigen::Vector2d& target_map,
-                  const Eigen::Vector2d& from_map, double radius_m) {
-  return std::any_of(vain_looks.begin(), vain_looks.end(), [&](const VainLook& look) {
-    return (look.target_map - target_map).norm() <= radius_m && (look.from_map - from_map).norm() <= radius_m;
+bool is_failed_view(std::span<const FailedView> failed_views, const Eigen::Vector2d& target_map,
+                    const Eigen::Vector2d& from_map, double radius_m) {
+  return std::any_of(failed_views.begin(), failed_views.end(), [&](const FailedView& view) {
+    return (view.target_map - target_map).norm() <= radius_m && (view.from_map - from_map).norm() <= radius_m;
   });
 }
 

@@ -25,14 +25,14 @@ struct Viewpoint {
   double cost_m = 0.0;  ///< of the path to it
 };
 
-/// A target that is a frontier still, although it has been looked at from there [m, map].
-struct VainLook {
+/// A target that is a frontier still, although it has been viewed from there [m, map].
+struct FailedView {
   Eigen::Vector2d target_map, from_map;
 };
 
-/// Another look from about the same place shows no more; one from elsewhere may.
-bool is_looked_at(std::span<const VainLook> vain_looks, const Eigen::Vector2d& target_map,
-                  const Eigen::Vector2d& from_map, double radius_m);
+/// Another view from about the same place shows no more; one from elsewhere may.
+bool is_failed_view(std::span<const FailedView> failed_views, const Eigen::Vector2d& target_map,
+                    const Eigen::Vector2d& from_map, double radius_m);
 
 /// Why a frontier has no viewpoint: what the best candidates lacked.
 enum class ViewpointStatus {

@@ -9,7 +9,7 @@ namespace lapis::planner {
 /// Length of a tour [as cost].
 double tour_length(const Eigen::MatrixXd& cost, const std::vector<int>& order);
 
-/// A short way through all nodes, each once, that begins with node 0 and ends anywhere, or with the last node when
+/// A short path through all nodes, each once, that begins with node 0 and ends anywhere, or with the last node when
 /// `ends_at_last`: cheapest insertion, then reversals of parts (2-opt) and moves of single nodes (Or-opt) until none
 /// makes it shorter. Deterministic.
 /// @param cost between nodes, square and symmetric, nothing negative; at least 2 x 2

@@ -33,9 +33,9 @@ bool is_left_alone(const TourProblem& problem, Cell c) {
                      [&](const Eigen::Vector2d& place) { return (place - p).norm() <= problem.radius_m; });
 }
 
-bool is_vain(const TourProblem& problem, Cell from, Cell target) {
+bool has_failed_view(const TourProblem& problem, Cell from, Cell target) {
   const PlanningGrid& grid = problem.grid;
-  return is_looked_at(problem.vain_looks, grid.center_of(target), grid.center_of(from), problem.radius_m);
+  return is_failed_view(problem.failed_views, grid.center_of(target), grid.center_of(from), problem.radius_m);
 }
 
 /// Cell of a frontier that is to be covered.
@@ -50,10 +50,10 @@ struct LocalView {
   std::vector<std::size_t> covered;
 };
 
-/// Costs of ways between stops; searches each of them once.
-class Ways {
+/// Costs of paths between stops; searches each of them once.
+class PathCosts {
  public:
-  explicit Ways(const TourProblem& problem) : problem_(problem) {}
+  explicit PathCosts(const TourProblem& problem) : problem_(problem) {}
 
   /// Node 0 is the robot, node i stops[i - 1].
   Eigen::MatrixXd between(const std::vector<TourStop>& stops, double max_cost_m) {
@@ -64,8 +64,8 @@ class Ways {
       cost(0, b) = cost(b, 0) = to.cost_m + turn_cost(problem_.robot, to.pose);
       for (Eigen::Index a = 1; a < b; ++a) {
         const Viewpoint& from = stops[static_cast<std::size_t>(a - 1)].viewpoint;
-        const auto way = tree(to.cell, max_cost_m).cost_m(from.cell);
-        cost(a, b) = cost(b, a) = way.value_or(from.cost_m + to.cost_m) + turn_cost(from.pose, to.pose);
+        const auto path_cost_m = tree(to.cell, max_cost_m).cost_m(from.cell);
+        cost(a, b) = cost(b, a) = path_cost_m.value_or(from.cost_m + to.cost_m) + turn_cost(from.pose, to.pose);
       }
     }
     return cost;
@@ -92,10 +92,10 @@ struct TourOrder {
 };
 
 /// A short tour from the robot; what is being driven to stays the first stop unless another order is much shorter.
-TourOrder order(const TourProblem& problem, Ways& ways, const std::vector<TourStop>& stops, bool ends_at_last,
+TourOrder order(const TourProblem& problem, PathCosts& costs, const std::vector<TourStop>& stops, bool ends_at_last,
                 double max_cost_m) {
   if (stops.empty()) return {};
-  const Eigen::MatrixXd cost = ways.between(stops, max_cost_m);
+  const Eigen::MatrixXd cost = costs.between(stops, max_cost_m);
   std::vector<int> nodes = short_tour(cost, ends_at_last);
   const auto kept = std::find_if(stops.begin(), stops.end(),
                                  [&](const TourStop& stop) { return is_goal(stop.viewpoint.pose, problem.goal); });
@@ -116,8 +116,8 @@ std::vector<Target> targets_around(const TourProblem& problem, double reach_m) {
   std::vector<Target> targets;
   for (const auto& [id, frontier] : problem.frontiers.frontiers()) {
     for (const Cell& c : frontier.cells) {
-      const Eigen::Vector2d way = problem.grid.center_of(c) - problem.robot.p_map;
-      if (way.lpNorm<Eigen::Infinity>() <= reach_m && !is_left_alone(problem, c)) targets.push_back({c, id});
+      const Eigen::Vector2d offset = problem.grid.center_of(c) - problem.robot.p_map;
+      if (offset.lpNorm<Eigen::Infinity>() <= reach_m && !is_left_alone(problem, c)) targets.push_back({c, id});
     }
   }
   return targets;
@@ -131,7 +131,7 @@ std::array<std::vector<std::size_t>, kHeadings> covered_from(const TourProblem& 
     const Cell to = targets[i].cell;
     const double range_m = distance(from, to) * problem.grid.resolution_m();
     if (range_m < problem.viewpoints.min_distance_m || range_m > config.range_m) continue;
-    if (!is_in_sight(problem.grid, from, to) || is_vain(problem, from, to)) continue;
+    if (!is_in_sight(problem.grid, from, to) || has_failed_view(problem, from, to)) continue;
     const double bearing = std::atan2(to.y - from.y, to.x - from.x);
     for (std::size_t k = 0; k < kHeadings; ++k) {
       const double heading = 2.0 * std::numbers::pi / kHeadings * static_cast<double>(k);
@@ -223,7 +223,8 @@ std::optional<TourStop> stop_at(const TourProblem& problem, const Frontier& fron
   std::optional<TourStop> best;
   const auto rank = [&](const Viewpoint& v) { return is_goal(v.pose, problem.goal) ? 0.0 : v.cost_m; };
   for (const Viewpoint& viewpoint : found.viewpoints) {
-    if (is_left_alone(problem, viewpoint.target) || is_vain(problem, viewpoint.cell, viewpoint.target)) continue;
+    if (is_left_alone(problem, viewpoint.target) || has_failed_view(problem, viewpoint.cell, viewpoint.target))
+      continue;
     if (!best || rank(viewpoint) < rank(best->viewpoint)) best = TourStop{frontier.id, viewpoint};
   }
   if (!best) tour.missed.emplace_back(frontier.id, found.viewpoints.empty() ? reason_of(found.status) : kLeftAlone);
@@ -277,8 +278,8 @@ Tour plan_tour(const TourProblem& problem, const TareConfig& config) {
   const std::vector<Target> targets = targets_around(problem, config.horizon_m + config.range_m);
   const std::vector<LocalView> views = local_views(problem, config, targets);
   Tour tour;
-  Ways ways(problem);
-  const TourOrder global = order(problem, ways, sub_spaces(problem, config, views, targets, tour), false,
+  PathCosts costs(problem);
+  const TourOrder global = order(problem, costs, sub_spaces(problem, config, views, targets, tour), false,
                                  std::numeric_limits<double>::infinity());
   std::mt19937_64 engine(static_cast<std::uint64_t>(config.seed));
   std::optional<TourOrder> local;
@@ -286,7 +287,7 @@ Tour plan_tour(const TourProblem& problem, const TareConfig& config) {
     RandomChoice choice(views, targets.size(), least_reward(problem, config));
     std::vector<TourStop> stops = choice.draw(problem.goal, engine);
     if (!global.stops.empty()) stops.push_back(global.stops.front());
-    TourOrder order_of = order(problem, ways, stops, !global.stops.empty(), 2.0 * config.horizon_m);
+    TourOrder order_of = order(problem, costs, stops, !global.stops.empty(), 2.0 * config.horizon_m);
     if (!local || order_of.length_m < local->length_m) local = std::move(order_of);
   }
   if (local) tour.stops = std::move(local->stops);

@@ -30,7 +30,7 @@ struct TourProblem {
   ViewpointConfig viewpoints;
   double turn_cost_m_per_rad = 0.0;
   std::span<const Eigen::Vector2d> left_alone;  ///< frontiers near these are not to be looked at [m, map]
-  std::span<const VainLook> vain_looks;         ///< not to be taken again
+  std::span<const FailedView> failed_views;     ///< not to be taken again
   double radius_m = 0.0;                        ///< what lies nearer to such places is meant, too
   std::optional<Pose2> goal;                    ///< that is being driven to
   double keep_factor = 1.0;                     ///< it comes first unless another tour is so much shorter
@@ -47,7 +47,7 @@ struct Tour {
   std::vector<std::pair<std::uint32_t, std::string>> missed;  ///< frontiers that it leaves out, and why
 };
 
-/// Reason why a frontier is left out: it was driven to or looked at in vain, or a look is being judged.
+/// Reason why a frontier is left out: it could not be driven to, or views of it failed, or one is being judged.
 inline constexpr const char* kLeftAlone = "left alone for now";
 
 /// Exploration in two levels [Cao, Zhu, Choset & Zhang 2021, TARE], for a camera with a heading where TARE has a lidar

@@ -5,13 +5,13 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kDoor_m = 0.7;  // in front of a door: a robot's width, and room to turn
-constexpr double kWay_m = 0.35;  // around starts and ways: a robot's radius, and what planners keep besides
+constexpr double kDoor_m = 0.7;   // in front of a door: a robot's width, and room to turn
+constexpr double kPath_m = 0.35;  // around starts and paths: a robot's radius, and what planners keep besides
 
-/// All points that are, along and across, no farther than kWay_m from the line.
+/// All points that are, along and across, no farther than kPath_m from the line.
 Polygon strip(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d span = b - a;
-  return rectangle(0.5 * (a + b), {span.norm() + 2.0 * kWay_m, 2.0 * kWay_m}, std::atan2(span.y(), span.x()));
+  return rectangle(0.5 * (a + b), {span.norm() + 2.0 * kPath_m, 2.0 * kPath_m}, std::atan2(span.y(), span.x()));
 }
 
 }  // namespace

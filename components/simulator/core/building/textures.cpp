@@ -159,7 +159,7 @@ struct Plank {
   float offset;
 };
 
-/// The planks of a row; lengths and tones differ, and the first one goes on where the last one ends.
+/// The planks of a row; lengths and tones differ, and the first one continues where the last one ends.
 std::vector<Plank> row_of_planks(Dice& dice, int per_row, const Paint& tone) {
   std::vector<Plank> planks;
   double x = dice(0.0, 1.0);

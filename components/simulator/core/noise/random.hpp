@@ -18,8 +18,8 @@ enum class RandomStream : std::uint64_t {
   kLabelBoundary,
   kLabelConfusion,
   kLabelFlip,
-  kWheelSystematic,
-  kWheel,
+  kOdometrySystematic,
+  kOdometry,
   kImu,
   kTruth
 };

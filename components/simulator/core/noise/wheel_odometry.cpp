@@ -7,8 +7,8 @@
 
 namespace lapis::simulator {
 
-WheelOdometry::WheelOdometry(const WheelNoiseConfig& config, std::uint64_t seed) : config_(config), seed_(seed) {
-  const Random random(seed, RandomStream::kWheelSystematic);
+WheelOdometry::WheelOdometry(const OdometryNoiseConfig& config, std::uint64_t seed) : config_(config), seed_(seed) {
+  const Random random(seed, RandomStream::kOdometrySystematic);
   const double wheel_sigma = config.scale * config.wheel_sigma, base_sigma = config.scale * config.base_sigma;
   wheel_ = 1.0 + wheel_sigma * random.normal(0);
   base_ = 1.0 + base_sigma * random.normal(1);
@@ -16,12 +16,12 @@ WheelOdometry::WheelOdometry(const WheelNoiseConfig& config, std::uint64_t seed)
   covariance_(4, 4) = base_sigma * base_sigma;
 }
 
-WheelStep WheelOdometry::step(double distance_m, double turn_rad) {
-  const double way = std::abs(distance_m), turn = std::abs(turn_rad), scale2 = config_.scale * config_.scale;
-  WheelStep step;
-  step.distance_variance = scale2 * (config_.distance_per_metre * way + config_.distance_per_turn * turn);
-  step.turn_variance = scale2 * (config_.turn_per_turn * turn + config_.turn_per_metre * way);
-  const Random random(seed_, RandomStream::kWheel, steps_++);
+OdometryStep WheelOdometry::step(double distance_m, double turn_rad) {
+  const double length = std::abs(distance_m), turn = std::abs(turn_rad), scale2 = config_.scale * config_.scale;
+  OdometryStep step;
+  step.distance_variance = scale2 * (config_.distance_per_metre * length + config_.distance_per_turn * turn);
+  step.turn_variance = scale2 * (config_.turn_per_turn * turn + config_.turn_per_metre * length);
+  const Random random(seed_, RandomStream::kOdometry, steps_++);
   step.distance_m = wheel_ * distance_m + std::sqrt(step.distance_variance) * random.normal(0);
   step.turn_rad = wheel_ / base_ * turn_rad + std::sqrt(step.turn_variance) * random.normal(1);
 
@@ -35,7 +35,7 @@ WheelStep WheelOdometry::step(double distance_m, double turn_rad) {
 }
 
 /// P <- F P F' + G Q G', with the pose's derivatives by itself and the parameters in F, by the step in G.
-void WheelOdometry::propagate(const WheelStep& step, double middle_yaw_rad) {
+void WheelOdometry::propagate(const OdometryStep& step, double middle_yaw_rad) {
   const double c = std::cos(middle_yaw_rad), s = std::sin(middle_yaw_rad), ds = step.distance_m;
   Eigen::Matrix<double, 3, 2> G;
   G << c, -0.5 * ds * s, s, 0.5 * ds * c, 0, 1;

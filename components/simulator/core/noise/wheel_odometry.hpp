@@ -6,9 +6,9 @@
 
 namespace lapis::simulator {
 
-/// Variances grow with the way, so that they do not depend on how often odometry is read [after Thrun, Burgard, Fox,
+/// Variances grow with the path, so that they do not depend on how often odometry is read [after Thrun, Burgard, Fox,
 /// Probabilistic Robotics, 5.4]: var(distance) = a3 |ds| + a4 |dtheta|, var(turn) = a1 |dtheta| + a2 |ds|.
-struct WheelNoiseConfig {
+struct OdometryNoiseConfig {
   double turn_per_turn = 4e-4;       ///< a1 [rad2/rad], >= 0
   double turn_per_metre = 1e-4;      ///< a2 [rad2/m], >= 0
   double distance_per_metre = 4e-4;  ///< a3 [m2/m], >= 0
@@ -18,8 +18,8 @@ struct WheelNoiseConfig {
   double scale = 1.0;                ///< on all standard deviations, 0 (no errors at all) to 10
 };
 
-/// What the wheels say about one period.
-struct WheelStep {
+/// What odometry says about one period.
+struct OdometryStep {
   double distance_m = 0.0;
   double turn_rad = 0.0;
   double distance_variance = 0.0;  ///< [m2]
@@ -29,10 +29,10 @@ struct WheelStep {
 /// Pose by dead reckoning: starts at the origin, drifts. Noise depends on the number of the step alone.
 class WheelOdometry {
  public:
-  WheelOdometry(const WheelNoiseConfig& config, std::uint64_t seed);
+  WheelOdometry(const OdometryNoiseConfig& config, std::uint64_t seed);
 
   /// The next period, in which the wheels truly rolled `distance_m` forwards and turned the robot by `turn_rad`.
-  WheelStep step(double distance_m, double turn_rad);
+  OdometryStep step(double distance_m, double turn_rad);
 
   const Eigen::Vector2d& position() const { return position_; }
   double yaw_rad() const { return yaw_rad_; }  ///< in [-pi, pi]
@@ -41,9 +41,9 @@ class WheelOdometry {
 
  private:
   using Matrix5d = Eigen::Matrix<double, 5, 5>;
-  void propagate(const WheelStep& step, double middle_yaw_rad);
+  void propagate(const OdometryStep& step, double middle_yaw_rad);
 
-  WheelNoiseConfig config_;
+  OdometryNoiseConfig config_;
   std::uint64_t seed_;
   std::uint64_t steps_ = 0;
   double wheel_ = 1.0;  // assumed over true

@@ -139,7 +139,7 @@ class LoopSearch {
   }
 
   /// Length of the shortest loop through `seed` [cells]; infinite when that is not below `bound`. A*: the rest of a
-  /// loop is at least the straight way back.
+  /// loop is at least the straight path back.
   double search(Cell seed, double bound) {
     using Entry = std::pair<double, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;

@@ -51,7 +51,7 @@ class NavMap {
   geometry::Image<float> distance_;
 };
 
-/// Tells which parts (Triangle::part) stand in the way; those that do not still count as floor.
+/// Says which parts (Triangle::part) stand in the way; those that do not still count as floor.
 using IsSolid = std::function<bool(std::uint32_t part)>;
 
 /// A cell is blocked when a triangle passes through it between floor + low and floor + high, or when it has no floor:

@@ -18,7 +18,7 @@ constexpr double kTourSample_m = 0.05;
 
 std::string place(std::size_t number, const Eigen::Vector2d& p) {
   std::ostringstream text;
-  text << "way-point " << number << " (" << p.x() << ", " << p.y() << ")";
+  text << "waypoint " << number << " (" << p.x() << ", " << p.y() << ")";
   return text.str();
 }
 
@@ -33,7 +33,7 @@ Path plan_leg(const PathPlanner& planner, const NavMap& map, const Eigen::Vector
   const auto path = planner.plan(from, to);
   if (!path) {
     throw std::runtime_error(place(number, to) + " cannot be reached from " +
-                             (number == 1 ? "the start" : "way-point " + std::to_string(number - 1)) +
+                             (number == 1 ? "the start" : "waypoint " + std::to_string(number - 1)) +
                              "; move it, or make room");
   }
   return *path;
@@ -74,13 +74,13 @@ double speed_limit_m_s(const TourConfig& config, double distance_m) {
   return std::min(config.max_speed_m_s, kCrawl_m_s + kSpeedPerGap * gap);
 }
 
-Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vector<Eigen::Vector2d>& way_points,
+Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vector<Eigen::Vector2d>& waypoints,
                const TourConfig& config) {
   const PathPlanner planner(map, config.path);
   Tour tour;
   Eigen::Vector2d from = start;
-  for (std::size_t i = 0; i < way_points.size(); ++i) {
-    Path path = plan_leg(planner, map, from, way_points[i], i + 1);
+  for (std::size_t i = 0; i < waypoints.size(); ++i) {
+    Path path = plan_leg(planner, map, from, waypoints[i], i + 1);
     from = path.back();
     tour.length_m += length_m(path);
     tour.duration_s += drive_time_s(map, config, path);

@@ -15,7 +15,7 @@ struct TourConfig {
   double lookahead_m = 0.40;
 };
 
-/// The way to one way-point.
+/// The path to one waypoint.
 struct TourLeg {
   Path path;
   bool stops = false;  ///< at its end: to turn sharply, or because the tour ends
@@ -27,9 +27,9 @@ struct Tour {
   double duration_s = 0.0;  ///< estimate
 };
 
-/// Plans a tour over all way-points [m] in their order.
-/// @throws std::runtime_error naming the way-point (the first is number 1) that cannot be reached from the one before.
-Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vector<Eigen::Vector2d>& way_points,
+/// Plans a tour over all waypoints [m] in their order.
+/// @throws std::runtime_error naming the waypoint (the first is number 1) that cannot be reached from the one before.
+Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vector<Eigen::Vector2d>& waypoints,
                const TourConfig& config);
 
 /// Speed that a tour allows itself at this distance from obstacles: slower where it is narrow.

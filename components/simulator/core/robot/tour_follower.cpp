@@ -67,9 +67,9 @@ std::string TourFollower::stalled() const {
   if (is_finished() || !mark_ || (robot_.stamp - mark_->stamp).seconds() < patience_s) return {};
   std::ostringstream text;
   text << std::fixed << std::setprecision(2) << "the tour is stuck at (" << robot_.position.x() << ", "
-       << robot_.position.y() << "), on the way to way-point " << leg_ + 1 << " (" << tour_.legs[leg_].path.back().x()
+       << robot_.position.y() << "), on the way to waypoint " << leg_ + 1 << " (" << tour_.legs[leg_].path.back().x()
        << ", " << tour_.legs[leg_].path.back().y() << "): no progress for " << std::setprecision(0) << patience_s
-       << " s; move the way-point, or make room";
+       << " s; move the waypoint, or make room";
   return text.str();
 }
 

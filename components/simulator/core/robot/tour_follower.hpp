@@ -13,7 +13,7 @@
 namespace lapis::simulator {
 
 /// Drives a tour by regulated pure pursuit [Coulter, CMU-RI-TR-92-01; Macenski et al., Autonomous Robots 2023]: it
-/// steers along the arc to a point of the path some way ahead, turns on the spot towards one that is far off its
+/// steers along the arc to a point of the path some distance ahead, turns on the spot towards one that is far off its
 /// heading, and slows down in bends, near obstacles, and before it stops.
 class TourFollower {
  public:
@@ -23,9 +23,9 @@ class TourFollower {
   /// Command for a robot; to be asked regularly (10 Hz or more). Standstill once finished.
   DriveCommand command(const RobotState& robot);
   bool is_finished() const { return leg_ == tour_.legs.size(); }
-  /// Index of the leg (and way-point) that is driven now; the number of legs once finished.
+  /// Index of the leg (and waypoint) that is driven now; the number of legs once finished.
   std::size_t leg() const { return leg_; }
-  /// One line that names the way-point when the robot has not come nearer to it for long; else empty.
+  /// One line that names the waypoint when the robot has not come nearer to it for long; else empty.
   std::string stalled() const;
 
  private:

@@ -7,7 +7,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kStep_m = 0.5;  // between places that are compared
-constexpr double kPass_m = 1.0;  // that is driven on the old way again
+constexpr double kPass_m = 1.0;  // that is driven on the old path again
 
 /// Point of a path, by the length along it.
 Eigen::Vector2d point_at(const Path& path, double along_m) {
@@ -19,19 +19,19 @@ Eigen::Vector2d point_at(const Path& path, double along_m) {
   return path.back();
 }
 
-/// Length along the way, up to `latest_m`, at which it is the shortest drive from a point of it.
-double nearest_along_m(const PathPlanner& planner, const Path& way, double latest_m, const Eigen::Vector2d& from) {
+/// Length along the driven path, up to `latest_m`, at which it is the shortest drive from a point of it.
+double nearest_along_m(const PathPlanner& planner, const Path& driven, double latest_m, const Eigen::Vector2d& from) {
   struct Place {
     double along_m, straight_m;
   };
   std::vector<Place> places;
   for (int i = 0; i * kStep_m <= latest_m; ++i)
-    places.push_back({i * kStep_m, (point_at(way, i * kStep_m) - from).norm()});
+    places.push_back({i * kStep_m, (point_at(driven, i * kStep_m) - from).norm()});
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.straight_m < b.straight_m; });
   double nearest_m = 0.0, least_m = std::numeric_limits<double>::infinity();
   for (const Place& place : places) {
     if (place.straight_m >= least_m) break;  // and so are all drives from here on
-    const auto path = planner.plan(from, point_at(way, place.along_m));
+    const auto path = planner.plan(from, point_at(driven, place.along_m));
     if (!path || length_m(*path) >= least_m) continue;
     nearest_m = place.along_m;
     least_m = length_m(*path);
@@ -44,19 +44,19 @@ double nearest_along_m(const PathPlanner& planner, const Path& way, double lates
 std::vector<Eigen::Vector2d> with_revisits(const NavMap& map, const Tour& tour, double spacing_m,
                                            const PathConfig& config) {
   const PathPlanner planner(map, config);
-  std::vector<Eigen::Vector2d> way_points;
-  Path way;
-  double next_m = spacing_m;  // along the way, of the next revisit
+  std::vector<Eigen::Vector2d> waypoints;
+  Path driven;
+  double next_m = spacing_m;  // along the driven path, of the next revisit
   for (const TourLeg& leg : tour.legs) {
-    way.insert(way.end(), leg.path.begin(), leg.path.end());
-    for (const double end_m = length_m(way); next_m <= end_m; next_m += spacing_m) {
-      const Eigen::Vector2d here = point_at(way, next_m);
-      const double old_m = nearest_along_m(planner, way, next_m - spacing_m, here);
-      way_points.insert(way_points.end(), {here, point_at(way, old_m), point_at(way, old_m + kPass_m), here});
+    driven.insert(driven.end(), leg.path.begin(), leg.path.end());
+    for (const double end_m = length_m(driven); next_m <= end_m; next_m += spacing_m) {
+      const Eigen::Vector2d here = point_at(driven, next_m);
+      const double old_m = nearest_along_m(planner, driven, next_m - spacing_m, here);
+      waypoints.insert(waypoints.end(), {here, point_at(driven, old_m), point_at(driven, old_m + kPass_m), here});
     }
-    way_points.push_back(leg.path.back());
+    waypoints.push_back(leg.path.back());
   }
-  return way_points;
+  return waypoints;
 }
 
 }  // namespace lapis::simulator

@@ -11,7 +11,7 @@
 
 namespace lapis::simulator {
 
-/// A thing, or a part of the building, that label images tell apart.
+/// A thing, or a part of the building, that label images distinguish.
 struct Instance {
   std::uint16_t id = 0;        ///< as in instance images; 0 never occurs
   std::uint16_t class_id = 0;  ///< 0: unlabelled
@@ -57,7 +57,7 @@ struct Scene {
   bool is_lit = true;       ///< false: colours are shown as they are
   double floor_z_m = 0.0;
   std::vector<StartPose> starts;      ///< empty: anywhere
-  std::vector<Eigen::Vector2d> tour;  ///< way-points of the bundled tour; empty: none
+  std::vector<Eigen::Vector2d> tour;  ///< waypoints of the bundled tour; empty: none
   bool is_stress = false;             ///< made to be hard: views without features are on purpose
   std::vector<Credit> credits;
   std::vector<std::string> warnings;  ///< what stands in for something that was not found, one line each

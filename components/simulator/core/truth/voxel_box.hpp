@@ -10,7 +10,7 @@
 
 namespace lapis::simulator {
 
-/// A box of voxels of the map's grid. A voxel is told by its cell, its number in the box: x first, then y, then z.
+/// A box of voxels of the map's grid. A voxel is known by its cell, its number in the box: x first, then y, then z.
 class VoxelBox {
  public:
   /// All voxels that the box [m, map frame] touches, and one more on each side.

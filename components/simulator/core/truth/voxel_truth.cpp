@@ -24,7 +24,7 @@ mapping::VoxelMap to_map(const VoxelSet& known, const std::vector<SurfaceVoxel>&
     if (next != surface.end() && next->cell == cell) {
       block.add_hit(mapping::offset_in_block(voxel), next->label, kHits);
     } else {
-      block.add_pass(mapping::offset_in_block(voxel), mapping::kOneVote);
+      block.add_miss(mapping::offset_in_block(voxel), mapping::kOneVote);
     }
   }
   mapping::VoxelMap map(box.resolution_m());

@@ -47,7 +47,7 @@ NavMap inside_of(const NavMap& map, const Room& corridor) {
   return {grid, std::move(blocked)};
 }
 
-/// Squares around the doorways of a corridor: where free space goes on just outside its polygon.
+/// Squares around the doorways of a corridor: where free space continues just outside its polygon.
 std::vector<Room> entries(const NavMap& map, const Room& corridor) {
   const Grid& grid = map.grid();
   geometry::GrayImage outside(grid.width, grid.height);
@@ -73,9 +73,9 @@ std::vector<Room> entries(const NavMap& map, const Room& corridor) {
 /// The narrowest place between the doorways of a corridor.
 std::optional<Passage> narrowest(const NavMap& map, const Room& corridor) {
   const auto doorways = entries(map, corridor);
-  const auto ways = passages(inside_of(map, corridor), doorways);
-  if (ways.empty()) return std::nullopt;
-  return *std::min_element(ways.begin(), ways.end(),
+  const auto found = passages(inside_of(map, corridor), doorways);
+  if (found.empty()) return std::nullopt;
+  return *std::min_element(found.begin(), found.end(),
                            [](const Passage& a, const Passage& b) { return a.width_m < b.width_m; });
 }
 
@@ -131,7 +131,7 @@ Check check_tour(const Scene& scene, const NavMap& map, const TourConfig& config
     try {
       const Tour tour = plan_tour(map, starts[i].position, scene.tour, config);
       if (!check.figures.empty()) continue;
-      check.figures = std::to_string(scene.tour.size()) + " way-points, " + decimal(tour.length_m, 1) + " m, " +
+      check.figures = std::to_string(scene.tour.size()) + " waypoints, " + decimal(tour.length_m, 1) + " m, " +
                       decimal(tour.duration_s, 0) + " s from " + start_name(scene, i);
     } catch (const std::runtime_error& error) {
       check.verdict = Verdict::kFail;
@@ -144,16 +144,17 @@ Check check_tour(const Scene& scene, const NavMap& map, const TourConfig& config
 
 Check check_doors(const Scene& scene, const NavMap& map) {
   Check check{"doors"};
-  const auto ways = passages(map, scene.rooms);
-  for (const Passage& way : ways) {
-    if (!is_narrower(way.width_m, kLeastWidth_m, map)) continue;
+  const auto found = passages(map, scene.rooms);
+  for (const Passage& passage : found) {
+    if (!is_narrower(passage.width_m, kLeastWidth_m, map)) continue;
     check.verdict = Verdict::kFail;
-    check.details.push_back(way.from + " - " + way.to + ": " + decimal(way.width_m, 2) + " m at " + at(way.at));
+    check.details.push_back(passage.from + " - " + passage.to + ": " + decimal(passage.width_m, 2) + " m at " +
+                            at(passage.at));
   }
-  if (ways.empty()) return {"doors", Verdict::kNote, "no two rooms are joined", {}};
+  if (found.empty()) return {"doors", Verdict::kNote, "no two rooms are joined", {}};
   // Passages come widest first.
-  const Passage& last = ways.back();
-  check.figures = std::to_string(ways.size()) + " passages join the rooms; the narrowest has " +
+  const Passage& last = found.back();
+  check.figures = std::to_string(found.size()) + " passages join the rooms; the narrowest has " +
                   decimal(last.width_m, 2) + " m (" + last.from + " - " + last.to + ")";
   return check;
 }
@@ -164,17 +165,17 @@ Check check_corridors(const Scene& scene, const NavMap& map) {
   for (const Room& room : scene.rooms) {
     if (room.type != "hallway" && room.type != "corridor") continue;
     ++count;
-    const auto way = narrowest(map, room);
-    if (!way) {
+    const auto passage = narrowest(map, room);
+    if (!passage) {
       check.details.push_back(room.id + ": not measured, it has no two doorways with free floor between them");
       if (check.verdict == Verdict::kOk) check.verdict = Verdict::kNote;
       continue;
     }
-    const std::string text = room.id + ": " + decimal(way->width_m, 2) + " m at " + at(way->at);
+    const std::string text = room.id + ": " + decimal(passage->width_m, 2) + " m at " + at(passage->at);
     check.details.push_back(text);
-    if (is_narrower(way->width_m, kLeastWidth_m, map)) {
+    if (is_narrower(passage->width_m, kLeastWidth_m, map)) {
       check.verdict = Verdict::kFail;
-    } else if (is_narrower(way->width_m, kCorridorWidth_m, map) && check.verdict == Verdict::kOk) {
+    } else if (is_narrower(passage->width_m, kCorridorWidth_m, map) && check.verdict == Verdict::kOk) {
       check.verdict = Verdict::kNote;
     }
   }

@@ -22,7 +22,7 @@ Check check_rooms(const Scene& scene, const NavMap& map, double radius_m);
 /// The bundled tour can be driven, from every start.
 Check check_tour(const Scene& scene, const NavMap& map, const TourConfig& config);
 
-/// No way from one room to another is narrower than 0.8 m.
+/// No passage from one room to another is narrower than 0.8 m.
 Check check_doors(const Scene& scene, const NavMap& map);
 
 /// In rooms of type "hallway" or "corridor": the largest disc that gets from every doorway to all others without

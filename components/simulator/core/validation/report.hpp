@@ -16,7 +16,7 @@ struct Check {
   std::vector<std::string> details{};  ///< one line each: the offenders, or what the figures are made of
 };
 
-/// Told what is being done, one line at a time.
+/// Called with what is being done, one line at a time.
 using Progress = std::function<void(const std::string&)>;
 
 /// "1.25" for 1.2468 and two digits.

@@ -13,7 +13,7 @@ std::vector<Check> validate(const World& world, const ValidationConfig& config, 
   const NavMap& map = world.nav_map();
   const double radius_m = config.tour.path.radius_m;
   std::vector<Check> checks;
-  progress("ways of the robot");
+  progress("paths of the robot");
   checks.push_back(check_starts(scene, map, radius_m));
   checks.push_back(check_rooms(scene, map, radius_m));
   checks.push_back(check_tour(scene, map, config.tour));

@@ -29,14 +29,14 @@ struct GraphParts {
   std::map<mapping::TileIndex, mapping::LandmarkTile> landmarks;
 };
 
-geometry::Matrix6d information(double way_m) {
-  const double sigma = 0.005 + 0.01 * way_m;
+geometry::Matrix6d information(double path_m) {
+  const double sigma = 0.005 + 0.01 * path_m;
   return geometry::Matrix6d::Identity() / (sigma * sigma);
 }
 
 void join(GraphParts& parts, std::size_t from, std::size_t to, bool is_loop) {
-  const double way_m = way_between(parts.keyframes[from].T_map_camera, parts.keyframes[to].T_map_camera);
-  parts.edges.push_back({parts.keyframes[from].id, parts.keyframes[to].id, information(way_m), is_loop});
+  const double path_m = path_between(parts.keyframes[from].T_map_camera, parts.keyframes[to].T_map_camera);
+  parts.edges.push_back({parts.keyframes[from].id, parts.keyframes[to].id, information(path_m), is_loop});
 }
 
 Eigen::Vector3d point_of(const mapping::CompactFrame& frame, std::size_t sample) {
@@ -73,7 +73,7 @@ GraphParts graph_of(std::size_t count) {
                   tile);
     for (std::size_t back = 1; back <= std::min<std::size_t>(i, 2); ++back) join(parts, i - back, i, false);
     for (std::size_t old = 0; old + kNear < i; old += kNear) {
-      if (way_between(parts.keyframes[old].T_map_camera, pose) < 1.0) join(parts, old, i, true);
+      if (path_between(parts.keyframes[old].T_map_camera, pose) < 1.0) join(parts, old, i, true);
     }
   }
   return parts;
@@ -113,7 +113,7 @@ double views_per_candidate(const Decision& decision) {
   for (const Candidate& candidate : decision.candidates) {
     if (!candidate.rejection.empty()) continue;
     ++open;
-    views += candidate.way.size();
+    views += candidate.path.size();
   }
   return static_cast<double>(views) / static_cast<double>(std::max<std::size_t>(open, 1));
 }

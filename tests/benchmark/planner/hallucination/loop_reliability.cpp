@@ -80,7 +80,7 @@ int run(int argc, char** argv) {
   app.add_option("--certain", arguments.config.certain_landmarks, "planner.hallucination.certain_landmarks");
   app.add_option("--max-probability", arguments.config.max_probability, "planner.hallucination.max_probability");
   app.add_option("--place-radius", arguments.config.place_radius_m, "planner.hallucination.place_radius_m");
-  app.add_option("--stretch", arguments.stretch_m, "way for which predictions are made at a time [m]");
+  app.add_option("--stretch", arguments.stretch_m, "path for which predictions are made at a time [m]");
   app.add_option("--bins", arguments.bins, "rows of the table")->check(CLI::Range(1, 100));
   CLI11_PARSE(app, argc, argv);
   print(collect(arguments), arguments);

@@ -92,17 +92,17 @@ class PlainCells {
   explicit PlainCells(const mapping::VoxelMap& map) : map_(map), reader_(mapping::SensorModel{}) {
     const std::vector<double> prior = reader_.class_log_odds({});
     const std::vector<double> hit = reader_.class_log_odds({0, {{1, mapping::kOneVote}}});
-    const std::vector<double> pass = reader_.class_log_odds({mapping::kOneVote, {}});
+    const std::vector<double> miss = reader_.class_log_odds({mapping::kOneVote, {}});
     psi_ = hit[0] - prior[0];
     phi_hit_ = hit[1] - prior[1];
-    phi_pass_ = pass[0] - prior[0];
+    phi_miss_ = miss[0] - prior[0];
   }
 
   CellInformation operator()(const mapping::VoxelIndex& voxel) const {
     const std::vector<double> odds = odds_of(map_.read(voxel));
     const double all = std::accumulate(odds.begin(), odds.end(), 0.0);
-    const double s = 1.0 + all, passed = std::exp(phi_pass_) * all;
-    double gain = std::log(s / (1.0 + passed)) + phi_pass_ * passed / (1.0 + passed);
+    const double s = 1.0 + all, missed = std::exp(phi_miss_) * all;
+    double gain = std::log(s / (1.0 + missed)) + phi_miss_ * missed / (1.0 + missed);
     for (const double odd : odds) {
       const double others = std::exp(phi_hit_) * (all - odd), own = std::exp(psi_) * odd, after = 1.0 + others + own;
       gain += odd * (std::log(s / after) + (psi_ * own + phi_hit_ * others) / after);
@@ -122,7 +122,7 @@ class PlainCells {
 
   const mapping::VoxelMap& map_;
   mapping::BeliefReader reader_;
-  double psi_, phi_hit_, phi_pass_;
+  double psi_, phi_hit_, phi_miss_;
 };
 
 void plain_rays(benchmark::State& state, double resolution_m) {

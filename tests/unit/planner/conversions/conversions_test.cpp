@@ -105,7 +105,7 @@ TEST(PlannerConversions, PosesThatAreNoneAreRefused) {
   for (const double far : {1.1e4, 1e300}) EXPECT_THAT(to_core(pose(0.0, far, 0.0)).reason, HasSubstr("10 km"));
 }
 
-TEST(PlannerConversions, PositionVarianceIsTheMeanOfTheAxesOrNotTold) {
+TEST(PlannerConversions, PositionVarianceIsTheMeanOfTheAxesOrNotPublished) {
   std::array<double, 36> covariance{};
   EXPECT_EQ(position_variance_m2(covariance), 0.0);
   covariance[0] = 0.01;
@@ -291,7 +291,7 @@ TEST(PlannerConversions, MarkersReplaceTheOldOnesAndAreFinite) {
   EXPECT_EQ(message.markers()[1].points().size(), 28U) << "the rim of 8 x 8 cells";
   EXPECT_GT(message.markers()[3].color().g(), message.markers()[3].color().b()) << "the chosen one is green";
   EXPECT_GT(message.markers()[2].color().b(), message.markers()[2].color().g());
-  EXPECT_EQ(message.markers()[4].type(), Markers::SPHERE) << "a rejected one has no way";
+  EXPECT_EQ(message.markers()[4].type(), Markers::SPHERE) << "a rejected one has no path";
   EXPECT_EQ(message.markers()[4].pose().position().x(), 2.5) << "but a target";
   std::set<std::pair<std::string, std::int32_t>> names;
   for (const auto& marker : message.markers()) {

@@ -68,11 +68,11 @@ TEST(Decide, EveryMethodDrivesToAFrontier) {
   for (const std::string& name : method_names()) {
     explorer.config.method = *method_of(name);
     const Candidate candidate = explorer.chosen();
-    ASSERT_FALSE(candidate.way.empty()) << name;
-    EXPECT_LT((candidate.way.front().p_map - explorer.robot.p_map).norm(), 1e-9) << name;
-    EXPECT_LT((candidate.way.back().p_map - candidate.goal.p_map).norm(), 1e-9) << name;
+    ASSERT_FALSE(candidate.path.empty()) << name;
+    EXPECT_LT((candidate.path.front().p_map - explorer.robot.p_map).norm(), 1e-9) << name;
+    EXPECT_LT((candidate.path.back().p_map - candidate.goal.p_map).norm(), 1e-9) << name;
     EXPECT_GT(candidate.value.path_information, 0.0) << name;
-    for (const Pose2& pose : candidate.way) {
+    for (const Pose2& pose : candidate.path) {
       EXPECT_TRUE(explorer.world.grid.is_traversable(explorer.world.grid.cell_of(pose.p_map))) << name;
     }
   }
@@ -96,7 +96,7 @@ TEST(Decide, InformationPerMetreIsWhatMiOnlyCompares) {
   }
 }
 
-TEST(Decide, LeavesAloneWhatItIsTold) {
+TEST(Decide, LeavesAloneWhatItIsAskedTo) {
   Explorer explorer;
   explorer.config.method = Method::kNearest;
   Memory memory;
@@ -112,17 +112,17 @@ TEST(Decide, LeavesAloneWhatItIsTold) {
   EXPECT_GT(left_alone, 0);
 }
 
-TEST(Decide, LooksFromElsewhereAtWhatWasLookedAtInVain) {
+TEST(Decide, LooksFromElsewhereAtWhatAFailedViewShowed) {
   Explorer explorer;
   explorer.config.method = Method::kNearest;
   const Candidate first = explorer.chosen();
   Memory memory;
-  memory.vain_looks = {{first.target_map, first.goal.p_map}};
+  memory.failed_views = {{first.target_map, first.goal.p_map}};
   int rejected = 0;
   for (const Candidate& candidate : explorer.choose(memory).candidates) {
     const bool is_the_same = (candidate.target_map - first.target_map).norm() <= memory.radius_m &&
                              (candidate.goal.p_map - first.goal.p_map).norm() <= memory.radius_m;
-    EXPECT_EQ(candidate.rejection, is_the_same ? "was looked at from here in vain" : "");
+    EXPECT_EQ(candidate.rejection, is_the_same ? "the view from here has failed" : "");
     rejected += is_the_same ? 1 : 0;
   }
   EXPECT_GT(rejected, 0);
@@ -279,7 +279,7 @@ TEST(Decide, AlternativesGoRoundTheOtherSide) {
   });
   ASSERT_NE(best, decision.candidates.end());
   const auto is_above = [&](const Candidate& c) {
-    return std::any_of(c.way.begin(), c.way.end(), [](const Pose2& pose) { return pose.p_map.y() > 2.0; });
+    return std::any_of(c.path.begin(), c.path.end(), [](const Pose2& pose) { return pose.p_map.y() > 2.0; });
   };
   EXPECT_NE(is_above(other), is_above(*best));
   EXPECT_LE(other.value.cost_m, 1.6 * best->value.cost_m);
@@ -303,7 +303,7 @@ struct LongAway : Explorer {
 };
 
 // Of the three utilities, one counts nodes as the paper does, one compares graphs of equal size; both with the gain
-// that the candidate tells.
+// that the candidate says.
 TEST(Decide, EachMethodComparesItsOwnFormOfD) {
   LongAway explorer;
   const int nodes = explorer.of_graph.factor.node_count();
@@ -358,7 +358,7 @@ TEST(Decide, AnAlternativePassesAnOldPlaceInItsDirection) {
   const Eigen::Vector2d on = *(near + 1) - *near;
   EXPECT_NEAR(std::atan2(on.y(), on.x()), 0.3, 0.2) << "as the key-frame looked, but for the cells";
   explorer.config.path.max_detour = 1.0;
-  EXPECT_EQ(count(explorer.choose(), CandidateKind::kAlternative), 0) << "too long a way round";
+  EXPECT_EQ(count(explorer.choose(), CandidateKind::kAlternative), 0) << "too long a path round";
 }
 
 TEST(Decide, InformationFromAnUnsurePositionCountsLess) {
@@ -386,7 +386,7 @@ InformationField field_with_prior(const Explorer& explorer, double prior_occupie
   return field;
 }
 
-TEST(Decide, TellsWhatOtherFieldsWouldHaveChosenAndChoosesTheSame) {
+TEST(Decide, ReportsWhatOtherFieldsWouldHaveChosenAndChoosesTheSame) {
   const std::vector<double> priors = {0.02, 0.1, 0.5, 0.8};
   int others = 0;
   for (const std::string& name : method_names()) {

@@ -25,7 +25,7 @@ TEST(Utility, EdgeCases) {
   EXPECT_DOUBLE_EQ(utility(Method::kPaper, value, {}), 3.0) << "alpha is infinite: the limit is D";
   value = kValue;
   value.cost_m = 0.0;
-  EXPECT_DOUBLE_EQ(utility(Method::kMiOnly, value, {.least_cost_m = 0.25}), 80.0) << "a way of one voxel";
+  EXPECT_DOUBLE_EQ(utility(Method::kMiOnly, value, {.least_cost_m = 0.25}), 80.0) << "a path of one voxel";
 }
 
 TEST(Methods, HaveNames) {

@@ -75,8 +75,8 @@ TEST(Explorer, GivesUpAFrontierBehindGlassAfterThreeTries) {
   world.explorer.start();
   world.run(600.0);
   EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
-  EXPECT_GE(world.most_failures() + world.most_vain_looks(), 1);
-  EXPECT_LE(world.most_failures() + world.most_vain_looks(), 3);
+  EXPECT_GE(world.most_failures() + world.most_failed_views(), 1);
+  EXPECT_LE(world.most_failures() + world.most_failed_views(), 3);
 }
 
 TEST(Explorer, DecidesTwiceASecondAtMostHoweverOftenItIsStarted) {
@@ -106,7 +106,7 @@ TEST(Explorer, AClosedRoomIsDoneAtOnce) {
   EXPECT_EQ(world.explorer.state(), State::kDone);
 }
 
-TEST(Explorer, PausesAndGoesOn) {
+TEST(Explorer, PausesAndContinues) {
   WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
   world.run(10.0);
@@ -140,7 +140,7 @@ TEST(Explorer, StandsStillWhileLostAndFailsInTheEnd) {
   EXPECT_TRUE(world.explorer.path().empty());
 }
 
-TEST(Explorer, GoesOnByWheelsForAMoment) {
+TEST(Explorer, ContinuesByOdometryForAMoment) {
   WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 2.0});
   world.explorer.start();
   world.run(5.0);
@@ -162,7 +162,7 @@ TEST(Explorer, GoesOnByWheelsForAMoment) {
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
 }
 
-TEST(Explorer, DrivesBackToWhereItWasTrackedWhenWheelsLead) {
+TEST(Explorer, DrivesBackToWhereItWasTrackedWhenOdometryLeads) {
   WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 0.0});
   world.explorer.start();
   world.run(5.0);
@@ -172,11 +172,11 @@ TEST(Explorer, DrivesBackToWhereItWasTrackedWhenWheelsLead) {
   world.robot.p_map += Eigen::Vector2d(0.0, -0.5);
   world.run(0.8);
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
-  EXPECT_EQ(world.explorer.reason(), "slam reckons by wheels alone");
+  EXPECT_EQ(world.explorer.reason(), "slam reckons by odometry alone");
   EXPECT_LT((world.robot.p_map - place).norm(), 0.4);
 }
 
-// In a view that tells slam nothing the robot is where it was tracked last.
+// In a view that shows slam nothing the robot is where it was tracked last.
 TEST(Explorer, GoesBackFartherWhereItIsStillNotTracked) {
   WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 0.0});
   world.explorer.start();
@@ -187,7 +187,7 @@ TEST(Explorer, GoesBackFartherWhereItIsStillNotTracked) {
   world.run(10.0);
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
   EXPECT_GT((world.robot.p_map - place).norm(), 1.0);
-  EXPECT_LT(world.travelled_m, 2.0 * travelled_m + 0.5) << "along the way it came";
+  EXPECT_LT(world.travelled_m, 2.0 * travelled_m + 0.5) << "along the path it came";
 }
 
 TEST(Explorer, GoesBackPastAPlaceThatItCannotGetTo) {
@@ -231,7 +231,7 @@ TEST(Explorer, ADoorThatClosesIsNoReasonToWait) {
   EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
 }
 
-TEST(Explorer, SaysThatNoWayLeadsHome) {
+TEST(Explorer, SaysThatNoPathLeadsHome) {
   WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
   while (world.robot.p_map.x() < 4.0 && world.explorer.state() == State::kExploring) world.run(0.2);
@@ -240,11 +240,11 @@ TEST(Explorer, SaysThatNoWayLeadsHome) {
   world.explorer.return_home();
   world.run(200.0);
   EXPECT_EQ(world.explorer.state(), State::kFailed);
-  EXPECT_THAT(world.explorer.reason(), AnyOf("no way back is known", "it does not get on to where it started"));
+  EXPECT_THAT(world.explorer.reason(), AnyOf("no path back is known", "it does not get on to where it started"));
   EXPECT_TRUE(world.explorer.path().empty());
 }
 
-/// On its way back from the second room, whose door is three cells wide.
+/// On its path back from the second room, whose door is three cells wide.
 WalkWorld returning_world() {
   WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
@@ -253,7 +253,7 @@ WalkWorld returning_world() {
   return world;
 }
 
-TEST(Explorer, SomebodyInTheDoorIsWaitedForOnTheWayHome) {
+TEST(Explorer, SomebodyInTheDoorIsWaitedForOnThePathHome) {
   WalkWorld world = returning_world();
   for (int y = 3; y <= 5; ++y) world.set({11, y}, 'O');
   world.run(15.0);
@@ -264,7 +264,7 @@ TEST(Explorer, SomebodyInTheDoorIsWaitedForOnTheWayHome) {
   EXPECT_EQ(world.explorer.reason(), "is back where it started");
 }
 
-TEST(Explorer, ABlockedWayHomeIsTriedAgain) {
+TEST(Explorer, ABlockedPathHomeIsTriedAgain) {
   WalkWorld world = returning_world();
   while (world.robot.p_map.x() > 3.2 && world.explorer.state() == State::kReturning) world.run(0.2);
   world.is_blocked = true;  // by people who are gone at once
@@ -275,7 +275,7 @@ TEST(Explorer, ABlockedWayHomeIsTriedAgain) {
   EXPECT_EQ(world.explorer.reason(), "is back where it started");
 }
 
-// It began nearer to a wall than a planned way leads.
+// It began nearer to a wall than a planned path leads.
 TEST(Explorer, ComesAsNearToHomeAsItMay) {
   auto lines = closed(kThreeRooms);
   std::swap(lines[4][3], lines[1][1]);  // 'R' into the corner
@@ -306,7 +306,7 @@ TEST(Explorer, PlacesOfAMapThatIsGoneAreForgotten) {
   EXPECT_EQ(world.explorer.state(), State::kDone);
 }
 
-TEST(Explorer, ThereIsNoWayHomeIntoAMapThatIsGone) {
+TEST(Explorer, ThereIsNoPathHomeIntoAMapThatIsGone) {
   WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
   world.run(10.0);
@@ -317,7 +317,7 @@ TEST(Explorer, ThereIsNoWayHomeIntoAMapThatIsGone) {
   EXPECT_TRUE(world.explorer.path().empty());
 }
 
-TEST(Explorer, StartingOnTheWayHomeStopsTheWayHome) {
+TEST(Explorer, StartingOnThePathHomeStopsThePathHome) {
   WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
   world.run(10.0);
@@ -347,7 +347,7 @@ class ExplorerByHand : public ::testing::Test {
     candidate.frontier = 1;
     candidate.goal.p_map = candidate.target_map = goal_map;
     candidate.points = {{0.0, 0.0}, goal_map};
-    candidate.way = {{{0.0, 0.0}, 0.0}, {goal_map, 0.0}};
+    candidate.path = {{{0.0, 0.0}, 0.0}, {goal_map, 0.0}};
     candidate.value.cost_m = goal_map.norm();
     candidate.rejection = std::move(rejection);
     return candidate;
@@ -371,10 +371,10 @@ class ExplorerByHand : public ::testing::Test {
     robot_.p_map = {0.0, y_m};
     step();
     Candidate ahead = candidate({4.0, y_m});
-    ahead.points.front() = ahead.way.front().p_map = robot_.p_map;
+    ahead.points.front() = ahead.path.front().p_map = robot_.p_map;
     explorer_.take(towards(ahead), report());
     EXPECT_TRUE(step(true, 0.5));
-    EXPECT_EQ(explorer_.reason(), "the way was blocked");
+    EXPECT_EQ(explorer_.reason(), "the path was blocked");
   }
 
   Surroundings surroundings_{{}, mapping::SensorModel{}, 0.25};
@@ -383,7 +383,7 @@ class ExplorerByHand : public ::testing::Test {
   time::Time now_;
 };
 
-TEST_F(ExplorerByHand, ADecisionFromBeforeTheWayWasBlockedChangesNothing) {
+TEST_F(ExplorerByHand, ADecisionFromBeforeThePathWasBlockedChangesNothing) {
   explorer_.start();
   ASSERT_TRUE(step());
   explorer_.take(towards(candidate({4.0, 0.0})), report());
@@ -393,7 +393,7 @@ TEST_F(ExplorerByHand, ADecisionFromBeforeTheWayWasBlockedChangesNothing) {
   EXPECT_TRUE(step(true, 0.5));
   const auto left_alone = explorer_.memory(now_).left_alone;
   ASSERT_EQ(left_alone.size(), 1U);
-  EXPECT_EQ(left_alone.front(), Eigen::Vector2d(4.0, 0.0)) << "the target of the way that was blocked";
+  EXPECT_EQ(left_alone.front(), Eigen::Vector2d(4.0, 0.0)) << "the target of the path that was blocked";
 }
 
 TEST_F(ExplorerByHand, ATargetThatOthersComeBeforeHasNotVanished) {
@@ -413,7 +413,7 @@ TEST_F(ExplorerByHand, AFrontierThatCreepsAheadIsNotLate) {
   for (int i = 0; i < 1500; ++i) {
     robot_.p_map.x() = 0.05 * i;  // 0.5 m/s
     const bool is_wanted = step();
-    ASSERT_NE(explorer_.reason(), "the way took too long") << robot_.p_map.x();
+    ASSERT_NE(explorer_.reason(), "the path took too long") << robot_.p_map.x();
     if (is_wanted) explorer_.take(towards(candidate(robot_.p_map + Eigen::Vector2d(3.0, 0.0))), report());
   }
 }
@@ -421,7 +421,7 @@ TEST_F(ExplorerByHand, AFrontierThatCreepsAheadIsNotLate) {
 TEST_F(ExplorerByHand, GoingToAndFroBetweenTwoGoalsEnds) {
   const std::array<Candidate, 2> goals{candidate({3.0, 0.0}), candidate({-3.0, 0.0})};
   explorer_.start();
-  for (int i = 0; explorer_.reason() != "the way took too long"; ++i) {
+  for (int i = 0; explorer_.reason() != "the path took too long"; ++i) {
     ASSERT_LT(i, 600) << "a minute";
     robot_.p_map.x() = i / 10 % 2 == 0 ? 0.0 : 0.5;
     if (!step()) continue;
@@ -443,7 +443,7 @@ TEST_F(ExplorerByHand, ARevisitThatFailsIsGivenUpAndNoFrontierWithIt) {
     step(false, 0.5);
     explorer_.take(towards(revisit), report());
     EXPECT_TRUE(step(true, 0.5));
-    EXPECT_EQ(explorer_.reason(), "the way was blocked");
+    EXPECT_EQ(explorer_.reason(), "the path was blocked");
     EXPECT_EQ(explorer_.memory(now_).revisited.size(), 1U);
     now_ = now_ + time::Duration::from_seconds(GoalMemoryConfig{}.expiry_s + 1.0);
   }
@@ -475,7 +475,7 @@ TEST_F(ExplorerByHand, PlacesSideBySideThatStoppedItAreAllAvoidedAtOnce) {
   EXPECT_TRUE(is_occupied({0.4, 0.6}));
 }
 
-TEST_F(ExplorerByHand, AWayThatWasBlockedNowAndThenIsNotClosedForGood) {
+TEST_F(ExplorerByHand, APathThatWasBlockedNowAndThenIsNotClosedForGood) {
   explorer_.start();
   for (int i = 0; i < 5; ++i) {
     be_blocked_at(0.1);
@@ -485,7 +485,7 @@ TEST_F(ExplorerByHand, AWayThatWasBlockedNowAndThenIsNotClosedForGood) {
   }
 }
 
-TEST_F(ExplorerByHand, WhatStoppedItIsForgottenOnTheWayHome) {
+TEST_F(ExplorerByHand, WhatStoppedItIsForgottenOnThePathHome) {
   explorer_.start();
   be_blocked_at(0.1);
   explorer_.return_home();

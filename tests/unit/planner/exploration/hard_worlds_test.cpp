@@ -51,7 +51,7 @@ class HardWorld : public testing::TestWithParam<std::string> {
     EXPECT_GE(world.explored_share(), share);
     EXPECT_LE(world.longest_idle_s, kLongestIdle_s);
     EXPECT_LE(world.most_failures(), 3);
-    EXPECT_LE(world.most_vain_looks(), 3);
+    EXPECT_LE(world.most_failed_views(), 3);
     EXPECT_TRUE(world.explorer.path().empty());
   }
 };

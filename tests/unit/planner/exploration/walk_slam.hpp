@@ -13,7 +13,7 @@
 
 namespace lapis::planner::test {
 
-/// What a slam without errors would know of a robot's way: key-frames in a chain, and landmarks all over the place, of
+/// What a slam without errors would know of a robot's path: key-frames in a chain, and landmarks all over the place, of
 /// which a key-frame shows those in front of it.
 class WalkSlam {
  public:

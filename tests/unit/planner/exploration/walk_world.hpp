@@ -21,7 +21,7 @@ namespace lapis::planner::test {
 /// A building drawn as text ('#' wall, '.' floor, 'G' a wall that is not seen, 'W' a window: seen through, not passed,
 /// 'O' an obstacle that only the obstacle layer knows, 'N' one that it knows only while the robot is near and that
 /// hides what is there from the map, 'D' a door that looks closed from farther than a metre, though there is a view of
-/// what lies behind, 'F' one of a place behind glass that each look tells something else of, 'R' where the robot
+/// what lies behind, 'F' one of a place behind glass of which each view shows something else, 'R' where the robot
 /// starts), a robot that follows paths exactly, and a camera that sees 90 degrees and 5 m of it. Ideal, but for what a
 /// test spoils.
 class WalkWorld {
@@ -52,7 +52,7 @@ class WalkWorld {
     const bool is_decision_wanted = explorer.step(report(), &surroundings);
     if (had_goal && !explorer.memory(now).goal && is_failure(explorer.reason()))
       count(target_, GoalMemoryConfig{}.radius_m, failures_);
-    count_vain_looks();
+    count_failed_views();
     if (is_decision_wanted) decide_now();
     const Pose2 before = robot;
     move();
@@ -75,10 +75,10 @@ class WalkWorld {
     robot.p_map += kResolution_m * Eigen::Vector2d(by.x, by.y);
     slam_.move(kResolution_m * Eigen::Vector2d(by.x, by.y));
   }
-  /// How often the robot set out in vain for the target for which it did so most.
+  /// How often the robot set out, and failed, for the target for which it did so most.
   int most_failures() const { return most_of(failures_); }
-  /// How often it arrived, and looked in vain, at the target at which it did so most.
-  int most_vain_looks() const { return most_of(vain_looks_); }
+  /// How often it arrived, and its view failed, at the target at which it did so most.
+  int most_failed_views() const { return most_of(failed_views_); }
 
   /// In the map.
   char at(Cell in_map) const {
@@ -149,7 +149,7 @@ class WalkWorld {
     if (decision.chosen) target_ = decision.candidates[*decision.chosen].target_map;
   }
   static bool is_failure(const std::string& reason) {
-    return reason == "the way was blocked" || reason == "the way took too long" || reason == "it did not get on";
+    return reason == "the path was blocked" || reason == "the path took too long" || reason == "it did not get on";
   }
   using Counts = std::vector<std::pair<Eigen::Vector2d, int>>;
   static void count(const Eigen::Vector2d& of, double radius_m, Counts& counts) {
@@ -165,9 +165,9 @@ class WalkWorld {
     for (const auto& entry : counts) most = std::max(most, entry.second);
     return most;
   }
-  void count_vain_looks() {
-    const std::vector<VainLook> looks = explorer.memory(now).vain_looks;
-    for (; judged_ < looks.size(); ++judged_) count(looks[judged_].target_map, 0.5 * kResolution_m, vain_looks_);
+  void count_failed_views() {
+    const std::vector<FailedView> views = explorer.memory(now).failed_views;
+    for (; judged_ < views.size(); ++judged_) count(views[judged_].target_map, 0.5 * kResolution_m, failed_views_);
   }
   ObstacleGrid obstacles() const {
     ObstacleGrid grid{Eigen::Vector2d::Zero(), kResolution_m, width(0), height(), {}};
@@ -229,8 +229,8 @@ class WalkWorld {
   std::optional<time::Time> decided_at_;
   std::mt19937 noise_{1};
   Eigen::Vector2d target_{0, 0};
-  std::size_t judged_ = 0;  ///< vain looks that have been counted
-  Counts failures_, vain_looks_;
+  std::size_t judged_ = 0;  ///< failed views that have been counted
+  Counts failures_, failed_views_;
 };
 
 }  // namespace lapis::planner::test

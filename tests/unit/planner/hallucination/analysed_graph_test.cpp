@@ -26,7 +26,7 @@ TEST(AnalysedGraph, CalibratesOdometryFromItsOwnEdges) {
   EXPECT_NEAR(graph.position_variance_per_resistance, 1.0, 1e-9);
 }
 
-TEST(AnalysedGraph, ParallelWaysCountTogether) {
+TEST(AnalysedGraph, ParallelPathsCountTogether) {
   Chain chain({camera_at(0, 0, 0), camera_at(1, 0, 0)});
   chain.edges.push_back({10, 11, information(0.01, 0.01)});
   EXPECT_NEAR(chain.graph().odometry_weight_metres, 2e4, 1e-6);
@@ -49,7 +49,7 @@ TEST(AnalysedGraph, WeightsAreOfTheCriterion) {
   EXPECT_NEAR(graph.odometry_weight_metres, 2500.0, 1e-6) << "the least information, over a metre";
 }
 
-TEST(AnalysedGraph, AThinnedGraphKeepsItsLoopsAndWays) {
+TEST(AnalysedGraph, AThinnedGraphKeepsItsLoopsAndPaths) {
   Chain chain({camera_at(0, 0, 0), camera_at(4, 0, 0), camera_at(4, 4, 0), camera_at(0, 4, 0)});
   chain.edges.push_back({10, 12, information(0.02, 0.02), true});
   chain.edges.push_back({10, 13, information(0.05, 0.05), true});
@@ -58,7 +58,7 @@ TEST(AnalysedGraph, AThinnedGraphKeepsItsLoopsAndWays) {
   config.max_edges = 4;
   const auto thinned = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, config));
   EXPECT_EQ(thinned.loops.size(), 2u);
-  EXPECT_NEAR(thinned.way_from_newest_m[0], 4.0, 1e-9);
+  EXPECT_NEAR(thinned.path_from_newest_m[0], 4.0, 1e-9);
   EXPECT_GT(position_sigma_m(thinned), position_sigma_m(chain.graph()));
 }
 
@@ -75,26 +75,26 @@ TEST(AnalysedGraph, TheNewestPositionIsAsUnsureAsSlamSays) {
   const Chain chain(poses);
   double variance = 0.0;
   for (int i = 0; i < 10; ++i) variance += 0.01 * 0.01 * (1.0 + std::pow(4.0 * (10 - i), 2)) / 3.0;
-  const auto told = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, {}, variance));
-  EXPECT_NEAR(position_sigma_m(told), std::sqrt(variance), 1e-9);
-  EXPECT_GT(position_sigma_m(told), 10.0 * position_sigma_m(chain.graph()));
+  const auto reported = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, {}, variance));
+  EXPECT_NEAR(position_sigma_m(reported), std::sqrt(variance), 1e-9);
+  EXPECT_GT(position_sigma_m(reported), 10.0 * position_sigma_m(chain.graph()));
 }
 
 TEST(AnalysedGraph, EdgesOfItsOwnAreTheLeastUncertainty) {
   const Chain chain(std::vector<geometry::Pose>(5, camera_at(0, 0, 0)));
-  const auto told = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, {}, 1e-8));
-  EXPECT_EQ(position_sigma_m(told), position_sigma_m(chain.graph()));
+  const auto reported = std::get<AnalysedGraph>(analyse_graph(chain.keyframes, chain.edges, {}, 1e-8));
+  EXPECT_EQ(position_sigma_m(reported), position_sigma_m(chain.graph()));
 }
 
-TEST(AnalysedGraph, WaysGoAlongEdgesAndTurnsCount) {
+TEST(AnalysedGraph, PathsGoAlongEdgesAndTurnsCount) {
   Chain chain({camera_at(0, 0, 0), camera_at(4, 0, 0), camera_at(4, 4, 0), camera_at(0, 4, std::numbers::pi)});
   const AnalysedGraph open = chain.graph();
   const double turn = kMetresPerRadian * std::numbers::pi;
-  EXPECT_NEAR(open.way_from_newest_m[0], 12.0 + turn, 1e-9);
+  EXPECT_NEAR(open.path_from_newest_m[0], 12.0 + turn, 1e-9);
   EXPECT_NEAR(open.travelled_m[3], 12.0 + turn, 1e-9);
   chain.edges.push_back({10, 13, information(0.01, 0.01), true});
   const AnalysedGraph closed = chain.graph();
-  EXPECT_NEAR(closed.way_from_newest_m[0], 4.0 + turn, 1e-9);
+  EXPECT_NEAR(closed.path_from_newest_m[0], 4.0 + turn, 1e-9);
   EXPECT_NEAR(closed.travelled_m[3], 12.0 + turn, 1e-9);
   ASSERT_EQ(closed.loops.size(), 1u);
   EXPECT_EQ(closed.loops[0].older, 0);

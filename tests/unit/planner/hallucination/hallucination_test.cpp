@@ -80,7 +80,7 @@ TEST(Hallucinate, FindsTheOldPlaceFromTheNodeThatSeesMostOfIt) {
 
 TEST(Hallucinate, NearKeyframesAndFewLandmarksMakeNoLoop) {
   Square world;
-  world.config.min_loop_way_m = 40.0;
+  world.config.min_loop_path_m = 40.0;
   EXPECT_TRUE(world.drive(kHome).places.empty());
   world = Square();
   world.config.impossible_landmarks = 100;
@@ -90,7 +90,7 @@ TEST(Hallucinate, NearKeyframesAndFewLandmarksMakeNoLoop) {
 TEST(Hallucinate, APlaceThatWasJustClosedToCountsLater) {
   Square world;
   world.chain.edges.push_back({10, 14, test::information(0.01, 0.01), true});
-  world.config.min_loop_way_m = 1.0;
+  world.config.min_loop_path_m = 1.0;
   EXPECT_TRUE(world.drive(kHome).places.empty());
   world.config.revisit_spacing_m = 3.0;
   EXPECT_EQ(world.drive(kHome).places.size(), 1u);

@@ -100,7 +100,7 @@ TEST(Reliability, TheMostLikelyRampIsTheRightOne) {
   EXPECT_NEAR(best->certain_landmarks, 200, 25);
   EXPECT_NEAR(best->max_probability, 0.8, 0.051);
   EXPECT_GE(log_likelihood(places, *best), log_likelihood(places, ramp(40, 200, 0.8)) - 1.0);
-  EXPECT_FALSE(fit(std::vector<LoopOutcome>{{50, true}, {60, true}}, {})) << "nothing to tell them by";
+  EXPECT_FALSE(fit(std::vector<LoopOutcome>{{50, true}, {60, true}}, {})) << "nothing to distinguish them by";
 }
 
 }  // namespace

@@ -17,9 +17,9 @@ using mapping::kOneVote;
 using mapping::SensorModel;
 using mapping::VoxelCounts;
 
-/// Of a cell with class log-odds chi, put together from the paper's f of a pass and of hits.
-double expected_gain(const std::vector<double>& chi, double pass, const std::vector<double>& hits) {
-  double sum = 1.0, gain = pass;
+/// Of a cell with class log-odds chi, put together from the paper's f of a miss and of hits.
+double expected_gain(const std::vector<double>& chi, double miss, const std::vector<double>& hits) {
+  double sum = 1.0, gain = miss;
   for (std::size_t c = 0; c < chi.size(); ++c) {
     sum += std::exp(chi[c]);
     gain += std::exp(chi[c]) * hits[c];
@@ -28,7 +28,7 @@ double expected_gain(const std::vector<double>& chi, double pass, const std::vec
 }
 
 TEST(CellMeasure, GivesThePapersInformation) {
-  // Values of h, eq. 14 as corrected: a pass, and a hit of each class.
+  // Values of h, eq. 14 as corrected: a miss, and a hit of each class.
   const std::vector<double> unknown(4, -0.1), object{2.0, -1.0, -3.0, -2.0};
   const auto gain = [](const std::vector<double>& chi) {
     return CellMeasure(test::paper_model_with_prior(chi), Measure::kSemantic).of({}).gain;
@@ -48,9 +48,9 @@ double divergence(const std::vector<double>& after, const std::vector<double>& b
 /// The definition: expected divergence of what the reader says after one more vote from what it says.
 double plain_gain(const BeliefReader& reader, const VoxelCounts& counts) {
   const std::vector<double> before = reader.class_probabilities(counts);
-  VoxelCounts passed = counts;
-  passed.passes += kOneVote;
-  double gain = before[0] * divergence(reader.class_probabilities(passed), before);
+  VoxelCounts missed = counts;
+  missed.misses += kOneVote;
+  double gain = before[0] * divergence(reader.class_probabilities(missed), before);
   for (int c = 1; c <= reader.model().class_count; ++c) {
     const auto label = static_cast<std::uint16_t>(c);
     VoxelCounts hit = counts;
@@ -111,18 +111,18 @@ TEST(CellMeasure, ShannonIsThatOfFsmi) {
   model.occupancy_limit = 1e3;
   const CellMeasure measure(model, Measure::kShannon);
   const auto f = [](double d, double r) { return std::log((r + 1.0) / (r + 1.0 / d)) - std::log(d) / (r * d + 1.0); };
-  for (std::uint32_t passes = 0; passes < 20; ++passes) {
-    const VoxelCounts counts{passes * kOneVote, {{3, kOneVote}, {9, 2 * kOneVote}}};
+  for (std::uint32_t misses = 0; misses < 20; ++misses) {
+    const VoxelCounts counts{misses * kOneVote, {{3, kOneVote}, {9, 2 * kOneVote}}};
     const double o = BeliefReader(model).occupied_probability(counts), r = o / (1.0 - o);
-    const double expected = o * f(std::exp(model.hit_gain), r) + (1.0 - o) * f(std::exp(-model.pass_gain), r);
+    const double expected = o * f(std::exp(model.hit_gain), r) + (1.0 - o) * f(std::exp(-model.miss_gain), r);
     EXPECT_NEAR(measure.of(counts).gain, expected, 1e-12);
   }
 }
 
 TEST(CellMeasure, CsqmiIsTheCauchySchwarzDivergenceOfOneCell) {
   const CellMeasure measure(SensorModel{}, Measure::kCsqmi);
-  for (std::uint32_t passes = 0; passes < 20; ++passes) {
-    const VoxelCounts counts{passes * kOneVote, {{3, kOneVote}, {9, 2 * kOneVote}}};
+  for (std::uint32_t misses = 0; misses < 20; ++misses) {
+    const VoxelCounts counts{misses * kOneVote, {{3, kOneVote}, {9, 2 * kOneVote}}};
     const double o = BeliefReader(SensorModel{}).occupied_probability(counts);
     // Cell and outcome agree always; the sums are over the four pairs of them.
     const double joint[] = {o, 0.0, 0.0, 1.0 - o};

@@ -84,7 +84,7 @@ TEST(InformationField, BlocksOfEqualCellsShareOneCopy) {
   // Long since clamped, and not uniform in the map.
   for (int i = 0; i < 4; ++i) {
     VoxelBlock block(1000 * mapping::kOneVote);
-    block.add_pass(17 * i, mapping::kOneVote);
+    block.add_miss(17 * i, mapping::kOneVote);
     map.set_block({i, 0, 0}, std::move(block));
   }
   InformationField field = empty_field();

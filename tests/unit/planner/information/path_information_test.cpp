@@ -58,7 +58,7 @@ struct CrossedCell {
   VoxelIndex voxel;
 };
 
-/// Cells that a ray crosses, by a slab test of every voxel around it. Nothing when a chord is too short to tell.
+/// Cells that a ray crosses, by a slab test of every voxel around it. Nothing when a chord is too short to decide.
 std::vector<CrossedCell> cells_by_slabs(const Eigen::Vector3d& start, const Eigen::Vector3d& direction,
                                         double range_m) {
   std::vector<CrossedCell> cells;
@@ -95,7 +95,7 @@ VoxelCounts with_hit(const VoxelCounts& counts, std::uint16_t label) {
   std::map<std::uint16_t, std::uint32_t> hits;
   for (const auto& hit : counts.hits) hits[hit.label] = hit.count;
   hits[label] += kOneVote;
-  VoxelCounts after{counts.passes, {}};
+  VoxelCounts after{counts.misses, {}};
   for (const auto& [id, count] : hits) after.hits.push_back({id, count});
   return after;
 }
@@ -111,7 +111,7 @@ double equation_13(const BeliefReader& reader, const VoxelMap& map, const std::v
       sum += p_passed_all * p[static_cast<std::size_t>(c)] * (passed_information + h(reader, counts, after));
     }
     p_passed_all *= p[0];
-    passed_information += h(reader, counts, {counts.passes + kOneVote, counts.hits});
+    passed_information += h(reader, counts, {counts.misses + kOneVote, counts.hits});
   }
   return sum + p_passed_all * passed_information;
 }

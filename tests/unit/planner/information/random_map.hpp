@@ -11,10 +11,10 @@ inline std::uint32_t random_number(std::mt19937& random, int low, int high) {
   return static_cast<std::uint32_t>(std::uniform_int_distribution<int>(low, high)(random));
 }
 
-/// Passes, hits of labels 0 to class_count + 1, whole votes and parts of votes.
-inline mapping::VoxelCounts random_counts(std::mt19937& random, int class_count, int most_passes) {
+/// Misses, hits of labels 0 to class_count + 1, whole votes and parts of votes.
+inline mapping::VoxelCounts random_counts(std::mt19937& random, int class_count, int most_misses) {
   mapping::VoxelCounts counts;
-  counts.passes = random_number(random, 0, most_passes) * mapping::kOneVote;
+  counts.misses = random_number(random, 0, most_misses) * mapping::kOneVote;
   const std::uint32_t hits = random_number(random, 0, 3);
   for (std::uint32_t i = 0; i < hits; ++i) {
     const auto label = static_cast<std::uint16_t>(random_number(random, 0, class_count + 1));
@@ -35,7 +35,7 @@ inline mapping::VoxelMap random_map(std::mt19937& random, double resolution_m, i
     for (int offset = 0; kind > 1 && offset < mapping::kBlockVoxels; ++offset) {
       if (random_number(random, 0, 9) > 2) continue;
       const mapping::VoxelCounts counts = random_counts(random, class_count, 8);
-      if (counts.passes > 0) block.add_pass(offset, counts.passes);
+      if (counts.misses > 0) block.add_miss(offset, counts.misses);
       for (const mapping::ClassCount& hit : counts.hits) block.add_hit(offset, hit.label, hit.count);
     }
     map.set_block({(i & 1) - 1, (i >> 1 & 1) - 1, (i >> 2) - 1}, std::move(block));

@@ -47,14 +47,14 @@ class FlatMap {
   mapping::BlockIndex block_of(Cell c) const { return mapping::block_of({c.x, c.y, layer_}); }
   static std::size_t offset(Cell c) { return static_cast<std::size_t>((c.y & 7) << 3 | (c.x & 7)); }
   mapping::VoxelBlock block_from(const Cells& cells) const {
-    std::array<std::uint32_t, mapping::kBlockVoxels> passes{};
+    std::array<std::uint32_t, mapping::kBlockVoxels> misses{};
     std::vector<mapping::HitVote> hits;
     for (std::size_t i = 0; i < cells.size(); ++i) {
       const std::size_t voxel = static_cast<std::size_t>(layer_ & 7) * 64 + i;
-      if (cells[i] == mapping::kFree) passes[voxel] = 3 * mapping::kOneVote;
+      if (cells[i] == mapping::kFree) misses[voxel] = 3 * mapping::kOneVote;
       if (cells[i] == mapping::kOccupied) hits.push_back({static_cast<std::uint16_t>(voxel), 1, 3 * mapping::kOneVote});
     }
-    return mapping::VoxelBlock(passes, hits);
+    return mapping::VoxelBlock(misses, hits);
   }
 
   mapping::VoxelMap map_;

@@ -104,7 +104,7 @@ TEST_P(FloorPlans, AreExploredUntilNothingReachableIsLeft) {
   ASSERT_TRUE(known.grid.is_traversable(robot)) << "start";
   const CostTree reachable = grow_cost_tree(known.grid, {}, {robot});
   FrontierMap frontiers({});
-  std::set<Cell> looked_at;  // in vain where they are frontiers still: rays pass by
+  std::set<Cell> looked_at;  // a failed view where they are frontiers still: rays pass by
   int looks = 0;
   for (; looks < 500; ++looks) {
     look_around(truth, robot, static_cast<int>(4.0 / resolution_m), world);

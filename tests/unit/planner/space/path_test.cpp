@@ -292,7 +292,7 @@ TEST(PosesAlong, APointIsAPose) {
   EXPECT_EQ(poses_along(twice, 0.5, 0.1)[0].yaw_rad, 0.1);
 }
 
-/// A square room with a square block in its middle: two ways round.
+/// A square room with a square block in its middle: two paths round.
 std::vector<std::string> room_with_block(std::size_t corridor, std::size_t block) {
   const std::size_t edge = 2 * corridor + block;
   std::vector<std::string> lines(edge + 2, '#' + std::string(edge, '.') + '#');
@@ -321,13 +321,13 @@ TEST(FindAlternatives, GoesRoundABlockOnBothSides) {
 
 TEST(FindAlternatives, LeavesOutLongDetours) {
   const TextWorld world(room_with_block(6, 12));
-  EXPECT_THAT(find_alternatives(world.grid, {}, {3, 8}, {22, 8}, 3), SizeIs(1)) << "the other way is twice as long";
+  EXPECT_THAT(find_alternatives(world.grid, {}, {3, 8}, {22, 8}, 3), SizeIs(1)) << "the other path is twice as long";
   PathConfig patient;
   patient.max_detour = 3.0;
   EXPECT_THAT(find_alternatives(world.grid, patient, {3, 8}, {22, 8}, 2), SizeIs(2));
 }
 
-TEST(FindAlternatives, AnEmptyRoomHasOneWay) {
+TEST(FindAlternatives, AnEmptyRoomHasOnePath) {
   const TextWorld world(room_with_block(15, 0));
   EXPECT_THAT(find_alternatives(world.grid, {}, {3, 15}, {27, 15}, 3), SizeIs(1));
 }

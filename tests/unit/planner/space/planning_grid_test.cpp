@@ -50,11 +50,11 @@ TEST(PlanningGrid, ForgetsBlocksThatAreGone) {
 // of them the camera has looked through.
 TEST(PlanningGrid, FreeAreOnlyCellsWhoseBottomHasBeenSeen) {
   constexpr std::size_t kBottom = 64, kAbove = 128;
-  std::array<std::uint32_t, mapping::kBlockVoxels> passes{};
-  passes[kBottom + 1] = passes[kAbove] = passes[kAbove + 1] = passes[kAbove + 2] = 3 * mapping::kOneVote;
+  std::array<std::uint32_t, mapping::kBlockVoxels> misses{};
+  misses[kBottom + 1] = misses[kAbove] = misses[kAbove + 1] = misses[kAbove + 2] = 3 * mapping::kOneVote;
   const mapping::HitVote hit{kBottom + 2, 1, 3 * mapping::kOneVote};
   mapping::VoxelMap map(0.25);
-  map.set_block({}, mapping::VoxelBlock(passes, std::span(&hit, 1)));
+  map.set_block({}, mapping::VoxelBlock(misses, std::span(&hit, 1)));
   PlanningGrid grid({}, 0.25);
   grid.update_map(map, mapping::BeliefReader{mapping::SensorModel{}}, map.sorted_blocks());
   EXPECT_EQ(grid.state({0, 0}), kUnknown);

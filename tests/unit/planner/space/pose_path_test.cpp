@@ -19,39 +19,39 @@ Pose2 pose_at(const TextWorld& world, char place, double yaw_rad = 0.0) {
   return {world.grid.center_of(world.places.at(place)), yaw_rad};
 }
 
-std::vector<Pose2> way(const TextWorld& world, char from, char to) {
-  return way_to(pose_at(world, to, 1.5), pose_at(world, from), world.grid, {}, kSpacing_m);
+std::vector<Pose2> path_between(const TextWorld& world, char from, char to) {
+  return pose_path_to(pose_at(world, to, 1.5), pose_at(world, from), world.grid, {}, kSpacing_m);
 }
 
-TEST(WayTo, LeadsFromTheRobotToThePlace) {
+TEST(PosePathTo, LeadsFromTheRobotToThePlace) {
   const TextWorld world({"A...B"}, 0.25, kNoClearance);
-  const std::vector<Pose2> poses = way(world, 'A', 'B');
+  const std::vector<Pose2> poses = path_between(world, 'A', 'B');
   ASSERT_GE(poses.size(), 11u);
   EXPECT_EQ(poses.front().p_map, pose_at(world, 'A').p_map);
   EXPECT_EQ(poses.back().p_map, pose_at(world, 'B').p_map);
   EXPECT_EQ(poses.back().yaw_rad, 1.5);
 }
 
-TEST(WayTo, EndsAsNearAsItGetsToAPlaceBesideAWall) {
+TEST(PosePathTo, EndsAsNearAsItGetsToAPlaceBesideAWall) {
   const TextWorld world({"A...C#B#"}, 0.25, kNoClearance);
-  EXPECT_EQ(way(world, 'A', 'B').back().p_map, pose_at(world, 'C').p_map);
+  EXPECT_EQ(path_between(world, 'A', 'B').back().p_map, pose_at(world, 'C').p_map);
 }
 
-TEST(WayTo, IsEmptyWhenNothingWithinAMetreCanBeReached) {
+TEST(PosePathTo, IsEmptyWhenNothingWithinAMetreCanBeReached) {
   const TextWorld world({"A...#....B"}, 0.25, kNoClearance);
-  EXPECT_THAT(way(world, 'A', 'B'), IsEmpty());
+  EXPECT_THAT(path_between(world, 'A', 'B'), IsEmpty());
 }
 
-TEST(IsWayFree, LooksAtWhatIsAheadAndNotNear) {
+TEST(IsPathFree, LooksAtWhatIsAheadAndNotNear) {
   //                     1 m: four cells
   const TextWorld world({"#A.#B....#C"}, 0.25, kNoClearance);
   std::vector<Pose2> path;
   for (int x = 0; x <= 10; ++x) path.push_back({world.grid.center_of({x, 0}), 0.0});
-  EXPECT_FALSE(is_way_free(path, pose_at(world, 'A'), world.grid)) << "the wall before C";
+  EXPECT_FALSE(is_path_free(path, pose_at(world, 'A'), world.grid)) << "the wall before C";
   path.resize(9);
-  EXPECT_TRUE(is_way_free(path, pose_at(world, 'A'), world.grid)) << "one wall is near, the other behind";
-  EXPECT_TRUE(is_way_free(path, pose_at(world, 'B'), world.grid)) << "both are behind";
-  EXPECT_TRUE(is_way_free({}, pose_at(world, 'A'), world.grid));
+  EXPECT_TRUE(is_path_free(path, pose_at(world, 'A'), world.grid)) << "one wall is near, the other behind";
+  EXPECT_TRUE(is_path_free(path, pose_at(world, 'B'), world.grid)) << "both are behind";
+  EXPECT_TRUE(is_path_free({}, pose_at(world, 'A'), world.grid));
 }
 
 TEST(PlaceAhead, IsOnThePathThatIsLeft) {

@@ -83,7 +83,7 @@ TEST(Viewpoints, ASlotHasNoRoom) {
 }
 
 TEST(Viewpoints, HiddenBehindAWall) {
-  // The only way to the frontier is too narrow for the robot, which can come near it on the other side of a wall.
+  // The only path to the frontier is too narrow for the robot, which can come near it on the other side of a wall.
   GridConfig wide;
   wide.footprint_radius_m = 0.45;
   const TextWorld world({"##########", "#........#", "#........#", "#........#", "#........#", "#........#",

@@ -49,7 +49,7 @@ struct Planner {
                       {},
                       0.5,
                       left_alone,
-                      vain_looks,
+                      failed_views,
                       0.75,
                       goal,
                       1.2},
@@ -61,10 +61,10 @@ struct Planner {
     for (const auto& [id, frontier] : frontiers.frontiers()) {
       count += static_cast<int>(std::count_if(frontier.cells.begin(), frontier.cells.end(), [&](Cell c) {
         return std::none_of(tour.stops.begin(), tour.stops.end(), [&](const TourStop& stop) {
-          const Eigen::Vector2d way = world.grid.center_of(c) - stop.viewpoint.pose.p_map;
+          const Eigen::Vector2d offset = world.grid.center_of(c) - stop.viewpoint.pose.p_map;
           const double off =
-              std::remainder(std::atan2(way.y(), way.x()) - stop.viewpoint.pose.yaw_rad, 2.0 * std::numbers::pi);
-          return way.norm() <= config.range_m && std::abs(off) <= std::numbers::pi / 4.0 + 1e-9;
+              std::remainder(std::atan2(offset.y(), offset.x()) - stop.viewpoint.pose.yaw_rad, 2.0 * std::numbers::pi);
+          return offset.norm() <= config.range_m && std::abs(off) <= std::numbers::pi / 4.0 + 1e-9;
         });
       }));
     }
@@ -76,7 +76,7 @@ struct Planner {
   TareConfig config;
   Pose2 robot;
   std::vector<Eigen::Vector2d> left_alone;
-  std::vector<VainLook> vain_looks;
+  std::vector<FailedView> failed_views;
   std::optional<Pose2> goal;
 };
 
@@ -91,7 +91,7 @@ TEST(Tare, CoversWhatIsAroundWithFewViews) {
   const Tour tour = planner.plan();
   EXPECT_EQ(tour.local_stops, tour.stops.size()) << "all of it is within the horizon";
   EXPECT_THAT(tour.missed, Each(Pair(_, "the tour stops at others near it")));
-  EXPECT_EQ(tour.stops.size() + tour.missed.size(), planner.frontiers.frontiers().size()) << "each is told of once";
+  EXPECT_EQ(tour.stops.size() + tour.missed.size(), planner.frontiers.frontiers().size()) << "each is reported once";
   EXPECT_LE(tour.stops.size(), 12u) << "a view covers more than one frontier";
   EXPECT_LT(planner.uncovered(tour), 0.1 * all_cells(planner.frontiers)) << "of " << all_cells(planner.frontiers);
   for (const TourStop& stop : tour.stops) {
@@ -134,7 +134,7 @@ TEST(Tare, KeepsItsGoalUnlessAnotherTourIsMuchShorter) {
   EXPECT_GT((far.plan().stops[0].viewpoint.pose.p_map - far.goal->p_map).norm(), 0.5) << "there and back";
 }
 
-TEST(Tare, LeavesAloneWhatItIsTold) {
+TEST(Tare, LeavesAloneWhatItIsAskedTo) {
   Planner planner(kCorridor);
   planner.left_alone = {planner.world.grid.center_of(planner.plan().stops[0].viewpoint.target)};
   const Tour tour = planner.plan();
@@ -143,12 +143,12 @@ TEST(Tare, LeavesAloneWhatItIsTold) {
   EXPECT_EQ(tour.missed[0].second, kLeftAlone);
 }
 
-TEST(Tare, LooksFromElsewhereAtWhatItHasLookedAtInVain) {
+TEST(Tare, LooksFromElsewhereAtWhatAFailedViewShowed) {
   for (const auto& lines : {kHall, kCorridor}) {
     Planner planner(lines);
     const TourStop first = planner.plan().stops[0];
     const Eigen::Vector2d target_map = planner.world.grid.center_of(first.viewpoint.target);
-    planner.vain_looks = {{target_map, first.viewpoint.pose.p_map}};
+    planner.failed_views = {{target_map, first.viewpoint.pose.p_map}};
     const Tour tour = planner.plan();
     EXPECT_FALSE(tour.stops.empty());
     for (const TourStop& stop : tour.stops) {

@@ -72,7 +72,7 @@ float area(const Mesh& mesh) {
   return sum;
 }
 
-// By the divergence theorem; its sign tells whether the triangles turn outwards.
+// By the divergence theorem; its sign says whether the triangles turn outwards.
 float volume(const Mesh& mesh) {
   float sum = 0;
   for (const auto& t : mesh.triangles)
@@ -185,7 +185,7 @@ TEST(Obj, FacesWithoutTextureCoordinatesShowTheColour) {
   EXPECT_TRUE(bare.texture_coordinates.empty());
 }
 
-// Where a texture named `written` is found among `files` (the red channel tells them apart); -1: nowhere.
+// Where a texture named `written` is found among `files` (the red channel distinguishes them); -1: nowhere.
 int texture_found(const std::string& written, const std::map<std::string, int>& files) {
   Files all{{"m/a.obj", to_bytes("mtllib a.mtl\n" + std::string(kTwoTriangles) + "usemtl w\nf 1/1 2/2 3/3\n")},
             {"m/a.mtl", to_bytes("newmtl w\nmap_Kd " + written + "\r\n")}};

@@ -99,7 +99,7 @@ TEST(Placement, JitterIsBoundedAndDrawnFromTheSeed) {
   EXPECT_GT(moves, 40);  // of 160: the row is narrow
 }
 
-TEST(Placement, JitterKeepsDoorsStartsAndWaysClear) {
+TEST(Placement, JitterKeepsDoorsStartsAndPathsClear) {
   SceneSpec spec = test::two_rooms();
   spec.starts = {{{1.0, 0.6}, 0.0}};
   spec.tour = {{0.5, 2.6}, {2.5, 2.6}};
@@ -112,7 +112,7 @@ TEST(Placement, JitterKeepsDoorsStartsAndWaysClear) {
   };
   put(4.0 - 0.7 - 0.24, 1.0);   // a centimetre before the clear floor of the door
   put(1.0 + 0.35 + 0.24, 0.6);  // ... around the start
-  put(1.5, 2.6 - 0.35 - 0.26);  // ... along the way
+  put(1.5, 2.6 - 0.35 - 0.26);  // ... along the path
   put(0.6, 2.6);                // in the way, by the author's will
   spec = normalised(spec);
   const auto plan = plan_walls(spec);

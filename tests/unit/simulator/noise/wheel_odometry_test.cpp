@@ -15,13 +15,13 @@ namespace {
 
 constexpr std::size_t kRuns = 2000;
 
-WheelNoiseConfig random_only() {
-  WheelNoiseConfig config;
+OdometryNoiseConfig random_only() {
+  OdometryNoiseConfig config;
   config.wheel_sigma = config.base_sigma = 0.0;
   return config;
 }
-WheelNoiseConfig systematic_only() {
-  WheelNoiseConfig config;
+OdometryNoiseConfig systematic_only() {
+  OdometryNoiseConfig config;
   config.turn_per_turn = config.turn_per_metre = config.distance_per_metre = config.distance_per_turn = 0.0;
   return config;
 }
@@ -30,14 +30,14 @@ struct Sums {
   std::vector<double> distances, turns;  // one per run
 };
 
-/// Many runs over one way, in equal steps; what the steps of each add up to.
-Sums drive(const WheelNoiseConfig& config, double distance_m, double turn_rad, int steps) {
+/// Many runs over one path, in equal steps; what the steps of each add up to.
+Sums drive(const OdometryNoiseConfig& config, double distance_m, double turn_rad, int steps) {
   Sums sums;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
     WheelOdometry odometry(config, seed);
     double distance = 0, turn = 0;
     for (int i = 0; i < steps; ++i) {
-      const WheelStep step = odometry.step(distance_m / steps, turn_rad / steps);
+      const OdometryStep step = odometry.step(distance_m / steps, turn_rad / steps);
       distance += step.distance_m;
       turn += step.turn_rad;
     }
@@ -48,7 +48,7 @@ Sums drive(const WheelNoiseConfig& config, double distance_m, double turn_rad, i
 }
 
 TEST(WheelOdometry, WithoutErrorsIsTheTruth) {
-  WheelNoiseConfig config;
+  OdometryNoiseConfig config;
   config.scale = 0.0;
   WheelOdometry odometry(config, 3);
   const double radius = 0.8;
@@ -63,19 +63,19 @@ TEST(WheelOdometry, WithoutErrorsIsTheTruth) {
 }
 
 TEST(WheelOdometry, VarianceIsProportionalToMotionWhateverTheStep) {
-  const WheelNoiseConfig c = random_only();
-  struct Way {
+  const OdometryNoiseConfig c = random_only();
+  struct Drive {
     double distance_m, turn_rad;
   };
-  for (const Way way : {Way{1, 0}, Way{4, 0}, Way{-2, 0}, Way{0, 2}, Way{0, -6}, Way{3, 1.5}}) {
-    const double s = std::abs(way.distance_m), t = std::abs(way.turn_rad);
+  for (const Drive motion : {Drive{1, 0}, Drive{4, 0}, Drive{-2, 0}, Drive{0, 2}, Drive{0, -6}, Drive{3, 1.5}}) {
+    const double s = std::abs(motion.distance_m), t = std::abs(motion.turn_rad);
     for (const int steps : {1, 10, 150}) {
-      const Sums sums = drive(c, way.distance_m, way.turn_rad, steps);
+      const Sums sums = drive(c, motion.distance_m, motion.turn_rad, steps);
       EXPECT_NEAR(variance_of(sums.distances) / (4e-4 * s + 1e-5 * t), 1.0, variance_bound(kRuns)) << s << t << steps;
       EXPECT_NEAR(variance_of(sums.turns) / (4e-4 * t + 1e-4 * s), 1.0, variance_bound(kRuns)) << s << t << steps;
       const double root_n = std::sqrt(static_cast<double>(kRuns));
-      EXPECT_NEAR(mean_of(sums.distances), way.distance_m, kSigmas * std::sqrt(4e-4 * s + 1e-5 * t) / root_n);
-      EXPECT_NEAR(mean_of(sums.turns), way.turn_rad, kSigmas * std::sqrt(4e-4 * t + 1e-4 * s) / root_n);
+      EXPECT_NEAR(mean_of(sums.distances), motion.distance_m, kSigmas * std::sqrt(4e-4 * s + 1e-5 * t) / root_n);
+      EXPECT_NEAR(mean_of(sums.turns), motion.turn_rad, kSigmas * std::sqrt(4e-4 * t + 1e-4 * s) / root_n);
       EXPECT_LT(std::abs(correlation_of(sums.distances, sums.turns)), kSigmas / root_n);
     }
   }
@@ -85,7 +85,7 @@ TEST(WheelOdometry, SystematicErrorsAreConstantInARun) {
   std::vector<double> wheels, turns;
   for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
     WheelOdometry odometry(systematic_only(), seed);
-    const WheelStep first = odometry.step(0.5, 0.3), second = odometry.step(-1.5, 2.0);
+    const OdometryStep first = odometry.step(0.5, 0.3), second = odometry.step(-1.5, 2.0);
     ASSERT_NEAR(first.distance_m / 0.5, second.distance_m / -1.5, 1e-12);
     ASSERT_NEAR(first.turn_rad / 0.3, second.turn_rad / 2.0, 1e-12);
     wheels.push_back(std::log(first.distance_m / 0.5));
@@ -96,9 +96,9 @@ TEST(WheelOdometry, SystematicErrorsAreConstantInARun) {
   EXPECT_NEAR(correlation_of(wheels, turns), std::sqrt(0.5), 0.07);
 }
 
-/// Normalised squared error of the pose after a winding way of 8 m.
-double normalised_error(const WheelNoiseConfig& config, std::uint64_t seed) {
-  WheelNoiseConfig perfect;
+/// Normalised squared error of the pose after a winding path of 8 m.
+double normalised_error(const OdometryNoiseConfig& config, std::uint64_t seed) {
+  OdometryNoiseConfig perfect;
   perfect.scale = 0.0;
   WheelOdometry odometry(config, seed), truth(perfect, seed);
   for (int i = 0; i < 400; ++i) {
@@ -113,7 +113,7 @@ double normalised_error(const WheelNoiseConfig& config, std::uint64_t seed) {
 }
 
 TEST(WheelOdometry, CovarianceIsWhatErrorsReallyAre) {
-  for (const WheelNoiseConfig& config : {WheelNoiseConfig(), random_only()}) {
+  for (const OdometryNoiseConfig& config : {OdometryNoiseConfig(), random_only()}) {
     std::vector<double> errors;
     for (std::uint64_t seed = 0; seed < 1000; ++seed) errors.push_back(normalised_error(config, seed));
     // Chi-squared with 3 degrees of freedom has mean 3 and variance 6; the covariance is right to first order.
@@ -155,7 +155,7 @@ TEST(WheelOdometry, CovarianceGrows) {
 }
 
 TEST(WheelOdometry, ScaleMultipliesStandardDeviations) {
-  WheelNoiseConfig config;
+  OdometryNoiseConfig config;
   const Sums nominal = drive(config, 2, 1, 5);
   config.scale = 3.0;
   const Sums scaled = drive(config, 2, 1, 5);
@@ -174,8 +174,8 @@ TEST(WheelOdometry, StandingStillDoesNotDrift) {
 TEST(WheelOdometry, NoiseDependsOnSeedAndStepNumber) {
   WheelOdometry a(random_only(), 3), b(random_only(), 3), c(random_only(), 4);
   a.step(0.02, 0.01);
-  b.step(0.05, -0.2);  // another way, the same number of steps
-  const WheelStep from_a = a.step(0.02, 0.01), from_b = b.step(0.02, 0.01);
+  b.step(0.05, -0.2);  // another path, the same number of steps
+  const OdometryStep from_a = a.step(0.02, 0.01), from_b = b.step(0.02, 0.01);
   c.step(0.02, 0.01);
   EXPECT_EQ(from_a.distance_m, from_b.distance_m);
   EXPECT_EQ(from_a.turn_rad, from_b.turn_rad);
@@ -188,12 +188,12 @@ TEST(DriftPreset, NominalChangesNothingAndHardIsHarderInEveryRespect) {
   EXPECT_EQ(nominal.dropout, 0.0);
   EXPECT_EQ(nominal.blur, 0.0);
   EXPECT_EQ(nominal.depth, 1.0);
-  EXPECT_EQ(nominal.wheel, 1.0);
+  EXPECT_EQ(nominal.odometry, 1.0);
   EXPECT_LT(hard.texture, nominal.texture);
   EXPECT_GT(hard.dropout, nominal.dropout);
   EXPECT_GT(hard.blur, nominal.blur);
   EXPECT_GT(hard.depth, nominal.depth);
-  EXPECT_GT(hard.wheel, nominal.wheel);
+  EXPECT_GT(hard.odometry, nominal.odometry);
 }
 
 }  // namespace

@@ -93,7 +93,7 @@ TEST_F(LightCache, WhatChangesLightHasAFileOfItsOwn) {
   scene.mesh.materials[0].color = {1, 2, 3};
   scene.tour.emplace_back(1, 1);
   light_of(scene, folder_);
-  EXPECT_EQ(files().size(), 3U) << "light does not depend on colours or ways";
+  EXPECT_EQ(files().size(), 3U) << "light does not depend on colours or paths";
 }
 
 TEST_F(LightCache, KeepsTheNewest) {

@@ -189,7 +189,7 @@ TEST(BuildNavMap, DistancesAreThoseOfTheGeometryWithinACell) {
   }
 }
 
-TEST(BuildNavMap, TellsWhatIsWrong) {
+TEST(BuildNavMap, SaysWhatIsWrong) {
   const auto all = [](std::uint32_t) { return true; };
   Mesh mesh;
   add_level(mesh, {0, 0, 4, 3}, 0, 0);

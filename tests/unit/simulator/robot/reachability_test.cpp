@@ -29,7 +29,7 @@ TEST(RoomReach, IsTheShareThatTheCentreOfTheRobotReaches) {
   EXPECT_EQ(reach[1].reachable_share, 0.0);
 }
 
-TEST(Passages, AreTheDoorsOfTheWidestWays) {
+TEST(Passages, AreTheDoorsOfTheWidestPaths) {
   // a | b | c in a row with doors of 0.8 and 1.2 m, and a door of 0.5 m that leads from a to d below.
   const NavMap map = map_of(9, 6,
                             {{2.9, 3, 3.1, 4.0},
@@ -63,7 +63,7 @@ TEST(Passages, WidthIsWhereADiscJustPasses) {
   EXPECT_EQ(share(0.5 * found[0].width_m + 1e-6), 0.0);
 }
 
-TEST(Passages, AreMissingWhereThereIsNoWay) {
+TEST(Passages, AreMissingWhereThereIsNoPath) {
   const NavMap map = map_of(4, 4, {{1.95, 0, 2.05, 4}});
   EXPECT_TRUE(passages(map, {room("a", {0, 0, 1.95, 4}), room("b", {2.05, 0, 4, 4})}).empty());
 }

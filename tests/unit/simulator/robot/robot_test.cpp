@@ -219,7 +219,7 @@ TEST(Robot, StandsInFrontOfAWallAndGetsAway) {
   EXPECT_LT(robot.state().position.x(), stop.x() - 0.3);
 }
 
-TEST(Robot, NeverEntersObstaclesWhateverItIsTold) {
+TEST(Robot, NeverEntersObstaclesWhateverItIsAsked) {
   std::mt19937_64 engine(8);
   std::vector<Rectangle> obstacles{{1.5, 1.5, 2.5, 2.5}, {0, 2.7, 1, 2.8}, {3, 0, 3.1, 2}, {2.9, 3.0, 4, 3.1}};
   for (int i = 0; i < 12; ++i) {

@@ -48,7 +48,7 @@ TEST(PathPlanner, GoesStraightWhereItCan) {
   }
 }
 
-TEST(PathPlanner, GoesTheShortestWayAroundTheEndOfAWall) {
+TEST(PathPlanner, GoesTheShortestPathAroundTheEndOfAWall) {
   const NavMap map = map_of(8, 6, {{3.9, 0, 4.1, 3}});
   const auto path = PathPlanner(map, shortest_only()).plan({2, 1}, {6, 1});
   ASSERT_TRUE(path);
@@ -91,13 +91,13 @@ TEST(PathPlanner, KeepsTheRobotOffObstacles) {
   EXPECT_GT(found, 10);
 }
 
-TEST(PathPlanner, FindsNoWayThroughWalls) {
+TEST(PathPlanner, FindsNoPathThroughWalls) {
   const NavMap map = map_of(6, 4, {{2.9, 0, 3.1, 4}});
   EXPECT_FALSE(PathPlanner(map, {}).plan({1, 2}, {5, 2}));
   EXPECT_FALSE(PathPlanner(map, {}).plan({1, 2}, {3, 2})) << "in the wall";
 }
 
-TEST(Tour, NamesTheWayPointThatCannotBeReached) {
+TEST(Tour, NamesTheWaypointThatCannotBeReached) {
   const NavMap map = map_of(6, 4, {{2.9, 0, 3.1, 4}});
   using testing::HasSubstr;
   const auto plan = [&](const Eigen::Vector2d& last) { plan_tour(map, {1, 2}, {{2, 2}, {1, 3}, last}, {}); };
@@ -105,12 +105,12 @@ TEST(Tour, NamesTheWayPointThatCannotBeReached) {
       [&] {
         plan({5, 2});
       },
-      testing::ThrowsMessage<std::runtime_error>(HasSubstr("way-point 3 (5, 2) cannot be reached from way-point 2")));
+      testing::ThrowsMessage<std::runtime_error>(HasSubstr("waypoint 3 (5, 2) cannot be reached from waypoint 2")));
   EXPECT_THAT(
       [&] {
         plan({3, 2});
       },
-      testing::ThrowsMessage<std::runtime_error>(HasSubstr("way-point 3 (3, 2) is 0 m from an obstacle")));
+      testing::ThrowsMessage<std::runtime_error>(HasSubstr("waypoint 3 (3, 2) is 0 m from an obstacle")));
 }
 
 /// Two furnished rooms and a corridor.
@@ -132,18 +132,18 @@ struct Drive {
   bool has_contact = false;
   bool is_finished = false;
   double duration_s = 0, length_m = 0, turned_rad = 0, fastest_turn = 0;
-  std::vector<double> nearest_m;  ///< to each way-point
+  std::vector<double> nearest_m;  ///< to each waypoint
 };
 
-Drive drive(const Path& way_points, double start_yaw, double period_s, const NavMap& map = flat(),
+Drive drive(const Path& waypoints, double start_yaw, double period_s, const NavMap& map = flat(),
             const TourConfig& config = {}) {
   RobotState start;
   start.position = {1, 1};
   start.yaw_rad = start_yaw;
-  TourFollower follower(map, plan_tour(map, start.position, way_points, config), config);
+  TourFollower follower(map, plan_tour(map, start.position, waypoints, config), config);
   Robot robot(map, RobotConfig{}, start);
   Drive out;
-  out.nearest_m.assign(way_points.size(), 1e9);
+  out.nearest_m.assign(waypoints.size(), 1e9);
   DriveCommand late;  // commands take effect one period later, as in lock-step
   for (int k = 1; k * period_s < 600 && !follower.is_finished(); ++k) {
     const DriveCommand command = follower.command(robot.state());
@@ -155,8 +155,8 @@ Drive drive(const Path& way_points, double start_yaw, double period_s, const Nav
     out.turned_rad += std::abs(motion.turn_rad);
     out.duration_s = robot.state().stamp.seconds();
     out.fastest_turn = std::max(out.fastest_turn, std::abs(motion.turn_rate_rad_s));
-    for (std::size_t i = 0; i < way_points.size(); ++i) {
-      out.nearest_m[i] = std::min(out.nearest_m[i], (robot.state().position - way_points[i]).norm());
+    for (std::size_t i = 0; i < waypoints.size(); ++i) {
+      out.nearest_m[i] = std::min(out.nearest_m[i], (robot.state().position - waypoints[i]).norm());
     }
   }
   out.is_finished = follower.is_finished();
@@ -168,14 +168,14 @@ Path grand_tour() { return {{2, 3.5}, {0.8, 4.3}, {3.2, 5.2}, {2, 2}, {6, 3.5}, 
 
 class Following : public testing::TestWithParam<std::pair<double, double>> {};
 
-TEST_P(Following, ReachesAllWayPointsWithoutContact) {
+TEST_P(Following, ReachesAllWaypointsWithoutContact) {
   const auto [yaw, period] = GetParam();
   const Drive result = drive(grand_tour(), yaw, period);
   EXPECT_TRUE(result.is_finished);
   EXPECT_FALSE(result.has_contact);
   EXPECT_LE(result.fastest_turn, 0.6 + 1e-9);
   for (std::size_t i = 0; i < result.nearest_m.size(); ++i)
-    EXPECT_LT(result.nearest_m[i], 0.25) << "way-point " << i + 1;
+    EXPECT_LT(result.nearest_m[i], 0.25) << "waypoint " << i + 1;
   EXPECT_LT(result.nearest_m.back(), 0.1) << "where it stops";
 }
 
@@ -215,7 +215,7 @@ TEST(TourFollower, SaysWhereItIsStuck) {
   EXPECT_FALSE(follower.is_finished());
   EXPECT_NEAR(k / 15.0 - stopped_s, 20.0 + kPi / TourConfig().max_turn_rate_rad_s, 1.0);
   EXPECT_THAT(follower.stalled(),
-              testing::AllOf(testing::HasSubstr("stuck at (3.8"), testing::HasSubstr("way-point 2 (6.00, 1.00)")));
+              testing::AllOf(testing::HasSubstr("stuck at (3.8"), testing::HasSubstr("waypoint 2 (6.00, 1.00)")));
 }
 
 TEST(TourFollower, ATurnOnTheSpotIsNoStall) {
@@ -225,7 +225,7 @@ TEST(TourFollower, ATurnOnTheSpotIsNoStall) {
   EXPECT_TRUE(result.is_finished);
 }
 
-TEST(Tour, WithoutWayPointsIsFinishedAtOnce) {
+TEST(Tour, WithoutWaypointsIsFinishedAtOnce) {
   TourFollower follower(flat(), plan_tour(flat(), {1, 1}, {}, {}), {});
   EXPECT_TRUE(follower.is_finished());
   EXPECT_EQ(follower.command({}).speed_m_s, 0.0);

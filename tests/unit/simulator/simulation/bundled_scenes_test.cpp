@@ -82,7 +82,7 @@ Drive drive(const Scene& scene, const NavMap& map, const StartPose& from) {
 
 class BundledScenes : public testing::TestWithParam<const char*> {};
 
-TEST_P(BundledScenes, EverySeedLeavesTheWayFree) {
+TEST_P(BundledScenes, EverySeedLeavesThePathFree) {
   const SceneSpec spec = bare(GetParam());
   for (std::uint64_t seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));

@@ -40,16 +40,17 @@ class SimulationTest : public ::testing::Test {
 
 TEST_F(SimulationTest, StampsAreWholeNanosecondsOfTheRateAndSensorsHaveTheirOwn) {
   Simulation simulation(world_, config_of(1), start_);
-  std::vector<std::int64_t> wheels, imu;
+  std::vector<std::int64_t> odometry, imu;
   for (std::int64_t tick = 1; tick <= 30; ++tick) {
     const auto frame = simulation.next(std::nullopt);
     EXPECT_EQ(frame.stamp.nanoseconds, std::llround(static_cast<double>(tick) * 1e9 / 15.0));
-    for (const auto& sample : frame.wheels) wheels.push_back(sample.stamp.nanoseconds);
+    for (const auto& sample : frame.odometry) odometry.push_back(sample.stamp.nanoseconds);
     for (const auto& sample : frame.imu) imu.push_back(sample.stamp.nanoseconds);
   }
-  ASSERT_EQ(wheels.size(), 100U);  // 2 s at 50 Hz
+  ASSERT_EQ(odometry.size(), 100U);  // 2 s at 50 Hz
   ASSERT_EQ(imu.size(), 400U);
-  for (std::size_t i = 0; i < wheels.size(); ++i) EXPECT_EQ(wheels[i], 20'000'000 * static_cast<std::int64_t>(i + 1));
+  for (std::size_t i = 0; i < odometry.size(); ++i)
+    EXPECT_EQ(odometry[i], 20'000'000 * static_cast<std::int64_t>(i + 1));
   for (std::size_t i = 0; i < imu.size(); ++i) EXPECT_EQ(imu[i], 5'000'000 * static_cast<std::int64_t>(i + 1));
 }
 
@@ -64,7 +65,7 @@ TEST_F(SimulationTest, TheSameCommandsAndSeedGiveTheSameBytes) {
   EXPECT_EQ(a.images.color.pixels, b.images.color.pixels);
   EXPECT_EQ(a.images.depth_mm.pixels, b.images.depth_mm.pixels);
   EXPECT_EQ(a.images.labels.pixels, b.images.labels.pixels);
-  EXPECT_EQ(a.wheels.back().position, b.wheels.back().position);
+  EXPECT_EQ(a.odometry.back().position, b.odometry.back().position);
   EXPECT_EQ(a.robot.position, c.robot.position) << "commands act the same whatever the noise";
   EXPECT_NE(a.images.color.pixels, c.images.color.pixels);
   EXPECT_NE(a.images.depth_mm.pixels, c.images.depth_mm.pixels);

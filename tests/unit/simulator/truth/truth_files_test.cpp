@@ -117,7 +117,7 @@ TEST_F(TruthFiles, IdealMapIsAMapFile) {
   EXPECT_THROW(write_ideal_map("/proc/nowhere", scene, ideal), std::runtime_error);
 }
 
-TEST_F(TruthFiles, WhatIsMissingOrDamagedIsTold) {
+TEST_F(TruthFiles, WhatIsMissingOrDamagedIsReported) {
   std::string problem;
   EXPECT_FALSE(evaluator::load_ground_truth(folder / "nowhere", problem));
   EXPECT_TRUE(problem.empty());

@@ -138,7 +138,7 @@ TEST(VoxelTruthTest, FrequentClassesAreByVoxelsThenById) {
   int offset = 0;
   constexpr std::array<std::uint16_t, 12> kLabels = {5, 5, 5, 9, 9, 2, 2, 0, 0, 0, 0, 7};
   for (const std::uint16_t label : kLabels) block.add_hit(offset++, label, 256);
-  block.add_pass(offset, 256);
+  block.add_miss(offset, 256);
   map.set_block({0, 0, 0}, block);
   EXPECT_THAT(most_frequent_classes(map), ElementsAre(5, 2, 9, 7));
   EXPECT_THAT(most_frequent_classes(map, 2), ElementsAre(5, 2));

@@ -80,7 +80,7 @@ TEST(DriveChecks, ARoomBehindABlockedDoorFailsByName) {
   EXPECT_THAT(rooms.details[0], HasSubstr("hallway cannot be reached from start 1"));
   const Check tour = check_tour(place.scene, place.map, {});
   EXPECT_EQ(tour.verdict, Verdict::kFail);
-  EXPECT_THAT(tour.details.at(0), HasSubstr("way-point 1"));
+  EXPECT_THAT(tour.details.at(0), HasSubstr("waypoint 1"));
 }
 
 TEST(DriveChecks, LengthOfTheTourIsThatOfTheStraightLine) {

@@ -1,4 +1,4 @@
-#include "common/mapping/pass_counts.hpp"
+#include "common/mapping/miss_counts.hpp"
 
 #include <algorithm>
 #include <type_traits>
@@ -58,7 +58,7 @@ bool is_none(const BlockMask& voxels) {
 
 }  // namespace
 
-PassCounts::PassCounts(const std::array<std::uint32_t, kBlockVoxels>& counts) {
+MissCounts::MissCounts(const std::array<std::uint32_t, kBlockVoxels>& counts) {
   std::uint32_t largest = 0, bits = 0, differences = 0;
   for (const std::uint32_t count : counts) {
     largest = std::max(largest, count);
@@ -78,7 +78,7 @@ PassCounts::PassCounts(const std::array<std::uint32_t, kBlockVoxels>& counts) {
       counts_);
 }
 
-PassCounts::PassCounts(const PassCounts& other) {
+MissCounts::MissCounts(const MissCounts& other) {
   std::visit(
       [this](const auto& counts) {
         using Form = std::decay_t<decltype(counts)>;
@@ -90,12 +90,12 @@ PassCounts::PassCounts(const PassCounts& other) {
       other.counts_);
 }
 
-PassCounts& PassCounts::operator=(const PassCounts& other) {
-  if (this != &other) *this = PassCounts(other);
+MissCounts& MissCounts::operator=(const MissCounts& other) {
+  if (this != &other) *this = MissCounts(other);
   return *this;
 }
 
-std::uint32_t PassCounts::at(int offset) const {
+std::uint32_t MissCounts::at(int offset) const {
   const auto i = static_cast<std::size_t>(offset);
   if (const auto* bytes = std::get_if<Bytes>(&counts_)) return (**bytes)[i] * kOneVote;
   if (const auto* words = std::get_if<Words>(&counts_)) return (**words)[i] * kOneVote;
@@ -104,7 +104,7 @@ std::uint32_t PassCounts::at(int offset) const {
 }
 
 template <class Form>
-void PassCounts::widen() {
+void MissCounts::widen() {
   using Count = typename Form::element_type::value_type;
   auto wide = std::make_unique<typename Form::element_type>();
   for (int offset = 0; offset < kBlockVoxels; ++offset)
@@ -113,7 +113,7 @@ void PassCounts::widen() {
 }
 
 /// Makes one count per voxel, each wide enough for what there is and for `count` [1/256 vote].
-void PassCounts::make_room_for(std::uint32_t count) {
+void MissCounts::make_room_for(std::uint32_t count) {
   const auto* all = std::get_if<std::uint32_t>(&counts_);
   const std::uint32_t largest = all ? std::max(*all, count) : count;
   if (count % kOneVote != 0 || (all && *all % kOneVote != 0) || largest > 0xffff * kOneVote) {
@@ -125,7 +125,7 @@ void PassCounts::make_room_for(std::uint32_t count) {
   }
 }
 
-void PassCounts::make_room_for_one_more_vote() {
+void MissCounts::make_room_for_one_more_vote() {
   std::uint32_t largest = 0;
   if (const auto* bytes = std::get_if<Bytes>(&counts_)) {
     std::uint8_t most = 0;
@@ -141,7 +141,7 @@ void PassCounts::make_room_for_one_more_vote() {
   make_room_for(largest + kOneVote);
 }
 
-void PassCounts::add(int offset, std::uint32_t weight) {
+void MissCounts::add(int offset, std::uint32_t weight) {
   if (weight == 0) return;
   const std::uint32_t sum = at(offset) + weight;
   make_room_for(sum);
@@ -154,7 +154,7 @@ void PassCounts::add(int offset, std::uint32_t weight) {
     (*std::get<Parts>(counts_))[i] = sum;
 }
 
-bool PassCounts::subtract(int offset, std::uint32_t weight) {
+bool MissCounts::subtract(int offset, std::uint32_t weight) {
   const std::uint32_t before = at(offset);
   if (before < weight) return false;
   const auto i = static_cast<std::size_t>(offset);
@@ -168,7 +168,7 @@ bool PassCounts::subtract(int offset, std::uint32_t weight) {
   return true;
 }
 
-void PassCounts::add_votes(const BlockMask& voxels) {
+void MissCounts::add_votes(const BlockMask& voxels) {
   if (auto* all = std::get_if<std::uint32_t>(&counts_); all && is_full(voxels)) {
     *all += kOneVote;
     return;
@@ -183,7 +183,7 @@ void PassCounts::add_votes(const BlockMask& voxels) {
     add_votes_to(*std::get<Parts>(counts_), voxels);
 }
 
-bool PassCounts::subtract_votes(const BlockMask& voxels) {
+bool MissCounts::subtract_votes(const BlockMask& voxels) {
   if (is_none(voxels)) return true;
   if (auto* all = std::get_if<std::uint32_t>(&counts_)) {
     if (*all < kOneVote) return false;
@@ -198,19 +198,19 @@ bool PassCounts::subtract_votes(const BlockMask& voxels) {
   return subtract_votes_from(*std::get<Parts>(counts_), voxels);
 }
 
-bool PassCounts::is_uniform() const {
+bool MissCounts::is_uniform() const {
   const std::uint32_t first = at(0);
   int offset = 1;
   while (offset < kBlockVoxels && at(offset) == first) ++offset;
   return offset == kBlockVoxels;
 }
 
-std::size_t PassCounts::heap_bytes() const {
+std::size_t MissCounts::heap_bytes() const {
   constexpr std::array<std::size_t, 4> kBytesPerVoxel = {0, 1, 2, 4};
   return kBytesPerVoxel[counts_.index()] * kBlockVoxels;
 }
 
-bool PassCounts::operator==(const PassCounts& other) const {
+bool MissCounts::operator==(const MissCounts& other) const {
   int offset = 0;
   while (offset < kBlockVoxels && at(offset) == other.at(offset)) ++offset;
   return offset == kBlockVoxels;

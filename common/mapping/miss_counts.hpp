@@ -10,20 +10,20 @@
 
 namespace lapis::mapping {
 
-/// Passes of the 512 voxels of a block [1/256 vote], in as few bytes as they need: one number while all voxels agree,
+/// Misses of the 512 voxels of a block [1/256 vote], in as few bytes as they need: one number while all voxels agree,
 /// then one byte of whole votes per voxel, then two, then four bytes of 1/256 votes. Exact in each form.
-class PassCounts {
+class MissCounts {
  public:
-  PassCounts() = default;
+  MissCounts() = default;
   /// Every voxel has the same.
-  explicit PassCounts(std::uint32_t all) : counts_(all) {}
+  explicit MissCounts(std::uint32_t all) : counts_(all) {}
   /// By offset_in_block.
-  explicit PassCounts(const std::array<std::uint32_t, kBlockVoxels>& counts);
-  PassCounts(const PassCounts& other);
-  PassCounts& operator=(const PassCounts& other);
-  PassCounts(PassCounts&&) noexcept = default;
-  PassCounts& operator=(PassCounts&&) noexcept = default;
-  ~PassCounts() = default;
+  explicit MissCounts(const std::array<std::uint32_t, kBlockVoxels>& counts);
+  MissCounts(const MissCounts& other);
+  MissCounts& operator=(const MissCounts& other);
+  MissCounts(MissCounts&&) noexcept = default;
+  MissCounts& operator=(MissCounts&&) noexcept = default;
+  ~MissCounts() = default;
 
   std::uint32_t at(int offset) const;
   void add(int offset, std::uint32_t weight);
@@ -38,7 +38,7 @@ class PassCounts {
   /// Memory beyond this object [bytes].
   std::size_t heap_bytes() const;
   /// Equal counts, whatever their form.
-  bool operator==(const PassCounts& other) const;
+  bool operator==(const MissCounts& other) const;
 
  private:
   template <class Count>

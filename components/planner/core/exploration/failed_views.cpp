@@ -1,4 +1,4 @@
-#include "planner/core/exploration/looks.hpp"
+#include "planner/core/exploration/failed_views.hpp"
 
 #include <algorithm>
 
@@ -17,27 +17,27 @@ bool has_frontier_at(const Surroundings& surroundings, const Eigen::Vector2d& ta
 
 }  // namespace
 
-void Looks::await(const VainLook& look, time::Time due) {
+void FailedViews::await(const FailedView& view, time::Time due) {
   const auto later =
       std::find_if(awaited_.begin(), awaited_.end(), [&](const Awaited& other) { return other.due > due; });
-  awaited_.insert(later, {look, due});
+  awaited_.insert(later, {view, due});
 }
 
-std::vector<VainLook> Looks::judge(const Surroundings& surroundings, time::Time now) {
-  std::vector<VainLook> in_vain;
+std::vector<FailedView> FailedViews::judge(const Surroundings& surroundings, time::Time now) {
+  std::vector<FailedView> failed;
   const auto later =
       std::find_if(awaited_.begin(), awaited_.end(), [&](const Awaited& awaited) { return awaited.due > now; });
   for (auto due = awaited_.begin(); due != later; ++due) {
-    if (has_frontier_at(surroundings, due->look.target_map)) in_vain.push_back(due->look);
+    if (has_frontier_at(surroundings, due->view.target_map)) failed.push_back(due->view);
   }
   awaited_.erase(awaited_.begin(), later);
-  in_vain_.insert(in_vain_.end(), in_vain.begin(), in_vain.end());
-  return in_vain;
+  failed_.insert(failed_.end(), failed.begin(), failed.end());
+  return failed;
 }
 
-void Looks::clear() {
+void FailedViews::clear() {
   awaited_.clear();
-  in_vain_.clear();
+  failed_.clear();
 }
 
 }  // namespace lapis::planner

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <vector>
+
+#include "common/time/time.hpp"
+#include "planner/core/decision/decision.hpp"
+#include "planner/core/exploration/surroundings.hpp"
+
+namespace lapis::planner {
+
+/// Views of targets, judged when the map has had time to show: where a frontier is still there after a view of it, that
+/// view has failed: the target is glass, or noise.
+class FailedViews {
+ public:
+  /// The target is judged at the first call of judge() from `due` on.
+  void await(const FailedView& view, time::Time due);
+  /// Those now due that have failed.
+  std::vector<FailedView> judge(const Surroundings& surroundings, time::Time now);
+  /// All that have failed.
+  const std::vector<FailedView>& all() const { return failed_; }
+  void forgive() { failed_.clear(); }
+  void clear();
+
+ private:
+  struct Awaited {
+    FailedView view;  ///< if it fails
+    time::Time due;
+  };
+  std::vector<Awaited> awaited_;  ///< the first due first
+  std::vector<FailedView> failed_;
+};
+
+}  // namespace lapis::planner

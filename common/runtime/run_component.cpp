@@ -37,7 +37,8 @@ struct Arguments {
 void add_common_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--config", arguments.config_files, "YAML configuration; later files win (repeatable)");
   app.add_option("--set", arguments.overrides, "set one value: path=value (repeatable)");
-  app.add_option("--domain", arguments.domain, "DDS domain; default: ROS_DOMAIN_ID or 0")->check(CLI::Range(0, 232));
+  app.add_option("--domain", arguments.domain, "DDS domain; default: ROS_DOMAIN_ID or 0")
+      ->check(CLI::Range(0, dds::kLargestDomain));
   app.add_option("--namespace", arguments.name_space, "robot name in front of topics and frames");
   app.add_option("--transport", arguments.transport, "udp, or shm for hosts without ROS 2 processes")
       ->check(CLI::IsMember({"udp", "shm"}));

@@ -4,7 +4,6 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
-#include <string_view>
 
 namespace lapis::config {
 namespace {
@@ -27,6 +26,15 @@ std::string hexadecimal_escape(char c) {
 }
 
 }  // namespace
+
+bool is_utf8(std::string_view text) {
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0 || text.front() == '\0') return false;
+    text.remove_prefix(length);
+  }
+  return true;
+}
 
 std::string quoted(const std::string& text) {
   std::string out = "\"";

@@ -4,6 +4,7 @@
 #include <initializer_list>
 #include <limits>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -34,6 +35,13 @@ struct Entry {
   Bound bound;
   std::string meaning;
 };
+
+/// What keys have to be to each other: whether they are, and how it reads, with the keys by their full paths.
+struct Rule {
+  bool holds;
+  std::string text;
+};
+using Rules = std::vector<Rule>;
 
 /// A key, or a section with all its keys, that configurations of before may hold.
 struct FormerKey {
@@ -81,6 +89,8 @@ class Schema {
   std::vector<FormerKey> former_;
 };
 
+/// Whether it is UTF-8 without NUL, as text is.
+bool is_utf8(std::string_view text);
 /// Text as a double-quoted YAML scalar; bytes that are not UTF-8 become the characters with their numbers.
 std::string quoted(const std::string& text);
 /// The entry's current value as YAML text.

@@ -13,6 +13,8 @@
 namespace lapis::config {
 namespace {
 
+constexpr std::uintmax_t kMaxFileBytes = 16u << 20;
+
 [[noreturn]] void fail(const std::string& source, const std::string& path, const std::string& problem) {
   throw Error(source + ": " + (path.empty() ? "" : path + ": ") + problem);
 }
@@ -21,8 +23,20 @@ std::string place(const std::string& source, const YAML::Node& node) {
   return node.Mark().is_null() ? source : source + ":" + std::to_string(node.Mark().line + 1);
 }
 
-bool is_inside(const Bound& bound, double number) {
-  return !std::isnan(number) && number >= bound.lowest && number <= bound.highest;
+template <class Value>
+bool allows(const Bound& bound, const Value& value) {
+  if constexpr (std::is_arithmetic_v<Value>) {
+    const auto number = static_cast<double>(value);
+    return !std::isnan(number) && number >= bound.lowest && number <= bound.highest;
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    return bound.words.empty() || std::find(bound.words.begin(), bound.words.end(), value) != bound.words.end();
+  } else {
+    return std::all_of(value.begin(), value.end(), [&](const auto& item) { return allows(bound, item); });
+  }
+}
+
+std::string refusal(const Bound& bound) {
+  return (bound.words.empty() ? " is out of range, allowed is " : " is not one of ") + bound.text();
 }
 
 /// Checks and stores one scalar or list; visited with the pointer to the target.
@@ -66,18 +80,13 @@ struct Store {
   template <class T>
   T bounded(const YAML::Node& item, const std::string& wanted) const {
     const T value = scalar<T>(item, wanted);
-    if (!is_inside(entry.bound, static_cast<double>(value))) {
-      reject(shown(item) + " is out of range, allowed is " + entry.bound.text());
-    }
+    if (!allows(entry.bound, value)) reject(shown(item) + refusal(entry.bound));
     return value;
   }
 
   std::string word(const YAML::Node& item) const {
     if (!item.IsScalar()) reject("text is needed");
-    const auto& words = entry.bound.words;
-    if (!words.empty() && std::find(words.begin(), words.end(), item.Scalar()) == words.end()) {
-      reject("'" + item.Scalar() + "' is not one of " + entry.bound.text());
-    }
+    if (!allows(entry.bound, item.Scalar())) reject(shown(item) + refusal(entry.bound));
     return item.Scalar();
   }
 };
@@ -155,20 +164,37 @@ YAML::Node parse(const std::string& text, const std::string& source) {
   }
 }
 
+/// The text with the value of each key that it names behind the key.
+std::string with_values(const Schema& schema, const std::string& text) {
+  std::istringstream words(text);
+  std::string out;
+  for (std::string word; words >> word;) {
+    const std::size_t end = word.find_last_not_of(',') + 1;
+    if (const Entry* entry = find(schema, word.substr(0, end))) word.insert(end, " (" + to_text(*entry) + ")");
+    out += (out.empty() ? "" : " ") + word;
+  }
+  return out;
+}
+
 }  // namespace
 
 void apply_text(const Schema& schema, const std::string& text, const std::string& source) {
   apply_node(schema, parse(text, source), "", source);
 }
 
-void apply_file(const Schema& schema, const std::string& file) {
-  std::ifstream in(file);
-  if (!in || std::filesystem::is_directory(file))
-    throw Error(file + ": cannot be read; give --config the path of an existing YAML file");
-  std::ostringstream text;
-  text << in.rdbuf();
-  apply_text(schema, text.str(), file);
+std::string read_text(const std::string& file) {
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(file, error);  // opening a pipe would wait for its other end
+  std::ifstream in;
+  if (is_file) in.open(file);
+  if (!in.is_open()) throw Error(file + ": cannot be read; give --config the path of an existing YAML file");
+  if (std::filesystem::file_size(file) > kMaxFileBytes) throw Error(file + ": is larger than 16 MiB");
+  std::string text{std::istreambuf_iterator<char>(in), {}};
+  if (!is_utf8(text)) throw Error(file + ": is not UTF-8 text");
+  return text;
 }
+
+void apply_file(const Schema& schema, const std::string& file) { apply_text(schema, read_text(file), file); }
 
 void apply_override(const Schema& schema, const std::string& assignment) {
   const std::string source = "--set " + assignment;
@@ -185,15 +211,14 @@ void apply_override(const Schema& schema, const std::string& assignment) {
 
 void check(const Schema& schema) {
   for (const auto& entry : schema.entries()) {
-    const auto number = std::visit(
-        [](const auto* value) -> std::optional<double> {
-          if constexpr (std::is_convertible_v<decltype(*value), double>) return static_cast<double>(*value);
-          return std::nullopt;
-        },
-        entry.value);
-    if (number && !is_inside(entry.bound, *number)) {
-      throw Error(entry.path + ": " + to_text(entry) + " is out of range, allowed is " + entry.bound.text());
-    }
+    if (std::visit([&](const auto* value) { return allows(entry.bound, *value); }, entry.value)) continue;
+    throw Error(entry.path + ": " + to_text(entry) + refusal(entry.bound));
+  }
+}
+
+void check(const Schema& schema, const Rules& rules) {
+  for (const auto& rule : rules) {
+    if (!rule.holds) throw Error(with_values(schema, rule.text));
   }
 }
 

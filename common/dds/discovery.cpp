@@ -11,8 +11,9 @@ namespace {
 int parse_domain(const std::string& text) {
   int domain = -1;
   const auto result = std::from_chars(text.data(), text.data() + text.size(), domain);
-  if (result.ec != std::errc() || result.ptr != text.data() + text.size() || domain < 0 || domain > 232) {
-    throw std::runtime_error("ROS_DOMAIN_ID='" + text + "' is not a number from 0 to 232");
+  if (result.ec != std::errc() || result.ptr != text.data() + text.size() || domain < 0 || domain > kLargestDomain) {
+    throw std::runtime_error("ROS_DOMAIN_ID='" + text + "' is not a number from 0 to " +
+                             std::to_string(kLargestDomain));
   }
   return domain;
 }

@@ -18,9 +18,6 @@ using compat::IPLocator;
 using compat::rtps::Locator_t;
 
 constexpr std::uint32_t kSharedMemorySegmentBytes = 16u << 20;  // ten times the largest image
-// rmw_fastrtps looks for 32 participants on each host. Fast DDS numbers those of one process without reusing numbers,
-// and each of ours takes two.
-constexpr std::uint32_t kPeersPerHost = 64;
 
 Locator_t peer_locator(const std::string& address) {
   Locator_t locator;

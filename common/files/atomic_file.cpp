@@ -47,12 +47,14 @@ bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-std::optional<std::string> write_part(const std::string& part, std::span<const std::uint8_t> bytes) {
+/// The reason, when it cannot be, names the file that it is a part of.
+std::optional<std::string> write_part(const std::string& part, const std::string& path,
+                                      std::span<const std::uint8_t> bytes) {
   Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
-  if (!file.is_open()) return reason(part, "cannot be created");
-  if (!write_all(file.get(), bytes)) return reason(part, "cannot be written");
-  if (::fsync(file.get()) != 0) return reason(part, "cannot be flushed");
-  if (!file.close()) return reason(part, "cannot be closed");
+  if (!file.is_open()) return reason(path, "cannot be created");
+  if (!write_all(file.get(), bytes)) return reason(path, "cannot be written");
+  if (::fsync(file.get()) != 0) return reason(path, "cannot be flushed");
+  if (!file.close()) return reason(path, "cannot be closed");
   return std::nullopt;
 }
 
@@ -60,7 +62,7 @@ std::optional<std::string> write_part(const std::string& part, std::span<const s
 
 std::optional<std::string> replace_file(const std::string& path, std::span<const std::uint8_t> bytes) {
   const std::string part = path + ".part";
-  std::optional<std::string> error = write_part(part, bytes);
+  std::optional<std::string> error = write_part(part, path, bytes);
   if (!error && ::rename(part.c_str(), path.c_str()) != 0) error = reason(path, "cannot be replaced");
   if (error) {
     ::unlink(part.c_str());

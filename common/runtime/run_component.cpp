@@ -37,7 +37,8 @@ struct Arguments {
 void add_common_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--config", arguments.config_files, "YAML configuration; later files win (repeatable)");
   app.add_option("--set", arguments.overrides, "set one value: path=value (repeatable)");
-  app.add_option("--domain", arguments.domain, "DDS domain; default: ROS_DOMAIN_ID or 0")->check(CLI::Range(0, 232));
+  app.add_option("--domain", arguments.domain, "DDS domain; default: ROS_DOMAIN_ID or 0")
+      ->check(CLI::Range(0, dds::kLargestDomain));
   app.add_option("--namespace", arguments.name_space, "robot name in front of topics and frames");
   app.add_option("--transport", arguments.transport, "udp, or shm for hosts without ROS 2 processes")
       ->check(CLI::IsMember({"udp", "shm"}));
@@ -46,7 +47,8 @@ void add_common_options(CLI::App& app, Arguments& arguments) {
   app.add_flag("--use-sim-time", arguments.use_sim_time, "take the time from /clock");
   app.add_flag("--print-config", arguments.print_config, "print the configuration in effect and exit");
   app.add_flag("--print-config-table", arguments.print_config_table, "the same as a table for the component's page");
-  app.add_flag("--check-config", arguments.check_config, "check the configuration and exit");
+  app.add_flag("--check-config", arguments.check_config,
+               "check the configuration, but no files that it names, and exit");
   app.set_version_flag("--version", std::string("lapis ") + kVersion);
 }
 
@@ -130,15 +132,13 @@ int spin(const ComponentFactory& factory, Context& context, const std::function<
   }
 }
 
-int set_up_and_spin(const ComponentFactory& factory, const config::Schema& schema, const Arguments& arguments,
-                    const DdsConfig& dds) {
+int set_up_and_spin(const ComponentFactory& factory, const ContextOptions& options) {
   SignalWaiter::block();          // before DDS starts its threads, which inherit the mask
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of write(), as a full disk is
   std::unique_ptr<Context> context;
   std::function<void()> finish;
   try {
-    const ContextOptions options = context_options(factory.name, arguments, dds);
-    log_setup(schema, options);
+    log_setup(factory.schema, options);
     context = std::make_unique<Context>(options);
     finish = factory.create(*context);
   } catch (const std::exception& error) {
@@ -162,6 +162,7 @@ int run(ComponentFactory factory, int argc, char** argv) {
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kAskedToStop : kBadSetup;
   }
+  ContextOptions options;
   try {
     logging::set_up(factory.name, arguments.log_level);
     dds::check_namespace(arguments.name_space);
@@ -169,6 +170,8 @@ int run(ComponentFactory factory, int argc, char** argv) {
     for (const auto& assignment : arguments.overrides) config::apply_override(factory.schema, assignment);
     app.parse(argc, argv);  // again: options of the component win over files
     config::check(factory.schema);
+    if (factory.rules) config::check(factory.schema, factory.rules());
+    options = context_options(factory.name, arguments, dds);
   } catch (const std::exception& error) {
     std::cerr << "lapis_" << factory.name << ": " << error.what() << '\n';
     return kBadSetup;
@@ -190,7 +193,7 @@ int run(ComponentFactory factory, int argc, char** argv) {
     std::cerr << "lapis_" << factory.name << ": " << error.what() << '\n';
     return kBadSetup;
   }
-  return set_up_and_spin(factory, factory.schema, arguments, dds);
+  return set_up_and_spin(factory, options);
 }
 
 }  // namespace lapis::runtime

@@ -34,6 +34,8 @@ struct ComponentFactory {
   config::Schema schema;  ///< without `dds.`
   /// Adds options and positionals of its own.
   std::function<void(CLI::App&)> add_options;
+  /// What its keys have to be to each other.
+  std::function<config::Rules()> rules;
   /// A job that needs no DDS (such as --list): exit status, or nothing to continue.
   std::function<std::optional<int>()> run_tool;
   /// Builds the component; the returned functions own it: what to do at the end, once spinning stopped.
@@ -46,7 +48,8 @@ int run(ComponentFactory factory, int argc, char** argv);
 
 /// `Component` has: `Config` (described for common/config), `kName`, `kSummary`, a constructor
 /// (const Config&, Context&), and, where needed, `static void add_options(CLI::App&, Config&)`,
-/// `static std::optional<int> run_tool(const Config&)` and `void finish()`, called when spinning has stopped.
+/// `static config::Rules rules(const Config&)`, `static std::optional<int> run_tool(const Config&)` and `void
+/// finish()`, called when spinning has stopped. What it is constructed with is within its bounds, and the rules hold.
 template <class Component>
 int run_component(int argc, char** argv) {
   using Config = typename Component::Config;
@@ -59,6 +62,9 @@ int run_component(int argc, char** argv) {
   if constexpr (requires { &Config::lockstep; }) factory.schema("lockstep", config.lockstep);
   if constexpr (requires(CLI::App & app) { Component::add_options(app, config); }) {
     factory.add_options = [&config](CLI::App& app) { Component::add_options(app, config); };
+  }
+  if constexpr (requires { Component::rules(config); }) {
+    factory.rules = [&config] { return Component::rules(config); };
   }
   if constexpr (requires { Component::run_tool(config); }) {
     factory.run_tool = [&config] { return Component::run_tool(config); };

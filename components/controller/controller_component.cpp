@@ -2,7 +2,6 @@
 
 #include <chrono>
 #include <numbers>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -32,23 +31,8 @@ RobotLimits limits_of(const robot::RobotDescription& robot) {
           robot.drive_lag_s + kTickLatencies / robot.camera.rate_hz};
 }
 
-void require(bool is_met, const std::string& what) {
-  if (!is_met) throw std::runtime_error(what);
-}
-
-/// What keys have to be to each other; without it the robot would not see what it drives into, or be blocked by
-/// turning.
 ControllerComponentConfig completed(ControllerComponentConfig config) {
-  LocalMapConfig& map = config.method.local_map;
-  map.max_height_m = config.robot.obstacle_max_height_m;
-  const FanConfig& fan = config.method.fan;
-  require(map.min_height_m < map.max_height_m,
-          "controller.local_map.min_height_m has to be less than robot.obstacle_max_height_m");
-  require(map.range_m >= fan.length_m + config.robot.radius_m + fan.margin_m,
-          "controller.local_map.range_m has to be at least controller.fan.length_m, robot.radius_m and "
-          "controller.fan.margin_m together");
-  require(config.method.progress_timeout_s > std::numbers::pi / config.robot.max_turn_rate_rad_s,
-          "controller.progress_timeout_s has to be longer than half a turn at robot.max_turn_rate_rad_s takes");
+  config.method.local_map.max_height_m = config.robot.obstacle_max_height_m;
   return config;
 }
 
@@ -58,6 +42,22 @@ time::Time steady_now() {
 }
 
 }  // namespace
+
+/// Without these the robot would not see what it drives into, or be blocked by turning.
+config::Rules ControllerComponent::rules(const Config& config) {
+  const LocalMapConfig& map = config.method.local_map;
+  const FanConfig& fan = config.method.fan;
+  const robot::RobotDescription& robot = config.robot;
+  return {{fan.groups % 2 == 1, "controller.fan.groups has to be odd"},
+          {fan.branches % 2 == 1, "controller.fan.branches has to be odd"},
+          {map.min_height_m < robot.obstacle_max_height_m,
+           "controller.local_map.min_height_m has to be less than robot.obstacle_max_height_m"},
+          {map.range_m >= fan.length_m + robot.radius_m + fan.margin_m,
+           "controller.local_map.range_m has to be at least controller.fan.length_m, robot.radius_m and "
+           "controller.fan.margin_m together"},
+          {config.method.progress_timeout_s > std::numbers::pi / robot.max_turn_rate_rad_s,
+           "controller.progress_timeout_s has to be longer than half a turn at robot.max_turn_rate_rad_s takes"}};
+}
 
 ControllerComponent::ControllerComponent(const Config& config, runtime::Context& context)
     : config_(completed(config)), context_(context), map_frame_(context.frame("map")),

@@ -18,6 +18,8 @@ class ControllerComponent {
   static constexpr const char* kName = "controller";
   static constexpr const char* kSummary = "Local planner: follows the planner's path among obstacles.";
 
+  static config::Rules rules(const Config& config);
+
   ControllerComponent(const Config& config, runtime::Context& context);
   void finish();
 

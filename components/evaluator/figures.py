@@ -435,9 +435,12 @@ FIGURES = {"map.png": draw_classes, "trajectory.png": draw_trajectory, "pose_gra
 def save(figure, path):
     """Written beside and renamed; without date or version, so that equal runs give equal pictures."""
     part = path.with_name(path.name + ".part")
-    figure.savefig(part, format="png", dpi=110, bbox_inches="tight", metadata={"Software": None})
-    plt.close(figure)
-    os.replace(part, path)
+    try:
+        figure.savefig(part, format="png", dpi=110, bbox_inches="tight", metadata={"Software": None})
+        os.replace(part, path)
+    finally:
+        plt.close(figure)
+        part.unlink(missing_ok=True)
 
 
 def main():
@@ -462,6 +465,8 @@ def main():
             drawn += 1
         except MissingInput as missing:
             print(f"figures: {name} left out: {missing}", file=sys.stderr)
+        except OSError as error:
+            print(f"figures: {name} cannot be written: {error.strerror}", file=sys.stderr)
     return 0 if drawn else 1
 
 

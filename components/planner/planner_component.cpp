@@ -1,7 +1,6 @@
 #include "planner/planner_component.hpp"
 
 #include <filesystem>
-#include <stdexcept>
 #include <utility>
 
 #include "common/files/atomic_file.hpp"
@@ -40,32 +39,6 @@ Sparsifier sparsifier_of(const std::string& name) {
   return name == "log_det" ? Sparsifier::kLogTrees : Sparsifier::kNone;
 }
 
-void require(bool is_met, const std::string& what) {
-  if (!is_met) throw std::runtime_error(what);
-}
-
-/// What keys have to be to each other; without it the planner would find nothing to do, or loops everywhere.
-void check(const PlannerComponentConfig& config) {
-  const ViewpointConfig& viewpoints = config.decision.viewpoints;
-  const HallucinationConfig& hallucination = config.decision.hallucination;
-  const GridConfig& grid = config.surroundings.grid;
-  const double least_clearance_m = grid.footprint_radius_m + grid.margin_m;
-  require(viewpoints.min_distance_m < viewpoints.max_distance_m,
-          "planner.viewpoints.min_distance_m has to be less than planner.viewpoints.max_distance_m");
-  require(hallucination.impossible_landmarks < hallucination.certain_landmarks,
-          "planner.hallucination.impossible_landmarks has to be less than planner.hallucination.certain_landmarks");
-  require(viewpoints.max_distance_m <= config.robot.sensing_range_m,
-          "planner.viewpoints.max_distance_m has to be at most robot.sensing_range_m");
-  require(config.explorer.slowest_m_s < config.robot.max_speed_m_s,
-          "planner.slowest_m_s has to be less than robot.max_speed_m_s");
-  require(grid.band.min_height_m < grid.band.max_height_m,
-          "robot.obstacle_min_height_m has to be less than robot.obstacle_max_height_m");
-  require(config.decision.path.comfort_m > least_clearance_m,
-          "planner.path.comfort_m has to be more than robot.radius_m and planner.grid.margin_m together");
-  require(config.decision.path.comfort_m <= grid.max_clearance_m,
-          "planner.path.comfort_m has to be at most planner.grid.max_clearance_m");
-}
-
 PlannerComponentConfig completed(PlannerComponentConfig config) {
   config.decision.method = *method_of(config.method == "lapis" ? kLapisMethod : config.method);
   config.surroundings.measure = measure_of(config.measure);
@@ -75,7 +48,6 @@ PlannerComponentConfig completed(PlannerComponentConfig config) {
   config.surroundings.grid.band = {config.robot.obstacle_min_height_m, config.robot.obstacle_max_height_m};
   config.decision.hallucination.covisibility.max_range_m = config.robot.sensing_range_m;
   config.explorer.path = config.decision.path;
-  check(config);
   return config;
 }
 
@@ -95,6 +67,28 @@ Tracking tracking_of(const lapis_msgs::msg::TrackedFrame& frame) {
 }
 
 }  // namespace
+
+/// Without these the planner would find nothing to do, or loops everywhere.
+config::Rules PlannerComponent::rules(const Config& config) {
+  const ViewpointConfig& viewpoints = config.decision.viewpoints;
+  const HallucinationConfig& hallucination = config.decision.hallucination;
+  const GridConfig& grid = config.surroundings.grid;
+  const robot::RobotDescription& robot = config.robot;
+  const double comfort_m = config.decision.path.comfort_m;
+  return {{viewpoints.min_distance_m < viewpoints.max_distance_m,
+           "planner.viewpoints.min_distance_m has to be less than planner.viewpoints.max_distance_m"},
+          {hallucination.impossible_landmarks < hallucination.certain_landmarks,
+           "planner.hallucination.impossible_landmarks has to be less than planner.hallucination.certain_landmarks"},
+          {viewpoints.max_distance_m <= robot.sensing_range_m,
+           "planner.viewpoints.max_distance_m has to be at most robot.sensing_range_m"},
+          {config.explorer.slowest_m_s < robot.max_speed_m_s,
+           "planner.slowest_m_s has to be less than robot.max_speed_m_s"},
+          {robot.obstacle_min_height_m < robot.obstacle_max_height_m,
+           "robot.obstacle_min_height_m has to be less than robot.obstacle_max_height_m"},
+          {comfort_m > robot.radius_m + grid.margin_m,
+           "planner.path.comfort_m has to be more than robot.radius_m and planner.grid.margin_m together"},
+          {comfort_m <= grid.max_clearance_m, "planner.path.comfort_m has to be at most planner.grid.max_clearance_m"}};
+}
 
 PlannerComponent::PlannerComponent(const Config& config, runtime::Context& context)
     : config_(completed(config)), context_(context), map_frame_(context.frame("map")),

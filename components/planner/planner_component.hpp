@@ -25,6 +25,8 @@ class PlannerComponent {
   static constexpr const char* kName = "planner";
   static constexpr const char* kSummary = "Exploration: semantic mutual information and the pose graph's spectrum.";
 
+  static config::Rules rules(const Config& config);
+
   PlannerComponent(const Config& config, runtime::Context& context);
   void finish();
 

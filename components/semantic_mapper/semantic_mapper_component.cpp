@@ -1,10 +1,13 @@
 #include "semantic_mapper/semantic_mapper_component.hpp"
 
+#include <spdlog/fmt/fmt.h>
+
 #include <cstdlib>
 #include <filesystem>
 
 #include "common/files/atomic_file.hpp"
 #include "common/mapping/map_file.hpp"
+#include "common/mapping/tile_codec.hpp"
 #include "common/messages/labels.hpp"
 #include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
@@ -38,6 +41,22 @@ std::uint64_t note(const mapping::MapFile& file, const char* key) {
 }
 
 }  // namespace
+
+/// Without these no frame would enter the map, or its tiles could not be read.
+config::Rules SemanticMapperComponent::rules(const Config& config) {
+  const MapperConfig& map = config.map;
+  constexpr int kMaxVoxelsPerTileEdge = mapping::kMaxBlocksPerTileEdge * mapping::kBlockEdge;
+  return {{map.integration.min_range_m < config.robot.sensing_range_m,
+           "semantic_mapper.integration.min_range_m has to be less than robot.sensing_range_m"},
+          {map.integration.min_height_m < map.integration.max_height_m,
+           "semantic_mapper.integration.min_height_m has to be less than semantic_mapper.integration.max_height_m"},
+          {config.robot.sensing_range_m / map.resolution_m <= mapping::kMaxRangeInVoxels,
+           fmt::format("robot.sensing_range_m has to be at most {} times semantic_mapper.resolution_m",
+                       mapping::kMaxRangeInVoxels)},
+          {map.tile_edge_m <= kMaxVoxelsPerTileEdge * map.resolution_m,
+           fmt::format("semantic_mapper.tile_edge_m has to be at most {} times semantic_mapper.resolution_m",
+                       kMaxVoxelsPerTileEdge)}};
+}
 
 SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), map_description_(context.advertise(topics::kMapDescription)),

@@ -23,6 +23,8 @@ class SemanticMapperComponent {
   static constexpr const char* kName = "semantic_mapper";
   static constexpr const char* kSummary = "Semantic voxel map that follows the pose graph.";
 
+  static config::Rules rules(const Config& config);
+
   SemanticMapperComponent(const Config& config, runtime::Context& context);
   void finish();
 

@@ -147,16 +147,17 @@ SimulationConfig simulation_config(const SimulatorConfig& config) {
   return out;
 }
 
-StartPose start_pose(const World& world, const SimulatorConfig& config) {
-  if (config.start.empty()) return draw_start(world, config.robot.radius_m, static_cast<std::uint64_t>(config.seed));
-  std::string_view text = config.start;
+std::optional<StartPose> given_start(std::string_view text) {
   const auto x = to_number<double>(take_word(text)), y = to_number<double>(take_word(text)),
              yaw_deg = to_number<double>(take_word(text));
   const bool is_pose = x && y && yaw_deg && std::isfinite(*x + *y + *yaw_deg) && trimmed(text).empty();
-  if (!is_pose) {
-    throw std::runtime_error(R"(simulator.start: must be "x y yaw_deg", not ")" + config.start + "\"");
-  }
-  return {{*x, *y}, *yaw_deg * std::numbers::pi / 180.0};
+  if (!is_pose) return std::nullopt;
+  return StartPose{{*x, *y}, *yaw_deg * std::numbers::pi / 180.0};
+}
+
+StartPose start_pose(const World& world, const SimulatorConfig& config) {
+  if (config.start.empty()) return draw_start(world, config.robot.radius_m, static_cast<std::uint64_t>(config.seed));
+  return given_start(config.start).value();
 }
 
 TourConfig tour_config(const SimulatorConfig& config) {

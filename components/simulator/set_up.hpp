@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "simulator/core/robot/tour_follower.hpp"
@@ -28,6 +29,8 @@ Scene open_scene(const SimulatorConfig& config);
 WorldConfig world_config(const Scene& scene, const SimulatorConfig& config);
 World open_world(const SimulatorConfig& config);
 SimulationConfig simulation_config(const SimulatorConfig& config);
+/// The pose that simulator.start gives as "x y yaw_deg"; nothing when it is none.
+std::optional<StartPose> given_start(std::string_view text);
 /// The configured start, else one that the seed draws.
 StartPose start_pose(const World& world, const SimulatorConfig& config);
 /// How this robot drives a tour.

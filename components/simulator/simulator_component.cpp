@@ -62,6 +62,10 @@ void SimulatorComponent::add_options(CLI::App& app, Config& config) {
   app.add_option("--export-tum", config.export_dir, "write the tour as a TUM RGB-D data set, and exit");
 }
 
+config::Rules SimulatorComponent::rules(const Config& config) {
+  return {{config.start.empty() || given_start(config.start), "simulator.start has to be \"x y yaw_deg\", or empty"}};
+}
+
 std::optional<int> SimulatorComponent::run_tool(const Config& config) { return run_scene_tool(config); }
 
 SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& context)

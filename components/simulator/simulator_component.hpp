@@ -28,6 +28,7 @@ class SimulatorComponent {
       "Tools on scenes, without DDS: --validate, --snapshot, --export-tum, --credits";
 
   static void add_options(CLI::App& app, Config& config);
+  static config::Rules rules(const Config& config);
   static std::optional<int> run_tool(const Config& config);
 
   SimulatorComponent(const Config& config, runtime::Context& context);

@@ -9,6 +9,8 @@
 #include <array>
 #include <csignal>
 
+#include "common/config/yaml.hpp"
+
 namespace lapis::supervisor {
 namespace {
 
@@ -93,7 +95,9 @@ PrintedConfiguration print_configuration(const std::filesystem::path& program, s
 std::vector<std::string> sections_of(const std::filesystem::path& file) {
   std::vector<std::string> sections;
   try {
-    for (const auto& item : YAML::LoadFile(file.string())) sections.push_back(item.first.Scalar());
+    for (const auto& item : YAML::Load(config::read_text(file.string()))) sections.push_back(item.first.Scalar());
+  } catch (const config::Error& error) {
+    throw BadSetup(error.what());
   } catch (const YAML::Exception& error) {
     throw BadSetup(file.string() + ": " + error.what() + "; wanted is a configuration file");
   }

@@ -168,9 +168,10 @@ int Supervisor::run() {
   if (start_all()) wait_until_over();
   progress_.end();
   end_all();
+  const int status = conclude();  // said also where the disk is full
   write_manifest();
   add_facts_to_metrics();
-  return conclude();
+  return status;
 }
 
 void Supervisor::start(Process& process, const Settings& more) {

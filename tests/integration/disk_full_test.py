@@ -1,7 +1,9 @@
 #!/usr/bin/env python3
-"""No space left while a map is saved: the error is clear, the old file stays whole, the process continues."""
+"""No space left while a map is saved: the error is clear, the old file stays whole, the process continues. A run ends with
+status 1 and the reason."""
 import errno
 import signal
+import threading
 import unittest
 from pathlib import Path
 
@@ -37,7 +39,7 @@ class SmallDisk:
 
 
 class DiskFullTest(chain.ChainTest):
-    """A small disk, and the probe."""
+    """A small disk."""
 
     def setUp(self):
         self.disk = SmallDisk(self.folder / "disk", self.folder / "disk.log")
@@ -45,12 +47,19 @@ class DiskFullTest(chain.ChainTest):
         if not self.disk.is_mounted:
             print("SKIPPED: a tmpfs cannot be mounted here (needs root):", self.disk.holder.output())
             raise unittest.SkipTest("a tmpfs cannot be mounted here (needs root)")
-        self.probe = self.started(chain.Process([chain.BIN / "lapis_stamp_probe"], self.folder / "probe.log"))
-        self.assertTrue(self.probe.wait_for_text("stamp_probe: ready"), self.probe.output())
 
     def started(self, process):
         self.addCleanup(process.kill)
         return process
+
+
+class ProcessDiskFullTest(DiskFullTest):
+    """One process on the small disk, and the probe."""
+
+    def setUp(self):
+        super().setUp()
+        self.probe = self.started(chain.Process([chain.BIN / "lapis_stamp_probe"], self.folder / "probe.log"))
+        self.assertTrue(self.probe.wait_for_text("stamp_probe: ready"), self.probe.output())
 
     def start_on_disk(self, name, *settings):
         """A process that writes on the small disk."""
@@ -66,7 +75,7 @@ class DiskFullTest(chain.ChainTest):
                                  "--rate", "1", "--set", f"sensor_replay.wait_for_readers={readers}"))
 
 
-class MapperDiskFullTest(DiskFullTest):
+class MapperDiskFullTest(ProcessDiskFullTest):
     def setUp(self):
         super().setUp()
         self.mapper = self.start_on_disk("semantic_mapper", "semantic_mapper.save_period_s=1")
@@ -130,7 +139,7 @@ class MapperDiskFullTest(DiskFullTest):
         self.assertEqual(sorted(path.name for path in self.disk.path.iterdir()), ["ballast", *MAP_FILES])
 
 
-class SlamDiskFullTest(DiskFullTest):
+class SlamDiskFullTest(ProcessDiskFullTest):
     def setUp(self):
         super().setUp()
         self.slam = self.start_on_disk("slam", "slam.autosave_period_s=0.5")
@@ -167,6 +176,53 @@ class SlamDiskFullTest(DiskFullTest):
         self.assertIn("No space left on device", self.slam.lines()[-1])
         self.saved_map()
         self.assertEqual(sorted(path.name for path in self.disk.path.iterdir()), ["ballast", "slam.lapis"])
+
+
+class RunDiskFullTest(DiskFullTest):
+    """explore.sh whose run folder is on the small disk."""
+
+    def explore(self, *options):
+        scene = self.folder / "flat.yaml"
+        scene.write_text(chain.FLAT, encoding="utf-8")
+        command = [*self.disk.enter, chain.REPOSITORY / "launch_scripts/explore.sh", "--scene", scene,
+                   "--out", self.folder / "disk/run", "--method", "nearest", *options]
+        return self.started(chain.Process(command, self.folder / "explore.log"))
+
+    def fill_until_the_end(self, run):
+        """Also what is freed meanwhile: a file that cannot be saved is removed."""
+        is_kept_full = threading.Event()
+
+        def fill():
+            while not is_kept_full.wait(0.1):
+                self.disk.fill()
+
+        filler = threading.Thread(target=fill, daemon=True)
+        filler.start()
+        status = run.wait(90)
+        is_kept_full.set()
+        filler.join()
+        return status
+
+    def assert_nothing_is_half_written(self, run):
+        self.assert_no_orphan(run)
+        self.assertEqual([str(path) for path in self.disk.path.rglob("*.part")], [], run.output())
+        self.assertNotIn(".part", run.output(), "a file that users do not know")
+
+    def test_disk_full_while_it_explores(self):
+        run = self.explore("--duration", "20")
+        self.assertTrue(run.wait_for_text(" m driven", 60), run.output())
+        self.assertEqual(self.fill_until_the_end(run), 1, run.output())
+        self.assertIn(f"{self.folder}/disk/run/manifest.yaml: cannot be written: No space left on device", run.output())
+        self.assertRegex(run.output(), r"explore.sh: \w+: failed with status 1; the end of ")
+        self.assert_nothing_is_half_written(run)
+        self.assertTrue((self.disk.path / "run/manifest.yaml").read_text(encoding="utf-8").startswith("version: "))
+
+    def test_disk_full_before_it_begins(self):
+        self.disk.fill()
+        run = self.explore()
+        self.assertEqual(run.wait(20), 2, run.output())
+        self.assertIn(f"{self.folder}/disk/run/manifest.yaml: cannot be written: No space left on device", run.output())
+        self.assert_nothing_is_half_written(run)
 
 
 if __name__ == "__main__":

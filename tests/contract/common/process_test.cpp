@@ -60,7 +60,7 @@ TEST(Process, WrongSetUpIsStatus2AndNamesTheCause) {
       {{"--set", "test_echo.tiles=-1"}, "0 to 10000"},
       {{"--set", "test_echo.tiles=many"}, "test_echo.tiles"},
       {{"--set", "test_echo.tiles"}, "test_echo.tiles"},
-      {{"--domain", "233"}, "233"},
+      {{"--domain", "232"}, "231"},
       {{"--domain", "x"}, "x"},
       {{"--namespace", "robot 1"}, "robot 1"},
       {{"--transport", "pigeon"}, "pigeon"},
@@ -72,6 +72,55 @@ TEST(Process, WrongSetUpIsStatus2AndNamesTheCause) {
     EXPECT_EQ(outcome.status, 2) << outcome.log;
     EXPECT_THAT(outcome.log, HasSubstr(cause));
     EXPECT_EQ(outcome.output, "") << "errors belong on standard error";
+  }
+}
+
+TEST(Process, RunsInTheLastDomain) {
+  for (const char* range : {"LOCALHOST", "SUBNET", "OFF"}) {
+    ChildProcess process("/usr/bin/env", {std::string("ROS_AUTOMATIC_DISCOVERY_RANGE=") + range,
+                                          (bin_dir() / kEchoProgram).string(), "--domain", "231"});
+    ASSERT_TRUE(wait_until_ready(process)) << process.log();
+    EXPECT_EQ(process.stop(SIGTERM), 0) << process.log();
+  }
+}
+
+TEST(Process, CheckConfigRefusesWhatTheStartRefuses) {
+  struct Case {
+    std::string name;
+    std::vector<std::string> arguments;
+    std::string reason;
+  };
+  const std::vector<Case> cases = {
+      {"planner",
+       {"--set", "planner.path.comfort_m=0.1"},
+       "planner.path.comfort_m (0.1) has to be more than robot.radius_m (0.2) and planner.grid.margin_m ("},
+      {"planner",
+       {"--set", "robot.obstacle_min_height_m=2"},
+       "robot.obstacle_min_height_m (2) has to be less than robot.obstacle_max_height_m (1.2)"},
+      {"controller",
+       {"--set", "controller.local_map.min_height_m=5"},
+       "controller.local_map.min_height_m (5) has to be less than robot.obstacle_max_height_m (1.2)"},
+      {"controller", {"--set", "controller.fan.groups=4"}, "controller.fan.groups (4) has to be odd"},
+      {"semantic_mapper",
+       {"--set", "semantic_mapper.integration.min_range_m=1", "--set", "robot.sensing_range_m=1"},
+       "semantic_mapper.integration.min_range_m (1) has to be less than robot.sensing_range_m (1)"},
+      {"semantic_mapper",
+       {"--set", "semantic_mapper.resolution_m=0.02", "--set", "robot.sensing_range_m=11"},
+       "robot.sensing_range_m (11) has to be at most 500 times semantic_mapper.resolution_m (0.02)"},
+      {"semantic_mapper",
+       {"--set", "semantic_mapper.resolution_m=0.02", "--set", "semantic_mapper.tile_edge_m=3"},
+       "semantic_mapper.tile_edge_m (3) has to be at most 128 times semantic_mapper.resolution_m (0.02)"},
+      {"simulator", {"--mode", "sideways"}, R"(simulator.mode: "sideways" is not one of lockstep | freerun)"},
+      {"simulator", {"--set", "simulator.start=here"}, R"(simulator.start ("here") has to be "x y yaw_deg", or empty)"},
+      {"slam", {"--config", "/dev/zero"}, "/dev/zero: cannot be read"}};
+  for (const auto& [name, arguments, reason] : cases) {
+    for (const bool is_asked : {true, false}) {
+      auto all = arguments;
+      if (is_asked) all.emplace_back("--check-config");
+      ChildProcess process("lapis_" + name, all);
+      EXPECT_EQ(process.wait(), 2) << process.log();
+      EXPECT_THAT(process.log(), HasSubstr("lapis_" + name + ": " + reason)) << (is_asked ? "asked" : "started");
+    }
   }
 }
 

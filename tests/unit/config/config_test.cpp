@@ -1,5 +1,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 
 #include <filesystem>
 #include <fstream>
@@ -8,6 +9,7 @@
 
 #include "common/config/schema.hpp"
 #include "common/config/yaml.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lapis::config {
 namespace {
@@ -142,6 +144,22 @@ TEST_F(ConfigTest, ValuesFromElsewhereAreChecked) {
   config_.tracker.iterations = 1;
   config_.tracker.max_depth_m = std::numeric_limits<double>::quiet_NaN();
   EXPECT_THAT(error_of([&] { check(schema_); }), HasSubstr("slam.tracker.max_depth_m"));
+  config_.tracker.max_depth_m = 1.0;
+  config_.mode = "sideways";
+  EXPECT_EQ(error_of([&] { check(schema_); }), "slam.mode: \"sideways\" is not one of fast | exact");
+  config_.mode = "fast";
+  config_.limits = {1, 11};
+  EXPECT_THAT(error_of([&] { check(schema_); }), AllOf(HasSubstr("slam.limits: [1, 11]"), HasSubstr("0 to 10")));
+}
+
+TEST_F(ConfigTest, BrokenRuleTellsTheValuesOfTheKeysThatItNames) {
+  config_.tracker.max_depth_m = 0.5;
+  const Rule good{true, "slam.seed has to be 7"};
+  EXPECT_EQ(error_of([&] { check(schema_, {good}); }), "no error");
+  EXPECT_EQ(error_of([&] {
+              check(schema_, {good, {false, "slam.tracker.max_depth_m, slam.seeds and slam.mode differ"}});
+            }),
+            "slam.tracker.max_depth_m (0.5), slam.seeds and slam.mode (\"fast\") differ");
 }
 
 TEST_F(ConfigTest, WrongTypesAreErrors) {
@@ -162,6 +180,34 @@ TEST_F(ConfigTest, MissingFileAndBrokenYamlNameTheFile) {
               HasSubstr("cannot be read"));
   EXPECT_THAT(error_of_text("slam: {seed: 1}\n---\nslam: {seed: 2}\n"), HasSubstr("more than one YAML document"));
   EXPECT_THAT(error_of_text("slam: [unclosed"), AllOf(HasSubstr("robot.yaml"), HasSubstr("not valid YAML")));
+}
+
+TEST_F(ConfigTest, FileThatIsNoTextIsRefused) {
+  const test::TemporaryFolder folder;
+  const std::string file = (folder.path() / "robot.yaml").string();
+  const auto error_of_file = [&](std::string_view bytes) {
+    std::ofstream(file, std::ios::binary) << bytes;
+    return error_of([&] { apply_file(schema_, file); });
+  };
+  using std::string_view_literals::operator""sv;
+  for (const auto bytes : {"\xff\xfe#\0\n\0"sv, "\xfe\xff\0#\0\n"sv, "#\0\n\0"sv, "\0#\0\n"sv, "\0\0\xfe\xff\0\0\0#"sv,
+                           "slam: {seed: 1}\n\0"sv, "# caf\xe9\n"sv}) {
+    EXPECT_EQ(error_of_file(bytes), file + ": is not UTF-8 text") << testing::PrintToString(bytes);
+  }
+  EXPECT_EQ(error_of_file("\xef\xbb\xbf# caf\xc3\xa9 \xe2\x82\xac \xf0\x9f\xa4\x96\nslam: {seed: 9}\n"), "no error");
+  EXPECT_EQ(config_.seed, 9);
+  EXPECT_EQ(error_of_file(std::string(16 << 20, '\n')), "no error");
+  EXPECT_EQ(error_of_file(std::string((16 << 20) + 1, '\n')), file + ": is larger than 16 MiB");
+}
+
+TEST_F(ConfigTest, PathThatIsNoFileIsRefusedAtOnce) {
+  const test::TemporaryFolder folder;
+  const std::string pipe = (folder.path() / "pipe").string();
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& path : {std::string("/dev/zero"), pipe, folder.path().string(), pipe + "/robot.yaml",
+                                  std::string(5000, 'x'), std::string()}) {
+    EXPECT_THAT(error_of([&] { apply_file(schema_, path); }), HasSubstr(path + ": cannot be read")) << path;
+  }
 }
 
 TEST_F(ConfigTest, GarbageIsRefusedOrApplied) {

@@ -27,10 +27,10 @@ TEST(Discovery, DefaultsAreDomainZeroOnTheSubnet) {
   }
 }
 
-TEST(Discovery, DomainIsANumberFrom0To232) {
+TEST(Discovery, DomainIsANumberFrom0To231) {
   EXPECT_EQ(settings({{"ROS_DOMAIN_ID", "42"}}).domain, 42);
-  EXPECT_EQ(settings({{"ROS_DOMAIN_ID", "232"}}).domain, 232);
-  for (const char* bad : {"233", "-1", "x", "4 ", " 4", "0x10", "1e1", "99999999999999"}) {
+  EXPECT_EQ(settings({{"ROS_DOMAIN_ID", "231"}}).domain, 231);
+  for (const char* bad : {"232", "-1", "x", "4 ", " 4", "0x10", "1e1", "99999999999999"}) {
     EXPECT_THROW(settings({{"ROS_DOMAIN_ID", bad}}), std::runtime_error) << bad;
   }
 }

@@ -136,6 +136,14 @@ class Figures(unittest.TestCase):
         result, drawn = self.draw()
         self.assertEqual((result.returncode, result.stderr, drawn), (0, "", ALL - {"decision.png"}))
 
+    def test_a_full_disk_leaves_no_part_of_a_figure(self):
+        (self.run_folder / "figures").mkdir()
+        for name in ALL:
+            (self.run_folder / f"figures/{name}.part").symlink_to("/dev/full")
+        result, drawn = self.draw()
+        self.assertEqual((result.returncode, drawn), (1, set()))
+        self.assertIn("map.png cannot be written: No space left on device", result.stderr)
+
     def test_damaged_files_are_no_crash(self):
         for path in list(self.run_folder.iterdir()):
             path.write_bytes(path.read_bytes()[: path.stat().st_size // 2 - 3])

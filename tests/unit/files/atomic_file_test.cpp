@@ -13,6 +13,15 @@
 namespace lapis::files {
 namespace {
 
+TEST(ReplaceFile, ThatCannotBeIsNamedAndLeavesNothing) {
+  const test::TemporaryFolder folder;
+  const auto full = folder.path() / "full";
+  std::filesystem::create_symlink("/dev/full", full.string() + ".part");
+  EXPECT_EQ(replace_file(full.string(), std::vector<std::uint8_t>(10)),
+            full.string() + ": cannot be written: No space left on device");
+  EXPECT_TRUE(std::filesystem::is_empty(folder.path()));
+}
+
 TEST(RequireWritableFolder, IsNotDisturbedByOthersThatTryTheSameFolder) {
   const test::TemporaryFolder folder;
   std::atomic<int> refused = 0;

@@ -8,15 +8,20 @@
 namespace lapis::runtime {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::HasSubstr;
 
 struct ProbeConfig {
   int speed = 3;
+  int limit = 9;
+  std::string gear = "low";
 };
 
 template <class Field>
 void describe(Field& field, ProbeConfig& c) {
   field("speed", c.speed, config::in_range(1, 9), "how fast");
+  field("limit", c.limit, config::in_range(1, 9), "of speed");
+  field("gear", c.gear, config::one_of({"low", "high"}), "which");
 }
 
 // A component whose tool mode ends the process before any DDS is set up.
@@ -24,7 +29,13 @@ struct ProbeComponent {
   using Config = ProbeConfig;
   static constexpr const char* kName = "probe";
   static constexpr const char* kSummary = "ends at once";
-  static void add_options(CLI::App& app, Config& c) { app.add_option("--speed", c.speed); }
+  static void add_options(CLI::App& app, Config& c) {
+    app.add_option("--speed", c.speed);
+    app.add_option("--gear", c.gear);
+  }
+  static config::Rules rules(const Config& c) {
+    return {{c.speed <= c.limit, "probe.speed has to be at most probe.limit"}};
+  }
   ProbeComponent(const Config&, Context&) { ADD_FAILURE() << "the tool should have ended the process"; }
   static std::optional<int> run_tool(const Config& c) {
     std::cout << "speed " << c.speed << '\n';
@@ -70,10 +81,29 @@ TEST(CommandLine, BadSetUpIsStatus2AndOneHelpfulLine) {
   EXPECT_THAT(out_of_range.err, HasSubstr("1 to 9"));
   EXPECT_EQ(run_probe({"--set", "probe.speed"}).status, 2);
   EXPECT_EQ(run_probe({"--namespace", "robot 1"}).status, 2);
-  EXPECT_EQ(run_probe({"--domain", "233"}).status, 2);
+  const auto domain = run_probe({"--domain", "232"});
+  EXPECT_EQ(domain.status, 2);
+  EXPECT_THAT(domain.err, AllOf(HasSubstr("--domain: Value 232 not in range"), HasSubstr("231")));
   EXPECT_EQ(run_probe({"--transport", "pigeon"}).status, 2);
   EXPECT_EQ(run_probe({"--config", "no_such_file.yaml"}).status, 2);
   EXPECT_EQ(run_probe({"--nonsense"}).status, 2);
+}
+
+TEST(CommandLine, CheckConfigRefusesWhatTheStartRefuses) {
+  const std::vector<std::pair<std::vector<std::string>, std::string>> cases = {
+      {{"--set", "probe.speed=5", "--set", "probe.limit=4"}, "probe.speed (5) has to be at most probe.limit (4)"},
+      {{"--gear", "sideways"}, R"(probe.gear: "sideways" is not one of low | high)"},
+      {{"--config", "/dev/zero"}, "/dev/zero: cannot be read; give --config the path of an existing YAML file"}};
+  for (const auto& [arguments, reason] : cases) {
+    for (const char* question : {"", "--check-config", "--print-config"}) {
+      auto asked = arguments;
+      if (*question != '\0') asked.emplace_back(question);
+      const auto refused = run_probe(asked);
+      EXPECT_EQ(refused.status, 2) << question;
+      EXPECT_EQ(refused.err, "lapis_probe: " + reason + "\n") << question;
+      EXPECT_EQ(refused.out, "") << question;
+    }
+  }
 }
 
 TEST(CommandLine, QuestionsAreAnsweredWithStatus0) {

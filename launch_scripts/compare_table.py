@@ -1,16 +1,19 @@
 #!/usr/bin/env python3
-"""Prints the table of compare.sh from the metrics.json of run folders DIR/VARIANT/RUN.
+"""Prints the table of compare.sh from the run folders in DIR/VARIANT.
 
 usage: compare_table.py DIR VARIANT...
+
+What a run is of is in its metrics.json and manifest.yaml; its folder's name says nothing.
 """
 
-import json
+import collections
 import pathlib
 import random
 import statistics
 import sys
 
 import usage
+from benchmark_table import FolderRun
 
 CIRCUMSTANCES = {  # of a run: format, value
     "path m": ("{:.1f}", lambda m: m["path_length_m"]),
@@ -27,11 +30,18 @@ FIGURES = {  # of which differences are shown
 RESAMPLES = 10_000
 
 
-def metrics_of(folder):
-    """None for a run that is not there or has failed."""
-    if not (folder / "identity").exists():
-        return None
-    return json.loads((folder / "metrics.json").read_text())
+def runs_of(folder, variants):
+    """Metrics by scene or data set with its seed, then by variant, None for a run that is not there or has failed; and the
+    folders of runs that have failed."""
+    runs, failed = collections.defaultdict(lambda: dict.fromkeys(variants)), []
+    for name in variants:
+        for run in (FolderRun(path) for path in sorted((folder / name).iterdir()) if path.is_dir()):
+            if run.has_failed:
+                failed.append(run.folder)
+            else:
+                runs[run.scene if run.seed == "-" else f"{run.scene}_{run.seed}"][name] = run.metrics
+    order = sorted(runs, key=lambda title: (title.rstrip("0123456789"), len(title), title))
+    return {title: runs[title] for title in order}, failed
 
 
 def value_of(metrics, function):
@@ -81,16 +91,16 @@ def print_differences(runs, variants, title):
 def main():
     folder, *variants = usage.arguments(__doc__, least=2)
     folder = pathlib.Path(folder)
-    names = {path.name for name in variants for path in (folder / name).iterdir() if path.is_dir()}
-    order = sorted(names, key=lambda name: (name.rstrip("0123456789"), len(name), name))
-    runs = {run: {name: metrics_of(folder / name / run) for name in variants} for run in order}
+    runs, failed = runs_of(folder, variants)
     print_runs(runs, variants)
     print_differences(runs, variants, "All runs")
     closed = {run: by_variant for run, by_variant in runs.items()
               if (value_of(by_variant[variants[0]], CIRCUMSTANCES["loops"][1]) or 0) > 0}
     if 0 < len(closed) < len(runs):
         print_differences(closed, variants, f"Runs in which {variants[0]} closed a loop")
-    return 0 if all(m is not None for by_variant in runs.values() for m in by_variant.values()) else 1
+    for run in failed:
+        print(f"failed: {run}", file=sys.stderr)
+    return 0 if all(m is not None for by_variant in runs.values() for m in by_variant.values()) and not failed else 1
 
 
 if __name__ == "__main__":

@@ -255,7 +255,7 @@ TEST(PlannerSetUp, KeysThatContradictEachOtherAreNamed) {
   }
 }
 
-/// Drives around with a door that opens and one that closes; what it wrote, and all paths.
+/// Drives around with a door that opens and one that closes; what it wrote, and all paths that lead somewhere.
 struct Story {
   Story() {
     PlannerRun run;
@@ -269,7 +269,9 @@ struct Story {
     }
     is_complete = is_complete && run.planner->stop(SIGTERM) == 0;
     log = run.planner->log();
-    paths = run.paths;
+    // Not the empty path of its start: the next one replaces it unless the reader was matched before.
+    std::copy_if(run.paths.begin(), run.paths.end(), std::back_inserter(paths),
+                 [](const nav_msgs::msg::Path& path) { return !path.poses().empty(); });
     csv = read(folder.path() / "decisions.csv");
   }
 

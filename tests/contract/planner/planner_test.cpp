@@ -1,6 +1,7 @@
 // lapis_planner alone: it chooses frontiers, says why, obeys, and ends.
 #include <gmock/gmock.h>
 
+#include <algorithm>
 #include <csignal>
 #include <filesystem>
 #include <fstream>

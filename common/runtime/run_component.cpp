@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 
 #include <pthread.h>
+#include <semaphore.h>
 
 #include <atomic>
 #include <csignal>
@@ -79,37 +80,51 @@ void log_setup(const config::Schema& schema, const ContextOptions& options) {
   }
 }
 
-/// Receives SIGINT and SIGTERM in one thread and ends the run. Every other thread has them blocked.
+/// Ends the run on SIGINT or SIGTERM. A handler receives them, in whatever thread: blocking them in ours does not keep
+/// them from the threads that a library started before main(), as OpenBLAS does, and there they would end the process.
 class SignalWaiter {
  public:
   explicit SignalWaiter(Context& context) {
     thread_ = std::thread([this, &context] {
-      int signal = 0;
-      do sigwait(&set(), &signal);
-      while (signal == SIGUSR2 && !is_over_);  // somebody else's SIGUSR2 must not make us deaf
-      if (signal != SIGUSR2) context.stop(signal == SIGINT);
+      pthread_sigmask(SIG_UNBLOCK, &signals(), nullptr);
+      while (sem_wait(&has_come) != 0) {
+      }
+      if (!is_over_) context.stop(newest == SIGINT);
     });
   }
   ~SignalWaiter() {
     is_over_ = true;
-    pthread_kill(thread_.native_handle(), SIGUSR2);  // ends the wait when no signal came
+    sem_post(&has_come);  // ends the wait when no signal came
     thread_.join();
   }
   SignalWaiter(const SignalWaiter&) = delete;
   SignalWaiter& operator=(const SignalWaiter&) = delete;
 
-  static void block() { pthread_sigmask(SIG_BLOCK, &set(), nullptr); }
+  /// From here on signals wait for a SignalWaiter. Threads inherit the mask: their system calls are not interrupted.
+  static void prepare() {
+    sem_init(&has_come, 0, 0);
+    std::signal(SIGINT, remember);
+    std::signal(SIGTERM, remember);
+    pthread_sigmask(SIG_BLOCK, &signals(), nullptr);
+  }
 
  private:
-  static const sigset_t& set() {
-    static const sigset_t signals = [] {
+  static void remember(int signal) {
+    newest = signal;
+    sem_post(&has_come);
+  }
+  static const sigset_t& signals() {
+    static const sigset_t both = [] {
       sigset_t s;
       sigemptyset(&s);
-      for (const int signal : {SIGINT, SIGTERM, SIGUSR2}) sigaddset(&s, signal);
+      for (const int signal : {SIGINT, SIGTERM}) sigaddset(&s, signal);
       return s;
     }();
-    return signals;
+    return both;
   }
+
+  static inline sem_t has_come;
+  static inline std::atomic<int> newest{0};
   std::atomic<bool> is_over_{false};
   std::thread thread_;
 };
@@ -133,7 +148,7 @@ int spin(const ComponentFactory& factory, Context& context, const std::function<
 }
 
 int set_up_and_spin(const ComponentFactory& factory, const ContextOptions& options) {
-  SignalWaiter::block();          // before DDS starts its threads, which inherit the mask
+  SignalWaiter::prepare();        // before DDS starts its threads
   std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of write(), as a full disk is
   std::unique_ptr<Context> context;
   std::function<void()> finish;

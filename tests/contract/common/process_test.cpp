@@ -47,11 +47,12 @@ TEST(Process, EndsEvenWhenAskedBeforeItIsReady) {
   EXPECT_EQ(process.stop(SIGTERM, Seconds(5)), 0) << process.log();
 }
 
-TEST(Process, ForeignSignalDoesNotMakeItDeafToSigterm) {
-  ChildProcess process(kEchoProgram);
-  ASSERT_TRUE(wait_until_ready(process)) << process.log();
-  process.signal(SIGUSR2);
-  EXPECT_EQ(process.stop(SIGTERM, Seconds(3)), 0) << process.log();
+TEST(Process, EndsWhenAskedThoughALibraryHasThreadsOfItsOwn) {
+  for (const int signal : {SIGTERM, SIGINT}) {
+    ChildProcess process("lapis_test_early_thread");
+    ASSERT_TRUE(process.wait_for_line("ready")) << process.log();
+    EXPECT_EQ(process.stop(signal), 0) << process.log();
+  }
 }
 
 TEST(Process, WrongSetUpIsStatus2AndNamesTheCause) {

@@ -8,7 +8,7 @@ usage() {
 usage: docker/check.sh [--mirror URL]
 Makes a Debian 12 root by debootstrap, tags it docker.io/library/debian:bookworm-slim (nothing is pulled), builds
 docker/runtime/Dockerfile on it and runs explore.sh --duration 20 in the image. Images stay in a folder under build/docker, which is
-removed at the end. Needs root, the packages debootstrap and buildah, 10 GB, and an hour on two cores.
+removed at the end. Needs root, the packages debootstrap and buildah, 10 GB, and a quarter of an hour on two cores.
   --mirror URL  of Debian; default: where this machine gets its packages
 TEXT
 }

@@ -256,7 +256,8 @@ TEST(PlannerSetUp, KeysThatContradictEachOtherAreNamed) {
   }
 }
 
-/// Drives around with a door that opens and one that closes; what it wrote, and all paths that lead somewhere.
+/// Drives around with a door that opens and one that closes; what it wrote, and all paths from the first that leads
+/// somewhere.
 struct Story {
   Story() {
     PlannerRun run;
@@ -270,9 +271,9 @@ struct Story {
     }
     is_complete = is_complete && run.planner->stop(SIGTERM) == 0;
     log = run.planner->log();
-    // Not the empty path of its start: the next one replaces it unless the reader was matched before.
-    std::copy_if(run.paths.begin(), run.paths.end(), std::back_inserter(paths),
-                 [](const nav_msgs::msg::Path& path) { return !path.poses().empty(); });
+    // Without the empty path of its start: the next one replaces it unless the reader was matched before.
+    const auto leads = [](const nav_msgs::msg::Path& path) { return !path.poses().empty(); };
+    paths.assign(std::find_if(run.paths.begin(), run.paths.end(), leads), run.paths.end());
     csv = read(folder.path() / "decisions.csv");
   }
 

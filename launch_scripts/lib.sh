@@ -11,10 +11,10 @@ die() {
   exit 2
 }
 
-# Builds release when there is none yet; a build that lacks a program is bad set-up.
+# Builds release when there is none yet and LAPIS_BIN names no other programs; a build that lacks a program is bad set-up.
 require_build() {
   local program
-  [ -x "$bin/lapis_slam" ] || "$repository/launch_scripts/setup.sh"
+  [ -n "${LAPIS_BIN:-}" ] || [ -x "$bin/lapis_slam" ] || "$repository/launch_scripts/setup.sh"
   for program in "${programs[@]}"; do
     [ -x "$bin/lapis_$program" ] || die "no program $bin/lapis_$program; launch_scripts/setup.sh builds build/release/bin"
   done

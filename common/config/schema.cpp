@@ -22,7 +22,7 @@ std::size_t utf8_length(std::string_view text) {
 std::string hexadecimal_escape(char c) {
   static constexpr char kDigits[] = "0123456789abcdef";
   const auto byte = static_cast<unsigned char>(c);
-  return {'\\', 'x', kDigits[byte >> 4], kDigits[byte & 15]};
+  return {'\\', 'u', '0', '0', kDigits[byte >> 4], kDigits[byte & 15]};  // in JSON, too
 }
 
 }  // namespace

@@ -91,7 +91,7 @@ class Schema {
 
 /// Whether it is UTF-8 without NUL, as text is.
 bool is_utf8(std::string_view text);
-/// Text as a double-quoted YAML scalar; bytes that are not UTF-8 become the characters with their numbers.
+/// Text as a double-quoted YAML scalar, which JSON reads, too; bytes that are not UTF-8 become the characters with their numbers.
 std::string quoted(const std::string& text);
 /// The entry's current value as YAML text.
 std::string to_text(const Entry& entry);

@@ -41,7 +41,7 @@ void add_options(CLI::App& app, Options& options, Request& request) {
   app.add_flag("--restart", request.may_restart, "a process that dies or hangs is started again");
   app.add_option("--config", request.configuration, "YAML file, for the processes that know its sections (repeatable)");
   app.add_option("--set", options.settings, "KEY=VALUE for the processes that know KEY (repeatable)");
-  app.add_option("--fact", options.facts, "NAME=VALUE for manifest.yaml and metrics.json (repeatable)");
+  app.add_option("--fact", options.facts, "NAME=VALUE, a text for manifest.yaml and metrics.json (repeatable)");
   app.add_option("--command", request.command, "what the user called, for messages and manifest.yaml");
   app.add_option("--programs", request.programs, "folder of the programs; default: that of this one");
   for (const char* repeatable : {"--variant", "--config", "--set", "--fact"}) {

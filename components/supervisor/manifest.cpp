@@ -1,6 +1,5 @@
 #include "supervisor/manifest.hpp"
 
-#include <charconv>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -10,11 +9,10 @@
 namespace lapis::supervisor {
 namespace {
 
-std::optional<double> number_in(const std::string& text) {
-  double value = 0.0;
-  const char* end = text.data() + text.size();
-  const auto [last, error] = std::from_chars(text.data(), end, value);
-  return error == std::errc() && last == end ? std::optional(value) : std::nullopt;
+/// Text and numbers of JSON are those of config::quoted and of --print-config; what is left (.inf) is text.
+nlohmann::ordered_json json_of(const std::string& scalar) {
+  auto value = nlohmann::ordered_json::parse(scalar, nullptr, false);
+  return value.is_discarded() ? nlohmann::ordered_json(scalar) : value;
 }
 
 std::string indented(const std::string& text, const std::string& indent) {
@@ -30,7 +28,7 @@ std::string to_yaml(const Manifest& manifest, const std::string& simulation) {
   std::string out = "version: " + config::quoted(std::string("lapis ") + kVersion) + "\n";
   out += "command: " + config::quoted(manifest.command) + "\nrun:\n";
   for (const auto& [name, value] : manifest.facts) {
-    out += "  " + name + ": " + (number_in(value) ? value : config::quoted(value)) + "\n";
+    out += "  " + name + ": " + value + "\n";
   }
   out += "exit_status:\n";
   for (const auto& process : manifest.processes) {
@@ -48,21 +46,10 @@ std::string to_yaml(const Manifest& manifest, const std::string& simulation) {
   return out;
 }
 
-std::string with_facts(const std::string& metrics, const std::map<std::string, std::string>& facts) {
+std::string with_facts(const std::string& metrics, const Facts& facts) {
   auto json = nlohmann::ordered_json::parse(metrics);
   nlohmann::ordered_json run;
-  for (const auto& [name, value] : facts) {
-    std::int64_t whole = 0;
-    const char* end = value.data() + value.size();
-    const auto [last, error] = std::from_chars(value.data(), end, whole);
-    if (error == std::errc() && last == end) {
-      run[name] = whole;
-    } else if (const auto number = number_in(value)) {
-      run[name] = *number;
-    } else {
-      run[name] = value;
-    }
-  }
+  for (const auto& [name, value] : facts) run[name] = json_of(value);
   json["run"] = run;
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }

@@ -9,10 +9,14 @@
 
 namespace lapis::supervisor {
 
+/// Scene, method, seed, commit, ... of a run as YAML scalars. What is text is in quotes, whatever it looks like: the
+/// commit 6007e82 is no number.
+using Facts = std::map<std::string, std::string>;
+
 /// What manifest.yaml says of a run.
 struct Manifest {
-  std::string command;                       ///< that started it
-  std::map<std::string, std::string> facts;  ///< scene, method, seed, commit, ...
+  std::string command;  ///< that started it
+  Facts facts;
   struct Process {
     std::string name;
     std::optional<int> status;  ///< none while it runs
@@ -27,6 +31,6 @@ std::string to_yaml(const Manifest& manifest, const std::string& simulation);
 
 /// Adds the facts of a run to the metrics of its evaluation, as section "run". Returns the new content. Throws
 /// std::runtime_error when `metrics` is not JSON.
-std::string with_facts(const std::string& metrics, const std::map<std::string, std::string>& facts);
+std::string with_facts(const std::string& metrics, const Facts& facts);
 
 }  // namespace lapis::supervisor

@@ -9,6 +9,7 @@
 #include <array>
 #include <csignal>
 
+#include "common/config/schema.hpp"
 #include "common/config/yaml.hpp"
 
 namespace lapis::supervisor {
@@ -56,8 +57,10 @@ std::optional<int> run(const std::filesystem::path& program, std::vector<std::st
   return WEXITSTATUS(status);
 }
 
+constexpr const char* kTextTag = "!";  // of a scalar in quotes
+
 std::string value_text(const YAML::Node& node) {
-  if (node.IsScalar()) return node.Scalar();
+  if (node.IsScalar()) return node.Tag() == kTextTag ? config::quoted(node.Scalar()) : node.Scalar();
   YAML::Emitter out;
   out << YAML::Flow << node;
   return out.c_str();

@@ -143,18 +143,15 @@ double Supervisor::usual_silence() const {
   }
 }
 
-std::map<std::string, std::string> Supervisor::facts() const {
-  std::map<std::string, std::string> facts = {{"system", system_.name}};
+Facts Supervisor::facts() const {
+  Facts facts = {{"system", config::quoted(system_.name)}};
   for (const auto& [name, key] : system_.facts) {
-    for (const auto& setting : settings_) {
-      if (setting.key == key) facts[name] = setting.value;
-    }
     for (const auto& process : processes_) {
       const auto value = process.configuration.values.find(key);
       if (value != process.configuration.values.end()) facts[name] = value->second;
     }
   }
-  for (const auto& [name, value] : request_.facts) facts[name] = value;
+  for (const auto& [name, text] : request_.facts) facts[name] = config::quoted(text);
   return facts;
 }
 

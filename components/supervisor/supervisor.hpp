@@ -29,7 +29,7 @@ struct Request {
   bool may_restart = false;
   std::vector<std::string> configuration;  ///< files, after those of the system
   Settings settings;                       ///< after those of the system
-  std::map<std::string, std::string> facts;
+  std::map<std::string, std::string> facts;  ///< name -> text
   std::string command;  ///< what was called, for messages
 };
 
@@ -61,7 +61,7 @@ class Supervisor {
   Settings all_settings() const;
   void collect_arguments();
   double usual_silence() const;
-  std::map<std::string, std::string> facts() const;
+  Facts facts() const;
 
   // The run
   void start(Process& process, const Settings& more = {});

@@ -2,15 +2,26 @@
 """benchmark.sh: a row for each run, what is done is not done again, and a run that fails is a row, too."""
 import csv
 
+import os
+
 import chain
+
+COMMIT = "6007e82"  # which looks like a number
 
 
 class BenchmarkTest(chain.ChainTest):
+    def setUp(self):
+        super().setUp()
+        git = self.folder / "programs/git"
+        git.parent.mkdir()
+        git.write_text(f"#!/bin/sh\necho {COMMIT}\n", encoding="utf-8")
+        git.chmod(0o755)
+
     def benchmark(self, *options, status=0):
         scene = self.folder / "flat.yaml"
         scene.write_text(chain.FLAT)
-        command = [chain.REPOSITORY / "launch_scripts/benchmark.sh", "--scenes", f"{scene}:10", "--methods", "nearest",
-                   "--out", self.folder / "benchmark", *options]
+        command = ["env", f"PATH={self.folder}/programs:{os.environ['PATH']}", chain.REPOSITORY / "launch_scripts/benchmark.sh", "--scenes", f"{scene}:10",
+                   "--methods", "nearest", "--out", self.folder / "benchmark", *options]
         run = chain.Process(command, self.folder / "benchmark.log")
         self.addCleanup(run.kill)
         self.assertEqual(run.wait(150), status, run.output())
@@ -23,6 +34,7 @@ class BenchmarkTest(chain.ChainTest):
     def test_what_is_done_is_not_done_again(self):
         _, rows = self.benchmark("--runs", "1")
         self.assertEqual([(row["seed"], row["outcome"]) for row in rows], [("1", "time up")])
+        self.assertEqual(rows[0]["commit"].removesuffix("-not-built"), COMMIT)
         done = self.stamp_of(1)
         metrics = chain.metrics_of(self.folder / "benchmark/flat/nearest/seed_1")
         output, rows = self.benchmark("--runs", "2")

@@ -44,7 +44,7 @@ for method in ${methods//,/ }; do # bad set-up shows before hours of work
   [ "$method" = tour ] || "$bin/lapis_planner" --set "planner.method=$method" --check-config >/dev/null || exit 2
 done
 export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
-mkdir -p "$out" || die "$out cannot be made a folder; choose another with --out DIR"
+lock_folder "$out"
 read -r load _ </proc/loadavg
 folders=()
 
@@ -63,7 +63,8 @@ benchmark() {
   done
 }
 
-for entry in ${scenes//,/ }; do
+IFS=, read -ra entries <<<"$scenes"
+for entry in "${entries[@]}"; do
   seconds=300
   if [[ $entry =~ :([0-9]+)$ ]]; then seconds=${BASH_REMATCH[1]}; fi
   for method in ${methods//,/ }; do benchmark "${entry%:"$seconds"}" "$seconds" "$method"; done

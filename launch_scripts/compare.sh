@@ -56,15 +56,19 @@ for variant in "${variants[@]}"; do
 done
 for folder in "${data[@]}"; do [ -d "$folder" ] || die "--data $folder: no such folder"; done
 require_build
+lock_folder "$out"
 export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
 
 # play TITLE WHAT ARGUMENT...: to every variant. WHAT is the scene or data set on which the results depend.
 play() {
   local title=$1 what=$2 variant name words setting settings identity
   shift 2
+  [[ " ${titles[*]} " != *" $title "* ]] || die "two scenes or data sets are called $title"
+  titles+=("$title")
   for variant in "${variants[@]}"; do
     read -ra words <<<"$variant"
     name=${words[0]} settings=()
+    played+=("$name=$out/$name/$title")
     for setting in "${words[@]:1}"; do settings+=(--set "$setting"); done
     identity=$(identity_of "$what" "$@" "${settings[@]}")
     if has_run "$out/$name/$title" "$identity"; then continue; fi
@@ -79,12 +83,13 @@ play() {
 render() {
   if [ "$1" != "$tour" ] || [ -d "$tour" ]; then return; fi
   mkdir -p "$out/tours"
-  "$bin/lapis_simulator" "$scene" --seed "$seed" --export-tum "$tour.part" >"$tour.log"
+  setpriv --pdeathsig TERM "$bin/lapis_simulator" "$scene" --seed "$seed" --export-tum "$tour.part" >"$tour.log"
   mv "$tour.part" "$tour"
 }
 
-tour=""
-for scene in ${scenes//,/ }; do
+tour="" titles=() played=()
+IFS=, read -ra entries <<<"$scenes"
+for scene in "${entries[@]}"; do
   for ((seed = first; seed < first + runs; ++seed)); do
     title=$(basename "$scene" .yaml)_$seed
     if [ -z "$is_recorded" ]; then
@@ -98,4 +103,4 @@ for scene in ${scenes//,/ }; do
   done
 done
 for folder in "${data[@]}"; do play "$(basename "$folder")" "$folder" "$folder"; done
-exec "$repository/launch_scripts/compare_table.py" "$out" "${names[@]}"
+exec "$repository/launch_scripts/compare_table.py" "${played[@]}"

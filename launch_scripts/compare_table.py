@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Prints the table of compare.sh from the run folders in DIR/VARIANT.
+"""Prints the table of compare.sh: runs of several variants side by side, and the differences to the first variant.
 
-usage: compare_table.py DIR VARIANT...
+usage: compare_table.py VARIANT=RUN_FOLDER...
 
 What a run is of is in its metrics.json and manifest.yaml; its folder's name says nothing.
 """
@@ -30,16 +30,16 @@ FIGURES = {  # of which differences are shown
 RESAMPLES = 10_000
 
 
-def runs_of(folder, variants):
-    """Metrics by scene or data set with its seed, then by variant, None for a run that is not there or has failed; and the
-    folders of runs that have failed."""
-    runs, failed = collections.defaultdict(lambda: dict.fromkeys(variants)), []
-    for name in variants:
-        for run in (FolderRun(path) for path in sorted((folder / name).iterdir()) if path.is_dir()):
-            if run.has_failed:
-                failed.append(run.folder)
-            else:
-                runs[run.scene if run.seed == "-" else f"{run.scene}_{run.seed}"][name] = run.metrics
+def runs_of(folders):
+    """Of (variant, folder): metrics by scene or data set with its seed, then by variant, None for a run that is not there
+    or has failed; and the folders of runs that have failed."""
+    runs, failed = collections.defaultdict(lambda: dict.fromkeys(name for name, _ in folders)), []
+    for name, folder in folders:
+        run = FolderRun(pathlib.Path(folder))
+        if run.has_failed:
+            failed.append(run.folder)
+        else:
+            runs[run.scene if run.seed == "-" else f"{run.scene}_{run.seed}"][name] = run.metrics
     order = sorted(runs, key=lambda title: (title.rstrip("0123456789"), len(title), title))
     return {title: runs[title] for title in order}, failed
 
@@ -89,9 +89,11 @@ def print_differences(runs, variants, title):
 
 
 def main():
-    folder, *variants = usage.arguments(__doc__, least=2)
-    folder = pathlib.Path(folder)
-    runs, failed = runs_of(folder, variants)
+    folders = [argument.split("=", 1) for argument in usage.arguments(__doc__, least=2)]
+    if any(len(pair) != 2 for pair in folders):
+        sys.exit("compare_table.py: wanted is VARIANT=RUN_FOLDER (see --help)")
+    variants = list(dict.fromkeys(name for name, _ in folders))
+    runs, failed = runs_of(folders)
     print_runs(runs, variants)
     print_differences(runs, variants, "All runs")
     closed = {run: by_variant for run, by_variant in runs.items()

@@ -38,11 +38,18 @@ describe_commit() {
 # identity_of SCENE WORD...: what the results of a scene depend on; other programs, settings or scenes give another.
 identity_of() {
   {
-    cat "${programs[@]/#/$bin/lapis_}" "$repository"/config/{robot.yaml,scenes/*,labels/*}
+    cat "${programs[@]/#/$bin/lapis_}" "$repository"/config/{robot.yaml,run.yaml,systems/*,scenes/*,labels/*}
     if [ -f "$1" ]; then cat "$1"; fi
     ls -l /usr/share/sweethome3d/furniture 2>/dev/null || echo "parametric furniture"
     echo "${@:2}"
   } | sha256sum | cut -c 1-16
+}
+
+# lock_folder FOLDER: makes it, for this script alone until it ends.
+lock_folder() {
+  mkdir -p "$1" || die "$1 cannot be made a folder; choose another with --out DIR"
+  exec {folder_lock}<"$1"
+  flock --nonblock "$folder_lock" || die "$1 is in use by another benchmark.sh or compare.sh; choose another with --out DIR"
 }
 
 # has_run FOLDER IDENTITY: whether FOLDER has a good run of that identity.
@@ -58,7 +65,7 @@ play_once() {
   if has_run "$folder" "$identity"; then return 0; fi
   rm -f "$folder/identity" "$folder/metrics.json"
   setpriv --pdeathsig TERM "$repository/launch_scripts/$script" "$@" --out "$folder" >"$folder.log" 2>&1 || status=$?
-  [ $status -lt 128 ] || exit $status
+  case $status in 130 | 143) exit $status ;; esac
   if [ $status -eq 0 ]; then echo "$identity" >"$folder/identity"; else tail -n 3 "$folder.log" >&2; fi
 }
 

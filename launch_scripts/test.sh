@@ -8,7 +8,8 @@ usage() {
   cat <<TEXT
 usage: launch_scripts/test.sh [--tier unit|contract|integration|interop|long]
   --tier NAME  only this tier; default: all of them but long
-  long: tests that take over a minute, and clang-tidy on any number of changed files; docs/long_tests.md gets the results
+  long: tests that take over a minute, contract tests with AddressSanitizer and UndefinedBehaviorSanitizer, and clang-tidy on
+  any number of changed files; docs/long_tests.md gets the results
 Environment: LAPIS_TEST_DATA, the folder of recorded test data (default ../shared/data beside the repository, when it
 exists); tests that need it are skipped without it.
 TEXT
@@ -56,11 +57,23 @@ run_tier() {
   fi
 }
 
-check_statically() {
-  local result=Passed began=$SECONDS
-  echo "== clang-tidy"
-  .ci/tidy || { result=Failed && failed+=(clang-tidy); }
-  rows+=$'\n'"| clang-tidy on changed files | $((SECONDS - began)) | $result |"
+# check NAME COMMAND...: of the long tier, no test of ctest.
+check() {
+  local name="$1" result=Passed began=$SECONDS status
+  shift
+  echo "== $name"
+  set +e
+  (set -e; "$@")
+  status=$?
+  set -e
+  [[ $status -eq 0 ]] || { result=Failed && failed+=("$name"); }
+  rows+=$'\n'"| $name | $((SECONDS - began)) | $result |"
+}
+
+test_contracts_sanitized() {
+  cmake --preset asan
+  cmake --build --preset asan
+  UBSAN_OPTIONS=print_stacktrace=1 ctest --preset asan -L contract --no-tests=error
 }
 
 write_results() {
@@ -78,7 +91,11 @@ TEXT
 }
 
 for tier in "${tiers[@]}"; do run_tier "$tier"; done
-if [[ "${tiers[*]}" == long ]]; then check_statically && write_results; fi
+if [[ "${tiers[*]}" == long ]]; then
+  check "contract tests with ASan and UBSan" test_contracts_sanitized
+  check "clang-tidy on changed files" .ci/tidy
+  write_results
+fi
 echo
 printf '%s\n' "${summaries[@]}"
 reasons="$(sed '/^$/d' <<<"$reasons" | sort | uniq -c | sed 's/^ *\([0-9]*\) /\1 x /' | paste -sd ';' | sed 's/;/; /g')"

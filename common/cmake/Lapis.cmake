@@ -42,6 +42,8 @@ function(lapis_executable name)
   target_link_libraries(${name} PRIVATE ${A_LINK} lapis_warnings)
 endfunction()
 
+add_custom_target(unit_tests)
+
 # lapis_unit_test(<name> SOURCES <file>... [LINK <target>...])
 # A GoogleTest executable of the unit tier: no DDS, no shared data needed to pass. One for a folder, not one for a file: the
 # sources are compiled together (CONTRIBUTING.md, "The compiler's work"), and every executable links OpenCV and the like.
@@ -50,6 +52,7 @@ function(lapis_unit_test name)
   add_executable(${name} ${A_SOURCES})
   target_link_libraries(${name} PRIVATE ${A_LINK} GTest::gtest GTest::gmock GTest::gtest_main lapis_warnings)
   target_compile_options(${name} PRIVATE ${LAPIS_TEST_OPTIMISATION})
+  add_dependencies(unit_tests ${name})
   add_test(NAME unit.${name} COMMAND ${name})
   set_tests_properties(unit.${name} PROPERTIES LABELS unit TIMEOUT 300)
 endfunction()

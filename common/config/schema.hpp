@@ -30,7 +30,7 @@ using Numbers = std::vector<double>;
 
 /// One configuration value: where it is, what it may be, what it means.
 struct Entry {
-  std::string path;  ///< "slam.tracker.max_depth_m"
+  std::string path;  ///< "slam.noise.max_depth_m"
   std::variant<bool*, int*, std::int64_t*, double*, std::string*, Words*, Numbers*> value;
   Bound bound;
   std::string meaning;
@@ -91,7 +91,8 @@ class Schema {
 
 /// Whether it is UTF-8 without NUL, as text is.
 bool is_utf8(std::string_view text);
-/// Text as a double-quoted YAML scalar, which JSON reads, too; bytes that are not UTF-8 become the characters with their numbers.
+/// Text as a double-quoted YAML scalar, which JSON reads, too; bytes that are not UTF-8 become the characters with
+/// their numbers.
 std::string quoted(const std::string& text);
 /// The entry's current value as YAML text.
 std::string to_text(const Entry& entry);

@@ -424,7 +424,7 @@ struct Walk {
   }
 };
 
-/// One byte per cell of the box, x fastest; not zero where a ray passed.
+/// One byte per cell of the box, x fastest; not zero where a ray gives a miss.
 struct Marks {
   std::uint8_t* cells;
   std::array<std::ptrdiff_t, 3> pitch;
@@ -471,7 +471,7 @@ double depth_sigma_m(double depth_m, const IntegrationConfig& config) {
   return config.depth_noise_per_m * depth_m * depth_m;
 }
 
-/// Share of the way to a measured point within which cells may be passed.
+/// Share of a ray up to its measured point within which cells may get a miss.
 double free_share(double range_voxels, double depth_m, const IntegrationConfig& config, double resolution_m) {
   const double margin_voxels = config.end_margin_voxels + 2.0 * depth_sigma_m(depth_m, config) / resolution_m;
   return 1.0 - margin_voxels / range_voxels;

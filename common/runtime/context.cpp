@@ -62,7 +62,7 @@ void Context::fail(const std::string& reason) {
 }
 
 void Context::stop(bool is_in_a_hurry) {
-  is_in_a_hurry_ = is_in_a_hurry;
+  if (is_in_a_hurry) is_in_a_hurry_ = true;
   executor_.stop();
 }
 

@@ -80,16 +80,17 @@ void log_setup(const config::Schema& schema, const ContextOptions& options) {
   }
 }
 
-/// Ends the run on SIGINT or SIGTERM. A handler receives them, in whatever thread: blocking them in ours does not keep
-/// them from the threads that a library started before main(), as OpenBLAS does, and there they would end the process.
+/// Ends the run on SIGINT or SIGTERM, and lets its end be hurried by a SIGINT that comes then. A handler receives them,
+/// in whatever thread: blocking them in ours does not keep them from the threads that a library started before main(),
+/// as OpenBLAS does, and there they would end the process.
 class SignalWaiter {
  public:
   explicit SignalWaiter(Context& context) {
     thread_ = std::thread([this, &context] {
       pthread_sigmask(SIG_UNBLOCK, &signals(), nullptr);
-      while (sem_wait(&has_come) != 0) {
+      while (!is_over_) {
+        if (sem_wait(&has_come) == 0 && !is_over_) context.stop(newest == SIGINT);
       }
-      if (!is_over_) context.stop(newest == SIGINT);
     });
   }
   ~SignalWaiter() {
@@ -131,10 +132,8 @@ class SignalWaiter {
 
 int spin(const ComponentFactory& factory, Context& context, const std::function<void()>& finish) {
   try {
-    {
-      const SignalWaiter waiter(context);
-      context.run();
-    }
+    const SignalWaiter waiter(context);
+    context.run();
     finish();
     spdlog::info("stopped");
     return context.exit_status();

@@ -9,7 +9,7 @@ namespace lapis::topics {
 inline constexpr dds::Topic<diagnostic_msgs::msg::DiagnosticArray> kDiagnostics{
     "/diagnostics",
     dds::kState,
-    "all",
+    "all but the supervisor",
     "1 Hz and on change",
     "health, counters, CPU time and memory of the process",
     true};

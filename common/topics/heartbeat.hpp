@@ -8,7 +8,7 @@ namespace lapis::topics {
 // The life of every process.
 inline constexpr dds::Topic<lapis_msgs::msg::Heartbeat> kHeartbeat{"/heartbeat",
                                                                    dds::kLatchedByMany,
-                                                                   "all",
+                                                                   "all but the supervisor",
                                                                    "2 Hz and before long work",
                                                                    "life, phase and activity, for the supervisor",
                                                                    true};

@@ -310,7 +310,7 @@ void EvaluatorComponent::finish() {
   std::cout << format_table(m) << std::flush;
   if (!config_.figures) return;
   if (context_.is_in_a_hurry()) return spdlog::info("figures are left out; {}", figures_command(config_.output_dir));
-  draw_figures(config_.output_dir);
+  draw_figures(config_.output_dir, [this] { return context_.is_in_a_hurry(); });
 }
 
 }  // namespace lapis::evaluator

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws figures/*.png of a run folder: trajectory over the map, errors over time, IoU per class.
+"""Draws figures/*.png of a run folder: map, trajectory, pose graph, coverage, errors, IoU by class, a decision.
 
 A figure whose input files are missing is left out, with a line saying which file; exit status 0 when at least one
 figure was drawn, 1 when none was, 2 when the folder does not exist.

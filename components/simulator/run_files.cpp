@@ -86,8 +86,9 @@ void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const
 }
 
 void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config, double resolution_m,
-                 const std::filesystem::path& folder) {
+                 const std::filesystem::path& folder, const std::stop_token& cancelled) {
   TruthConfig truth;
+  truth.cancelled = cancelled;
   truth.resolution_m = resolution_m;
   truth.sensing_range_m = config.robot.sensing_range_m;
   truth.robot_radius_m = config.robot.radius_m;
@@ -96,7 +97,7 @@ void write_truth(const World& world, const StartPose& start, const SimulatorConf
   truth.threads = config.render_threads;
   const auto T = T_world_start(world, start);
   const auto volumes = make_voxel_truth(world.scene(), world.raycaster(), world.nav_map(), T, truth);
-  write_scene_truth(folder, world.scene(), world.nav_map(), T, volumes);
+  if (!cancelled.stop_requested()) write_scene_truth(folder, world.scene(), world.nav_map(), T, volumes);
 }
 
 }  // namespace lapis::simulator

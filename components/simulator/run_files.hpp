@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <map>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "simulator/core/simulation.hpp"
@@ -42,9 +43,9 @@ mapping::MapDescription default_map(const SimulatorConfig& config);
 void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const StartPose& start,
             const SimulatorConfig& config);
 /// Writes the ground truth of a scene, as far as it does not depend on the run's path, into a folder whose parent
-/// exists.
+/// exists; nothing when it is cancelled before it is complete.
 /// @throws std::runtime_error naming the file that cannot be written
 void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config, double resolution_m,
-                 const std::filesystem::path& folder);
+                 const std::filesystem::path& folder, const std::stop_token& cancelled = {});
 
 }  // namespace lapis::simulator

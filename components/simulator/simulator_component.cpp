@@ -28,6 +28,8 @@ namespace {
 constexpr double kProgressPeriod_s = 2.0;
 constexpr double kLongestLoading_s = 900.0;  // a large scan, light baked
 constexpr double kLongestTruth_s = 900.0;
+constexpr double kHurriedTruth_s = 3.0;
+constexpr std::chrono::milliseconds kHurryPeriod(50);
 constexpr std::chrono::milliseconds kMatchingPeriod(50);
 
 double seconds_between(std::chrono::steady_clock::time_point a, std::chrono::steady_clock::time_point b) {
@@ -282,8 +284,21 @@ void SimulatorComponent::begin_truth() {
 /// The ground truth of the scene, in a thread of its own: the run does not wait for it.
 void SimulatorComponent::make_truth(double resolution_m) {
   truth_ = std::async(std::launch::async, [this, resolution_m] {
-    write_truth(world_, start_, config_, resolution_m, truth_folder(config_));
+    write_truth(world_, start_, config_, resolution_m, truth_folder(config_), truth_cancelled_.get_token());
   });
+}
+
+/// Not for long when somebody waits for the end.
+void SimulatorComponent::await_truth() {
+  std::optional<Clock::time_point> hurried_since;
+  while (truth_.wait_for(kHurryPeriod) != std::future_status::ready) {
+    if (!hurried_since && context_.is_in_a_hurry()) hurried_since = Clock::now();
+    if (!hurried_since || seconds_between(*hurried_since, Clock::now()) < kHurriedTruth_s) continue;
+    spdlog::warn("ground truth takes too long and is left out; lapis_simulator --ground-truth DIR makes it");
+    truth_cancelled_.request_stop();
+    break;
+  }
+  truth_.get();
 }
 
 void SimulatorComponent::finish() {
@@ -293,7 +308,7 @@ void SimulatorComponent::finish() {
   }
   const runtime::LongWork work(context_.heart(), "makes the ground truth", kLongestTruth_s);
   try {
-    if (truth_.valid()) truth_.get();
+    if (truth_.valid()) await_truth();
   } catch (const std::exception& error) {
     fail(error.what());
   }

@@ -4,6 +4,7 @@
 #include <future>
 #include <memory>
 #include <optional>
+#include <stop_token>
 #include <string>
 
 #include "common/mapping/map_description.hpp"
@@ -25,7 +26,7 @@ class SimulatorComponent {
   static constexpr const char* kName = "simulator";
   static constexpr const char* kSummary =
       "Simulates an RGB-D robot in a furnished building.\n"
-      "Tools on scenes, without DDS: --validate, --snapshot, --export-tum, --credits";
+      "Tools on scenes, without DDS: --validate, --snapshot, --export-tum, --ground-truth, --credits";
 
   static void add_options(CLI::App& app, Config& config);
   static config::Rules rules(const Config& config);
@@ -53,6 +54,7 @@ class SimulatorComponent {
   void report_progress(bool is_last);
   void begin_truth();
   void make_truth(double resolution_m);
+  void await_truth();
   void fail(const std::string& reason);
   void write_files();
 
@@ -80,6 +82,7 @@ class SimulatorComponent {
   std::optional<Clock::time_point> running_since_;  // the first frame, or the last pause
   Clock::time_point due_;                           // of the next tick by the wall clock
   Clock::time_point reported_;
+  std::stop_source truth_cancelled_;
   std::future<void> truth_;  // of the scene is being written; last: its thread uses what is above
 };
 

@@ -20,8 +20,8 @@ constexpr int kCannotStart = 127;
   setsid();
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(kCannotStart);
-  std::signal(SIGINT,
-              SIG_DFL);  // a shell ignores it for what it starts in the background, and what is ignored is inherited
+  // What is ignored is inherited: by a shell SIGINT, for what it starts in the background; by the supervisor SIGPIPE.
+  for (const int signal : {SIGINT, SIGPIPE}) std::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
   sigprocmask(SIG_SETMASK, &none, nullptr);

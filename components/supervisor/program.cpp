@@ -53,8 +53,8 @@ std::optional<int> run(const std::filesystem::path& program, std::vector<std::st
   const int failure = posix_spawn(&child, name.c_str(), &actions, nullptr, pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
   int status = 0;
-  if (failure != 0 || waitpid(child, &status, 0) != child || !WIFEXITED(status)) return std::nullopt;
-  return WEXITSTATUS(status);
+  if (failure != 0 || waitpid(child, &status, 0) != child) return std::nullopt;
+  return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
 constexpr const char* kTextTag = "!";  // of a scalar in quotes
@@ -88,7 +88,8 @@ PrintedConfiguration print_configuration(const std::filesystem::path& program, s
   if (*status != 0) {
     std::string reason = err.text();
     while (!reason.empty() && reason.back() == '\n') reason.pop_back();
-    throw BadSetup(reason);
+    throw BadSetup(!reason.empty() ? reason
+                                   : program.string() + " --print-config ended with status " + std::to_string(*status));
   }
   PrintedConfiguration printed{out.text(), {}};
   flatten(YAML::Load(printed.text), "", printed.values);

@@ -1,8 +1,11 @@
 #include "supervisor/supervisor.hpp"
 
+#include <algorithm>
 #include <csignal>
+#include <cstring>
 #include <ctime>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <sstream>
 
@@ -16,7 +19,9 @@ constexpr std::chrono::milliseconds kTurn(50);
 constexpr double kAbsent_s = 1.0;          // a loop that took longer has not listened: the machine or we were stopped
 constexpr double kHurriedSilence_s = 2.0;  // in a hurry, for one that announces nothing
 constexpr double kHurry_s = 9.0;           // from Ctrl-C to the end of everything
+constexpr double kInOrder_s = 4.0;         // of these: processes end one after the other; then all are asked
 constexpr int kBadSetupStatus = 2;
+constexpr const char* kManifest = "manifest.yaml";
 
 const sigset_t& ending_signals() {
   static const sigset_t signals = [] {
@@ -24,6 +29,9 @@ const sigset_t& ending_signals() {
     sigemptyset(&set);
     sigaddset(&set, SIGINT);
     sigaddset(&set, SIGTERM);
+    struct sigaction hangup {};  // ignored under nohup, whose runs outlive their terminal
+    sigaction(SIGHUP, nullptr, &hangup);
+    if (hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);
     return set;
   }();
   return signals;
@@ -45,8 +53,7 @@ dds::ParticipantOptions participant_options() {
 
 std::string seconds_text(double seconds) {
   std::ostringstream out;
-  out.precision(2);
-  out << seconds << " s";
+  out << std::fixed << std::setprecision(1) << seconds << " s";
   return out.str();
 }
 
@@ -68,7 +75,10 @@ void append(std::vector<std::string>& arguments, const Settings& settings) {
 
 }  // namespace
 
-void block_signals() { pthread_sigmask(SIG_BLOCK, &ending_signals(), nullptr); }
+void block_signals() {
+  pthread_sigmask(SIG_BLOCK, &ending_signals(), nullptr);
+  std::signal(SIGPIPE, SIG_IGN);  // who reads the output may end before the run does: Ctrl-C ends all of `... | tee`
+}
 
 Supervisor::Supervisor(System system, Request request)
     : system_(std::move(system)), request_(std::move(request)),
@@ -78,12 +88,17 @@ Supervisor::Supervisor(System system, Request request)
   executor_.add(heartbeats_);
   for (const auto& name : system_.processes) processes_.emplace_back().name = name;
   settings_ = all_settings();
+  const bool has_results = exists(folder_.path() / kManifest);
+  if (!has_results) write_manifest();  // of a run that does not come about, too
+  collect_arguments();
+  usual_silence_s_ = usual_silence();
+  if (has_results) clear_folder();  // only now: an earlier run outlives one that is refused
+}
+
+void Supervisor::clear_folder() const {
   std::vector<std::filesystem::path> kept;  // an earlier run's maps that this one resumes
   for (const auto& setting : settings_) kept.emplace_back(setting.value);
   folder_.clear(system_.results, kept);
-  write_manifest();  // of a run that does not come about, too
-  collect_arguments();
-  usual_silence_s_ = usual_silence();
 }
 
 /// In the order in which they win.
@@ -100,21 +115,35 @@ Settings Supervisor::all_settings() const {
   return settings;
 }
 
+/// Configuration files in the order in which they win, each with the processes that get it.
+std::vector<std::pair<std::string, std::set<std::string>>> Supervisor::configuration_files(
+    const Configurations& known) const {
+  std::vector<std::pair<std::string, std::set<std::string>>> files;
+  const auto add = [&](const std::string& file) {
+    try {
+      files.emplace_back(file, readers_of(known, sections_of(file)));
+    } catch (const UnknownSetting& error) {
+      throw BadSetup(file + ": " + error.what());
+    }
+  };
+  for (const auto& file : system_.configuration) add(file);
+  for (const auto& file : request_.configuration) add(file);
+  return files;
+}
+
 /// Of each process, from what it can be set to. Everybody who writes files gets the run folder.
 void Supervisor::collect_arguments() {
   const auto program = [&](const std::string& name) { return request_.programs / ("lapis_" + name); };
   Configurations known;
   for (const auto& process : processes_) known[process.name] = print_configuration(program(process.name), {}).values;
   const auto routed = route(known, settings_);
-  auto files = system_.configuration;
-  files.insert(files.end(), request_.configuration.begin(), request_.configuration.end());
+  const auto files = configuration_files(known);
   std::string stages;
   for (const auto& stage : system_.stages) stages += (stages.empty() ? "[" : ", ") + stage;
   for (auto& process : processes_) {
     const Configuration& keys = known.at(process.name);
-    for (const auto& file : files) {
-      if (knows_sections(keys, sections_of(file)))
-        process.arguments.insert(process.arguments.end(), {"--config", file});
+    for (const auto& [file, readers] : files) {
+      if (readers.contains(process.name)) process.arguments.insert(process.arguments.end(), {"--config", file});
     }
     const std::string out_key = process.name + ".output_dir";
     if (keys.contains(out_key)) append(process.arguments, {{out_key, folder_.path().string()}});
@@ -146,6 +175,9 @@ double Supervisor::usual_silence() const {
 Facts Supervisor::facts() const {
   Facts facts = {{"system", config::quoted(system_.name)}};
   for (const auto& [name, key] : system_.facts) {
+    for (const auto& setting : settings_) {  // of a run that is refused nothing else is known
+      if (setting.key == key) facts[name] = config::quoted(setting.value);
+    }
     for (const auto& process : processes_) {
       const auto value = process.configuration.values.find(key);
       if (value != process.configuration.values.end()) facts[name] = value->second;
@@ -260,7 +292,7 @@ void Supervisor::look_after(Process& process) {
   process.child->kill();
   if (restart(process, *process.child->status(), what)) return;
   process.status = process.child->status();
-  hurried_s_ = now_s();
+  if (is_source) hurried_s_ = now_s();
   fail(process, what + " and was killed");
 }
 
@@ -288,18 +320,27 @@ void Supervisor::end_all() {
   for (auto& process : processes_) end(process);
 }
 
+/// SIGINT when the end is wanted soon, which may come after SIGTERM.
+void Supervisor::ask_to_end(Process& process) {
+  const int signal = is_in_a_hurry() ? SIGINT : SIGTERM;
+  if (!process.child || process.child->status() || process.asked_by == signal) return;
+  process.child->send(signal);
+  process.pulse->ask_to_end(now_s());
+  process.asked_by = signal;
+}
+
 void Supervisor::end(Process& process) {
   if (!process.child || process.status) return;
-  process.child->send(is_in_a_hurry() ? SIGINT : SIGTERM);
-  process.pulse->ask_to_end(now_s());
-  bool was_hurried = is_in_a_hurry();
+  const auto hurried_for_s = [this] { return hurried_s_ ? now_s() - *hurried_s_ : 0.0; };
   while (!(process.status = process.child->status())) {
+    ask_to_end(process);
+    if (hurried_for_s() > kInOrder_s)
+      std::for_each(processes_.begin(), processes_.end(), [this](auto& p) { ask_to_end(p); });
     executor_.spin_once(kTurn);
     take_signals();
-    if (!was_hurried && is_in_a_hurry()) process.child->send(SIGINT);
-    was_hurried = is_in_a_hurry();
-    const bool has_no_time = is_impatient_ || (hurried_s_ && now_s() - *hurried_s_ > kHurry_s);
-    if (!has_no_time && !process.pulse->is_hung(now_s(), was_hurried ? kHurriedSilence_s : usual_silence_s_)) continue;
+    const bool has_no_time = is_impatient_ || hurried_for_s() > kHurry_s;
+    if (!has_no_time && !process.pulse->is_hung(now_s(), is_in_a_hurry() ? kHurriedSilence_s : usual_silence_s_))
+      continue;
     process.child->kill();
     process.status = process.child->status();
     std::cerr << title_ << ": " << process.name << " did not end and was killed\n";
@@ -324,8 +365,8 @@ int Supervisor::conclude() {
   }
   if (!failure_ || failure_->process == system_.source) print_report();
   if (interrupt_ != 0) {
-    const std::string name = interrupt_ == SIGINT ? "SIGINT" : "SIGTERM";
-    std::cerr << title_ << ": interrupted by " << name << "; what was played is in " << folder_.path().string() << '\n';
+    std::cerr << title_ << ": interrupted by SIG" << sigabbrev_np(interrupt_) << "; what was played is in "
+              << folder_.path().string() << '\n';
     return 128 + interrupt_;
   }
   if (failure_) {
@@ -343,8 +384,7 @@ void Supervisor::write_manifest() const {
   for (const auto& process : processes_) {
     manifest.processes.push_back({process.name, process.status, process.restarts, process.configuration.text});
   }
-  files::replace_text(folder_.path() / "manifest.yaml",
-                      to_yaml(manifest, read_text(folder_.path() / "simulation.yaml")));
+  files::replace_text(folder_.path() / kManifest, to_yaml(manifest, read_text(folder_.path() / "simulation.yaml")));
 }
 
 void Supervisor::add_facts_to_metrics() const {

@@ -4,7 +4,9 @@
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "common/dds/executor.hpp"
@@ -27,10 +29,10 @@ struct Request {
   std::filesystem::path programs;  ///< folder of lapis_<process>
   std::vector<std::string> variants;
   bool may_restart = false;
-  std::vector<std::string> configuration;  ///< files, after those of the system
-  Settings settings;                       ///< after those of the system
+  std::vector<std::string> configuration;    ///< files, after those of the system
+  Settings settings;                         ///< after those of the system
   std::map<std::string, std::string> facts;  ///< name -> text
-  std::string command;  ///< what was called, for messages
+  std::string command;                       ///< what was called, for messages
 };
 
 /// SIGINT and SIGTERM are received by the supervisor's own loop. To be called before any thread starts.
@@ -55,11 +57,14 @@ class Supervisor {
     std::optional<int> status;  ///< of one that has ended for good
     int restarts = 0;
     bool is_back = true;  ///< false from a restart until it runs again
+    int asked_by = 0;     ///< signal by which it was asked to end
   };
 
   // Preparation
   Settings all_settings() const;
+  std::vector<std::pair<std::string, std::set<std::string>>> configuration_files(const Configurations& known) const;
   void collect_arguments();
+  void clear_folder() const;
   double usual_silence() const;
   Facts facts() const;
 
@@ -75,6 +80,7 @@ class Supervisor {
 
   // The end
   void end_all();
+  void ask_to_end(Process& process);
   void end(Process& process);
   void fail(const Process& process, const std::string& what, int status = 1);
   int conclude();

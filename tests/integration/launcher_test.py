@@ -69,6 +69,34 @@ class LauncherTest(chain.ChainTest):
         run = chain.replay(chain.recording(), file / "run", log=self.folder / "run.log")
         self.assert_refused(run, f"{file}/run cannot be made a run folder", "--out")
 
+    def test_a_run_that_is_refused_leaves_the_earlier_one_alone(self):
+        folder = self.play(chain.recording(), "run", "--duration", "2")
+        own = folder / "figures/mine.png"
+        own.parent.mkdir(exist_ok=True)
+        own.touch()
+        metrics = chain.metrics_of(folder)
+        self.assert_refused(chain.replay(chain.recording(), folder, "--set", "slam.nonsense=1"), "slam.nonsense")
+        self.assertEqual(chain.metrics_of(folder), metrics)
+        self.assertTrue(chain.is_map_whole(folder / "map.lapis"))
+        self.play(chain.recording(), "run", "--duration", "1")
+        self.assertNotEqual(chain.metrics_of(folder)["frames_total"], metrics["frames_total"])
+        self.assertTrue(own.exists(), "it was not the run's")
+
+    def test_files_that_would_be_read_in_part_are_refused(self):
+        for text, reason in (("robto: {radius_m: 0.3}", "robto: no process"),
+                             ("robot: {radius_m: 0.3}\nslam: {max_feature_depth_m: 4}", "a file for each")):
+            file = self.folder / "mine.yaml"
+            file.write_text(text, encoding="utf-8")
+            self.assert_refused(chain.replay("apartment", self.folder / "run", "--robot", file), str(file), reason)
+
+    def test_whoever_reads_the_output_may_end_first(self):
+        script = 'set -o pipefail; "$@" | head -n 1'
+        run = chain.Process(["bash", "-c", script, "-", chain.REPOSITORY / "launch_scripts/replay.sh", chain.recording(),
+                             "--duration", "5", "--out", self.folder / "run"], self.folder / "run.log")
+        self.addCleanup(run.kill)
+        self.assertEqual(run.wait(), 0, run.output())
+        self.assertEqual(chain.metrics_of(self.folder / "run")["run"]["duration_s"], 5)
+
     def test_unknown_keys(self):
         run = chain.replay(chain.recording(), self.folder / "run", "--set", "resolution_m=0.1")
         self.assert_refused(run, "resolution_m=0.1: unknown key", "semantic_mapper.")

@@ -44,9 +44,9 @@ class RestartCase(chain.ChainTest):
         """Waits until the evaluator has reported so often where the robot is."""
         begin = len(run.lines())
         progress = re.compile(r"^\d+ s, .* m driven")
-        is_going_on = run.wait_for(lambda all_lines: sum(bool(progress.match(line))
+        continues = run.wait_for(lambda all_lines: sum(bool(progress.match(line))
                                                          for line in all_lines[begin:]) >= lines, 60)
-        self.assertTrue(is_going_on, run.output())
+        self.assertTrue(continues, run.output())
 
     def wait_for_saved_maps(self, run):
         """Waits until the map that began with slam's restart is saved beside the one of before."""
@@ -131,7 +131,7 @@ class LongRestartTest(RestartCase):
         self.assertRegex(self.log_of("semantic_mapper"), r"map\.lapis: [1-9]\d* frames, [1-9]\d* blocks")
         self.assertTrue((self.folder / "run/map.1.lapis").is_file())
 
-    def test_by_the_wall_clock_the_robot_is_stopped_within_300_ms_and_goes_on(self):
+    def test_by_the_wall_clock_the_robot_is_stopped_within_300_ms_and_continues(self):
         self.start_probe()
         run = self.explore(*chain.NO_FURNITURE, "--freerun")
         for victim, what in SPEAKS_FOR.items():

@@ -16,7 +16,7 @@ def frames_in(map_file):
 
 
 class ResumeTest(chain.ChainTest):
-    def test_goes_on_in_the_run_folder_of_before(self):
+    def test_resumes_in_the_run_folder_of_before(self):
         first = self.play(chain.recording(), "run", "--duration", str(FIRST_S))
         saved = (first / "slam.lapis").read_bytes()
         poses = (first / "keyframes.txt").read_text().splitlines()

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
 """What the supervisor does about processes that hang, about a slow disk, and about a run folder that is in use."""
+import contextlib
 import fcntl
 import os
 import signal
@@ -36,22 +37,27 @@ class SupervisionCase(chain.ChainTest):
         os.kill(pid, signal.SIGSTOP)
         return pid
 
-    def hold_a_save(self, seconds):
-        """The disk keeps a save waiting for so long, by the progress lines that come meanwhile, at most one in 2 s."""
+    @contextlib.contextmanager
+    def held_save(self, *options):
+        """A run whose mapper waits for the disk in a save, until the end of the block."""
         gate = self.folder / "gate"
         gate.touch()
         with open(gate, encoding="utf-8") as lock:
             fcntl.flock(lock, fcntl.LOCK_EX)
-            run = self.explore("run", "--freerun", "--restart", "--duration", str(seconds + 20),
-                               "--set", "semantic_mapper.save_period_s=4",
+            run = self.explore("run", "--freerun", "--set", "semantic_mapper.save_period_s=4", *options,
                                environment=(f"LD_PRELOAD={chain.BIN}/lapis_slow_disk.so", f"LAPIS_DISK_GATE={gate}"))
             part = self.folder / "run/map.lapis.part"
             self.assertTrue(run.wait_for(lambda _: part.exists(), 60), run.output())
+            yield run
+            self.assertTrue(part.exists(), "the save was not held")
+
+    def hold_a_save(self, seconds):
+        """The disk keeps a save waiting for so long, by the progress lines that come meanwhile, at most one in 2 s."""
+        with self.held_save("--restart", "--duration", str(seconds + 20)) as run:
             begin, began = len(run.lines()), time.monotonic()
             is_held = run.wait_for(lambda lines: sum(" m driven" in line for line in lines[begin:]) > seconds / 2, 60)
             self.assertTrue(is_held, run.output())
             self.assertGreater(time.monotonic() - began, seconds)
-            self.assertTrue(part.exists(), "the save was not held")
         self.assertEqual(run.wait(120), 0, run.output())
         self.assertNotIn("silent", run.output())
         manifest = (self.folder / "run/manifest.yaml").read_text(encoding="utf-8")
@@ -125,6 +131,16 @@ class SupervisionTest(SupervisionCase):
 class LongSupervisionTest(SupervisionCase):
     def test_a_disk_that_takes_twenty_seconds_kills_nobody(self):
         self.hold_a_save(20)
+
+    def test_a_hung_process_leaves_the_others_the_time_that_they_need(self):
+        with self.held_save() as run:
+            self.hang(run, "controller")
+            self.assertIsNone(run.wait_for(lambda _: not run.is_alive(), CTRL_C_WITHIN_S + 2), run.output())
+        self.assertEqual(run.wait(60), 1, run.output())
+        self.assertIn("controller: was silent for ", run.output())
+        self.assertNotIn("did not end and was killed", run.output())
+        self.assertTrue(chain.is_map_whole(self.folder / "run/map.lapis"))
+        self.assertGreater(chain.metrics_of(self.folder / "run")["frames_tracked"], 0)
 
 
 if __name__ == "__main__":

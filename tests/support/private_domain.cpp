@@ -90,13 +90,11 @@ std::string enter_private_domain() {
     unsetenv(name);
   }
   setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
-  if (std::getenv("LAPIS_SHARED_NETWORK") == nullptr && enter_network_namespace() && bring_loopback_up()) {
-    setenv("ROS_DOMAIN_ID", "0", 1);
-    return "private domain: network namespace";
-  }
-  const int domain = reserve_domain();
-  setenv("ROS_DOMAIN_ID", std::to_string(domain).c_str(), 1);
-  return "private domain: id " + std::to_string(domain) + " on the loopback interface";
+  const std::string domain = std::to_string(reserve_domain());
+  setenv("ROS_DOMAIN_ID", domain.c_str(), 1);
+  const bool is_alone =
+      std::getenv("LAPIS_SHARED_NETWORK") == nullptr && enter_network_namespace() && bring_loopback_up();
+  return "private domain: id " + domain + (is_alone ? " in a network namespace" : " on the loopback interface");
 }
 
 }  // namespace lapis::test

@@ -15,7 +15,7 @@ using geometry::Pose;
 constexpr std::size_t kMaxFrames = (std::size_t{1} << 24) - 1;
 /// Keeps voxel indices far inside 32 bits at any resolution.
 constexpr double kMaxDistance_m = 10'000.0;
-/// At the default edge of 0.8 m these are 1,000 m3.
+/// With an edge of 0.8 m (voxels of 0.1 m) these are 1,000 m3, with 2 m (0.25 m) 16,000 m3.
 constexpr std::size_t kMaxTiles = 2000;
 /// 512 blocks, for each of which mapping::kMaxTileBytes leaves 2 kB: a block full of surfaces takes 1.5 kB.
 constexpr int kMaxBlocksPerEnlargedEdge = 8;

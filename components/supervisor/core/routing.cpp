@@ -1,12 +1,14 @@
 #include "supervisor/core/routing.hpp"
 
-#include <algorithm>
-#include <set>
-
 namespace lapis::supervisor {
 namespace {
 
 std::string section_of(const std::string& key) { return key.substr(0, key.find('.')); }
+
+bool knows(const Configuration& configuration, const std::string& section) {
+  const auto first = configuration.lower_bound(section + ".");
+  return first != configuration.end() && section_of(first->first) == section;
+}
 
 std::string sections_text(const Configurations& known) {
   std::set<std::string> sections;
@@ -40,11 +42,23 @@ std::map<std::string, Settings> route(const Configurations& known, const Setting
   return routed;
 }
 
-bool knows_sections(const Configuration& configuration, const std::vector<std::string>& sections) {
-  return std::all_of(sections.begin(), sections.end(), [&](const std::string& section) {
-    const auto first = configuration.lower_bound(section + ".");
-    return first != configuration.end() && section_of(first->first) == section;
-  });
+std::set<std::string> readers_of(const Configurations& known, const std::vector<std::string>& sections) {
+  std::set<std::string> all;
+  for (const auto& section : sections) {
+    std::set<std::string> readers;
+    for (const auto& [process, configuration] : known) {
+      if (knows(configuration, section)) readers.insert(process);
+    }
+    if (readers.empty()) {
+      throw UnknownSetting(section + ": no process of this run has such a section; there are " + sections_text(known));
+    }
+    if (section != sections.front() && readers != all) {
+      throw UnknownSetting("the sections " + sections.front() + " and " + section +
+                           " are not of the same processes; wanted is a file for each");
+    }
+    all = readers;
+  }
+  return all;
 }
 
 }  // namespace lapis::supervisor

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -25,7 +26,9 @@ struct UnknownSetting : std::runtime_error {
 /// other.
 std::map<std::string, Settings> route(const Configurations& known, const Settings& settings);
 
-/// Whether the process knows each of these top-level sections ("robot").
-bool knows_sections(const Configuration& configuration, const std::vector<std::string>& sections);
+/// Processes that get a file with these top-level sections ("robot"): each section goes to every process that knows it,
+/// and a process takes a whole file or none. Throws UnknownSetting when that cannot be: nobody knows a section, or a
+/// process knows only some of them.
+std::set<std::string> readers_of(const Configurations& known, const std::vector<std::string>& sections);
 
 }  // namespace lapis::supervisor

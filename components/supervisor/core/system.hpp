@@ -7,7 +7,7 @@
 
 namespace lapis::supervisor {
 
-/// One configuration value of a process: "slam.tracker.max_depth_m" and its value as YAML text.
+/// One configuration value of a process: "slam.noise.max_depth_m" and its value as YAML text.
 struct Setting {
   std::string key;
   std::string value;

@@ -220,7 +220,7 @@ void print_loops(const Run& run) {
 void print_header() {
   std::printf("%-15s %4s %11s %7s | %6s %6s %6s %6s | %8s %8s %5s | %6s %6s %6s %6s | %5s %5s %6s | %5s %5s %6s\n",
               "scene", "seed", "tracked", "ms/frm", "online", "kf raw", "kf se3", "worst", "revisits", "passages",
-              "wrong", "odo", "loop", "wheel", "end", "edges", "loops", "wheel", "kfs", "p95", "max");
+              "wrong", "visual", "loop", "odom", "end", "edges", "loops", "odom", "kfs", "p95", "max");
 }
 
 void print_row(const std::string& scene, int seed, const Run& run) {
@@ -286,7 +286,7 @@ int run(const Options& options) {
     }
   }
   std::printf(
-      "errors in cm (position, map frame, no alignment unless se3); odo, loop, wheel, end: NEES per degree of "
+      "errors in cm (position, map frame, no alignment unless se3); visual, loop, odom, end: NEES per degree of "
       "freedom\nrevisits: key-frames that truly show an old place again, recognised of all; passages: rows of such, "
       "closed of "
       "all; wrong: loops\n");

@@ -46,7 +46,7 @@ class SavedSemanticMap : public ::testing::Test {
   mapping::VoxelMap mirrored_{0.25};
 };
 
-TEST_F(SavedSemanticMap, IsGoneOnWithAsIfItHadNeverEnded) {
+TEST_F(SavedSemanticMap, IsResumedAsIfItHadNeverEnded) {
   ASSERT_NO_FATAL_FAILURE(save_a_map({output()}, 0, 4, 1));
   const mapping::MapFile base = load(file());
   EXPECT_EQ(base.map, mirrored_);
@@ -87,7 +87,7 @@ TEST_F(SavedSemanticMap, IsSetAsideByANewMap) {
   EXPECT_EQ(files::read_file((folder_.path() / "map.1.lapis").string(), error), before) << error;
 }
 
-TEST_F(SavedSemanticMap, IsGoneOnWithBySupervisedRestartsOnlyInTheSameSessionOfSlam) {
+TEST_F(SavedSemanticMap, IsResumedBySupervisedRestartsOnlyInTheSameSessionOfSlam) {
   const std::string same_session = "semantic_mapper.resume_any_session=false";
   ASSERT_NO_FATAL_FAILURE(save_a_map({output()}, 0, 2, 7));
   ASSERT_NO_FATAL_FAILURE(save_a_map({output(), resume(), same_session}, 2, 4, 7));
@@ -117,7 +117,7 @@ TEST_F(SavedSemanticMap, IsNotMixedWithTheNextMapOfSlam) {
   EXPECT_EQ(last, mirrored_);
 }
 
-TEST_F(SavedSemanticMap, ThatCannotBeGoneOnWithIsRefusedInOneLine) {
+TEST_F(SavedSemanticMap, ThatCannotBeResumedIsRefusedInOneLine) {
   ASSERT_NO_FATAL_FAILURE(save_a_map({output()}, 0, 2, 7));
   EXPECT_THAT(refusal("/no/such.lapis"), HasSubstr("semantic_mapper.resume_from: /no/such.lapis: cannot be opened"));
   ChildProcess coarse(kMapper, {"--set", resume(), "--set", "semantic_mapper.resolution_m=0.5"});

@@ -118,7 +118,7 @@ class SavedMap : public ::testing::Test {
   lapis_msgs::msg::PoseGraph graph_;
 };
 
-TEST_F(SavedMap, IsGoneOnWithInANewSessionOfTheSameFrame) {
+TEST_F(SavedMap, IsResumedInANewSessionOfTheSameFrame) {
   ASSERT_NO_FATAL_FAILURE(save_a_map());
   Slam run(folder_.path(), {resume()});
   ASSERT_TRUE(run.is_ready()) << run.log();

@@ -152,7 +152,7 @@ TEST_F(ConfigTest, ValuesFromElsewhereAreChecked) {
   EXPECT_THAT(error_of([&] { check(schema_); }), AllOf(HasSubstr("slam.limits: [1, 11]"), HasSubstr("0 to 10")));
 }
 
-TEST_F(ConfigTest, BrokenRuleTellsTheValuesOfTheKeysThatItNames) {
+TEST_F(ConfigTest, BrokenRuleNamesTheValuesOfTheKeysThatItNames) {
   config_.tracker.max_depth_m = 0.5;
   const Rule good{true, "slam.seed has to be 7"};
   EXPECT_EQ(error_of([&] { check(schema_, {good}); }), "no error");

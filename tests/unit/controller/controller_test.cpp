@@ -231,7 +231,7 @@ TEST(Controller, PressedAgainstGlassItBacksUpAndThenReportsThatItIsStuck) {
 }
 
 // A planner that repeats its path as a sign of life.
-TEST(Controller, TheSamePathAgainIsGoneOnWith) {
+TEST(Controller, TheSamePathAgainIsContinued) {
   KinematicWorld world(hall());
   const Path path = straight({0, 0}, {4, 0}, 0.0);
   world.controller.set_path(path, "");

@@ -15,10 +15,12 @@ class CompareTableTest(unittest.TestCase):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
+        self.runs = []
 
     def add_run(self, variant, name, seed, error_m, has_succeeded=True):
         folder = self.folder / variant / name
         folder.mkdir(parents=True)
+        self.runs.append(f"{variant}={folder}")
         run = {"scene": "/scenes/flat.yaml", "method": "tour", "seed": seed}
         (folder / "metrics.json").write_text(json.dumps({
             "run": run, "exit_reason": "completed", "planner_state": None, "map_error_mean_m": error_m}))
@@ -26,7 +28,7 @@ class CompareTableTest(unittest.TestCase):
             (folder / "identity").write_text("0\n")
 
     def compare(self):
-        return subprocess.run([sys.executable, "-B", SCRIPT, self.folder, "fine", "coarse"], capture_output=True, text=True)
+        return subprocess.run([sys.executable, "-B", SCRIPT, *self.runs], capture_output=True, text=True)
 
     def test_pairs_are_found_by_scene_and_seed_whatever_their_folders_are_called(self):
         for seed, error_m in ((1, 0.01), (2, 0.03)):

@@ -276,8 +276,8 @@ TEST(ComputeVotes, NothingOutsideTheHeightLimits) {
   EXPECT_LT(cut.hits.size(), all.hits.size());
 }
 
-TEST(ComputeVotes, FreeSpaceIsFreeAndSurfacesAreNeverPassed) {
-  // Nothing may be passed that lies behind the first surface of every pixel.
+TEST(ComputeVotes, FreeSpaceIsFreeAndSurfacesNeverGetAMiss) {
+  // Nothing may get a miss that lies behind the first surface of every pixel.
   const geometry::PinholeCamera camera{160, 90, 80, 80, 79.5, 44.5};
   const Pose T = lapis::test::look({-1.0, 0.3, 1.1}, 0.7, 0.2);
   const auto room = lapis::test::furnished_room();
@@ -288,7 +288,7 @@ TEST(ComputeVotes, FreeSpaceIsFreeAndSurfacesAreNeverPassed) {
     const Eigen::Vector3d center = grid.center_of(voxel);
     for (const lapis::test::Box& box : room) {
       const Eigen::Vector3d inside = (center - box.low).cwiseMin(box.high - center);
-      EXPECT_LT(inside.minCoeff(), 0.1) << "a voxel deep inside a box was passed";
+      EXPECT_LT(inside.minCoeff(), 0.1) << "a voxel deep inside a box got a miss";
     }
   }
   EXPECT_GT(got.misses.size(), 5000u);

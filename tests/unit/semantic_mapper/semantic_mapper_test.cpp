@@ -427,7 +427,7 @@ TEST(SemanticMapper, SavedAndLoadedEqualsOriginal) {
 }
 
 // A run that was saved and resumed: old counts stay, new frames are added, and only these follow the graph.
-TEST(SemanticMapper, GoneOnWithEqualsTheSavedMapPlusTheNewFrames) {
+TEST(SemanticMapper, ResumedEqualsTheSavedMapPlusTheNewFrames) {
   const SemanticMapper first = mapper_with_tour();
   std::string error;
   const auto saved = mapping::decode_map(mapping::encode_map({first.map(), {}, {}, {}}), error);

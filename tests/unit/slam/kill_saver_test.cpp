@@ -41,7 +41,7 @@ struct SavedRun {
   SlamFile early, late;
 };
 
-TEST(KillSaver, TheFileIsAlwaysWholeAndCanBeGoneOnWith) {
+TEST(KillSaver, TheFileIsAlwaysWholeAndCanBeResumed) {
   const char* const wanted = std::getenv("LAPIS_KILLS");
   const int kills = wanted != nullptr ? std::atoi(wanted) : 10;
   const lapis::test::TemporaryFolder folder;

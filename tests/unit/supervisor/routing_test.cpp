@@ -7,8 +7,10 @@
 namespace lapis::supervisor {
 namespace {
 
+using ::testing::AllOf;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::IsEmpty;
 
 const Configurations& known() {
   static const Configurations configurations = {
@@ -47,12 +49,26 @@ TEST(Routing, SettingThatNobodyKnowsIsRefusedWithWhatThereIs) {
   }
 }
 
-TEST(Routing, FileIsForThoseWhoKnowAllItsSections) {
-  EXPECT_TRUE(knows_sections(known().at("eye"), {"robot"}));
-  EXPECT_TRUE(knows_sections(known().at("eye"), {"robot", "eye"}));
-  EXPECT_FALSE(knows_sections(known().at("mind"), {"robot"}));
-  EXPECT_FALSE(knows_sections(known().at("eye"), {"robot", "leg"}));
-  EXPECT_FALSE(knows_sections(known().at("eye"), {"rob"}));
+TEST(Routing, FileIsForThoseWhoKnowItsSections) {
+  EXPECT_THAT(readers_of(known(), {"robot"}), ElementsAre("eye", "leg"));
+  EXPECT_THAT(readers_of(known(), {"dds"}), ElementsAre("eye", "leg", "mind"));
+  EXPECT_THAT(readers_of(known(), {"mind"}), ElementsAre("mind"));
+  EXPECT_THAT(readers_of(known(), {}), IsEmpty());
+}
+
+TEST(Routing, FileThatWouldBeReadInPartIsRefused) {
+  const auto refusal = [](const std::vector<std::string>& sections) {
+    try {
+      readers_of(known(), sections);
+    } catch (const UnknownSetting& error) {
+      return std::string(error.what());
+    }
+    return std::string();
+  };
+  EXPECT_THAT(refusal({"robto"}), AllOf(HasSubstr("robto: no process"), HasSubstr("robot.")));
+  EXPECT_THAT(refusal({"robot", "robto"}), HasSubstr("robto: no process"));
+  EXPECT_THAT(refusal({"robot", "mind"}), AllOf(HasSubstr("robot and mind"), HasSubstr("a file for each")));
+  EXPECT_THAT(refusal({"robot", "eye"}), HasSubstr("robot and eye")) << "the leg needs the robot, too";
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 
 namespace lapis::planner {
 
-/// What it is worth to observe a cell. A ray that reaches a cell either passes it or ends in it; o = P(occupied).
+/// What it is worth to observe a cell. A ray that reaches a cell is a miss or a hit there; o = P(occupied).
 enum class Measure {
   /// Semantic mutual information [Zhang, Bong & Beltrame 2024, eq. 13-14]: g = sum_z P(z) KL(b_z || b) over the
   /// outcomes z (miss, or a hit of class c); b is the belief about free space and all classes as BeliefReader gives it,

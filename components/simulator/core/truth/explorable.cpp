@@ -165,7 +165,7 @@ VoxelSet visible_voxels(const SceneRaycaster& raycaster, const std::vector<Eigen
   const auto rays = directions(config.elevation, box.resolution_m() / config.range_m);
   std::vector<Walker> walkers(static_cast<std::size_t>(std::max(config.threads, 1)), Walker(box));
   const auto work = [&](std::size_t thread) {
-    for (std::size_t i = thread; i < positions.size(); i += walkers.size()) {
+    for (std::size_t i = thread; i < positions.size() && !config.cancelled.stop_requested(); i += walkers.size()) {
       look(raycaster, positions[i], rays, config.range_m, T_map_world, box, walkers[thread]);
     }
   };

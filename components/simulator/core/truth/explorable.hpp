@@ -1,5 +1,6 @@
 #pragma once
 
+#include <stop_token>
 #include <vector>
 
 #include "common/geometry/camera_mount.hpp"
@@ -26,9 +27,10 @@ struct ElevationRange {
 ElevationRange elevation_range(const geometry::PinholeCamera& camera, double pitch_down_rad);
 
 struct VisibilityConfig {
-  ElevationRange elevation;  ///< the camera turns to any heading
-  double range_m = 5.0;      ///< Euclidean
-  int threads = 1;           ///< the result does not depend on it
+  ElevationRange elevation;     ///< the camera turns to any heading
+  double range_m = 5.0;         ///< Euclidean
+  int threads = 1;              ///< the result does not depend on it
+  std::stop_token cancelled{};  ///< once asked to stop, the result is worthless and comes soon
 };
 
 /// Voxels that a camera at one of `positions` (world frame [m]) has in line of sight: those that a ray passes through

@@ -47,7 +47,7 @@ VoxelTruth make_voxel_truth(const Scene& scene, const SceneRaycaster& raycaster,
   VoxelSet solid(box);
   for (const auto& voxel : surface) solid.insert(voxel.cell);
   const VisibilityConfig visibility{elevation_range(config.camera, config.mount.pitch_down_rad), config.sensing_range_m,
-                                    config.threads};
+                                    config.threads, config.cancelled};
   const VoxelSet seen = visible_voxels(raycaster, eyes, visibility, T, box);
   return {to_map(seen, surface, box), to_map(flooded_voxels(solid, eyes, T, box), surface, box)};
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <stop_token>
 #include <vector>
 
 #include "common/geometry/camera_mount.hpp"
@@ -21,7 +22,8 @@ struct TruthConfig {
   double view_spacing_m = 0.5;                          ///< between the places that stand for all reachable ones
   geometry::PinholeCamera camera;                       ///< sees up and down; it turns to any heading
   geometry::CameraMount mount;
-  int threads = 1;  ///< the result does not depend on it
+  int threads = 1;              ///< the result does not depend on it
+  std::stop_token cancelled{};  ///< once asked to stop, the result is worthless and comes soon
 };
 
 /// What can be known of a scene, in the run's map frame. Known voxels with surface are occupied, with their class; the

@@ -10,7 +10,7 @@
 #include "common/runtime/component_main.hpp"
 #include "common/runtime/context.hpp"
 
-namespace CLI {
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 calls itself so
 class App;
 }
 

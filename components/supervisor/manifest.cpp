@@ -28,7 +28,7 @@ std::string to_yaml(const Manifest& manifest, const std::string& simulation) {
   std::string out = "version: " + config::quoted(std::string("lapis ") + kVersion) + "\n";
   out += "command: " + config::quoted(manifest.command) + "\nrun:\n";
   for (const auto& [name, value] : manifest.facts) {
-    out += "  " + name + ": " + value + "\n";
+    out.append("  ").append(name).append(": ").append(value).append("\n");
   }
   out += "exit_status:\n";
   for (const auto& process : manifest.processes) {

@@ -9,6 +9,7 @@
 #include <iostream>
 #include <sstream>
 
+#include "common/config/schema.hpp"
 #include "common/files/atomic_file.hpp"
 #include "common/topics/heartbeat.hpp"
 

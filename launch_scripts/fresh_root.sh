@@ -58,7 +58,7 @@ measure_there() {
   cpu=$(awk '{ print int($1 + $2) }' /tmp/cpu)
   launch_scripts/explore.sh --duration 20 --out /tmp/run 2>&1 | while IFS= read -r line; do
     echo "$line"
-    [[ "$line" != *" % "* || -e /tmp/first ]] || echo $((SECONDS - began)) >/tmp/first
+    [[ "$line" != *" m driven"* || -e /tmp/first ]] || echo $((SECONDS - began)) >/tmp/first
   done
   echo "packages: $((packages - packages_before)), $((MB - MB_before)) MB"
   echo "build: $(grep -o '^@[0-9]*/[0-9]*' build/setup.log | tail -n 1 | cut -d / -f 2) steps, $cpu CPU s"

@@ -61,8 +61,8 @@ TEST(Metrics, NumberThatJsonDoesNotHaveIsText) {
 
 TEST(Metrics, GetTheFactsOfTheRunAndKeepTheirOwn) {
   for (const auto& text : odd_texts()) {
-    const auto json =
-        nlohmann::json::parse(with_facts(R"({"ate": 0.1, "none": null})", {{"scene", config::quoted(text)}, {"seed", "7"}}));
+    const auto json = nlohmann::json::parse(
+        with_facts(R"({"ate": 0.1, "none": null})", {{"scene", config::quoted(text)}, {"seed", "7"}}));
     EXPECT_EQ(json["ate"], 0.1);
     EXPECT_TRUE(json["none"].is_null());
     EXPECT_EQ(json["run"]["scene"], text);

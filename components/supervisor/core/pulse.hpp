@@ -35,7 +35,7 @@ class Pulse {
   /// Since the last heartbeat, or the start [s].
   double silence_s(double now_s) const { return now_s - heard_s_; }
   /// True when it has been silent for longer than `usual_s` and than what it announced. One that is asked to end has
-  /// that time from then on, however often it says that it runs.
+  /// that time from then on, or from the end of what it announced before, however often it says that it runs.
   bool is_hung(double now_s, double usual_s) const;
 
  private:

@@ -46,6 +46,16 @@ TEST(Pulse, OneThatIsAskedToEndHasThatTimeAlthoughItContinuesSayingThatItRuns) {
   EXPECT_TRUE(pulse.is_hung(134.1, kUsual_s));
 }
 
+TEST(Pulse, OneThatWasBusyWhenItWasAskedToEndHasItsTimeAfterwards) {
+  Pulse pulse(100.0);
+  pulse.hear(101.0, {Phase::kRunning, "saves", 600.0});
+  pulse.ask_to_end(102.0);
+  pulse.hear(130.0, {Phase::kRunning, "", 0.0});
+  EXPECT_FALSE(pulse.is_hung(131.9, kUsual_s));
+  pulse.hear(131.9, {Phase::kRunning, "", 0.0});
+  EXPECT_TRUE(pulse.is_hung(132.1, kUsual_s));
+}
+
 TEST(Pulse, SilenceWhileNobodyListenedSaysNothing) {
   Pulse pulse(100.0);
   pulse.hear(101.0, {Phase::kRunning, "", 0.0});

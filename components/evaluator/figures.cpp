@@ -23,11 +23,12 @@ std::string figures_script() {
 /// Waits for the end of a child, which is ended when there is no time for it.
 bool has_succeeded(pid_t child, const std::function<bool()>& is_in_a_hurry) {
   int status = 0;
-  for (bool is_ended = false; waitpid(child, &status, WNOHANG) == 0;) {
-    if (!is_ended && is_in_a_hurry()) is_ended = kill(child, SIGTERM) == 0;
+  pid_t ended = 0;
+  for (bool is_asked = false; (ended = waitpid(child, &status, WNOHANG)) == 0;) {
+    if (!is_asked && is_in_a_hurry()) is_asked = kill(child, SIGTERM) == 0;
     std::this_thread::sleep_for(kPeriod);
   }
-  return WIFEXITED(status) && WEXITSTATUS(status) == 0;
+  return ended == child && WIFEXITED(status) && WEXITSTATUS(status) == 0;
 }
 
 }  // namespace

@@ -11,7 +11,7 @@ usage: bench.sh [DATASET] [--runs N] [--out DIR]
   --runs N   lock-step replays of which the median is printed; default 3; 0: kernels only
   --out DIR  keeps results as JSON, and decision_time.png; default: out/bench. All *.json files that are in it
              are removed first
-Run it on a machine that has nothing else to do: the table names the load it found. What needs data that is not there
+Builds programs and benchmarks (target benchmarks) first. Run it on a machine that has nothing else to do: the table names the load it found. What needs data that is not there
 is skipped, and reported at the end. Exit status 1 when a benchmark failed, 2 when a replay did.
 TEXT
 }
@@ -30,6 +30,13 @@ while [ $# -gt 0 ]; do
   shift
 done
 [[ $runs =~ ^[0-9]+$ ]] || die "--runs $runs: wanted is a number"
+if [ -z "${LAPIS_BIN:-}" ]; then
+  "$repository/launch_scripts/setup.sh" --dev --no-build
+  cd "$repository"
+  cmake --preset release -D BUILD_TESTING=ON >/dev/null
+  cmake --build --preset release --target programs benchmarks
+  cd "$OLDPWD"
+fi
 require_build
 export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
 mkdir -p "$out" || die "$out cannot be made a folder; choose another with --out DIR"

@@ -8,7 +8,7 @@ socket_buffer_bytes=8388608
 usage() {
   cat <<TEXT
 usage: launch_scripts/setup.sh [--dev] [--no-build] [--minimal] [--sysctl]
-  --dev       also what changes and tests of Lapis need: packages of the group dev, tests, benchmarks; warnings are errors
+  --dev       also what changes and tests of Lapis need: packages of the group dev, tests; warnings are errors
   --no-build  only install packages (launch_scripts/packages.txt)
   --minimal   without the furniture of the simulator's scenes; simple shapes stand in
   --sysctl    also install $sysctl_file (socket buffers of up to 8 MiB)

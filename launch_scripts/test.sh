@@ -8,8 +8,8 @@ usage() {
   cat <<TEXT
 usage: launch_scripts/test.sh [--tier unit|contract|integration|interop|long]
   --tier NAME  only this tier; default: all of them but long
-  long: tests that take over a minute, the benchmarks' build, contract tests with AddressSanitizer and
-  UndefinedBehaviorSanitizer, and clang-tidy on any number of changed files; docs/long_tests.md gets the results
+  long: tests that take over a minute, the benchmarks' build, contract tests and unit tests with DDS with
+  AddressSanitizer and UndefinedBehaviorSanitizer, and clang-tidy on any number of changed files; docs/long_tests.md gets the results
 Environment: LAPIS_TEST_DATA, the folder of recorded test data (default ../shared/data beside the repository, when it
 exists); tests that need it are skipped without it.
 TEXT
@@ -70,10 +70,10 @@ check() {
   rows+=$'\n'"| $name | $((SECONDS - began)) | $result |"
 }
 
-test_contracts_sanitized() {
+test_shells_sanitized() {
   cmake --preset asan
   cmake --build --preset asan
-  UBSAN_OPTIONS=print_stacktrace=1 ctest --preset asan -L contract --no-tests=error
+  UBSAN_OPTIONS=print_stacktrace=1 ctest --preset asan -L 'contract|shell' --no-tests=error
 }
 
 write_results() {
@@ -93,7 +93,7 @@ TEXT
 for tier in "${tiers[@]}"; do run_tier "$tier"; done
 if [[ "${tiers[*]}" == long ]]; then
   check "benchmarks build" cmake --build --preset release --target benchmarks
-  check "contract tests with ASan and UBSan" test_contracts_sanitized
+  check "tests with DDS, with ASan and UBSan" test_shells_sanitized
   check "clang-tidy on changed files" .ci/tidy
   write_results
 fi

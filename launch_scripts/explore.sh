@@ -7,18 +7,20 @@ source "$(dirname "$0")/lib.sh"
 usage() {
   cat <<'TEXT'
 usage: explore.sh [--scene NAME|DIR] [--method METHOD] [--duration S] [--seed N] [--out DIR] [--robot FILE]...
-                  [--freerun] [--restart] [--set KEY=VALUE]...
+                  [--world FILE]... [--freerun] [--restart] [--set KEY=VALUE]...
 
 Lets the robot explore a simulated building until nothing reachable is left or the time is up, and leaves a run folder
 with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figures.
 
-  --scene NAME     bundled scene, scene file, or folder of a scanned building (docs/scenes.md); default: apartment
+  --scene NAME     bundled scene, generated building (office_7: docs/buildings.md), scene file, or folder of a scanned
+                   building (docs/scenes.md); default: apartment
   --method METHOD  that chooses where to go: lapis (default), paper, ssmi, tare, nearest, mi_only, dopt_only, fixed_n or
                    joint (components/planner/README.md)
   --duration S     simulated seconds after which the run ends; default: 300 (large_building needs 600)
   --seed N         of the simulator: start, noise, jitter of furniture; default: 1
   --out DIR        run folder; default: out/<name of scene>_<method>_<seed>
   --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml)
+  --world FILE     what wheels and camera are like (config/worlds, docs/buildings.md)
   --freerun        by the wall clock, frames may be lost; default: lock-step
   --restart        a process that dies or hangs is started again, at most three times each, but for the simulator; what
                    is lost with it: docs/architecture.md
@@ -33,7 +35,7 @@ TEXT
 command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" options=()
 while [ $# -gt 0 ]; do
   case $1 in
-    --scene | --method | --duration | --seed | --out | --robot | --set)
+    --scene | --method | --duration | --seed | --out | --robot | --world | --set)
       [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;
   esac
   case $1 in
@@ -43,7 +45,7 @@ while [ $# -gt 0 ]; do
     --duration) duration=$2 && shift ;;
     --seed) seed=$2 && shift ;;
     --out) out=$2 && shift ;;
-    --robot) options+=(--config "$2") && shift ;;
+    --robot | --world) options+=(--config "$2") && shift ;;
     --freerun) options+=(--variant freerun) ;;
     --restart) options+=(--restart) ;;
     --set) options+=(--set "$2") && shift ;;

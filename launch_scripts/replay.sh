@@ -7,15 +7,18 @@ source "$(dirname "$0")/lib.sh"
 usage() {
   cat <<'TEXT'
 usage: replay.sh DATASET|--scene NAME [--out DIR] [--rate X] [--start S] [--duration S] [--labels FILE]
-                 [--seed N] [--tour FILE] [--robot FILE]... [--restart] [--set KEY=VALUE]...
+                 [--seed N] [--tour FILE] [--robot FILE]... [--world FILE]...
+                 [--restart] [--set KEY=VALUE]...
 
 Plays DATASET (a folder in the layout of the TUM RGB-D benchmark, with camera.yaml; what lapis_simulator --export-tum
 wrote has the scene's ground truth, too), or drives a robot on a tour through
 a simulated building, and leaves a run folder with trajectory, pose graph, semantic map, metrics.json and figures.
 
-  --scene NAME     bundled scene, scene file, or folder of a scanned building (docs/scenes.md)
+  --scene NAME     bundled scene, generated building (office_7: docs/buildings.md), scene file, or folder of a scanned
+                   building (docs/scenes.md)
   --seed N         of the simulator: start, noise, jitter of furniture;  --tour FILE  waypoints; default: the scene's
   --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml)
+  --world FILE     of a scene: what wheels and camera are like (config/worlds, docs/buildings.md)
   --out DIR        run folder; default: out/<name of DATASET or scene>
   --rate X         of a data set: speed relative to the recording; of a scene: by the wall clock, X is 1.
                    Default: lock-step, nothing is lost
@@ -34,7 +37,7 @@ of_data_set=() of_scene=() # options given that the other kind of source does no
 command="${0##*/} $*" dataset="" scene="" rate="" out="" duration="" options=()
 while [ $# -gt 0 ]; do
   case $1 in
-    --out | --rate | --start | --duration | --labels | --scene | --seed | --tour | --robot | --set)
+    --out | --rate | --start | --duration | --labels | --scene | --seed | --tour | --robot | --world | --set)
       [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;
   esac
   case $1 in
@@ -43,7 +46,7 @@ while [ $# -gt 0 ]; do
     --rate) rate=$2 && shift ;;
     --scene) scene=$2 && shift ;;
     --duration) duration=$2 && shift ;;
-    --robot) options+=(--config "$2") of_scene+=("$1") && shift ;;
+    --robot | --world) options+=(--config "$2") of_scene+=("$1") && shift ;;
     --start) options+=(--set "sensor_replay.start_s=$2") of_data_set+=("$1") && shift ;;
     --labels) options+=(--set "sensor_replay.class_list=$2") of_data_set+=("$1") && shift ;;
     --seed | --tour) options+=(--set "simulator.${1#--}=$2") of_scene+=("$1") && shift ;;

@@ -271,12 +271,15 @@ StartPose start(YamlEntry& entry) {
 
 }  // namespace
 
-SceneSpec read_scene_yaml(const std::filesystem::path& file) {
+SceneSpec read_scene_yaml(const std::filesystem::path& file, const std::filesystem::path& usual_labels) {
   YamlEntry root(file, load_yaml(file), "scene");
   SceneSpec scene;
   scene.name = root.text("name", file.stem().string());
   scene.file = file.string();
-  scene.labels = read_label_list(file.parent_path() / root.text("labels", "../labels/mpcat40.yaml"));
+  const bool names_labels = root.has("labels");
+  const auto labels = file.parent_path() / root.text("labels", "../labels/mpcat40.yaml");
+  const bool takes_usual = !names_labels && !usual_labels.empty() && !std::filesystem::exists(labels);
+  scene.labels = read_label_list(takes_usual ? usual_labels : labels);
   scene.height_m = root.number("height", scene.height_m);
   scene.wall_thickness_m = root.number("wall_thickness", scene.wall_thickness_m);
   for (auto& entry : root.entries("rooms", "room")) scene.rooms.push_back(room(entry));

@@ -11,7 +11,8 @@ namespace lapis::simulator {
 /// ../labels/mpcat40.yaml beside its own folder.
 /// @throws std::runtime_error naming file and line for what is missing, unknown, or of the wrong kind. Whether the
 ///   building makes sense is checked by build_scene.
-SceneSpec read_scene_yaml(const std::filesystem::path& file);
+/// @param usual_labels of a file that names none and has none there
+SceneSpec read_scene_yaml(const std::filesystem::path& file, const std::filesystem::path& usual_labels = {});
 
 /// Reads the waypoints of a tour: "tour: [[x, y], ...]".
 /// @throws std::runtime_error naming file and line

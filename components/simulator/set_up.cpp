@@ -9,6 +9,7 @@
 
 #include "simulator/core/assets/load_scene.hpp"
 #include "simulator/core/assets/text_scan.hpp"
+#include "simulator/core/generator/generate_building.hpp"
 #include "simulator/core/robot/tour_revisits.hpp"
 #include "simulator/furniture.hpp"
 #include "simulator/scene_yaml.hpp"
@@ -34,11 +35,11 @@ fs::path find_scene(const std::string& name) {
     if (fs::exists(bundled)) return bundled;
   }
   if (fs::exists(name)) return name;
-  throw std::runtime_error("scene " + name + ": no such file, and no bundled scene (" + joined(bundled_scenes()) + ")");
+  throw std::runtime_error("scene " + name + ": no such file, no bundled scene (" + joined(bundled_scenes()) +
+                           "), and no generated building (" + joined(building_kinds()) + ", with _SEED)");
 }
 
-Scene build(const fs::path& file, const SimulatorConfig& config) {
-  const SceneSpec spec = read_scene_yaml(file);
+Scene build(const SceneSpec& spec, const SimulatorConfig& config) {
   const auto catalog = std::make_shared<FurnitureCatalog>(config.world.furniture_folder);
   BuildOptions options;
   options.seed = static_cast<std::uint64_t>(config.seed);
@@ -57,6 +58,8 @@ fs::path light_folder(const SimulatorConfig& config) {
   const char* home = std::getenv("HOME");
   return home != nullptr && *home != '\0' ? fs::path(home) / ".cache/lapis/light" : fs::path();
 }
+
+fs::path usual_labels() { return config_folder() / "labels" / "mpcat40.yaml"; }
 
 std::uint16_t class_id(const Scene& scene, const std::string& name) {
   if (const auto id = scene.labels.id_of(name)) return *id;
@@ -88,7 +91,13 @@ SensorConfig sensor_config(const SimulatorConfig& config) {
   out.depth.noise_multiplier = noise.depth_multiplier;
   out.labels.model = noise.labels == "none" ? LabelModel::kNone : LabelModel::kDefault;
   if (!noise.color) out.color.sigma = 0.0;
-  if (!noise.odometry) out.odometry.scale = 0.0;
+  out.color.contrast = noise.contrast;
+  out.color.shutter = noise.shutter;
+  const Random random(static_cast<std::uint64_t>(config.seed), RandomStream::kWorld);
+  out.odometry.scale = noise.odometry ? random.uniform(0, config.wheels.least_noise, config.wheels.most_noise) : 0.0;
+  out.odometry.wheel_range = noise.odometry ? config.wheels.radius_error : 0.0;
+  out.odometry.base_range = noise.odometry ? config.wheels.base_error : 0.0;
+  out.odometry.turn_slip = noise.odometry ? config.wheels.turn_slip : 0.0;
   out.has_imu = config.imu;
   apply_drift(noise.drift == "hard" ? DriftPreset::kHard : DriftPreset::kNominal, out);
   return out;
@@ -113,11 +122,17 @@ std::vector<std::string> bundled_scenes() {
   return names;
 }
 
+SceneSpec generated_building(const BuildingName& name) {
+  return generate_building(name, read_label_list(usual_labels()));
+}
+
 Scene open_scene(const SimulatorConfig& config) {
+  const auto generated = parse_building_name(config.scene);
+  if (generated && !fs::exists(config.scene)) return build(generated_building(*generated), config);
   const fs::path file = find_scene(config.scene);
-  if (file.extension() == ".yaml") return build(file, config);
+  if (file.extension() == ".yaml") return build(read_scene_yaml(file, usual_labels()), config);
   LoadOptions options;
-  options.labels = read_label_list(config_folder() / "labels" / "mpcat40.yaml");
+  options.labels = read_label_list(usual_labels());
   return load_scene(file, options);
 }
 

@@ -8,7 +8,9 @@
 #include <string_view>
 #include <vector>
 
+#include "simulator/core/generator/building_kind.hpp"
 #include "simulator/core/robot/tour_follower.hpp"
+#include "simulator/core/scene/scene_spec.hpp"
 #include "simulator/core/simulation.hpp"
 #include "simulator/core/world.hpp"
 #include "simulator/simulator_config.hpp"
@@ -22,6 +24,9 @@ std::filesystem::path config_folder();
 
 /// Names of the bundled scenes, sorted.
 std::vector<std::string> bundled_scenes();
+
+/// A building drawn with the labels of the bundled scenes.
+SceneSpec generated_building(const BuildingName& name);
 
 /// Opens the scene that the configuration names, furnished for its seed. All of these functions throw
 /// std::runtime_error with one line that names the file or key and the remedy.

@@ -51,7 +51,8 @@ void describe_scene(const World& world) {
 }  // namespace
 
 void SimulatorComponent::add_options(CLI::App& app, Config& config) {
-  app.add_option("scene", config.scene, "name of a bundled scene, or a file or folder (docs/scenes.md)");
+  app.add_option("scene", config.scene,
+                 "name of a bundled scene, KIND_SEED of a generated building, or a file or folder (docs/scenes.md)");
   app.add_option("--seed", config.seed, "draws start, noise, systematic errors, label confusion, jitter");
   app.add_option("--tour", config.tour, "\"bundled\" or a file with waypoints: the robot drives by itself");
   app.add_option("--duration", config.duration_s, "end after this much simulated time [s]");
@@ -61,6 +62,12 @@ void SimulatorComponent::add_options(CLI::App& app, Config& config) {
   app.add_option("--snapshot", config.snapshot_dir, "render views of every room into this folder, and exit");
   app.add_option("--ground-truth", config.truth_dir,
                  "write labelled voxels, explorable volume, rooms and navigation map into this folder, and exit");
+  auto* generate =
+      app.add_option("--generate", config.generated_seed, "draw a building, print its scene file, and exit");
+  app.add_option("--kind", config.generated_kind, "of --generate")
+      ->needs(generate)
+      ->check(CLI::IsMember(building_kinds()))
+      ->capture_default_str();
   app.add_option("--export-tum", config.export_dir, "write the tour as a TUM RGB-D data set, and exit");
 }
 
@@ -73,13 +80,16 @@ std::optional<int> SimulatorComponent::run_tool(const Config& config) { return r
 SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), world_(load_world(config, context)), start_(start_pose(world_, config)),
       tour_(plan_tour(world_, start_, config)), camera_(context, {.has_labels = true, .has_ground_truth = true}),
-      odometry_(context.advertise(topics::kWheelOdometry)), transforms_(context.advertise(topics::kTransforms)),
       collision_(context.advertise(topics::kCollision)) {
   if (!config_.output_dir.empty()) {
     files::require_writable_folder(config_.output_dir, "simulator.output_dir");
     map_descriptions_ = &context.subscribe(topics::kMapDescription, [this](const auto& m) { note_map(m); });
   }
   describe_scene(world_);
+  if (config_.wheels.odometry) {
+    odometry_ = &context.advertise(topics::kWheelOdometry);
+    transforms_ = &context.advertise(topics::kTransforms);
+  }
   if (config_.imu) imu_ = &context.advertise(topics::kImu);
   context.subscribe(topics::kCommand, [this](const auto& m) { run_->command(from_message(m)); });
   if (config_.ends_when_explored) {
@@ -244,8 +254,10 @@ void SimulatorComponent::tick() {
 /// Nothing in the last tick, which has no frame.
 void SimulatorComponent::publish_again() {
   if (has_ended_) return;
-  for (const auto& message : run_->messages()->odometry) odometry_.publish(message);
-  for (const auto& message : run_->messages()->transforms) transforms_.publish(message);
+  if (odometry_ != nullptr) {
+    for (const auto& message : run_->messages()->odometry) odometry_->publish(message);
+    for (const auto& message : run_->messages()->transforms) transforms_->publish(message);
+  }
   for (const auto& message : run_->messages()->imu) imu_->publish(message);
   camera_.publish(run_->messages()->camera);
 }

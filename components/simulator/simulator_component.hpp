@@ -26,7 +26,7 @@ class SimulatorComponent {
   static constexpr const char* kName = "simulator";
   static constexpr const char* kSummary =
       "Simulates an RGB-D robot in a furnished building.\n"
-      "Tools on scenes, without DDS: --validate, --snapshot, --export-tum, --ground-truth, --credits";
+      "Tools on scenes, without DDS: --validate, --snapshot, --export-tum, --ground-truth, --credits, --generate";
 
   static void add_options(CLI::App& app, Config& config);
   static config::Rules rules(const Config& config);
@@ -64,8 +64,8 @@ class SimulatorComponent {
   const StartPose start_;
   const std::optional<TourFollower> tour_;  // at its beginning
   runtime::CameraPublisher camera_;
-  dds::Publisher<nav_msgs::msg::Odometry>& odometry_;
-  dds::Publisher<tf2_msgs::msg::TFMessage>& transforms_;
+  dds::Publisher<nav_msgs::msg::Odometry>* odometry_ = nullptr;  ///< none: a robot without wheel odometry
+  dds::Publisher<tf2_msgs::msg::TFMessage>* transforms_ = nullptr;
   dds::Publisher<std_msgs::msg::Bool>& collision_;
   dds::Publisher<sensor_msgs::msg::Imu>* imu_ = nullptr;
   std::unique_ptr<runtime::LockstepDriver> driver_;

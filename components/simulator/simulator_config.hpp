@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 
 #include "common/config/schema.hpp"
@@ -14,8 +15,17 @@ struct NoiseConfig {
   double depth_multiplier = 1.0;
   std::string labels = "default";
   bool color = true;
+  double contrast = 1.0;
+  double shutter = 0.0;
   bool odometry = true;
   std::string drift = "nominal";
+};
+
+struct WheelConfig {
+  bool odometry = true;
+  double least_noise = 1.0, most_noise = 1.0;
+  double radius_error = 0.0, base_error = 0.0;
+  double turn_slip = 0.0;
 };
 
 struct SceneConfig {
@@ -43,11 +53,14 @@ struct SimulatorConfig {
   bool imu = false;
   SceneConfig world;
   NoiseConfig noise;
+  WheelConfig wheels;
   robot::RobotDescription robot;
   runtime::LockstepConfig lockstep{.stages = {"slam", "semantic_mapper", "evaluator"}};
   // command line only
   bool validate = false;
   bool credits = false;
+  std::optional<std::uint64_t> generated_seed;
+  std::string generated_kind = "flat";
   std::string snapshot_dir;
   std::string export_dir;
   std::string truth_dir;
@@ -59,10 +72,26 @@ void describe(Field& field, NoiseConfig& c) {
   field("depth_multiplier", c.depth_multiplier, config::in_range(0.0, 10.0), "scales its standard deviations");
   field("labels", c.labels, config::one_of({"none", "default"}), "model of the segmentation");
   field("color", c.color, config::anything(), "noise of the colour camera");
+  field("contrast", c.contrast, config::in_range(0.0, 2.0), "factor on the contrast of colour images");
+  field("shutter", c.shutter, config::in_range(0.0, 1.0),
+        "share of the time between frames that the shutter is open: blurs what moves");
   field("odometry", c.odometry, config::anything(), "noise and systematic errors of wheel odometry");
   field.moved("wheels", "simulator.noise.odometry");
   field("drift", c.drift, config::one_of({"nominal", "hard"}),
         "how hard localisation is: texture, blur, noise and dropouts of depth, and noise of odometry together");
+}
+
+template <class Field>
+void describe(Field& field, WheelConfig& c) {
+  field("odometry", c.odometry, config::anything(), "publish /odom and the transform odom -> base_link");
+  field("least_noise", c.least_noise, config::in_range(0.0, 10.0),
+        "the seed draws a factor on the standard deviations of odometry's noise: from here");
+  field("most_noise", c.most_noise, config::in_range(0.0, 10.0), "to here");
+  field("radius_error", c.radius_error, config::in_range(0.0, 0.2),
+        "the wheels' radius is wrong by up to this share, as the seed draws; 0: by 1 % (standard deviation)");
+  field("base_error", c.base_error, config::in_range(0.0, 0.2), "the same for the wheel base");
+  field("turn_slip", c.turn_slip, config::in_range(0.0, 0.5),
+        "odometry counts up to this share more of a turn than was turned, as the seed draws for each turn");
 }
 
 template <class Field>
@@ -81,7 +110,9 @@ void describe(Field& field, SceneConfig& c) {
 template <class Field>
 void describe(Field& field, SimulatorConfig& c) {
   field("scene", c.scene, config::anything(),
-        "name of a bundled scene, a scene file (.yaml), or a file or folder of another format (docs/scenes.md)");
+        "name of a bundled scene, KIND_SEED of a generated building, a scene file (.yaml), or a file or folder of "
+        "another "
+        "format (docs/scenes.md)");
   field("seed", c.seed, config::at_least(0), "draws start, noise, systematic errors, label confusion, jitter");
   field("mode", c.mode, config::one_of({"lockstep", "freerun"}),
         "lockstep: every frame is answered by all before the next; freerun: by the wall clock, frames may be lost");
@@ -104,6 +135,7 @@ void describe(Field& field, SimulatorConfig& c) {
   field("imu", c.imu, config::anything(), "publish /imu at 200 Hz");
   field("world", c.world);
   field("noise", c.noise);
+  field("wheels", c.wheels);
   field.moved("truth", "semantic_mapper", "ground truth is built as /semantic_mapper/map_description says");
 }
 

@@ -6,6 +6,7 @@
 #include "simulator/core/frame_picture.hpp"
 #include "simulator/core/views.hpp"
 #include "simulator/run_files.hpp"
+#include "simulator/scene_yaml_writer.hpp"
 #include "simulator/set_up.hpp"
 #include "simulator/tum_export.hpp"
 #include "simulator/validate_tool.hpp"
@@ -63,6 +64,13 @@ int write_ground_truth(const SimulatorConfig& config) {
   return 0;
 }
 
+int print_generated(const SimulatorConfig& config) {
+  const BuildingName name =
+      parse_building_name(config.generated_kind + '_' + std::to_string(*config.generated_seed)).value();
+  std::cout << to_scene_yaml(generated_building(name));
+  return 0;
+}
+
 int print_credits(const SimulatorConfig& config) {
   const Scene scene = open_scene(config);
   print_warnings(scene);
@@ -76,6 +84,7 @@ int print_credits(const SimulatorConfig& config) {
 }  // namespace
 
 std::optional<int> run_scene_tool(const SimulatorConfig& config) {
+  if (config.generated_seed) return print_generated(config);
   if (config.validate) return validate_scene(config);
   if (config.credits) return print_credits(config);
   if (!config.snapshot_dir.empty()) return write_snapshots(config);

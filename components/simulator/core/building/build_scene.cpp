@@ -134,7 +134,7 @@ class SceneBuilder {
     const auto places =
         options_.with_jitter ? place_pictures_with_jitter(spec_, plan_, options_.seed) : place_pictures(spec_, plan_);
     for (std::size_t i = 0; i < places.size(); ++i) {
-      const Random random(options_.seed, RandomStream::kPictures, i);
+      const Random random(options_.seed, RandomStream::kPictures, *spec_.pictures[i].motif);
       if (spec_.pictures[i].class_name == "picture" && random.uniform(1) >= options_.pictures_density) continue;
       add_picture(i, places[i]);
     }

@@ -140,10 +140,8 @@ class Normaliser {
 
   void normalise_pictures() {
     std::set<std::uint64_t> motifs;
-    for (std::size_t i = 0; i < spec_.pictures.size(); ++i) {
-      const auto& motif = spec_.pictures[i].motif;
-      if (motif && !motifs.insert(*motif).second)
-        refuse(spec_, numbered("picture", i), "motif " + std::to_string(*motif) + " occurs twice");
+    for (const PictureSpec& picture : spec_.pictures) {
+      if (picture.motif) motifs.insert(*picture.motif);
     }
     std::uint64_t next = 0;
     for (std::size_t i = 0; i < spec_.pictures.size(); ++i) {

@@ -181,7 +181,8 @@ std::vector<double> place_pictures_with_jitter(const SceneSpec& spec, const std:
                                                std::uint64_t seed) {
   std::vector<double> places = place_pictures(spec, plan);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const double move = Random(seed, RandomStream::kPictures, i).uniform(0, -kMaxPictureMove_m, kMaxPictureMove_m);
+    const Random random(seed, RandomStream::kPictures, spec.pictures[i].motif.value_or(i));
+    const double move = random.uniform(0, -kMaxPictureMove_m, kMaxPictureMove_m);
     for (const double share : {1.0, 0.5, 0.25}) {
       if (!obstacle(spec, plan, places, i, places[i] + share * move).empty()) continue;
       places[i] += share * move;

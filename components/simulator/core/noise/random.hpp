@@ -21,7 +21,9 @@ enum class RandomStream : std::uint64_t {
   kOdometrySystematic,
   kOdometry,
   kImu,
-  kTruth
+  kTruth,
+  kBuilding,
+  kWorld
 };
 
 /// Counter-based random numbers: a pure function of (seed, stream, counter, index). The mixing function is that of

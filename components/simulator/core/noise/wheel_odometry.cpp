@@ -6,12 +6,20 @@
 #include "simulator/core/noise/random.hpp"
 
 namespace lapis::simulator {
+namespace {
+
+constexpr double kStraight_rad = 1e-4;    // a step that turns less ends a turn
+constexpr std::uint64_t kFirstTurn = 10;  // of the numbers that are drawn once per run
+
+}  // namespace
 
 WheelOdometry::WheelOdometry(const OdometryNoiseConfig& config, std::uint64_t seed) : config_(config), seed_(seed) {
   const Random random(seed, RandomStream::kOdometrySystematic);
   const double wheel_sigma = config.scale * config.wheel_sigma, base_sigma = config.scale * config.base_sigma;
   wheel_ = 1.0 + wheel_sigma * random.normal(0);
   base_ = 1.0 + base_sigma * random.normal(1);
+  if (config.wheel_range > 0.0) wheel_ = 1.0 + random.uniform(4, -config.wheel_range, config.wheel_range);
+  if (config.base_range > 0.0) base_ = 1.0 + random.uniform(5, -config.base_range, config.base_range);
   covariance_(3, 3) = wheel_sigma * wheel_sigma;
   covariance_(4, 4) = base_sigma * base_sigma;
 }
@@ -23,7 +31,7 @@ OdometryStep WheelOdometry::step(double distance_m, double turn_rad) {
   step.turn_variance = scale2 * (config_.turn_per_turn * turn + config_.turn_per_metre * length);
   const Random random(seed_, RandomStream::kOdometry, steps_++);
   step.distance_m = wheel_ * distance_m + std::sqrt(step.distance_variance) * random.normal(0);
-  step.turn_rad = wheel_ / base_ * turn_rad + std::sqrt(step.turn_variance) * random.normal(1);
+  step.turn_rad = slip_of(turn_rad) * wheel_ / base_ * turn_rad + std::sqrt(step.turn_variance) * random.normal(1);
 
   const double half = 0.5 * step.turn_rad;
   const double middle = yaw_rad_ + half;
@@ -32,6 +40,15 @@ OdometryStep WheelOdometry::step(double distance_m, double turn_rad) {
   position_ += chord * Eigen::Vector2d(std::cos(middle), std::sin(middle));
   yaw_rad_ = std::remainder(yaw_rad_ + step.turn_rad, 2 * std::numbers::pi);
   return step;
+}
+
+/// What odometry counts of a turn over what was turned: the same until the robot drives straight or turns back.
+double WheelOdometry::slip_of(double turn_rad) {
+  const int sign = std::abs(turn_rad) < kStraight_rad ? 0 : turn_rad > 0.0 ? 1 : -1;
+  if (sign != 0 && sign != turn_sign_) ++turns_;
+  turn_sign_ = sign;
+  if (config_.turn_slip == 0.0 || sign == 0) return 1.0;
+  return 1.0 + Random(seed_, RandomStream::kOdometrySystematic).uniform(kFirstTurn + turns_, 0.0, config_.turn_slip);
 }
 
 /// P <- F P F' + G Q G', with the pose's derivatives by itself and the parameters in F, by the step in G.

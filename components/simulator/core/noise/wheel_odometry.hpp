@@ -15,6 +15,9 @@ struct OdometryNoiseConfig {
   double distance_per_turn = 1e-5;   ///< a4 [m2/rad], >= 0
   double wheel_sigma = 0.01;         ///< of the assumed wheel radius over the true one, drawn once per run, 0 to 0.1
   double base_sigma = 0.01;          ///< of the assumed wheel base over the true one, drawn once per run, 0 to 0.1
+  double wheel_range = 0.0;          ///< > 0: drawn evenly from +- this instead
+  double base_range = 0.0;           ///< the same for the base
+  double turn_slip = 0.0;            ///< of each turn up to this share is counted too much, drawn per turn; >= 0
   double scale = 1.0;                ///< on all standard deviations, 0 (no errors at all) to 10
 };
 
@@ -42,10 +45,13 @@ class WheelOdometry {
  private:
   using Matrix5d = Eigen::Matrix<double, 5, 5>;
   void propagate(const OdometryStep& step, double middle_yaw_rad);
+  double slip_of(double turn_rad);
 
   OdometryNoiseConfig config_;
   std::uint64_t seed_;
   std::uint64_t steps_ = 0;
+  std::uint64_t turns_ = 0;
+  int turn_sign_ = 0;   // of the turn that goes on; 0: none
   double wheel_ = 1.0;  // assumed over true
   double base_ = 1.0;   // assumed over true
   Eigen::Vector2d position_{0, 0};

@@ -1,5 +1,6 @@
 #include "simulator/core/noise/wheel_odometry.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
@@ -94,6 +95,42 @@ TEST(WheelOdometry, SystematicErrorsAreConstantInARun) {
   EXPECT_NEAR(variance_of(wheels) / 1e-4, 1.0, variance_bound(kRuns));
   EXPECT_NEAR(variance_of(turns) / 2e-4, 1.0, variance_bound(kRuns));  // of wheel and base
   EXPECT_NEAR(correlation_of(wheels, turns), std::sqrt(0.5), 0.07);
+}
+
+TEST(WheelOdometry, RangesReplaceTheNominalSystematicErrors) {
+  OdometryNoiseConfig config = systematic_only();
+  config.wheel_range = 0.03;
+  config.base_range = 0.02;
+  std::vector<double> wheels, bases;
+  for (std::uint64_t seed = 0; seed < kRuns; ++seed) {
+    WheelOdometry odometry(config, seed);
+    const OdometryStep step = odometry.step(1.0, 1.0);
+    wheels.push_back(step.distance_m - 1.0);
+    bases.push_back(step.distance_m / step.turn_rad - 1.0);
+    ASSERT_LE(std::abs(wheels.back()), 0.03);
+    ASSERT_LE(std::abs(bases.back()), 0.02 + 1e-12);
+  }
+  EXPECT_NEAR(variance_of(wheels) / (0.03 * 0.03 / 3.0), 1.0, variance_bound(kRuns));  // of an even distribution
+  EXPECT_NEAR(variance_of(bases) / (0.02 * 0.02 / 3.0), 1.0, variance_bound(kRuns));
+}
+
+TEST(WheelOdometry, ATurnSlipsByOneShareFromItsBeginToItsEnd) {
+  OdometryNoiseConfig config;
+  config.scale = 0.0;
+  config.turn_slip = 0.1;
+  WheelOdometry odometry(config, 5);
+  EXPECT_EQ(odometry.step(0.5, 0.0).turn_rad, 0.0);
+  std::vector<double> slips;
+  for (int turn = 0; turn < 200; ++turn) {
+    const double way = turn % 4 < 2 ? 0.01 : -0.01;  // at times back, at times on after a stretch
+    const double first = odometry.step(0.0, way).turn_rad / way;
+    for (int i = 0; i < 5; ++i) ASSERT_NEAR(odometry.step(0.01, 2.0 * way).turn_rad / (2.0 * way), first, 1e-12);
+    slips.push_back(first - 1.0);
+    odometry.step(0.2, 0.0);
+  }
+  EXPECT_GE(*std::min_element(slips.begin(), slips.end()), 0.0);
+  EXPECT_LE(*std::max_element(slips.begin(), slips.end()), 0.1);
+  EXPECT_NEAR(mean_of(slips), 0.05, kSigmas * 0.1 / std::sqrt(12.0 * 200));
 }
 
 /// Normalised squared error of the pose after a winding path of 8 m.

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "simulator/core/building/dice.hpp"
+#include "simulator/core/generator/articles.hpp"
+#include "simulator/core/generator/room_space.hpp"
+
+namespace lapis::simulator {
+
+/// An item in its room's frame.
+struct PlacedItem {
+  Article article;
+  Eigen::Vector2d at{0, 0};  ///< on another item: offset in that item's frame
+  int yaw_deg = 0;           ///< 0: the front looks along -y
+  double elevation_m = 0.0;
+  std::optional<std::size_t> on;
+  bool is_movable = false;
+  std::uint64_t variant = 0;
+};
+
+/// A picture on wall `edge`, `along_m` from that wall's first corner.
+struct HungPicture {
+  const char* class_name = "picture";
+  std::size_t edge = 0;
+  double along_m = 0.0, height_m = 1.5;
+  Eigen::Vector2d size_m{0.6, 0.45};
+};
+
+struct RoomContents {
+  std::vector<PlacedItem> items;  ///< what stands on another one comes after it
+  std::vector<HungPicture> pictures;
+};
+
+/// Puts items into one room, one after another, where there is space for them.
+class RoomFurnisher {
+ public:
+  RoomFurnisher(const PlannedRoom& room, std::vector<LocalOpening> openings, double height_m, Dice dice);
+
+  Dice& dice() { return dice_; }
+  double area_m2() const { return std::abs(signed_area(polygon_)); }
+  const Polygon& polygon() const { return polygon_; }
+
+  const Article& any(Stock stock);
+  /// With its back to a wall, where the dice choose, else where there is room; nothing when it fits nowhere. @param
+  /// near_corner in the end of a wall
+  std::optional<std::size_t> against_wall(const Article& article, bool near_corner = false);
+  /// With its back to the wall of an item that was put there, on its right or left.
+  std::optional<std::size_t> beside(std::size_t neighbour, const Article& article, bool on_the_right);
+  /// In front of an item, `gap_m` away, looking at it.
+  std::optional<std::size_t> before(std::size_t item, const Article& article, double gap_m, double aside_m = 0.0);
+  /// Anywhere, `margin_m` from the walls at least.
+  std::optional<std::size_t> free_standing(const Article& article, double margin_m);
+  std::optional<std::size_t> at(const Article& article, const Eigen::Vector2d& middle, int yaw_deg);
+  std::size_t on(std::size_t support, const Article& article, const Eigen::Vector2d& offset, int yaw_deg = 0);
+  void set_movable(std::size_t item) { contents_.items[item].is_movable = true; }
+  const PlacedItem& item(std::size_t index) const { return contents_.items[index]; }
+
+  /// Pictures about `spacing_m` apart on all walls, where no door or window is and nothing high stands before them.
+  void hang_pictures(double spacing_m, double probability);
+  /// One thing on the wall above an item (a board, a mirror).
+  void hang_above(std::size_t item, const char* class_name, const Eigen::Vector2d& size_m, double height_m);
+
+  RoomContents contents() && { return std::move(contents_); }
+
+ private:
+  struct Wall {
+    Eigen::Vector2d start, direction, inward;
+    double length_m;
+  };
+
+  Wall wall(std::size_t index) const;
+  std::optional<std::size_t> at_wall(std::size_t wall, double along_m, const Article& article);
+  std::size_t add(const Article& article, const Eigen::Vector2d& at, int yaw_deg);
+  bool has_room_for(const HungPicture& picture) const;
+
+  Polygon polygon_;
+  std::vector<LocalOpening> openings_;
+  double height_m_;
+  Dice dice_;
+  RoomSpace space_;
+  RoomContents contents_;
+  std::vector<std::optional<std::pair<std::size_t, double>>> walls_of_;  ///< of each item: its wall, and where along it
+};
+
+}  // namespace lapis::simulator

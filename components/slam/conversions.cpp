@@ -24,6 +24,7 @@ lapis_msgs::msg::TrackedFrame to_tracked_frame(const TrackingResult& result, con
   message.map_frame_id(ids.map);
   message.session(context.session);
   message.state(static_cast<std::uint8_t>(result.state));
+  message.source(static_cast<std::uint8_t>(result.source));
   message.reason(result.reason);
   message.graph_version(result.graph_version);
   if (!has_pose(result)) return message;

@@ -76,7 +76,7 @@ class SlamComponent {
   std::optional<std::pair<time::Time, geometry::Pose>> last_pose_;  // T_map_base
   std::optional<time::Time> graph_stamp_;
   std::uint64_t graph_version_ = 0;  // published last
-  std::optional<std::pair<time::Time, TrackingState>> reported_;
+  std::optional<std::pair<time::Time, std::pair<TrackingState, PoseSource>>> reported_;
   MapSaver saver_;
   std::optional<time::Time> save_stamp_;  // from which the period counts
   std::uint64_t saved_version_ = 0;       // of the graph, handed to the saver last

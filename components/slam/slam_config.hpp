@@ -56,6 +56,14 @@ void describe(Field& field, SurfaceConfig& c) {
         "widest gate of a sample's plane distance in the first round");
   field("weight", c.weight, config::in_range(0.001, 1),
         "neighbouring samples err together: share of a sample that counts");
+  field("near_keyframes", c.near_keyframes, config::in_range(1, 10),
+        "where features are too few: nearest of the newest and covisible key-frames whose samples are aligned");
+  field("min_matches", c.min_matches, config::in_range(10, 100000), "there: samples that have to find their surface");
+  field("min_share", c.min_share, config::in_range(0, 1), "there: of the samples in view have to be seen again");
+  field("least_cosine2", c.least_cosine2, config::in_range(1e-4, 0.3),
+        "there: below this mean squared cosine with the normals a direction is left to motion");
+  field("max_disagreement", c.max_disagreement, config::in_range(1, 100),
+        "there: with motion, in sigmas, above which surfaces are not believed");
 }
 
 template <class Field>

@@ -34,6 +34,12 @@ struct SurfaceConfig {
   int keyframes = 2;             ///< newest key-frames whose samples are aligned [1, 5]
   double max_distance_m = 0.10;  ///< widest gate of a sample's plane distance in the first round [0.01, 1]
   double weight = 0.2;           ///< neighbouring samples err together: share of a sample that counts [0.001, 1]
+  // Where features are too few:
+  int near_keyframes = 3;         ///< nearest of the newest and covisible ones whose samples are aligned [1, 10]
+  int min_matches = 150;          ///< samples that have to find their surface [10, 100000]
+  double min_share = 0.6;         ///< of the samples in view have to be seen again [0, 1]
+  double least_cosine2 = 0.02;    ///< a direction is open below this mean squared cosine with the normals [1e-4, 0.3]
+  double max_disagreement = 4.0;  ///< with motion, in sigmas, above which the surfaces are not believed [1, 100]
 };
 
 struct TrackerConfig {

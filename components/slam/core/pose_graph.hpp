@@ -16,7 +16,7 @@ struct PoseGraphNode {
   geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< camera optical frame
 };
 
-enum class EdgeType : std::uint8_t { kOdometry, kCovisibility, kLoopClosure, kWheelOdometry };
+enum class EdgeType : std::uint8_t { kOdometry, kCovisibility, kLoopClosure, kWheelOdometry, kSurface };
 
 /// Measured relative pose. The information belongs to the tangent (translation, rotation) of a right perturbation:
 /// T_from_to * exp(xi), xi in the frame of `to`; [1/m^2, 1/rad^2], symmetric positive definite.

@@ -59,9 +59,9 @@ struct Term {
 };
 
 struct Linearisation {
-  Term points, surface;
+  Term points, surface, prior;
   double surface_squares_m2 = 0.0;
-  double cost() const { return points.cost + surface.cost; }
+  double cost() const { return points.cost + surface.cost + prior.cost; }
 };
 
 class Refinement {
@@ -74,9 +74,10 @@ class Refinement {
     double damping = 1e-4;
     last_ = linearise(T_, round);
     for (int i = 0; i < config_.tracker.refine_iterations; ++i) {
-      Matrix6d H = (last_.points.hessian + last_.surface.hessian).selfadjointView<Eigen::Upper>();
+      const Matrix6d measured = last_.points.hessian + last_.surface.hessian + last_.prior.hessian;
+      Matrix6d H = measured.selfadjointView<Eigen::Upper>();
       H.diagonal() += damping * H.diagonal() + Vector6d::Constant(1e-9);
-      const Vector6d step = H.ldlt().solve(-(last_.points.gradient + last_.surface.gradient));
+      const Vector6d step = H.ldlt().solve(-(last_.points.gradient + last_.surface.gradient + last_.prior.gradient));
       if (!step.allFinite()) break;
       const Pose moved = T_ * geometry::se3_exp(step);
       const Linearisation next = linearise(moved, round);
@@ -109,7 +110,16 @@ class Refinement {
     const Pose T_camera_reference = T.inverse();
     add_points(T_camera_reference, result.points);
     if (problem_.depth != nullptr) add_surface(T_camera_reference, round, result);
+    if (problem_.prior) add_prior(T, result.prior);
     return result;
+  }
+
+  // To first order: the tangent at the prior and that at T are taken for the same, as they are a step apart.
+  void add_prior(const Pose& T, Term& term) const {
+    const Vector6d error = geometry::se3_log(problem_.prior->T_reference_camera.inverse() * T);
+    term.hessian = problem_.prior->information;
+    term.gradient = problem_.prior->information * error;
+    term.cost = 0.5 * error.dot(term.gradient);
   }
 
   void add_points(const Pose& T_camera_reference, Term& term) const {
@@ -155,11 +165,14 @@ class Refinement {
   std::vector<bool> is_inlier_;
 };
 
-// J'WJ divided by the a-posteriori variance of the unit weight, as in any least-squares adjustment.
+// The a-posteriori variance of the unit weight, as in any least-squares adjustment.
+double unit_variance(const Term& term, double effective_residuals) {
+  return std::max(term.squares / (effective_residuals - 6.0), 1e-4);
+}
+
 Matrix6d scaled_information(const Term& term, double effective_residuals) {
   if (effective_residuals <= 6.0) return Matrix6d::Zero();
-  const double variance = std::max(term.squares / (effective_residuals - 6.0), 1e-4);
-  return term.full_hessian() / variance;
+  return term.full_hessian() / unit_variance(term, effective_residuals);
 }
 
 Alignment Refinement::summarise() const {
@@ -168,7 +181,9 @@ Alignment Refinement::summarise() const {
   add_points(T_camera_reference, points);
   Alignment result;
   result.T_reference_camera = T_;
-  result.surface_information = scaled_information(last_.surface, config_.surface.weight * last_.surface.residuals);
+  const double samples = config_.surface.weight * last_.surface.residuals;
+  result.surface_information = scaled_information(last_.surface, samples);
+  if (samples > 6.0) result.surface_variance = unit_variance(last_.surface, samples);
   result.information = scaled_information(points, points.residuals) + result.surface_information;
   result.is_inlier = is_inlier_;
   result.inliers = static_cast<int>(std::count(is_inlier_.begin(), is_inlier_.end(), true));

@@ -21,24 +21,32 @@ struct PointConstraint {
   double sigma_px = 1.0;                                  ///< of the pixel [px]
 };
 
+/// What is known of the pose beforehand.
+struct PosePrior {
+  geometry::Pose T_reference_camera = geometry::Pose::Identity();
+  geometry::Matrix6d information = geometry::Matrix6d::Zero();  ///< right perturbation
+};
+
 /// Everything that a frame says about its pose relative to a reference frame. The spans and the image must outlive it.
 struct AlignmentProblem {
   geometry::PinholeCamera camera;
   std::span<const PointConstraint> points;
-  std::span<const SurfaceSample> surface;       ///< in the reference frame
-  const geometry::DepthImage* depth = nullptr;  ///< of the frame; needed when there are surface samples
+  std::span<const SurfaceSample> surface;         ///< in the reference frame
+  const geometry::DepthImage* depth = nullptr;    ///< of the frame; needed when there are surface samples
+  std::optional<PosePrior> prior = std::nullopt;  ///< holds the directions that the measurements leave open
 };
 
 /// Refined pose and how well it explains the measurements.
 struct Alignment {
   geometry::Pose T_reference_camera = geometry::Pose::Identity();
-  geometry::Matrix6d information = geometry::Matrix6d::Zero();          ///< right perturbation, not yet bounded
+  geometry::Matrix6d information = geometry::Matrix6d::Zero();  ///< right perturbation, not yet bounded; no prior
   geometry::Matrix6d surface_information = geometry::Matrix6d::Zero();  ///< the surface's share of `information`
   std::vector<bool> is_inlier;                                          ///< of each point
   int inliers = 0;
-  double rms_px = 0.0;         ///< reprojection error of the inliers
-  int surface_matches = 0;     ///< samples that found their surface again
-  double surface_rms_m = 0.0;  ///< plane distance of these
+  double rms_px = 0.0;            ///< reprojection error of the inliers
+  int surface_matches = 0;        ///< samples that found their surface again
+  double surface_rms_m = 0.0;     ///< plane distance of these
+  double surface_variance = 1.0;  ///< of the unit weight: by it `surface_information` differs from the Hessian
 };
 
 /// Whitened residual (u, v, depth) of a point and its Jacobian by a right perturbation of T_reference_camera, which is

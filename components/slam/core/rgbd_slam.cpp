@@ -17,6 +17,7 @@
 #include "slam/core/noise_model.hpp"
 #include "slam/core/relocalizer.hpp"
 #include "slam/core/slam_graph.hpp"
+#include "slam/core/surface_tracker.hpp"
 #include "slam/core/tracker.hpp"
 
 namespace lapis::slam {
@@ -48,8 +49,8 @@ class RgbdSlam::Implementation {
  public:
   Implementation(const SlamConfig& config, const Pose& T_map_first_camera, const Pose& T_base_camera)
       : config_(config), T_map_first_camera_(T_map_first_camera), extractor_(config.features), tracker_(config),
-        motion_(config.tracker.max_prediction_s, config.odometry, T_base_camera), loops_(config), relocalizer_(config) {
-  }
+        motion_(config.tracker.max_prediction_s, config.odometry, T_base_camera), loops_(config), relocalizer_(config),
+        surfaces_(config) {}
 
   Implementation(const SlamConfig& config, const Pose& T_base_camera, SlamState state)
       : Implementation(config, Pose::Identity(), T_base_camera) {
@@ -85,16 +86,11 @@ class RgbdSlam::Implementation {
     const Frame frame = make_frame(input, extractor_, config_.noise);
     if (map_.empty()) return start_map(frame);
 
-    const TrackOutcome outcome = find_pose(frame);
-    if (!outcome.is_tracked) return continue_blind(frame, outcome.reason);
+    const TrackOutcome seen = find_pose(frame);
+    if (!seen.is_tracked) return continue_without_features(frame, seen.reason);
     blind_frames_ = 0;
     is_placed_ = true;
-    ++frames_since_keyframe_;
-    follow_reference(outcome);
-    TrackingResult result = with_pose(frame, outcome);
-    if (needs_keyframe(config_.keyframe, evidence(outcome))) insert_keyframe(frame, &outcome, result);
-    motion_.update(map_, input.stamp, {result.keyframe_id, result.T_keyframe_camera, result.covariance});
-    return result;
+    return continue_with(frame, seen, PoseSource::kVision, needs_keyframe(config_.keyframe, evidence(seen)));
   }
 
   std::optional<Pose> odometry_at(time::Time stamp) const { return motion_.odometry_at(stamp); }
@@ -119,11 +115,53 @@ class RgbdSlam::Implementation {
     const auto reckoned = motion_.dead_reckon(stamp);
     if (!reckoned) return result;
     result.state = TrackingState::kDeadReckoning;
+    result.source = PoseSource::kOdometry;
     set_pose(*reckoned, result);
     return result;
   }
 
  private:
+  TrackingResult continue_with(const Frame& frame, const TrackOutcome& outcome, PoseSource source, bool is_keyframe) {
+    ++frames_since_keyframe_;
+    follow_reference(outcome);
+    TrackingResult result = with_pose(frame, outcome);
+    result.source = source;
+    if (is_keyframe) insert_keyframe(frame, &outcome, result);
+    motion_.update(map_, frame.input->stamp, {result.keyframe_id, result.T_keyframe_camera, result.covariance});
+    return result;
+  }
+
+  // By surfaces where motion leads, else by odometry. When the camera sees enough features to begin with, but knows
+  // none of them, the map continues there.
+  TrackingResult continue_without_features(const Frame& frame, const std::string& reason) {
+    const bool could_start = frame.features_with_depth >= config_.tracker.min_matches;
+    blind_frames_ = could_start ? blind_frames_ + 1 : 0;
+    const auto reckoned = motion_.dead_reckon(frame.input->stamp);
+    if (!is_placed_ || !reckoned) return continue_blind(frame, reason);
+    const MotionModel::Expected expected{map_.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera,
+                                         reckoned->covariance};
+    const TrackOutcome aligned = surfaces_.track(map_, frame, reference_, expected);
+    if (!aligned.is_tracked) return continue_blind(frame, reason + "; " + aligned.reason);
+    const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames;
+    if (begins_anew) blind_frames_ = 0;
+    return continue_with(frame, aligned, PoseSource::kSurfaces,
+                         begins_anew || has_moved(aligned.alignment.T_reference_camera));
+  }
+
+  // Far enough from the reference for another key-frame.
+  bool has_moved(const Pose& T_reference_camera) const {
+    KeyframeEvidence evidence;
+    evidence.frames_since_keyframe = frames_since_keyframe_;
+    evidence.T_reference_camera = T_reference_camera;
+    return needs_keyframe(config_.keyframe, evidence);
+  }
+
+  bool shows_surfaces(const Frame& frame) const {
+    if (!config_.surface.enabled) return false;
+    const auto samples = sample_surface(config_.surface, config_.noise, frame.input->camera, frame.input->depth);
+    return samples.size() >= static_cast<std::size_t>(config_.surface.min_matches);
+  }
+
   // Near where motion leads, or else anywhere in the map; believed only when motion or the next frames agree.
   TrackOutcome find_pose(const Frame& frame) {
     TrackOutcome outcome = tracker_.track(map_, frame, motion_.predict(map_, frame.input->stamp));
@@ -138,16 +176,19 @@ class RgbdSlam::Implementation {
     return outcome;
   }
 
-  // The view has changed altogether, or there is nothing to see. When there is, and odometry says where, the map
-  // continues there.
+  // When there is enough to see, and odometry says where, the map continues there; surfaces that nobody has seen yet
+  // become a key-frame's, so that the next frames can be aligned with them.
   TrackingResult continue_blind(const Frame& frame, const std::string& reason) {
+    ++frames_since_keyframe_;
     TrackingResult result = without_vision(frame.input->stamp, reason, &frame);
-    const bool could_start = frame.features_with_depth >= config_.tracker.min_matches;
-    blind_frames_ = could_start ? blind_frames_ + 1 : 0;
-    if (result.state != TrackingState::kDeadReckoning || blind_frames_ < config_.tracker.max_blind_frames)
-      return result;
-    result.state = TrackingState::kTracking;
-    result.reason.clear();
+    if (result.state != TrackingState::kDeadReckoning) return result;
+    const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames;
+    if (!begins_anew && !(has_moved(result.T_keyframe_camera) && shows_surfaces(frame))) return result;
+    if (begins_anew) {
+      blind_frames_ = 0;
+      result.state = TrackingState::kTracking;
+      result.reason.clear();
+    }
     insert_keyframe(frame, nullptr, result);
     motion_.update(map_, frame.input->stamp, {result.keyframe_id, result.T_keyframe_camera, result.covariance});
     return result;
@@ -192,7 +233,10 @@ class RgbdSlam::Implementation {
   }
 
   TrackingResult start_map(const Frame& frame) {
-    if (frame.features_with_depth < config_.tracker.min_matches) {
+    const bool has_features = frame.features_with_depth >= config_.tracker.min_matches;
+    // Without odometry a map of surfaces would be lost for ever as soon as they tell too little.
+    const bool has_surfaces = !has_features && motion_.odometry_at(frame.input->stamp) && shows_surfaces(frame);
+    if (!has_features && !has_surfaces) {
       return without_vision(frame.input->stamp,
                             std::to_string(frame.features_with_depth) + " features with depth, " +
                                 std::to_string(config_.tracker.min_matches) + " needed",
@@ -206,6 +250,7 @@ class RgbdSlam::Implementation {
     motion_.update(map_, frame.input->stamp, {id, Pose::Identity(), Matrix6d::Zero()});
     TrackingResult result;
     result.state = TrackingState::kTracking;
+    result.source = has_features ? PoseSource::kVision : PoseSource::kSurfaces;
     result.features = static_cast<std::uint32_t>(frame.features.size());
     become_keyframe(id, result);
     return result;
@@ -240,7 +285,9 @@ class RgbdSlam::Implementation {
   void insert_keyframe(const Frame& frame, const TrackOutcome* outcome, TrackingResult& result) {
     const KeyframeId previous = map_.keyframes().back().id;
     const KeyframeId id = add_keyframe(frame, result.T_map_keyframe * result.T_keyframe_camera);
-    const EdgeType type = outcome != nullptr ? EdgeType::kOdometry : EdgeType::kWheelOdometry;
+    const EdgeType type = outcome == nullptr                       ? EdgeType::kWheelOdometry
+                          : result.source == PoseSource::kSurfaces ? EdgeType::kSurface
+                                                                   : EdgeType::kOdometry;
     const Pose T_parent_keyframe =
         outcome != nullptr ? outcome->alignment.T_reference_camera : result.T_keyframe_camera;
     const Matrix6d information = outcome != nullptr
@@ -345,6 +392,7 @@ class RgbdSlam::Implementation {
   SlamGraph graph_;
   LoopDetector loops_;
   Relocalizer relocalizer_;
+  SurfaceTracker surfaces_;
   GraphWorker worker_;
   std::optional<time::Time> last_loop_;
   bool must_optimize_ = false;  // there are loops that no optimisation knows

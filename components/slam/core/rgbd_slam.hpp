@@ -17,12 +17,17 @@
 
 namespace lapis::slam {
 
-/// kDeadReckoning: vision has no pose, wheel odometry carries the last one on. kLost: nothing is known.
+/// kTracking: by vision, or by surfaces where features are too few. kDeadReckoning: neither has a pose, wheel odometry
+/// carries the last one on. kLost: nothing is known.
 enum class TrackingState : std::uint8_t { kInitializing, kTracking, kDeadReckoning, kLost };
+
+/// Where a pose comes from. Each source is worse than the one before.
+enum class PoseSource : std::uint8_t { kNone, kVision, kSurfaces, kOdometry };
 
 /// What one frame gave. Poses are those of the camera's optical frame.
 struct TrackingResult {
   TrackingState state = TrackingState::kInitializing;
+  PoseSource source = PoseSource::kNone;
   std::string reason;  ///< why there is no pose; empty when tracking
   bool is_keyframe = false;
   std::uint64_t keyframe_id = 0;  ///< reference key-frame; the frame itself when is_keyframe

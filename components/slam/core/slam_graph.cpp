@@ -42,7 +42,8 @@ void SlamGraph::add_keyframe(const PoseGraphEdge& edge) {
 void SlamGraph::follow(const Map& map, const std::vector<KeyframeId>& moved) {
   const auto has_moved = [&](KeyframeId id) { return std::find(moved.begin(), moved.end(), id) != moved.end(); };
   for (PoseGraphEdge& edge : edges_) {
-    if (edge.type != EdgeType::kOdometry || !(has_moved(edge.from) || has_moved(edge.to))) continue;
+    const bool is_visual = edge.type == EdgeType::kOdometry || edge.type == EdgeType::kSurface;
+    if (!is_visual || !(has_moved(edge.from) || has_moved(edge.to))) continue;
     edge.T_from_to = map.keyframe(edge.from).T_map_camera.inverse() * map.keyframe(edge.to).T_map_camera;
   }
 }

@@ -81,7 +81,7 @@ Fault find_relation_fault(const Relation& relation, std::size_t keyframes) {
 }
 
 Fault find_edge_fault(const PoseGraphEdge& edge, std::size_t keyframes) {
-  if (edge.type > EdgeType::kWheelOdometry) return "unknown type";
+  if (edge.type > EdgeType::kSurface) return "unknown type";
   if (auto fault = find_relation_fault(edge, keyframes)) return fault;
   if (edge.information.llt().info() != Eigen::Success) return "information is not positive definite";
   return std::nullopt;

@@ -23,6 +23,14 @@ RgbdFrame black_room_frame(int index) {
   return {room_stamp(index), test::small_camera(), geometry::GrayImage(320, 240), geometry::DepthImage(320, 240, 2.0F)};
 }
 
+// The lens is covered: depth of a few pixels is left.
+RgbdFrame covered_frame(int index) {
+  RgbdFrame frame = black_room_frame(index);
+  frame.depth = geometry::DepthImage(320, 240);
+  for (int x = 0; x < 20; ++x) frame.depth(x, 0) = 0.3F;
+  return frame;
+}
+
 // Bands of the image moved apart: two thirds of it contradict the rest.
 RgbdFrame torn_frame(int index) {
   constexpr int kBand_px = 40, kShift_px = 6;
@@ -125,15 +133,16 @@ class RgbdSlamWithOdometry : public ::testing::Test {
   RgbdSlam slam_{{}, test::room_path(0), T_base_camera()};
 };
 
-TEST_F(RgbdSlamWithOdometry, DeadReckonsInTheDarkWithGrowingCovariance) {
+TEST_F(RgbdSlamWithOdometry, DeadReckonsWhenTheLensIsCoveredWithGrowingCovariance) {
   feel(0, 40);
   for (int i = 0; i < 10; ++i) ASSERT_EQ(slam_.process(room_frame(i)).state, TrackingState::kTracking);
   const auto version = slam_.graph_version();
   double trace = 0.0;
   for (int i = 10; i < 40; ++i) {
-    const TrackingResult result = slam_.process(black_room_frame(i));
+    const TrackingResult result = slam_.process(covered_frame(i));
     ASSERT_EQ(result.state, TrackingState::kDeadReckoning) << i;
-    EXPECT_EQ(result.reason, "0 features, 15 needed");
+    EXPECT_EQ(result.source, PoseSource::kOdometry);
+    EXPECT_EQ(result.reason, "0 features, 15 needed; too little of the near surfaces is seen again");
     EXPECT_LT(distance_m(result, i), 0.02) << i;
     EXPECT_GT(result.map_covariance.trace(), trace) << i;
     trace = result.map_covariance.trace();
@@ -150,18 +159,17 @@ TEST_F(RgbdSlamWithOdometry, ContinuesElsewhereByAnEdgeOfOdometry) {
   feel(0, turned + 20);
   for (int i = 0; i < 5; ++i) slam_.process(room_frame(i));
   const auto keyframes = slam_.keyframe_count();
-  const int patience = SlamConfig{}.tracker.max_blind_frames;
-  for (int i = turned; i < turned + patience; ++i) {
-    const TrackingResult result = slam_.process(room_frame(i));
-    const bool is_last = i == turned + patience - 1;
-    EXPECT_EQ(result.state, is_last ? TrackingState::kTracking : TrackingState::kDeadReckoning) << i;
-    EXPECT_LT(distance_m(result, i), 0.05) << i;
-  }
+  // Surfaces that nobody has seen become those of a key-frame at once; its landmarks are there for the next frame.
+  const TrackingResult first = slam_.process(room_frame(turned));
+  EXPECT_EQ(first.state, TrackingState::kDeadReckoning);
+  EXPECT_EQ(first.source, PoseSource::kOdometry);
+  EXPECT_TRUE(first.is_keyframe);
+  EXPECT_LT(distance_m(first, turned), 0.05);
   ASSERT_EQ(slam_.keyframe_count(), keyframes + 1);
   const PoseGraphSnapshot graph = slam_.pose_graph();
   EXPECT_EQ(graph.edges.back().type, EdgeType::kWheelOdometry);
   EXPECT_EQ(graph.edges.back().to, graph.nodes.back().id);
-  const TrackingResult next = slam_.process(room_frame(turned + patience));
+  const TrackingResult next = slam_.process(room_frame(turned + 1));
   EXPECT_EQ(next.state, TrackingState::kTracking) << next.reason;
   EXPECT_EQ(next.keyframe_id, graph.nodes.back().id);
 }
@@ -221,6 +229,39 @@ TEST_F(RgbdSlamWithOdometry, OdometryOfWheelsThatSlipIsLeftOut) {
   EXPECT_GE(slam_.slip_count(), 1U);
   EXPECT_LE(slam_.slip_count(), 2U) << "they spin within one or two key-frames";
   EXPECT_EQ(odometry + slam_.slip_count(), graph.nodes.size() - 1);
+}
+
+RgbdFrame white_room_frame(int index) {
+  RgbdFrame frame = room_frame(index);
+  std::fill(frame.gray.pixels.begin(), frame.gray.pixels.end(), std::uint8_t{240});
+  return frame;
+}
+
+TEST_F(RgbdSlamWithOdometry, WhiteWallsAreTrackedByTheirSurfaces) {
+  // Odometry that counts 3 % too much: after 90 frames it is off by 8 cm and 3 degrees.
+  Pose T_odom_base = Pose::Identity();
+  for (int i = 0; i <= 100; ++i) {
+    if (i > 0) {
+      const Pose before = test::room_path(i - 1) * T_base_camera().inverse();
+      const Pose step = before.inverse() * test::room_path(i) * T_base_camera().inverse();
+      T_odom_base = T_odom_base * geometry::se3_exp(1.03 * geometry::se3_log(step));
+    }
+    slam_.add_odometry(room_stamp(i), T_odom_base);
+  }
+  for (int i = 0; i < 10; ++i) ASSERT_EQ(slam_.process(room_frame(i)).source, PoseSource::kVision);
+  const auto keyframes = slam_.keyframe_count();
+  for (int i = 10; i < 97; ++i) {
+    const TrackingResult result = slam_.process(white_room_frame(i));
+    ASSERT_EQ(result.source, PoseSource::kSurfaces) << i << ": " << result.reason;
+    EXPECT_EQ(result.state, TrackingState::kTracking);
+    EXPECT_LT(distance_m(result, i), 0.02) << i;
+  }
+  EXPECT_GE(slam_.keyframe_count(), keyframes + 5);
+  const PoseGraphSnapshot graph = slam_.pose_graph();
+  const auto surfaces = std::count_if(graph.edges.begin(), graph.edges.end(),
+                                      [](const PoseGraphEdge& edge) { return edge.type == EdgeType::kSurface; });
+  EXPECT_EQ(static_cast<std::size_t>(surfaces), slam_.keyframe_count() - keyframes);
+  EXPECT_EQ(slam_.loops().closures, 0U) << "surfaces alone close no loop";
 }
 
 TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {

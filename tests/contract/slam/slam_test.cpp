@@ -153,11 +153,19 @@ TEST_F(SlamContract, OdometryCarriesThePoseOnAndMakesTheOdomFrameItsOwn) {
   feel(4, "wheel");
   EXPECT_TRUE(wait_for_count("child frame is 'wheel'", 1)) << slam.log();
   ASSERT_TRUE(track(0)) << slam.log();
-  const int index = 1;  // what odometry said before there was a frame carries the first pose on
+  auto dark = feed.frame(1);
+  std::fill(dark.color->data().begin(), dark.color->data().end(), std::uint8_t{0});
+  ASSERT_TRUE(answers(dark, 1)) << slam.log();
+  EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
+  EXPECT_EQ(frames.back().source(), lapis_msgs::msg::TrackedFrame_Constants::SOURCE_SURFACES);
+  const int index = 2;  // what odometry said before there was a frame carries the pose on
   auto blind = feed.frame(index);
   std::fill(blind.color->data().begin(), blind.color->data().end(), std::uint8_t{0});
+  std::fill(blind.depth->data().begin() + blind.depth->step(), blind.depth->data().end(),
+            std::uint8_t{0});  // but a row
   ASSERT_TRUE(answers(blind, index)) << slam.log();
   EXPECT_EQ(frames.back().state(), kDeadReckoning) << frames.back().reason();
+  EXPECT_EQ(frames.back().source(), lapis_msgs::msg::TrackedFrame_Constants::SOURCE_ODOMETRY);
   EXPECT_THAT(frames.back().reason(), HasSubstr("features"));
   ASSERT_TRUE(probe.wait_until([&] {
     return messages::from_message(odometry.back().header().stamp()) == CameraFeed::stamp(index) &&

@@ -37,7 +37,7 @@ while [ $# -gt 0 ]; do
     --runs) [[ $2 =~ ^[1-9][0-9]*$ ]] || die "--runs $2: wanted is a number of seeds"; runs=$2 && shift ;;
     --out) out=$2 && shift ;;
     --world)
-      world=$(sha256sum 2>/dev/null <"$2" | cut -c 1-16) || die "--world $2: no file that can be read"
+      world+=$(sha256sum 2>/dev/null <"$2" | cut -c 1-16) || die "--world $2: no file that can be read"
       settings+=(--world "$2") && shift ;;
     --set) settings+=(--set "$2") && shift ;;
     *) die "unknown option $1 (see --help)" ;;

@@ -127,8 +127,7 @@ SceneSpec generated_building(const BuildingName& name) {
 }
 
 Scene open_scene(const SimulatorConfig& config) {
-  const auto generated = parse_building_name(config.scene);
-  if (generated && !fs::exists(config.scene)) return build(generated_building(*generated), config);
+  if (const auto generated = parse_building_name(config.scene)) return build(generated_building(*generated), config);
   const fs::path file = find_scene(config.scene);
   if (file.extension() == ".yaml") return build(read_scene_yaml(file, usual_labels()), config);
   LoadOptions options;

@@ -72,7 +72,9 @@ void SimulatorComponent::add_options(CLI::App& app, Config& config) {
 }
 
 config::Rules SimulatorComponent::rules(const Config& config) {
-  return {{config.start.empty() || given_start(config.start), "simulator.start has to be \"x y yaw_deg\", or empty"}};
+  return {{config.wheels.least_noise <= config.wheels.most_noise,
+           "simulator.wheels.least_noise must not be greater than simulator.wheels.most_noise"},
+          {config.start.empty() || given_start(config.start), "simulator.start has to be \"x y yaw_deg\", or empty"}};
 }
 
 std::optional<int> SimulatorComponent::run_tool(const Config& config) { return run_scene_tool(config); }

@@ -267,7 +267,7 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   const bool has_changed = !reported_ || reported_->second != std::pair(result.state, result.source);
   const bool was_tracking = !reported_ || reported_->second.first == TrackingState::kTracking;
   if (has_changed && !is_tracking && was_tracking) spdlog::warn("tracking lost: {}", result.reason);
-  if (has_changed && is_tracking && reported_) spdlog::info("tracking again");
+  if (is_tracking && !was_tracking) spdlog::info("tracking again");
   if (!has_changed && frame_.stamp - reported_->first < kStatusPeriod) return;
   reported_.emplace(frame_.stamp, std::pair(result.state, result.source));
   lapis_msgs::msg::SlamStatus message;

@@ -90,6 +90,7 @@ class RgbdSlam::Implementation {
     if (!seen.is_tracked) return continue_without_features(frame, seen.reason);
     blind_frames_ = 0;
     is_placed_ = true;
+    ++frames_since_keyframe_;
     return continue_with(frame, seen, PoseSource::kVision, needs_keyframe(config_.keyframe, evidence(seen)));
   }
 
@@ -122,7 +123,6 @@ class RgbdSlam::Implementation {
 
  private:
   TrackingResult continue_with(const Frame& frame, const TrackOutcome& outcome, PoseSource source, bool is_keyframe) {
-    ++frames_since_keyframe_;
     follow_reference(outcome);
     TrackingResult result = with_pose(frame, outcome);
     result.source = source;
@@ -137,11 +137,15 @@ class RgbdSlam::Implementation {
     const bool could_start = frame.features_with_depth >= config_.tracker.min_matches;
     blind_frames_ = could_start ? blind_frames_ + 1 : 0;
     const auto reckoned = motion_.dead_reckon(frame.input->stamp);
-    if (!is_placed_ || !reckoned) return continue_blind(frame, reason);
+    if (!reckoned) return continue_blind(frame, reason, false);
+    ++frames_since_keyframe_;
     const MotionModel::Expected expected{map_.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera,
                                          reckoned->covariance};
     const TrackOutcome aligned = surfaces_.track(map_, frame, reference_, expected);
-    if (!aligned.is_tracked) return continue_blind(frame, reason + "; " + aligned.reason);
+    if (!aligned.is_tracked) {
+      const bool is_new_view = aligned.is_new_view && !could_start && !awaits_confirmation_;
+      return continue_blind(frame, reason + "; " + aligned.reason, is_new_view);
+    }
     const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames;
     if (begins_anew) blind_frames_ = 0;
     return continue_with(frame, aligned, PoseSource::kSurfaces,
@@ -164,6 +168,7 @@ class RgbdSlam::Implementation {
 
   // Near where motion leads, or else anywhere in the map; believed only when motion or the next frames agree.
   TrackOutcome find_pose(const Frame& frame) {
+    awaits_confirmation_ = false;
     TrackOutcome outcome = tracker_.track(map_, frame, motion_.predict(map_, frame.input->stamp));
     if (!outcome.is_tracked) {
       TrackOutcome found = relocalizer_.search(map_, loops_, tracker_, frame);
@@ -173,17 +178,17 @@ class RgbdSlam::Implementation {
     if (relocalizer_.believes(map_, motion_, frame.input->stamp, outcome)) return outcome;
     outcome.is_tracked = false;
     outcome.reason = "a recognised place awaits confirmation";
+    awaits_confirmation_ = true;
     return outcome;
   }
 
   // When there is enough to see, and odometry says where, the map continues there; surfaces that nobody has seen yet
   // become a key-frame's, so that the next frames can be aligned with them.
-  TrackingResult continue_blind(const Frame& frame, const std::string& reason) {
-    ++frames_since_keyframe_;
+  TrackingResult continue_blind(const Frame& frame, const std::string& reason, bool is_new_view) {
     TrackingResult result = without_vision(frame.input->stamp, reason, &frame);
     if (result.state != TrackingState::kDeadReckoning) return result;
     const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames;
-    if (!begins_anew && !(has_moved(result.T_keyframe_camera) && shows_surfaces(frame))) return result;
+    if (!begins_anew && !(is_new_view && has_moved(result.T_keyframe_camera) && shows_surfaces(frame))) return result;
     if (begins_anew) {
       blind_frames_ = 0;
       result.state = TrackingState::kTracking;
@@ -293,7 +298,8 @@ class RgbdSlam::Implementation {
     const Matrix6d information = outcome != nullptr
                                      ? edge_information(config_.pose_graph, outcome->alignment.information)
                                      : bounded_information(config_.pose_graph, result.covariance.inverse());
-    graph_.add_keyframe({result.keyframe_id, id, type, T_parent_keyframe, information});
+    const PoseGraphEdge edge{result.keyframe_id, id, type, T_parent_keyframe, information};
+    graph_.add_keyframe(edge, type == EdgeType::kSurface ? result.covariance : Matrix6d(information.inverse()));
     if (outcome != nullptr) {
       for (const Match& match : outcome->inliers) map_.add_observation(match.landmark, {id, match.feature});
       graph_.add_link(
@@ -400,7 +406,8 @@ class RgbdSlam::Implementation {
   std::uint64_t frame_count_ = 0;
   int frames_since_keyframe_ = 0;
   std::size_t slips_ = 0;
-  int blind_frames_ = 0;  // in a row, with enough to see
+  int blind_frames_ = 0;              // in a row, with enough to see
+  bool awaits_confirmation_ = false;  // a place was recognised in the newest frame, and is not believed yet
   std::uint64_t version_ = 0;
   std::size_t saved_keyframes_ = 0;  // their stamps are of another time: no odometry leads from them
   bool is_placed_ = true;            // in a saved map: false until the camera has been found there

@@ -1,6 +1,7 @@
 #include "slam/core/slam_graph.hpp"
 
 #include <algorithm>
+#include <map>
 
 namespace lapis::slam {
 
@@ -19,11 +20,20 @@ SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink>
       covariances_(std::move(covariances)) {
   // A key-frame's first edge from an older one is that to its parent.
   std::vector<bool> has_parent(parents_.size(), false);
+  std::map<std::size_t, Matrix6d> surfaces;  // information of edges to parents
   for (const PoseGraphEdge& edge : edges_) {
     const auto to = static_cast<std::size_t>(edge.to);
     if (edge.type == EdgeType::kLoopClosure || has_parent[to]) continue;
     has_parent[to] = true;
     parents_[to] = {edge.from, edge.information.inverse()};
+    if (edge.type == EdgeType::kSurface) surfaces[to] = edge.information;
+  }
+  // Surfaces leave directions open, which odometry's edge beside them holds.
+  for (const PoseGraphEdge& edge : edges_) {
+    const auto found = surfaces.find(static_cast<std::size_t>(edge.to));
+    if (found == surfaces.end() || edge.type != EdgeType::kWheelOdometry || edge.from != parents_[found->first].id)
+      continue;
+    parents_[found->first].covariance = (found->second + edge.information).inverse();
   }
 }
 
@@ -32,9 +42,8 @@ void SlamGraph::add_root() {
   covariances_.emplace_back(Matrix6d::Zero());
 }
 
-void SlamGraph::add_keyframe(const PoseGraphEdge& edge) {
+void SlamGraph::add_keyframe(const PoseGraphEdge& edge, const Matrix6d& covariance) {
   edges_.push_back(edge);
-  const Matrix6d covariance = edge.information.inverse();
   parents_.push_back({edge.from, covariance});
   covariances_.push_back(compound_covariance(this->covariance(edge.from), edge.T_from_to, covariance));
 }

@@ -31,8 +31,10 @@ class SlamGraph {
 
   /// The first key-frame: its pose is the gauge.
   void add_root();
-  /// The next key-frame, with the edge to its parent.
-  void add_keyframe(const PoseGraphEdge& edge);
+  /// The next key-frame, with the edge to its parent, and how well it is known relative to that, by this edge and
+  /// others beside it.
+  void add_keyframe(const PoseGraphEdge& edge, const geometry::Matrix6d& covariance);
+  void add_keyframe(const PoseGraphEdge& edge) { add_keyframe(edge, edge.information.inverse()); }
   void add_edge(const PoseGraphEdge& edge) { edges_.push_back(edge); }
   void add_link(const KeyframeLink& link) { links_.push_back(link); }
 

@@ -1,7 +1,6 @@
 #include "slam/core/surface_tracker.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Dense>
@@ -15,6 +14,7 @@ using geometry::Vector6d;
 
 constexpr std::size_t kNewest = 5;  // key-frames that are looked at, besides those that share landmarks
 constexpr double kMostAway_m = 2.0, kMostTurned_rad = 0.9;
+constexpr double kKeyframeSigma_m = 0.003, kKeyframeSigma_rad = 0.002;  // of key-frames near each other
 constexpr double kMetresPerRadian = 1.5;  // how far turning counts, when key-frames are compared
 
 /// Directions of the tangent that the measurements know, and their information. Coordinates a in these directions are
@@ -37,7 +37,7 @@ KnownDirections known_directions(const Matrix6d& information, double lever_m, do
   KnownDirections known;
   std::vector<int> kept;
   for (int i = 0; i < 6; ++i) {
-    if (solver.eigenvalues()[i] >= least_share * per_sample) kept.push_back(i);
+    if (solver.eigenvalues()[i] > 0.0 && solver.eigenvalues()[i] >= least_share * per_sample) kept.push_back(i);
   }
   const auto count = static_cast<Eigen::Index>(kept.size());
   known.basis.resize(6, count);
@@ -76,7 +76,7 @@ std::vector<KeyframeId> SurfaceTracker::near_keyframes(const Map& map, KeyframeI
     if (away_m > kMostAway_m || turned_rad > kMostTurned_rad) continue;
     near.push_back({id, away_m + kMetresPerRadian * turned_rad});
   }
-  std::stable_sort(near.begin(), near.end(), [](const Candidate& a, const Candidate& b) {
+  std::sort(near.begin(), near.end(), [](const Candidate& a, const Candidate& b) {
     return a.distance != b.distance ? a.distance < b.distance : a.id > b.id;
   });
   near.resize(std::min(near.size(), static_cast<std::size_t>(config_.surface.near_keyframes)));
@@ -100,9 +100,14 @@ double SurfaceTracker::share_seen(const AlignmentProblem& problem, const Pose& T
 TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeId reference,
                                    const MotionModel::Expected& expected) const {
   TrackOutcome outcome;
+  outcome.reason = "surfaces are not used";
+  if (!config_.surface.enabled) return outcome;
   outcome.reason = "no key-frame has seen these surfaces";
   const std::vector<KeyframeId> near = near_keyframes(map, reference, expected.T_map_camera);
-  if (!config_.surface.enabled || near.empty()) return outcome;
+  if (near.empty()) {
+    outcome.is_new_view = true;
+    return outcome;
+  }
   outcome.reference = near.front();
   const Pose T_reference_map = map.keyframe(outcome.reference).T_map_camera.inverse();
   std::vector<SurfaceSample> surface;
@@ -120,6 +125,7 @@ TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeI
   if (!geometry::is_valid(alignment.T_reference_camera) || alignment.surface_matches < surfaces.min_matches ||
       share_seen(problem, alignment.T_reference_camera) < surfaces.min_share) {
     outcome.reason = "too little of the near surfaces is seen again";
+    outcome.is_new_view = true;
     return outcome;
   }
   const KnownDirections known =
@@ -136,6 +142,10 @@ TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeI
   const Vector6d difference = geometry::se3_log(T_expected.inverse() * T_surfaces);
   const Eigen::VectorXd error = known.dual * difference;
   Eigen::MatrixXd covariance = known.dual * expected.covariance * known.dual.transpose();
+  Vector6d between_keyframes;  // what motion knows nothing of: the samples are of several key-frames
+  between_keyframes << Eigen::Vector3d::Constant(kKeyframeSigma_m * kKeyframeSigma_m),
+      Eigen::Vector3d::Constant(kKeyframeSigma_rad * kKeyframeSigma_rad);
+  covariance += known.dual * between_keyframes.asDiagonal() * known.dual.transpose();
   covariance.diagonal() += known.information.cwiseInverse();
   const double sigmas = std::sqrt(error.dot(covariance.ldlt().solve(error)) / static_cast<double>(error.size()));
   if (!(sigmas <= surfaces.max_disagreement)) {

@@ -14,7 +14,8 @@ namespace lapis::slam {
 /// Pose of a frame relative to a key-frame, or the reason why there is none.
 struct TrackOutcome {
   bool is_tracked = false;
-  std::string reason;  ///< empty when tracked
+  std::string reason;        ///< empty when tracked
+  bool is_new_view = false;  ///< by surfaces: too little of the view was seen before
   KeyframeId reference = 0;
   Alignment alignment;
   std::vector<Match> inliers;

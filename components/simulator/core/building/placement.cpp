@@ -181,7 +181,9 @@ std::vector<double> place_pictures_with_jitter(const SceneSpec& spec, const std:
                                                std::uint64_t seed) {
   std::vector<double> places = place_pictures(spec, plan);
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const Random random(seed, RandomStream::kPictures, spec.pictures[i].motif.value_or(i));
+    const auto has_its_motif = [&](const PictureSpec& other) { return other.motif == spec.pictures[i].motif; };
+    if (std::count_if(spec.pictures.begin(), spec.pictures.end(), has_its_motif) > 1) continue;  // in copies of a room
+    const Random random(seed, RandomStream::kPictures, i);
     const double move = random.uniform(0, -kMaxPictureMove_m, kMaxPictureMove_m);
     for (const double share : {1.0, 0.5, 0.25}) {
       if (!obstacle(spec, plan, places, i, places[i] + share * move).empty()) continue;

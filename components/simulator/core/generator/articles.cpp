@@ -117,8 +117,10 @@ constexpr std::array kArticles{
     Article{Stock::kRacks, "shelving", nullptr, 2.4, 0.9, 2.4},
     Article{Stock::kCounters, "counter", nullptr, 1.8, 0.6, 1.05},
     Article{Stock::kCounters, "counter", nullptr, 2.2, 0.65, 1.0},
-    Article{Stock::kColumns, "column", nullptr, 0.4, 0.4, 2.59},
 };
+
+static_assert(std::is_sorted(kArticles.begin(), kArticles.end(),
+                             [](const Article& a, const Article& b) { return a.stock < b.stock; }));
 
 }  // namespace
 

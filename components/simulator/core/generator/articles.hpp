@@ -44,8 +44,7 @@ enum class Stock {
   kStores,
   kGoods,
   kRacks,
-  kCounters,
-  kColumns
+  kCounters
 };
 
 /// A piece of furniture that generated rooms may get: its model in the catalogue of sweethome3d-furniture, nullptr for

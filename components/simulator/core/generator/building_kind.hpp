@@ -9,7 +9,7 @@ namespace lapis::simulator {
 
 /// What a generated building is like.
 enum class BuildingKind {
-  kFlat,       ///< a hallway with rooms on both sides, and a living room at its end that a second door joins: 60-120 m2
+  kFlat,       ///< a hallway with rooms on both sides, and a living room at its end that a second door joins: 55-130 m2
   kOffice,     ///< a corridor, or two that meet, with rooms on both sides; some are copies of each other
   kRing,       ///< a corridor of 40-80 m round a block of rooms, with blank stretches
   kWarehouse,  ///< a high hall with long racks, and a few rooms along one side

@@ -1,6 +1,7 @@
 #include "simulator/core/generator/furnish.hpp"
 
-#include <algorithm>
+#include <numbers>
+#include <string>
 
 namespace lapis::simulator {
 namespace {
@@ -8,9 +9,9 @@ namespace {
 using Index = std::optional<std::size_t>;
 
 void add_on_table(RoomFurnisher& room, std::size_t table, bool has_screen) {
-  const Article& top = room.item(table).article;
+  const double width_m = room.item(table).article.width_m;
   if (has_screen) room.on(table, room.any(Stock::kScreens), {0.0, 0.12});
-  const double side = 0.5 * top.width_m - 0.25;
+  const double side = 0.5 * width_m - 0.25;
   room.on(table, room.any(Stock::kDeskThings), {side, 0.05});
   if (room.dice().chance(0.5)) room.on(table, room.any(Stock::kDeskThings), {-side, -0.05});
 }
@@ -35,7 +36,7 @@ void add_table(RoomFurnisher& room, Stock tables, Stock chairs) {
     const double aside = (i - 0.5 * (pairs - 1)) * (article.width_m - 0.3) / pairs;
     if (const Index front = room.before(*table, chair, 0.04, aside)) room.set_movable(*front);
     const PlacedItem turned = room.item(*table);
-    const double yaw = turned.yaw_deg * 3.14159265358979323846 / 180.0,
+    const double yaw = turned.yaw_deg * std::numbers::pi / 180.0,
                  distance = 0.5 * (article.depth_m + chair.depth_m) + 0.04;
     const Eigen::Vector2d back = Eigen::Rotation2Dd(yaw) * Eigen::Vector2d(aside, distance);
     if (const Index behind = room.at(chair, turned.at + back, turned.yaw_deg)) room.set_movable(*behind);
@@ -53,8 +54,8 @@ void living(RoomFurnisher& room) {
     if (const Index table = room.before(*sofa, room.any(Stock::kLowTables), 0.4)) add_on_table(room, *table, false);
     if (room.dice().chance(0.5)) room.before(*sofa, room.any(Stock::kArmchairs), 1.5, 0.2);
     room.hang_above(*sofa, "picture", {1.0, 0.7}, 1.5);
-    if (const Index lamp = room.beside(*sofa, room.any(Stock::kStandingLamps), room.dice().chance(0.5)); !lamp)
-      room.against_wall(room.any(Stock::kStandingLamps), true);
+    const Article& lamp = room.any(Stock::kStandingLamps);
+    if (!room.beside(*sofa, lamp, room.dice().chance(0.5))) room.against_wall(lamp, true);
   }
   if (const Index stand = room.against_wall(room.any(Stock::kTelevisionStands)))
     room.on(*stand, room.any(Stock::kTelevisions), {0.0, 0.0});

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <set>
 
 #include "simulator/core/generator/floor_drawing.hpp"
 #include "simulator/core/generator/furnish.hpp"
@@ -105,7 +104,7 @@ class BuildingGenerator {
     item.class_name = article.class_name;
     if (article.model != nullptr) item.model = article.model;
     item.size_m = Eigen::Vector3d(article.width_m, article.depth_m, cm(article.height_m));
-    item.elevation_m = placed.elevation_m;
+    item.elevation_m = 0.0;
     item.is_movable = placed.is_movable && !is_fixed;
     item.variant = placed.variant;
     const double yaw_rad = placed.yaw_deg * std::numbers::pi / 180.0;

@@ -74,13 +74,10 @@ class Layout {
         side({0, 0}, {1, 0}, {0, -1}, x, cm(dice_(3.4, 4.6))), side({0, y}, {1, 0}, {0, 1}, x, cm(dice_(3.4, 4.6))),
         side({0, 0}, {0, 1}, {-1, 0}, y, cm(dice_(3.2, 4.2))), side({x, 0}, {0, 1}, {1, 0}, y, cm(dice_(3.2, 4.2)))};
     const int left_out = dice_.whole(0, 3);
-    bool has_windows = false;
     for (int i = 0; i < 4; ++i) {
       if (i == left_out || (i != (left_out + 1) % 4 && dice_.chance(0.35))) continue;
       add_offices(sides[static_cast<std::size_t>(i)], is_clinic);
-      has_windows = true;
     }
-    if (!has_windows) add_offices(sides[0], is_clinic);
     add_ring_corridor(x, y, c);
     return finished(is_clinic);
   }

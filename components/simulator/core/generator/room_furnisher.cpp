@@ -46,7 +46,7 @@ RoomFurnisher::Wall RoomFurnisher::wall(std::size_t index) const {
 }
 
 std::optional<std::size_t> RoomFurnisher::at(const Article& article, const Eigen::Vector2d& middle, int yaw_deg) {
-  if (article.height_m > height_m_ - kLowest_m && article.stock != Stock::kColumns) return std::nullopt;
+  if (article.height_m > height_m_ - kLowest_m) return std::nullopt;
   const Eigen::Vector2d where(cm(middle.x()), cm(middle.y()));
   if (!space_.add({area_of(article, where, yaw_deg), 0.0, article.height_m})) return std::nullopt;
   return add(article, where, yaw_deg);

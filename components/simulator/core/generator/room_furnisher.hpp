@@ -14,7 +14,6 @@ struct PlacedItem {
   Article article;
   Eigen::Vector2d at{0, 0};  ///< on another item: offset in that item's frame
   int yaw_deg = 0;           ///< 0: the front looks along -y
-  double elevation_m = 0.0;
   std::optional<std::size_t> on;
   bool is_movable = false;
   std::uint64_t variant = 0;

@@ -30,7 +30,7 @@ class RoomSpace {
  private:
   bool meets_anything(const ItemBox& item) const;
   void block(geometry::GrayImage& cells, const Eigen::AlignedBox2d& area) const;
-  /// Cells that a robot reaches from the first door (without doors: from the most open cell it finds first).
+  /// Cells that a robot reaches from the first door (without doors: from the first free cell).
   std::size_t reachable(const geometry::GrayImage& blocked, bool& reaches_all_doors) const;
 
   const Polygon& polygon_;

@@ -20,8 +20,9 @@ WheelOdometry::WheelOdometry(const OdometryNoiseConfig& config, std::uint64_t se
   base_ = 1.0 + base_sigma * random.normal(1);
   if (config.wheel_range > 0.0) wheel_ = 1.0 + random.uniform(4, -config.wheel_range, config.wheel_range);
   if (config.base_range > 0.0) base_ = 1.0 + random.uniform(5, -config.base_range, config.base_range);
-  covariance_(3, 3) = wheel_sigma * wheel_sigma;
-  covariance_(4, 4) = base_sigma * base_sigma;
+  const auto variance = [](double range, double sigma) { return range > 0.0 ? range * range / 3.0 : sigma * sigma; };
+  covariance_(3, 3) = variance(config.wheel_range, wheel_sigma);
+  covariance_(4, 4) = variance(config.base_range, base_sigma);
 }
 
 OdometryStep WheelOdometry::step(double distance_m, double turn_rad) {

@@ -15,10 +15,10 @@ struct OdometryNoiseConfig {
   double distance_per_turn = 1e-5;   ///< a4 [m2/rad], >= 0
   double wheel_sigma = 0.01;         ///< of the assumed wheel radius over the true one, drawn once per run, 0 to 0.1
   double base_sigma = 0.01;          ///< of the assumed wheel base over the true one, drawn once per run, 0 to 0.1
-  double wheel_range = 0.0;          ///< > 0: drawn evenly from +- this instead
+  double wheel_range = 0.0;          ///< > 0: drawn evenly from +- this instead, not scaled
   double base_range = 0.0;           ///< the same for the base
-  double turn_slip = 0.0;            ///< of each turn up to this share is counted too much, drawn per turn; >= 0
-  double scale = 1.0;                ///< on all standard deviations, 0 (no errors at all) to 10
+  double turn_slip = 0.0;  ///< of each turn up to this share is counted too much, drawn per turn; >= 0; not scaled
+  double scale = 1.0;      ///< on all standard deviations, 0 (no errors at all) to 10
 };
 
 /// What odometry says about one period.
@@ -39,7 +39,7 @@ class WheelOdometry {
 
   const Eigen::Vector2d& position() const { return position_; }
   double yaw_rad() const { return yaw_rad_; }  ///< in [-pi, pi]
-  /// Of (x, y, yaw), with what the systematic errors contribute; to first order.
+  /// Of (x, y, yaw), with what the systematic errors contribute, but for slip on turns; to first order.
   Eigen::Matrix3d covariance() const { return covariance_.topLeftCorner<3, 3>(); }
 
  private:

@@ -89,7 +89,7 @@ struct PictureSpec {
   double along_m = 0.0;
   double height_m = 1.5;               ///< of its middle
   Eigen::Vector2d size_m{0.6, 0.45};   ///< width, height
-  std::optional<std::uint64_t> motif;  ///< default: a free number; pictures that share one look and hang alike
+  std::optional<std::uint64_t> motif;  ///< default: a free number; pictures that share one look alike, and stay
 };
 
 struct LampSpec {

@@ -48,7 +48,7 @@ class RoomFurnisher {
   /// With its back to the wall of an item that was put there, on its right or left.
   std::optional<std::size_t> beside(std::size_t neighbour, const Article& article, bool on_the_right);
   /// In front of an item, `gap_m` away, looking at it.
-  std::optional<std::size_t> before(std::size_t item, const Article& article, double gap_m, double aside_m = 0.0);
+  std::optional<std::size_t> before(std::size_t index, const Article& article, double gap_m, double aside_m = 0.0);
   /// Anywhere, `margin_m` from the walls at least.
   std::optional<std::size_t> free_standing(const Article& article, double margin_m);
   std::optional<std::size_t> at(const Article& article, const Eigen::Vector2d& middle, int yaw_deg);
@@ -59,7 +59,7 @@ class RoomFurnisher {
   /// Pictures about `spacing_m` apart on all walls, where no door or window is and nothing high stands before them.
   void hang_pictures(double spacing_m, double probability);
   /// One thing on the wall above an item (a board, a mirror).
-  void hang_above(std::size_t item, const char* class_name, const Eigen::Vector2d& size_m, double height_m);
+  void hang_above(std::size_t index, const char* class_name, const Eigen::Vector2d& size_m, double height_m);
 
   RoomContents contents() && { return std::move(contents_); }
 
@@ -70,7 +70,7 @@ class RoomFurnisher {
   };
 
   Wall wall(std::size_t index) const;
-  std::optional<std::size_t> at_wall(std::size_t wall, double along_m, const Article& article);
+  std::optional<std::size_t> at_wall(std::size_t index, double along_m, const Article& article);
   std::size_t add(const Article& article, const Eigen::Vector2d& at, int yaw_deg);
   bool has_room_for(const HungPicture& picture) const;
 

@@ -111,8 +111,9 @@ std::size_t RoomSpace::reachable(const geometry::GrayImage& blocked, bool& reach
   } else {
     visit(doors_.front());
   }
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    const Eigen::Vector2i c = open[i];
+  std::size_t next = 0;
+  while (next < open.size()) {  // it grows meanwhile
+    const Eigen::Vector2i c = open[next++];
     for (const Eigen::Vector2i& step : std::array<Eigen::Vector2i, 4>{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}})
       visit(c + step);
   }

@@ -63,7 +63,11 @@ void SimulatorComponent::add_options(CLI::App& app, Config& config) {
   app.add_option("--ground-truth", config.truth_dir,
                  "write labelled voxels, explorable volume, rooms and navigation map into this folder, and exit");
   auto* generate =
-      app.add_option("--generate", config.generated_seed, "draw a building, print its scene file, and exit");
+      app.add_option("--generate", config.generated_seed, "draw a building, print its scene file, and exit")
+          ->check([](const std::string& text) {
+            const bool is_seed = text.size() - 1 < 19 && text.find_first_not_of("0123456789") == std::string::npos;
+            return std::string(is_seed ? "" : "wanted is a seed, a whole number of at most 19 digits, not " + text);
+          });
   app.add_option("--kind", config.generated_kind, "of --generate")
       ->needs(generate)
       ->check(CLI::IsMember(building_kinds()))

@@ -36,6 +36,16 @@ std::optional<double> position_sigma_m(const nav_msgs::msg::Odometry& message) {
   return sum >= 0.0 ? std::optional(std::sqrt(sum)) : std::nullopt;
 }
 
+PoseTier tier_of(const lapis_msgs::msg::TrackedFrame& tracked) {
+  using namespace lapis_msgs::msg::TrackedFrame_Constants;
+  switch (tracked.source()) {
+    case SOURCE_VISION: return PoseTier::kVision;
+    case SOURCE_SURFACES: return PoseTier::kSurfaces;
+    case SOURCE_ODOMETRY: return PoseTier::kOdometry;
+    default: return PoseTier::kNone;
+  }
+}
+
 std::filesystem::path truth_folder(const EvaluatorConfig& config) {
   if (!config.ground_truth_dir.empty()) return config.ground_truth_dir;
   return std::filesystem::path(config.output_dir) / "ground_truth";
@@ -57,6 +67,7 @@ Trajectory keyframes_of(const lapis_msgs::msg::PoseGraph& graph) {
 
 EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
+      odometry_(context, topics::kSlamOdometry, "slam odometry", kWaitingFrames),
       truth_(context, topics::kGroundTruth, "ground truth", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
@@ -70,7 +81,6 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
   context.subscribe(topics::kPoseGraph, [this](auto& m) {
     if (!record_.session() || m.session() == *record_.session()) graph_ = std::move(m);
   });
-  context.subscribe(topics::kSlamOdometry, [this](const auto& m) { position_sigma_m_ = position_sigma_m(m); });
   context.subscribe(topics::kPlannerStatus, [this](const auto& m) { on_planner_status(m); });
   context.subscribe(topics::kMapDescription, [this](const auto& m) { on_map_description(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { on_tile(m); });
@@ -150,34 +160,45 @@ void EvaluatorComponent::report_progress() {
   context_.heart().set_progress(text);
 }
 
-/// Joins and records the oldest tracked frame; false when its partners may still come.
+/// Joins and records the oldest frame that slam answered; false when its partners may still come.
 bool EvaluatorComponent::next_frame(const runtime::Cycle& cycle) {
-  using time::Match;
   if (tracked_.empty()) return false;
-  const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
-  auto& [stamp, tracked] = tracked_.front();
-  const time::Time now = stamp;
-  const auto is_over = [&](const auto& input) { return cycle.inputs_complete || !input.has_publisher(); };
-  Odometry* truth = nullptr;
-  Image* depth = nullptr;
-  Image* labels = nullptr;
-  Info* info = nullptr;
-  const auto truth_match = truth_.match(now, tolerance, is_over(truth_), truth);
-  const auto depth_match = depth_.match(now, tolerance, is_over(depth_), depth);
-  const auto label_match = labels_.match(now, tolerance, is_over(labels_), labels);
-  const auto info_match = info_.match(now, tolerance, is_over(info_), info);
-  if (truth_match == Match::kWait || depth_match == Match::kWait || label_match == Match::kWait ||
-      info_match == Match::kWait) {
-    return false;
-  }
-  if (truth != nullptr && !cycle.inputs_complete && !is_mount_known(*truth, tracked)) return false;
-  record(tracked, truth, depth, labels, info);
-  tracked_.drop_until(now);
-  truth_.drop_until(now - tolerance);
-  depth_.drop_until(now - tolerance);
-  labels_.drop_until(now - tolerance);
-  info_.drop_until(now - tolerance);
+  const auto& [stamp, tracked] = tracked_.front();
+  const auto partners = partners_of(tracked, cycle);
+  if (!partners) return false;
+  if (partners->truth != nullptr && !cycle.inputs_complete && !is_mount_known(*partners->truth, tracked)) return false;
+  record(tracked, *partners);
+  drop_until(stamp);
   return true;
+}
+
+/// None while one of them may still come.
+std::optional<EvaluatorComponent::Partners> EvaluatorComponent::partners_of(const Tracked& tracked,
+                                                                            const runtime::Cycle& cycle) {
+  using time::Match;
+  const time::Time stamp = tracked_.front().first;
+  const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
+  const auto is_over = [&](const auto& input) { return cycle.inputs_complete || !input.has_publisher(); };
+  Partners found;
+  // What slam says of one frame has one stamp; without a pose it says nothing of it here.
+  const bool no_odometry_comes = tier_of(tracked) == PoseTier::kNone || is_over(odometry_) || tracked_.is_full();
+  const bool is_complete = odometry_.match(stamp, {}, no_odometry_comes, found.odometry) != Match::kWait &&
+                           truth_.match(stamp, tolerance, is_over(truth_), found.truth) != Match::kWait &&
+                           depth_.match(stamp, tolerance, is_over(depth_), found.depth) != Match::kWait &&
+                           labels_.match(stamp, tolerance, is_over(labels_), found.labels) != Match::kWait &&
+                           info_.match(stamp, tolerance, is_over(info_), found.info) != Match::kWait;
+  return is_complete ? std::optional(found) : std::nullopt;
+}
+
+/// Forgets the frame, and what no later one can use.
+void EvaluatorComponent::drop_until(time::Time stamp) {
+  const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
+  tracked_.drop_until(stamp);
+  odometry_.drop_until(stamp);
+  truth_.drop_until(stamp - tolerance);
+  depth_.drop_until(stamp - tolerance);
+  labels_.drop_until(stamp - tolerance);
+  info_.drop_until(stamp - tolerance);
 }
 
 /// True when the camera's mount is known, without which a true pose of the base says nothing of the camera.
@@ -190,26 +211,30 @@ bool EvaluatorComponent::is_mount_known(const Odometry& truth, const Tracked& tr
   return false;
 }
 
-void EvaluatorComponent::record(const Tracked& tracked, const Odometry* truth, const Image* depth, const Image* labels,
-                                const Info* info) {
+void EvaluatorComponent::record(const Tracked& tracked, const Partners& partners) {
   newest_ = std::chrono::steady_clock::now();
   if (!began_) began_ = newest_;
-  FrameRecord frame{messages::from_message(tracked.header().stamp()), tracked.session(), tracked_pose(tracked), {}};
-  if (truth != nullptr) frame.T_world_camera = true_camera_pose(*truth, tracked.header().frame_id());
+  FrameRecord frame;
+  frame.stamp = messages::from_message(tracked.header().stamp());
+  frame.session = tracked.session();
+  frame.T_map_camera = pose_of(tracked);
+  if (frame.T_map_camera) frame.tier = tier_of(tracked);
+  if (partners.odometry != nullptr) frame.position_sigma_m = position_sigma_m(*partners.odometry);
+  if (partners.truth != nullptr) frame.T_world_camera = true_camera_pose(*partners.truth, tracked.header().frame_id());
   const bool is_judged = record_.add(frame);
   maps_.set_judged_session(*record_.session());
   context_.status().value("frames", static_cast<std::uint64_t>(record_.frames_judged()));
   if (!is_judged) context_.status().count("frames not judged: slam began a new map");
-  const bool is_tracked = is_judged && frame.T_map_camera;
-  if (is_tracked && frame.T_world_camera && depth != nullptr && info != nullptr) {
-    add_to_references(*record_.T_map_world() * *frame.T_world_camera, *depth, labels, *info);
+  if (is_judged && frame.T_map_camera && frame.T_world_camera && partners.depth != nullptr &&
+      partners.info != nullptr) {
+    add_to_references(*record_.T_map_world() * *frame.T_world_camera, *partners.depth, partners.labels, *partners.info);
   }
-  add_timeline_row(frame.stamp, is_tracked);
+  add_timeline_row(frame.stamp);
 }
 
-/// Of the camera, in the map; none when the frame was not tracked.
-std::optional<geometry::Pose> EvaluatorComponent::tracked_pose(const Tracked& tracked) {
-  if (tracked.state() != lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING) return std::nullopt;
+/// Of the camera, in the map; none when slam had none.
+std::optional<geometry::Pose> EvaluatorComponent::pose_of(const Tracked& tracked) {
+  if (tier_of(tracked) == PoseTier::kNone) return std::nullopt;
   const auto T_map_keyframe = messages::from_message(tracked.keyframe_pose());
   const auto T_keyframe_camera = messages::from_message(tracked.pose_in_keyframe());
   if (T_map_keyframe && T_keyframe_camera) return *T_map_keyframe * *T_keyframe_camera;
@@ -247,15 +272,16 @@ void EvaluatorComponent::add_to_references(const geometry::Pose& T_map_camera, c
   if (!problem.empty()) refuse(problem);
 }
 
-void EvaluatorComponent::add_timeline_row(time::Time stamp, bool is_tracked) {
+void EvaluatorComponent::add_timeline_row(time::Time stamp) {
   if (timeline_stamp_ && (stamp - *timeline_stamp_).seconds() < config_.timeline_period_s) return;
   timeline_stamp_ = stamp;
+  const FrameRow& frame = record_.frames().back();
   TimelineRow row;
-  row.time_s = record_.time_s();
-  row.is_tracking = is_tracked;
-  row.path_length_m = record_.path_length_m();
-  row.position_error_m = record_.position_error_m();
-  if (is_tracked) row.position_sigma_m = position_sigma_m_;
+  row.time_s = frame.time_s;
+  row.tier = frame.tier;
+  row.path_length_m = frame.path_length_m;
+  row.position_error_m = frame.position_error_m;
+  row.position_sigma_m = frame.position_sigma_m;
   if (planner_) row.planner_state = messages::state_name(*planner_);
   maps_.write_to(row);
   timeline_.push_back(row);
@@ -289,6 +315,7 @@ void EvaluatorComponent::write_files(const RunMetrics& m) const {
   trajectory::write_trajectory(folder / "trajectory_ground_truth.txt", record_.truth_in_map(),
                                "true camera optical frame, in the map by the first true pose");
   files::replace_text(folder / "timeline.csv", to_csv(timeline_));
+  files::replace_text(folder / "frames.csv", to_csv(record_.frames()));
   files::replace_text(folder / "metrics.json", to_json(m));
   files::replace_text(folder / "metrics.txt", format_table(m));
   if (record_.T_map_world()) maps_.save_reference(folder / "reference_map.lapis");

@@ -37,6 +37,15 @@ class EvaluatorComponent {
   using Tracked = lapis_msgs::msg::TrackedFrame;
   using Odometry = nav_msgs::msg::Odometry;
 
+  /// What belongs to a frame that slam answered; null where it is not there.
+  struct Partners {
+    Odometry* odometry = nullptr;  ///< slam's pose with its covariance
+    Odometry* truth = nullptr;
+    Image* depth = nullptr;
+    Image* labels = nullptr;
+    Info* info = nullptr;
+  };
+
   void count_contact(bool is_in_contact);
   void on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message);
   void on_map_description(const lapis_msgs::msg::MapDescription& message);
@@ -45,13 +54,15 @@ class EvaluatorComponent {
   void on_planner_status(const lapis_msgs::msg::PlannerStatus& message);
   void work(const runtime::Cycle& cycle);
   bool next_frame(const runtime::Cycle& cycle);
-  void record(const Tracked& tracked, const Odometry* truth, const Image* depth, const Image* labels, const Info* info);
+  std::optional<Partners> partners_of(const Tracked& tracked, const runtime::Cycle& cycle);
+  void drop_until(time::Time stamp);
+  void record(const Tracked& tracked, const Partners& partners);
   bool is_mount_known(const Odometry& truth, const Tracked& tracked);
-  std::optional<geometry::Pose> tracked_pose(const Tracked& tracked);
+  std::optional<geometry::Pose> pose_of(const Tracked& tracked);
   std::string find_truth();
   std::optional<geometry::Pose> true_camera_pose(const Odometry& truth, const std::string& optical_frame);
   void add_to_references(const geometry::Pose& T_map_camera, const Image& depth, const Image* labels, const Info& info);
-  void add_timeline_row(time::Time stamp, bool is_tracked);
+  void add_timeline_row(time::Time stamp);
   void report_progress();
   std::int64_t loop_closures() const;
   RunMetrics metrics() const;
@@ -60,6 +71,7 @@ class EvaluatorComponent {
   Config config_;
   runtime::Context& context_;
   runtime::StampedInput<Tracked> tracked_;
+  runtime::StampedInput<Odometry> odometry_;  // slam's
   runtime::StampedInput<Odometry> truth_;
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Image> labels_;
@@ -69,7 +81,6 @@ class EvaluatorComponent {
   ProcessCosts costs_;
   std::optional<lapis_msgs::msg::PlannerStatus> planner_;  // newest
   DecisionRecord decisions_;
-  std::optional<double> position_sigma_m_;  // newest that slam published
 
   RunRecord record_;
   MapJudge maps_;

@@ -13,7 +13,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kMinTrackedShare = 0.95;
+constexpr double kMinPoseShare = 0.95;
 
 template <class T>
 ordered_json value_or_null(const std::optional<T>& value) {
@@ -78,6 +78,10 @@ ordered_json to_document(const RunMetrics& m) {
   document["exit_reason"] = value_or_null(m.exit_reason);
   document["frames_total"] = value_or_null(m.frames_total);
   document["frames_tracked"] = value_or_null(m.frames_tracked);
+  document["tier_vision_share"] = value_or_null(m.tier_vision_share);
+  document["tier_surfaces_share"] = value_or_null(m.tier_surfaces_share);
+  document["tier_odometry_share"] = value_or_null(m.tier_odometry_share);
+  document["lost_share"] = value_or_null(m.lost_share);
   document["lost_time_s"] = value_or_null(m.lost_time_s);
   document["loop_closures"] = value_or_null(m.loop_closures);
   add_trajectories(document, m);
@@ -168,8 +172,8 @@ MapFigures map_figures(const LabelledVoxels& reference, const LabelledVoxels& es
   return figures;
 }
 
-std::string judged_exit_reason(const std::string& reason, std::int64_t frames_tracked, std::int64_t frames_total) {
-  const bool is_lost = static_cast<double>(frames_tracked) < kMinTrackedShare * static_cast<double>(frames_total);
+std::string judged_exit_reason(const std::string& reason, std::int64_t frames_with_pose, std::int64_t frames_total) {
+  const bool is_lost = static_cast<double>(frames_with_pose) < kMinPoseShare * static_cast<double>(frames_total);
   return is_lost ? "lost" : reason;
 }
 

@@ -42,8 +42,12 @@ struct MapFigures {
 struct RunMetrics {
   std::optional<std::string> exit_reason;
   std::optional<std::int64_t> frames_total;    ///< frames that were not tracked count too
-  std::optional<std::int64_t> frames_tracked;  ///< frames with a pose from vision: dead reckoning is none
-  std::optional<double> lost_time_s;
+  std::optional<std::int64_t> frames_tracked;  ///< frames with a pose from vision or surfaces: dead reckoning is none
+  std::optional<double> tier_vision_share;     ///< of duration_s in which vision held the pose
+  std::optional<double> tier_surfaces_share;
+  std::optional<double> tier_odometry_share;
+  std::optional<double> lost_share;   ///< without any pose
+  std::optional<double> lost_time_s;  ///< the same time
   std::optional<std::int64_t> loop_closures;
   TrajectoryFigures online;                 ///< every frame's pose as published at its time
   TrajectoryFigures keyframes;              ///< final, optimised key-frames (RPE and heading are not written)
@@ -83,8 +87,8 @@ std::optional<double> ate_raw_rmse_up_to(double path_m, const Trajectory& refere
 MapFigures map_figures(const LabelledVoxels& reference, const LabelledVoxels& estimate,
                        const std::map<std::uint16_t, std::string>& class_names,
                        const std::vector<std::uint16_t>& top_classes = {});
-/// `reason`, or "lost" when fewer than 95 % of the frames were tracked.
-std::string judged_exit_reason(const std::string& reason, std::int64_t frames_tracked, std::int64_t frames_total);
+/// `reason`, or "lost" when fewer than 95 % of the frames have a pose.
+std::string judged_exit_reason(const std::string& reason, std::int64_t frames_with_pose, std::int64_t frames_total);
 
 /// The document metrics.json: keys in a fixed order, numbers with all their digits; equal metrics give equal bytes.
 /// Numbers that are not finite are written as null.

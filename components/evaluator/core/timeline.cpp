@@ -6,8 +6,9 @@
 namespace lapis::evaluator {
 namespace {
 
-constexpr const char* kHeader =
+constexpr const char* kTimelineHeader =
     "time_s,explored_volume_m3,explored_share,path_length_m,position_error_m,position_sigma_m,state,planner_state\n";
+constexpr const char* kFramesHeader = "time_s,tier,path_length_m,position_sigma_m,position_error_m\n";
 
 std::string cell(const std::optional<double>& value) {
   if (!value) return "";
@@ -16,14 +17,28 @@ std::string cell(const std::optional<double>& value) {
   return text;
 }
 
+const char* state_of(PoseTier tier) {
+  if (tier == PoseTier::kNone) return "LOST";
+  return tier == PoseTier::kOdometry ? "DEAD_RECKONING" : "TRACKING";
+}
+
 }  // namespace
 
 std::string to_csv(const std::vector<TimelineRow>& rows) {
-  std::string text = kHeader;
+  std::string text = kTimelineHeader;
   for (const TimelineRow& row : rows) {
     text += cell(row.time_s) + "," + cell(row.explored_volume_m3) + "," + cell(row.explored_share) + "," +
             cell(row.path_length_m) + "," + cell(row.position_error_m) + "," + cell(row.position_sigma_m) + "," +
-            (row.is_tracking ? "TRACKING" : "LOST") + "," + row.planner_state + "\n";
+            state_of(row.tier) + "," + row.planner_state + "\n";
+  }
+  return text;
+}
+
+std::string to_csv(const std::vector<FrameRow>& rows) {
+  std::string text = kFramesHeader;
+  for (const FrameRow& row : rows) {
+    text += cell(row.time_s) + "," + name_of(row.tier) + "," + cell(row.path_length_m) + "," +
+            cell(row.position_sigma_m) + "," + cell(row.position_error_m) + "\n";
   }
   return text;
 }

@@ -4,6 +4,8 @@
 #include <string>
 #include <vector>
 
+#include "evaluator/core/pose_tier.hpp"
+
 namespace lapis::evaluator {
 
 /// The state of a run at one time of its stamps; what was not measured has no value.
@@ -14,13 +16,24 @@ struct TimelineRow {
   std::optional<double> path_length_m;
   std::optional<double> position_error_m;  ///< not aligned
   std::optional<double> position_sigma_m;  ///< as slam predicts it: root of the variances' sum over x, y, z
-  bool is_tracking = false;
+  PoseTier tier = PoseTier::kNone;
   std::string planner_state;   ///< empty without a planner
   bool is_comparable = false;  ///< the map has the grid and the session that the run is judged by; not written
 };
 
+/// What slam's pose of one frame was worth; what was not measured has no value.
+struct FrameRow {
+  double time_s = 0.0;  ///< since the run's first frame
+  PoseTier tier = PoseTier::kNone;
+  std::optional<double> path_length_m;     ///< of the true path so far
+  std::optional<double> position_sigma_m;  ///< as TimelineRow
+  std::optional<double> position_error_m;  ///< as TimelineRow
+};
+
 /// The file timeline.csv; cells without a value are empty.
 std::string to_csv(const std::vector<TimelineRow>& rows);
+/// The file frames.csv, alike.
+std::string to_csv(const std::vector<FrameRow>& rows);
 
 /// When the share of the explorable volume first reached `share` [s]; none when it never did.
 std::optional<double> time_to_reach(const std::vector<TimelineRow>& rows, double share);

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
@@ -63,6 +64,7 @@ class EvaluatorContract : public ::testing::Test {
     message.map_frame_id("map");
     message.session(1);
     message.state(lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING);
+    message.source(lapis_msgs::msg::TrackedFrame_Constants::SOURCE_VISION);
     message.keyframe_pose(messages::to_message(T_base_camera()));
     message.pose_in_keyframe(messages::to_message(slow_motion(index)));
     return message;
@@ -175,6 +177,7 @@ TEST_F(EvaluatorContract, ThePlannersDecisionsAndSlamsSigmaAreKept) {
   auto& pose = probe.advertise(topics::kSlamOdometry);
   ASSERT_TRUE(probe.wait_until([&] { return planner.matched() > 0 && pose.matched() > 0; })) << evaluator.log();
   nav_msgs::msg::Odometry odometry;
+  odometry.header().stamp(messages::to_message(CameraFeed::stamp(0)));
   for (const std::size_t diagonal : {0U, 7U, 14U}) odometry.pose().covariance()[diagonal] = 0.0012;
   pose.publish(odometry);
   lapis_msgs::msg::PlannerStatus status;
@@ -196,6 +199,39 @@ TEST_F(EvaluatorContract, ThePlannersDecisionsAndSlamsSigmaAreKept) {
   EXPECT_THAT(metrics, HasSubstr("\"decisions_unlike_mi_only_share\": 0.5"));
   EXPECT_THAT(metrics, HasSubstr("\"decision_time_p95_s\": 0.25"));
   EXPECT_THAT(read(std::filesystem::path(folder) / "timeline.csv"), HasSubstr(",0.060000,TRACKING,EXPLORING\n"));
+}
+
+TEST_F(EvaluatorContract, WhatHoldsThePoseIsKeptByFrameWithItsSigmaAndWhateverItIsItIsJudged) {
+  auto& pose = probe.advertise(topics::kSlamOdometry);
+  ASSERT_TRUE(probe.wait_until([&] { return pose.matched() > 0; })) << evaluator.log();
+  using namespace lapis_msgs::msg::TrackedFrame_Constants;
+  const std::array sources = {SOURCE_VISION, SOURCE_ODOMETRY, SOURCE_NONE, SOURCE_SURFACES};
+  for (int i = 0; i < static_cast<int>(sources.size()); ++i) {
+    auto message = tracked(i);
+    message.source(sources[static_cast<std::size_t>(i)]);
+    truth.publish(true_pose(i));
+    feed.send(feed.frame(i));
+    slam.publish(message);
+    if (message.source() == SOURCE_NONE) continue;
+    nav_msgs::msg::Odometry odometry;  // after the frame that waits for it
+    odometry.header().stamp(message.header().stamp());
+    odometry.pose().covariance()[0] = (i + 1) * (i + 1) * 0.0001;
+    pose.publish(odometry);
+  }
+  ASSERT_TRUE(probe.wait_until([&] { return newest_values(diagnostics, "evaluator")["frames"] == "4"; }))
+      << evaluator.log();
+  EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
+  const std::string frames = read(std::filesystem::path(folder) / "frames.csv");
+  EXPECT_THAT(frames, ::testing::MatchesRegex("time_s,tier,path_length_m,position_sigma_m,position_error_m\n"
+                                              "[0-9.]+,vision,[0-9.]+,0.010000,0.000000\n"
+                                              "[0-9.]+,odometry,[0-9.]+,0.020000,0.000000\n"
+                                              "[0-9.]+,none,[0-9.]+,,\n"
+                                              "[0-9.]+,surfaces,[0-9.]+,0.040000,0.000000\n"));
+  const std::string metrics = read(std::filesystem::path(folder) / "metrics.json");
+  EXPECT_THAT(metrics, HasSubstr("\"frames_tracked\": 2"));
+  for (const char* share : {"tier_surfaces_share", "tier_odometry_share", "lost_share"}) {
+    EXPECT_THAT(metrics, HasSubstr("\"" + std::string(share) + "\": 0.333")) << "frames are evenly spaced";
+  }
 }
 
 TEST_F(EvaluatorContract, GarbageIsSurvived) {

@@ -20,6 +20,10 @@ using ::testing::Not;
 const std::vector<std::string> kKeys = {"exit_reason",
                                         "frames_total",
                                         "frames_tracked",
+                                        "tier_vision_share",
+                                        "tier_surfaces_share",
+                                        "tier_odometry_share",
+                                        "lost_share",
                                         "lost_time_s",
                                         "loop_closures",
                                         "ate_se3_rmse_m",
@@ -167,9 +171,11 @@ TEST(Timeline, WhatWasNotMeasuredIsEmpty) {
   TimelineRow row;
   row.time_s = 1.5;
   EXPECT_THAT(to_csv({row}), HasSubstr("state\n1.500000,,,,,,LOST,\n"));
-  row = {2.0, 10.0, 0.25, 3.0, 0.125, 0.0625, true, "EXPLORING", true};
+  row = {2.0, 10.0, 0.25, 3.0, 0.125, 0.0625, PoseTier::kSurfaces, "EXPLORING", true};
   EXPECT_THAT(to_csv({row}),
               HasSubstr("\n2.000000,10.000000,0.250000,3.000000,0.125000,0.062500,TRACKING,EXPLORING\n"));
+  row.tier = PoseTier::kOdometry;
+  EXPECT_THAT(to_csv({row}), HasSubstr(",DEAD_RECKONING,EXPLORING\n"));
 }
 
 TEST(Timeline, TimeToReachIsThatOfTheFirstRow) {

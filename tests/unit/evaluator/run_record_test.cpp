@@ -9,6 +9,19 @@ time::Time at(double seconds) { return {static_cast<std::int64_t>(seconds * 1e9)
 
 geometry::Pose pose_at(double x_m) { return geometry::Pose(Eigen::Translation3d(x_m, 0.0, 0.0)); }
 
+constexpr int kSession = 7;
+
+FrameRecord frame(double stamp_s, std::int64_t session, std::optional<geometry::Pose> T_map_camera,
+                  std::optional<geometry::Pose> T_world_camera) {
+  return {at(stamp_s), session, T_map_camera ? PoseTier::kVision : PoseTier::kNone, T_map_camera, T_world_camera, {}};
+}
+
+/// Where truth is; held by `tier`.
+FrameRecord held_by(PoseTier tier, double stamp_s) {
+  const auto T_map_camera = tier == PoseTier::kNone ? std::nullopt : std::optional(pose_at(0.0));
+  return {at(stamp_s), kSession, tier, T_map_camera, pose_at(0.0), {}};
+}
+
 RunMetrics metrics_of(const RunRecord& record, std::int64_t frames_missed = 0) {
   RunMetrics metrics;
   record.write_to(metrics, {}, frames_missed, true);
@@ -17,9 +30,9 @@ RunMetrics metrics_of(const RunRecord& record, std::int64_t frames_missed = 0) {
 
 TEST(RunRecord, TheFirstFrameWithBothPosesJoinsMapAndWorld) {
   RunRecord record;
-  record.add({at(1.0), 7, pose_at(0.0), std::nullopt});
-  record.add({at(1.1), 7, pose_at(0.1), pose_at(5.0)});
-  record.add({at(1.2), 7, pose_at(0.3), pose_at(5.1)});
+  record.add(frame(1.0, kSession, pose_at(0.0), std::nullopt));
+  record.add(frame(1.1, kSession, pose_at(0.1), pose_at(5.0)));
+  record.add(frame(1.2, kSession, pose_at(0.3), pose_at(5.1)));
   ASSERT_TRUE(record.T_map_world());
   EXPECT_NEAR(record.T_map_world()->translation().x(), -4.9, 1e-12);
   EXPECT_NEAR(record.position_error_m().value(), 0.1, 1e-12);
@@ -29,10 +42,10 @@ TEST(RunRecord, TheFirstFrameWithBothPosesJoinsMapAndWorld) {
 
 TEST(RunRecord, AFrameWithoutAPoseIsLostTime) {
   RunRecord record;
-  record.add({at(1.0), 7, pose_at(0.0), pose_at(0.0)});
-  record.add({at(1.5), 7, std::nullopt, pose_at(0.2)});
+  record.add(frame(1.0, kSession, pose_at(0.0), pose_at(0.0)));
+  record.add(frame(1.5, kSession, std::nullopt, pose_at(0.2)));
   EXPECT_FALSE(record.position_error_m());
-  record.add({at(2.0), 7, pose_at(0.3), pose_at(0.3)});
+  record.add(frame(2.0, kSession, pose_at(0.3), pose_at(0.3)));
   const RunMetrics metrics = metrics_of(record);
   EXPECT_EQ(metrics.frames_tracked, 2);
   EXPECT_NEAR(metrics.lost_time_s.value(), 0.5, 1e-9);
@@ -41,9 +54,9 @@ TEST(RunRecord, AFrameWithoutAPoseIsLostTime) {
 
 TEST(RunRecord, FramesOfALaterSessionAreLost) {
   RunRecord record;
-  EXPECT_TRUE(record.add({at(1.0), 7, pose_at(0.0), pose_at(0.0)}));
-  EXPECT_FALSE(record.add({at(2.0), 8, pose_at(3.0), pose_at(0.0)}));
-  EXPECT_EQ(record.session(), 7);
+  EXPECT_TRUE(record.add(frame(1.0, kSession, pose_at(0.0), pose_at(0.0))));
+  EXPECT_FALSE(record.add(frame(2.0, kSession + 1, pose_at(3.0), pose_at(0.0))));
+  EXPECT_EQ(record.session(), kSession);
   EXPECT_EQ(record.estimate().size(), 1u);
   EXPECT_NEAR(metrics_of(record).lost_time_s.value(), 1.0, 1e-9);
 }
@@ -57,6 +70,82 @@ TEST(RunRecord, RepeatedCameraFramesCountOnceAndMissedOnesToo) {
   EXPECT_EQ(metrics_of(record).frames_total, 4);
   EXPECT_EQ(metrics_of(record, 2).frames_total, 6);
   EXPECT_FALSE(record.is_empty());
+}
+
+TEST(RunRecord, SharesOfTimeByTierWeighStampsNotFrames) {
+  RunRecord record;
+  for (const double stamp_s : {0.0, 1.0, 3.0, 3.5, 7.5, 10.0}) record.count_camera_frame(at(stamp_s));
+  record.add(held_by(PoseTier::kVision, 0.0));
+  record.add(held_by(PoseTier::kVision, 1.0));    // 1 s
+  record.add(held_by(PoseTier::kSurfaces, 3.0));  // 2 s
+  record.add(held_by(PoseTier::kNone, 3.5));      // 0.5 s
+  record.add(held_by(PoseTier::kOdometry, 7.5));  // 4 s
+  record.add(held_by(PoseTier::kVision, 10.0));   // 2.5 s
+  const RunMetrics metrics = metrics_of(record);
+  EXPECT_NEAR(metrics.tier_vision_share.value(), 0.35, 1e-12);
+  EXPECT_NEAR(metrics.tier_surfaces_share.value(), 0.2, 1e-12);
+  EXPECT_NEAR(metrics.tier_odometry_share.value(), 0.4, 1e-12);
+  EXPECT_NEAR(metrics.lost_share.value(), 0.05, 1e-12);
+  EXPECT_NEAR(metrics.lost_time_s.value(), 0.5, 1e-12);
+  EXPECT_EQ(metrics.duration_s, 10.0);
+  EXPECT_EQ(metrics.frames_tracked, 4) << "odometry alone does not track";
+  EXPECT_EQ(metrics.exit_reason, "lost") << "one frame of six has no pose";
+}
+
+TEST(RunRecord, OdometryAloneIsNotLost) {
+  RunRecord record;
+  for (int i = 0; i < 10; ++i) record.add(held_by(PoseTier::kOdometry, i));
+  EXPECT_EQ(metrics_of(record).exit_reason, "completed");
+  EXPECT_EQ(metrics_of(record).lost_share, 0.0);
+  EXPECT_EQ(metrics_of(record).frames_tracked, 0);
+}
+
+TEST(RunRecord, TimeBeforeSlamsFirstAnswerAndAfterItsLastIsLost) {
+  RunRecord record;
+  for (const double stamp_s : {0.0, 2.0, 3.0, 8.0}) record.count_camera_frame(at(stamp_s));
+  record.add(held_by(PoseTier::kVision, 2.0));
+  record.add(held_by(PoseTier::kVision, 3.0));
+  const RunMetrics metrics = metrics_of(record);
+  EXPECT_NEAR(metrics.lost_share.value(), 7.0 / 8.0, 1e-12);
+  EXPECT_NEAR(metrics.tier_vision_share.value(), 1.0 / 8.0, 1e-12);
+  EXPECT_EQ(record.frames().front().time_s, 2.0) << "since the camera's first frame";
+}
+
+TEST(RunRecord, ARunThatNeverBeginsIsLostAllTheTime) {
+  RunRecord silent, waiting;
+  for (const double stamp_s : {1.0, 2.0, 4.0}) {
+    silent.count_camera_frame(at(stamp_s));
+    waiting.count_camera_frame(at(stamp_s));
+    waiting.add(held_by(PoseTier::kNone, stamp_s));
+  }
+  for (const RunRecord* record : {&silent, &waiting}) {
+    const RunMetrics metrics = metrics_of(*record);
+    EXPECT_EQ(metrics.lost_share, 1.0);
+    EXPECT_EQ(metrics.lost_time_s, 3.0);
+    EXPECT_EQ(metrics.tier_vision_share, 0.0);
+  }
+}
+
+TEST(RunRecord, AMomentHasNoShares) {
+  RunRecord record;
+  record.add(held_by(PoseTier::kVision, 1.0));
+  EXPECT_FALSE(metrics_of(record).lost_share);
+  EXPECT_EQ(metrics_of(record).lost_time_s, 0.0);
+}
+
+TEST(RunRecord, EveryFrameHasARowAndARepeatedOneHasNone) {
+  RunRecord record;
+  record.add({at(5.0), kSession, PoseTier::kVision, pose_at(0.0), pose_at(2.0), 0.01});
+  record.add({at(5.5), kSession, PoseTier::kOdometry, pose_at(1.25), pose_at(3.0), 0.04});
+  record.add({at(5.5), kSession, PoseTier::kVision, pose_at(1.0), pose_at(3.0), 0.02});
+  record.add({at(6.0), kSession, PoseTier::kNone, std::nullopt, pose_at(3.5), 0.05});
+  record.add({at(6.5), kSession + 1, PoseTier::kVision, pose_at(0.0), pose_at(3.5), 0.06});
+  EXPECT_EQ(to_csv(record.frames()),
+            "time_s,tier,path_length_m,position_sigma_m,position_error_m\n"
+            "0.000000,vision,0.000000,0.010000,0.000000\n"
+            "0.500000,odometry,1.000000,0.040000,0.250000\n"
+            "1.000000,none,1.500000,,\n"
+            "1.500000,none,1.500000,,\n");
 }
 
 TEST(RunRecord, ACollisionIsTheBeginningOfAContact) {

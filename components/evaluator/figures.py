@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Draws figures/*.png of a run folder: map, trajectory, pose graph, coverage, errors, IoU by class, a decision.
+"""Draws figures/*.png of a run folder: map, trajectory, pose graph, coverage, errors, progress, IoU by class, a decision.
 
 A figure whose input files are missing is left out, with a line saying which file; exit status 0 when at least one
 figure was drawn, 1 when none was, 2 when the folder does not exist.
@@ -17,6 +17,7 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402  (after the choice of backend)
+import matplotlib.ticker  # noqa: E402
 import numpy as np  # noqa: E402
 from matplotlib.collections import LineCollection  # noqa: E402
 
@@ -24,6 +25,8 @@ ESTIMATE = "trajectory_estimate.txt"
 TRUTH = "trajectory_ground_truth.txt"
 DECISIONS = "decisions.csv"
 BLUE, ORANGE, GREY = "#1565c0", "#e65100", "#9e9e9e"
+TIERS = {"vision": "#66bb6a", "surfaces": "#42a5f5", "odometry": "#ffb300", "none": "#d32f2f"}  # frames.csv
+LEAST_SHOWN_M = 1e-3  # on a logarithmic axis
 HEAD_ROOM_M = 0.5  # what lies higher above the camera (ceilings) would hide the rooms
 DECISION_BARS = (("utility", "utility"), ("path_information_nats", "information\nof the path\n[nat]"),
                  ("cost_m", "cost [m]"), ("d_optimality", "D-optimality"))
@@ -238,10 +241,10 @@ def draw_coverage(run):
     return figure
 
 
-def loop_closures(run):
-    """Their number by metrics.json; None where that does not say."""
+def metric(run, key):
+    """A figure of metrics.json; None where that does not say."""
     try:
-        return json.loads((run / "metrics.json").read_text())["loop_closures"]
+        return json.loads((run / "metrics.json").read_text())[key]
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
@@ -256,7 +259,7 @@ def draw_pose_graph(run):
         axes.add_collection(LineCollection(positions[edges[kind], :2], colors=colour, linewidths=1.0))
     nodes, = axes.plot(*positions[:, :2].T, ".", color=BLUE, markersize=4)
     following, others = (plt.Line2D([], [], color=colour) for colour in (BLUE, ORANGE))
-    loops = loop_closures(run)
+    loops = metric(run, "loop_closures")
     axes.legend([nodes, following, others],
                 [f"{len(positions)} key-frames", f"{(~is_other).sum()} edges between neighbours in time",
                  f"{is_other.sum()} other edges" + ("" if loops is None else f"\n(loop closures: {loops})")],
@@ -391,6 +394,93 @@ def draw_errors(run):
     return figure
 
 
+def stretches(seconds, tiers, duration_s):
+    """(tier, begin, end) of each stretch that one tier held; as in the shares of metrics.json, the time before a frame is
+    that frame's, and before the first one and after the last one there is no pose."""
+    found = [("none", 0.0, seconds[0])] if seconds[0] > 0 else []
+    begin = seconds[0]
+    for i in range(1, len(tiers)):
+        if i + 1 == len(tiers) or tiers[i + 1] != tiers[i]:
+            found.append((tiers[i], begin, seconds[i]))
+            begin = seconds[i]
+    if duration_s > seconds[-1]:
+        found.append(("none", seconds[-1], duration_s))
+    return found
+
+
+def distance_driven(run, seconds, path_m):
+    """Distance by time and what it is by: truth, else the estimate."""
+    if np.isfinite(path_m).any():
+        return seconds, path_m, "true path"
+    stamps, positions, _ = read_trajectory(run / ESTIMATE)
+    steps = np.linalg.norm(np.diff(positions, axis=0), axis=1)
+    return stamps - stamps[0] + seconds[0], np.concatenate(([0.0], np.cumsum(steps))), "path by the estimate"
+
+
+def metres(value, _):
+    """A label of a logarithmic axis."""
+    if value < 0.01:
+        return f"{1000 * value:g} mm"
+    return f"{100 * value:g} cm" if value < 1 else f"{value:g} m"
+
+
+def draw_tiers(band, panels, held):
+    """The band of tiers with their shares of the time; other panels are tinted where vision does not hold the pose."""
+    for tier, begin, end in sorted(held, key=lambda stretch: list(TIERS).index(stretch[0])):  # the worst one on top,
+        seen = {} if tier == "vision" else {"edgecolor": TIERS[tier], "linewidth": 0.8}  # and a single frame is seen, too
+        band.axvspan(begin, end, facecolor=TIERS[tier], **seen)
+        for axes in panels if tier != "vision" else ():
+            axes.axvspan(begin, end, facecolor=TIERS[tier], edgecolor="none", alpha=0.18)
+    whole = sum(end - begin for _, begin, end in held)
+    shares = {name: sum(end - begin for tier, begin, end in held if tier == name) / whole for name in TIERS}
+    patches = [plt.Rectangle((0, 0), 1, 1, facecolor=colour) for colour in TIERS.values()]
+    band.legend(patches, [f"{'no pose' if name == 'none' else name} {100 * share:.1f} %" for name, share in shares.items()],
+                loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=len(TIERS), frameon=False)
+    band.set_ylabel("pose by", rotation=0, ha="right", va="center")
+    band.set_yticks([])
+
+
+def draw_sureness(axes, seconds, sigma_m, error_m):
+    """How far slam thinks that it may be off, and how far it is."""
+    for values, colour, name in ((sigma_m, BLUE, "sigma by slam"), (error_m, ORANGE, "error against the truth")):
+        if np.isfinite(values).any():
+            axes.plot(seconds, np.maximum(values, LEAST_SHOWN_M), color=colour, linewidth=1.5, label=name)
+    axes.set_yscale("log")
+    axes.set_ylim(bottom=LEAST_SHOWN_M)
+    axes.yaxis.set_major_formatter(metres)
+    axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
+    axes.set_ylabel("position")
+    axes.grid(which="both", color="#dddddd", linewidth=0.6)
+    if axes.lines:
+        axes.legend(loc="upper left", framealpha=0.9)
+
+
+def draw_progress(run):
+    """How far the robot has come, what held its pose, and what that cost."""
+    path = run / "frames.csv"
+    rows = read_table(path)
+    if len(rows) < 2:
+        raise MissingInput("frames.csv holds no two frames")
+    seconds, path_m, sigma_m, error_m = (numbers(rows, column, path) for column in
+                                         ("time_s", "path_length_m", "position_sigma_m", "position_error_m"))
+    tiers = [row.get("tier") for row in rows]
+    if not np.isfinite(seconds).all() or not set(tiers) <= set(TIERS):
+        raise MissingInput("frames.csv is damaged")
+    figure, (distance, band, sureness) = plt.subplots(3, 1, figsize=(11, 7), sharex=True,
+                                                      gridspec_kw={"height_ratios": [3, 0.45, 4], "hspace": 0.28})
+    at, driven_m, source = distance_driven(run, seconds, path_m)
+    duration_s = metric(run, "duration_s") or seconds[-1]
+    draw_tiers(band, (distance, sureness), stretches(seconds, tiers, duration_s))
+    distance.plot(at, driven_m, color="black", linewidth=1.8)
+    distance.set(ylabel=f"distance driven [m]\n({source})", title=f"Progress and pose: {run.resolve().name}")
+    distance.set_ylim(bottom=0)
+    distance.grid(color="#dddddd", linewidth=0.6)
+    draw_sureness(sureness, seconds, sigma_m, error_m)
+    sureness.set_xlabel("time since the first frame [s]")
+    sureness.set_xlim(0, max(duration_s, seconds[-1]))
+    return figure
+
+
 def draw_class_iou(run):
     path = run / "metrics.json"
     if not path.is_file():
@@ -428,8 +518,8 @@ def draw_class_iou(run):
 
 
 FIGURES = {"map.png": draw_classes, "trajectory.png": draw_trajectory, "pose_graph.png": draw_pose_graph,
-           "coverage.png": draw_coverage, "errors.png": draw_errors, "class_iou.png": draw_class_iou,
-           "decision.png": draw_decision}
+           "coverage.png": draw_coverage, "errors.png": draw_errors, "progress.png": draw_progress,
+           "class_iou.png": draw_class_iou, "decision.png": draw_decision}
 
 
 def save(figure, path):

@@ -5,10 +5,11 @@ import math
 import chain
 
 FILES = ("manifest.yaml", "trajectory_estimate.txt", "trajectory_ground_truth.txt", "keyframes.txt", "pose_graph.g2o",
-         "slam.lapis", "map.lapis", "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "metrics.json",
-         "figures/trajectory.png", "figures/errors.png",
+         "slam.lapis", "map.lapis", "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "frames.csv", "metrics.json",
+         "figures/trajectory.png", "figures/errors.png", "figures/progress.png",
          *(f"logs/{name}.log" for name in chain.COMPONENTS))
-MEASURED = ("exit_reason", "frames_total", "frames_tracked", "lost_time_s", "loop_closures", "ate_se3_rmse_m",
+MEASURED = ("exit_reason", "frames_total", "frames_tracked", "tier_vision_share",
+            "tier_surfaces_share", "tier_odometry_share", "lost_share", "lost_time_s", "loop_closures", "ate_se3_rmse_m",
             "ate_origin_rmse_m", "ate_raw_rmse_m", "rpe_1m_rmse_m", "heading_rmse_rad", "keyframe_ate_se3_rmse_m",
             "keyframe_ate_origin_rmse_m", "keyframe_ate_raw_rmse_m", "correction_rmse_m", "ate_per_metre", "map_error_mean_m",
             "map_error_p95_m", "map_completeness_mean_m", "reference_fusion_share", "explored_volume_m3",

@@ -12,7 +12,8 @@ import unittest
 from pathlib import Path
 
 SCRIPT = Path(sys.argv.pop(1))
-ALL = {"map.png", "trajectory.png", "pose_graph.png", "coverage.png", "errors.png", "class_iou.png", "decision.png"}
+ALL = {"map.png", "trajectory.png", "pose_graph.png", "coverage.png", "errors.png", "class_iou.png", "decision.png",
+       "progress.png"}
 FROM_ESTIMATE = {"map.png", "trajectory.png", "errors.png", "decision.png"}
 
 
@@ -58,6 +59,12 @@ def write_timeline(path):
                     "planner_state\n" + "\n".join(rows) + "\n")
 
 
+def write_frames(path, tier=lambda i: "vision" if i < 100 else "odometry"):
+    rows = [f"{i / 10},{tier(i)},{0.02 * i},{'' if tier(i) == 'none' else 0.01},{'' if tier(i) == 'none' else 0.002}"
+            for i in range(200)]
+    path.write_text("time_s,tier,path_length_m,position_sigma_m,position_error_m\n" + "\n".join(rows) + "\n")
+
+
 def write_decisions(path):
     """Decision 2 has most candidates, one of which is rejected, but decision 1 has as many that are not."""
     header = "decision,time_s,method,candidate,x_m,y_m,yaw_rad,cost_m,path_information_nats,d_optimality,utility," \
@@ -66,6 +73,13 @@ def write_decisions(path):
             f"{int(c == 0)},{int(c == 1)},{'no path' if d == 2 and c == 3 else ''}"
             for d, count in ((1, 3), (2, 4), (3, 1)) for c in range(count)]
     path.write_text("\n".join([header, *rows]) + "\n")
+
+
+def the_module():
+    description = importlib.util.spec_from_file_location("figures", SCRIPT)
+    figures = importlib.util.module_from_spec(description)
+    description.loader.exec_module(figures)
+    return figures
 
 
 class Figures(unittest.TestCase):
@@ -78,6 +92,7 @@ class Figures(unittest.TestCase):
         write_metrics(self.run_folder / "metrics.json")
         write_pose_graph(self.run_folder / "pose_graph.g2o")
         write_timeline(self.run_folder / "timeline.csv")
+        write_frames(self.run_folder / "frames.csv")
         write_decisions(self.run_folder / "decisions.csv")
 
     def tearDown(self):
@@ -101,7 +116,8 @@ class Figures(unittest.TestCase):
         for names, kept in ((("map.ply",), ALL - {"map.png"}),
                             (("trajectory_estimate.txt",), ALL - FROM_ESTIMATE),
                             (("trajectory_ground_truth.txt", "metrics.json", "pose_graph.g2o", "timeline.csv"),
-                             {"map.png", "trajectory.png", "decision.png"})):
+                             {"map.png", "trajectory.png", "decision.png", "progress.png"}),
+                            (("frames.csv",), ALL - {"progress.png"})):
             with self.subTest(names):
                 self.tearDown()
                 self.setUp()
@@ -113,9 +129,7 @@ class Figures(unittest.TestCase):
                     self.assertIn(f"{name} is missing", result.stderr)
 
     def test_pose_graph_counts_as_loops_what_the_metrics_call_loops(self):
-        description = importlib.util.spec_from_file_location("figures", SCRIPT)
-        figures = importlib.util.module_from_spec(description)
-        description.loader.exec_module(figures)
+        figures = the_module()
 
         def legend():
             figure = figures.draw_pose_graph(self.run_folder)
@@ -130,6 +144,32 @@ class Figures(unittest.TestCase):
             self.assertEqual(legend(), [nodes, neighbours, "2 other edges"])
         (self.run_folder / "metrics.json").unlink()
         self.assertEqual(legend(), [nodes, neighbours, "2 other edges"])
+
+    def test_stretches_of_a_tier_are_weighed_as_the_shares_are(self):
+        seconds, tiers = [1.0, 2.0, 4.0, 4.5, 5.0], ["vision", "vision", "odometry", "none", "vision"]
+        self.assertEqual(the_module().stretches(seconds, tiers, 7.0), [
+            ("none", 0.0, 1.0), ("vision", 1.0, 2.0), ("odometry", 2.0, 4.0), ("none", 4.0, 4.5), ("vision", 4.5, 5.0),
+            ("none", 5.0, 7.0)])
+        self.assertEqual(the_module().stretches([0.0, 1.0], ["none", "none"], 1.0), [("none", 0.0, 1.0)])
+
+    def test_progress_says_what_held_the_pose_and_for_how_long(self):
+        figures = the_module()
+        write_frames(self.run_folder / "frames.csv", lambda i: "surfaces" if 0 < i < 50 else "vision")
+        figure = figures.draw_progress(self.run_folder)
+        texts = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
+        self.assertEqual(texts, ["vision 75.4 %", "surfaces 24.6 %", "odometry 0.0 %", "no pose 0.0 %"])  # 4.9 of 19.9 s
+        figures.plt.close(figure)
+
+    def test_progress_of_a_run_that_never_began_and_of_one_without_truth(self):
+        write_frames(self.run_folder / "frames.csv", lambda i: "none")
+        self.assertEqual(self.draw()[1], ALL)
+        rows = ["time_s,tier,path_length_m,position_sigma_m,position_error_m"]
+        rows += [f"{i / 10},vision,,0.01," for i in range(200)]
+        (self.run_folder / "frames.csv").write_text("\n".join(rows) + "\n")
+        figure = the_module().draw_progress(self.run_folder)
+        self.assertIn("path by the estimate", figure.axes[0].get_ylabel())
+        self.assertGreater(figure.axes[0].lines[0].get_ydata()[-1], 10.0)  # once round an ellipse with axes of 6 and 4 m
+        the_module().plt.close(figure)
 
     def test_a_run_without_a_planner_has_no_figure_of_a_decision(self):
         (self.run_folder / "decisions.csv").unlink()

@@ -1,10 +1,14 @@
 #!/usr/bin/env python3
-"""Prints the table of benchmark.sh from run folders, and writes it as CSV.
+"""Prints the table of benchmark.sh from run folders, and writes it as CSV; or prints it from what --table has kept.
 
 usage: benchmark_table.py CSV_FILE RUN_FOLDER|CSV_FILE...
+       benchmark_table.py --rows TABLE [KEY[/SCENE[/METHOD[/SEED]]]]...
 
 CSV files that it wrote earlier, on other machines for example, may stand among the folders. What a run is of is in its
 metrics.json and manifest.yaml; the names of folders say nothing.
+
+TABLE is what benchmark.sh --table writes. Without a KEY (programs and configuration that made a row): of each method with
+its world and settings the newest.
 """
 
 import collections
@@ -27,6 +31,7 @@ COLUMNS = {  # of the table: format, and what it shows of metrics.json and simul
     "path m": ("{:.1f}", lambda m: m["path_length_m"]),
     "ATE raw cm": ("{:.1f}", lambda m: 100 * m["ate_raw_rmse_m"]),
     "ATE SE3 cm": ("{:.1f}", lambda m: 100 * m["ate_se3_rmse_m"]),
+    "key-frame ATE SE3 cm": ("{:.1f}", lambda m: 100 * m["keyframe_ate_se3_rmse_m"]),
     "ATE at 80 m cm": ("{:.1f}", lambda m: 100 * m["ate_at_80_m"]),
     "map error cm": ("{:.1f}", lambda m: 100 * m["map_error_mean_m"]),
     "IoU 8": ("{:.3f}", lambda m: m["iou_top8_mean"]),
@@ -34,6 +39,10 @@ COLUMNS = {  # of the table: format, and what it shows of metrics.json and simul
     "ideal IoU 8": ("{:.3f}", lambda m: m["ideal_iou_top8_mean"]),
     "loops": ("{:.0f}", lambda m: m["loop_closures"]),
     "lost s": ("{:.1f}", lambda m: m["lost_time_s"]),
+    "vision %": ("{:.1f}", lambda m: 100 * m["tier_vision_share"]),
+    "surfaces %": ("{:.1f}", lambda m: 100 * m["tier_surfaces_share"]),
+    "odometry %": ("{:.1f}", lambda m: 100 * m["tier_odometry_share"]),
+    "lost %": ("{:.1f}", lambda m: 100 * m["lost_share"]),
     "contacts": ("{:.0f}", lambda m: m["collisions"]),
     "hardest push m/s": ("{:.2f}", lambda m: m["hardest_push_m_s"]),
     "decision p50 ms": ("{:.0f}", lambda m: 1e3 * m["decision_time_p50_s"]),
@@ -42,6 +51,10 @@ COLUMNS = {  # of the table: format, and what it shows of metrics.json and simul
     "real-time factor": ("{:.2f}", lambda m: m["real_time_factor"]),
     "CPU s per s": ("{:.2f}", lambda m: sum(m["cpu_ms_per_frame"].values()) * m["frames_total"] / m["duration_s"] / 1e3),
 }
+
+
+# What a row of benchmark.sh --table is of; its other columns are figures of metrics.json, a process's as cpu_ms_per_frame.slam.
+LABELS = ("scene", "method", "seed", "world", "settings", "key", "commit", "outcome")
 
 
 def time_to(metrics, key):
@@ -55,6 +68,17 @@ def scene_name(facts):
     """A scene file by its name."""
     name = pathlib.PurePath(str(facts.get("scene") or facts.get("data_set") or "-")).name
     return name.removesuffix(".yaml")
+
+
+def values_of(metrics):
+    """By column; None where the metrics do not say."""
+    def value(function):
+        try:
+            return float(function(metrics))
+        except (KeyError, TypeError):  # null: not defined for this run
+            return None
+
+    return {name: value(function) for name, (_, function) in COLUMNS.items()}
 
 
 class Run:
@@ -83,7 +107,7 @@ class FolderRun(Run):
             self.metrics["hardest_push_m_s"] = float(push)
         of = self.metrics.get("run") or self._facts()
         super().__init__((scene_name(of), of.get("method", "tour"), str(of.get("seed", "-"))), self._outcome(),
-                         of.get("commit"), {name: self._value(function) for name, (_, function) in COLUMNS.items()})
+                         of.get("commit"), values_of(self.metrics))
 
     def _facts(self):
         """Of a run without metrics."""
@@ -97,12 +121,6 @@ class FolderRun(Run):
         if self.metrics["exit_reason"] == "lost":
             return "lost"
         return {"DONE": "done", "FAILED": "gave up", None: "completed"}.get(self.metrics["planner_state"], "time up")
-
-    def _value(self, function):
-        try:
-            return float(function(self.metrics))
-        except (KeyError, TypeError):  # null: not defined for this run
-            return None
 
     def _find(self, file, pattern):
         try:
@@ -121,6 +139,8 @@ def rows_of(file):
         missing = {"scene", "method", "seed", "outcome", "commit"} - set(table.fieldnames or ())
         if missing:
             sys.exit(f"{file}: no table of benchmark.sh, the column {min(missing)} is not there")
+        if "key" in table.fieldnames:
+            sys.exit(f"{file}: is a table of benchmark.sh --table; --rows prints it")
         for row in table:
             cells = {name: row.get(name) for name in COLUMNS}  # an older table has not all of them
             values = {name: NEVER if cell == "never" else float(cell) if cell else None for name, cell in cells.items()}
@@ -135,6 +155,67 @@ def runs_of(paths):
             sys.exit(f"{path}: neither a run folder nor a CSV file")
         for run in rows_of(path) if path.suffix == ".csv" else [FolderRun(path)]:
             groups[run.scene, run.method].append(run)
+    return groups
+
+
+def read_table(file):
+    """Columns and rows, as dictionaries of texts, of a table that benchmark.sh --table wrote; without either when there is
+    none yet. Ends the script with status 2 when it is something else."""
+    if not file.exists() or file.stat().st_size == 0:
+        return [], []
+    with file.open(newline="") as stream:
+        table = csv.DictReader(stream)
+        missing = set(LABELS) - set(table.fieldnames or ())
+        if missing:
+            print(f"{file}: no table of benchmark.sh --table, the column {min(missing)} is not there", file=sys.stderr)
+            sys.exit(2)
+        return list(table.fieldnames), list(table)
+
+
+def id_of(row):
+    """Which run a row is."""
+    return f"{row['key']}/{row['scene']}/{row['method']}/{row['seed']}"
+
+
+def metrics_of(row):
+    """As in metrics.json, as far as the row has it."""
+    metrics = {}
+    for name, cell in row.items():
+        if name in LABELS or not cell:
+            continue
+        try:
+            value = float(cell)
+        except ValueError:
+            value = cell
+        key, _, process = name.partition(".")
+        if process:
+            metrics.setdefault(key, {})[process] = value
+        else:
+            metrics[key] = value
+    return metrics
+
+
+def wanted_of(rows, ids):
+    """The rows with one of the ids, or of what an id begins with; without ids the newest of each method in its world with
+    its settings."""
+    if ids:
+        return [row for row in rows if any(f"{id_of(row)}/".startswith(f"{wanted}/") for wanted in ids)]
+    newest = {(row["method"], row["world"], row["settings"]): row["key"] for row in rows}
+    return [row for row in rows if newest[row["method"], row["world"], row["settings"]] == row["key"]]
+
+
+def runs_of_rows(rows):
+    """As runs_of; scenes are named with the world and, where it says which, the key."""
+    groups = collections.defaultdict(list)
+    keys = collections.defaultdict(set)
+    for row in rows:
+        keys[row["scene"], row["method"], row["world"]].add(row["key"])
+    for row in rows:
+        several = len(keys[row["scene"], row["method"], row["world"]]) > 1
+        more = ", ".join(text for text in (row["world"], row["key"] if several else "") if text)
+        run = Run((row["scene"] + (f" ({more})" if more else ""), row["method"], row["seed"]), row["outcome"],
+                  row["commit"] or None, values_of(metrics_of(row)))
+        groups[run.scene, run.method].append(run)
     return groups
 
 
@@ -157,9 +238,27 @@ def print_table(groups):
     for (scene, method), runs in groups.items():
         for run in runs:
             print(line((scene, method, run.seed), run.outcome, run.values, run.commit))
-        whole = [run for run in runs if not run.has_failed]
-        outcomes = ", ".join(f"{n} {name}" for name, n in collections.Counter(run.outcome for run in runs).items())
-        print(line((scene, method, f"median of {len(whole)}"), outcomes, median_of(whole), None))
+        if len(runs) > 1:
+            print_median(scene, method, runs)
+    for (kind, method), of in generated_buildings(groups).items():
+        if len(of) > 1:
+            print_median(kind, method, [run for runs in of for run in runs])
+
+
+def print_median(scene, method, runs):
+    whole = [run for run in runs if not run.has_failed]
+    outcomes = ", ".join(f"{n} {name}" for name, n in collections.Counter(run.outcome for run in runs).items())
+    print(line((scene, method, f"median of {len(whole)}"), outcomes, median_of(whole), None))
+
+
+def generated_buildings(groups):
+    """The groups of runs by their kind, as clinic_* for clinic_7, and method."""
+    kinds = collections.defaultdict(list)
+    for (scene, method), runs in groups.items():
+        kind, number = re.subn(r"^([a-z]+)_\d+\b", r"\1_*", scene)
+        if number:
+            kinds[kind, method].append(runs)
+    return kinds
 
 
 def write_csv(target, groups):
@@ -174,9 +273,15 @@ def write_csv(target, groups):
 
 def main():
     target, *sources = usage.arguments(__doc__, least=2)
-    groups = runs_of(sources)
+    if target == "--rows":
+        _, rows = read_table(pathlib.Path(sources[0]))
+        groups = runs_of_rows(wanted_of(rows, sources[1:]))
+        if not groups:
+            sys.exit(f"{sources[0]}: no such rows")
+    else:
+        groups = runs_of(sources)
+        write_csv(pathlib.Path(target), groups)
     print_table(groups)
-    write_csv(pathlib.Path(target), groups)
     return 1 if any(run.has_failed for runs in groups.values() for run in runs) else 0
 
 

@@ -13,15 +13,17 @@ import statistics
 import sys
 
 import usage
-from benchmark_table import FolderRun
+from benchmark_table import COLUMNS, FolderRun
 
 CIRCUMSTANCES = {  # of a run: format, value
     "path m": ("{:.1f}", lambda m: m["path_length_m"]),
     "loops": ("{:.0f}", lambda m: m["loop_closures"]),
     "correction cm": ("{:.1f}", lambda m: 100 * m["correction_rmse_m"]),
+    **{name: COLUMNS[name] for name in ("vision %", "surfaces %", "odometry %", "lost %")},
 }
 FIGURES = {  # of which differences are shown
     "ATE origin cm": ("{:.1f}", lambda m: 100 * m["ate_origin_rmse_m"]),
+    "key-frame ATE SE3 cm": COLUMNS["key-frame ATE SE3 cm"],
     "IoU 8": ("{:.3f}", lambda m: m["iou_top8_mean"]),
     "map error cm": ("{:.2f}", lambda m: 100 * m["map_error_mean_m"]),
     "ideal IoU 8": ("{:.3f}", lambda m: m["ideal_iou_top8_mean"]),

@@ -10,7 +10,8 @@ from pathlib import Path
 
 SCRIPT = Path(sys.argv.pop(1))
 METRICS = {"exit_reason": "completed", "planner_state": "DONE", "explored_share": 0.9, "time_to_80_s": 50.0,
-           "time_to_90_s": None, "path_length_m": 40.0, "collisions": 0}
+           "time_to_90_s": None, "path_length_m": 40.0, "collisions": 0, "keyframe_ate_se3_rmse_m": 0.0125,
+           "tier_vision_share": 0.75, "tier_surfaces_share": 0.125, "tier_odometry_share": 0.1, "lost_share": 0.025}
 
 
 class BenchmarkTableTest(unittest.TestCase):
@@ -48,6 +49,8 @@ class BenchmarkTableTest(unittest.TestCase):
         self.assertEqual([row["outcome"] for row in rows], ["done", "done", "time up", "2 done, 1 time up"])
         self.assertEqual([row["explored %"] for row in rows], ["90.0", "70.0", "95.0", "90.0"])
         self.assertEqual([row["80 % s"] for row in rows], ["50", "-", "50", "50"])
+        shown = [rows[0][name] for name in ("key-frame ATE SE3 cm", "vision %", "surfaces %", "odometry %", "lost %")]
+        self.assertEqual(shown, ["1.2", "75.0", "12.5", "10.0", "2.5"])
         self.assertEqual([row["90 % s"] for row in rows], ["-"] * 4)
         self.assertEqual([row["hardest push m/s"] for row in rows], ["0.25"] * 4)
         self.assertEqual([row["commit"] for row in rows], ["abc123"] * 3 + ["-"])
@@ -58,6 +61,13 @@ class BenchmarkTableTest(unittest.TestCase):
         self.assertEqual(status, 1)
         self.assertEqual([row["outcome"] for row in rows], ["done", "FAILED", "1 done, 1 FAILED"])
         self.assertEqual(rows[-1]["explored %"], "90.0")
+
+    def test_buildings_of_a_kind_have_a_median(self):
+        _, rows = self.table("runs.csv", *(self.run_folder(f"clinic_{i}/tour/seed_1", lost_share=i / 100) for i in (1, 2, 6)),
+                             self.run_folder("clinic_1/nearest/seed_1"), self.run_folder("flat_1/tour/seed_1"))
+        self.assertEqual([(row["scene"], row["seed"], row["lost %"]) for row in rows],
+                         [("clinic_1", "1", "1.0"), ("clinic_2", "1", "2.0"), ("clinic_6", "1", "6.0"),
+                          ("clinic_1", "1", "2.5"), ("flat_1", "1", "2.5"), ("clinic_*", "median of 3", "2.0")])
 
     def test_a_run_without_metrics_is_reported_by_its_manifest(self):
         folder = self.folder / "somewhere"

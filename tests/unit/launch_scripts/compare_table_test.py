@@ -23,7 +23,8 @@ class CompareTableTest(unittest.TestCase):
         self.runs.append(f"{variant}={folder}")
         run = {"scene": "/scenes/flat.yaml", "method": "tour", "seed": seed}
         (folder / "metrics.json").write_text(json.dumps({
-            "run": run, "exit_reason": "completed", "planner_state": None, "map_error_mean_m": error_m}))
+            "run": run, "exit_reason": "completed", "planner_state": None, "map_error_mean_m": error_m,
+            "tier_vision_share": 1 - error_m, "lost_share": error_m}))
         if has_succeeded:
             (folder / "identity").write_text("0\n")
 
@@ -38,6 +39,8 @@ class CompareTableTest(unittest.TestCase):
         self.assertEqual(result.returncode, 0, result.stderr)
         rows = [line.split(" | ")[:2] for line in result.stdout.splitlines() if line.startswith("| flat_")]
         self.assertEqual(rows, [["| flat_1", "fine"], ["| flat_1", "coarse"], ["| flat_2", "fine"], ["| flat_2", "coarse"]])
+        self.assertIn(" | vision % | surfaces % | odometry % | lost % |", result.stdout)
+        self.assertIn("| flat_2 | coarse | - | - | - | 95.0 | - | - | 5.0 |", result.stdout)
         self.assertIn("| map error cm | coarse | 2 | +2.0000 | +2.0000 to +2.0000 |", result.stdout)
 
     def test_a_run_that_failed_is_named_and_in_no_difference(self):

@@ -54,6 +54,7 @@ void for_each(Visitor&& visit) {
   visit(kOctomap);
   visit(kMapPoints);
   visit(kOccupancyGrid);
+  visit(kProvisionalArea);
   visit(kPlannerPath);
   visit(kCandidates);
   visit(kPlannerMarkers);

@@ -428,12 +428,14 @@ struct Walk {
 struct Marks {
   std::uint8_t* cells;
   std::array<std::ptrdiff_t, 3> pitch;
+  Eigen::Array3i last;  ///< coordinates of the last cell
 
   Marks(const FrameBox& box, std::vector<std::uint8_t>& memory) {
     memory.assign(box.block_count() * kBlockVoxels, 0);
     cells = memory.data();
     const Eigen::Vector3i edges = box.blocks() * kBlockEdge;
     pitch = {1, edges[0], static_cast<std::ptrdiff_t>(edges[0]) * edges[1]};
+    last = edges.array() - 1;
   }
 
   /// Marks every cell that the segment from `start` along `ray` [voxels] leaves before the share `t_end` of its length.
@@ -452,6 +454,21 @@ struct Marks {
     if (!walk.to_wall_of_d()) return;
     walk.along_d();
     walk.to_wall_of_d();  // the walls of the other axes in the last cells
+  }
+
+  /// Takes the marks off the cells within `margin` of the one in which the segment from `start` along `ray` ends; only
+  /// those matter that are within `reach` of the start.
+  void clear_around(const Eigen::Vector3d& start, const Eigen::Vector3d& ray, double margin, double reach) {
+    const Eigen::Array3i center = (start + ray).array().floor().cast<int>();
+    const auto most = static_cast<int>(margin) + 1;  // cells that touch are at distance 0
+    const Eigen::Array3i low = (center - most).max((start.array() - reach).max(0.0).cast<int>());
+    const Eigen::Array3i high = (center + most).min((start.array() + reach).min(last.cast<double>()).cast<int>());
+    for (int z = low[2]; z <= high[2]; ++z)
+      for (int y = low[1]; y <= high[1]; ++y)
+        for (int x = low[0]; x <= high[0]; ++x) {
+          const Eigen::Array3i between = ((Eigen::Array3i(x, y, z) - center).abs() - 1).max(0);
+          if (between.square().sum() <= margin * margin) cells[x + y * pitch[1] + z * pitch[2]] = 0;
+        }
   }
 
   /// The 64 cells of a layer of a block, from the cell at `first`, as bits.
@@ -477,6 +494,26 @@ double free_share(double range_voxels, double depth_m, const IntegrationConfig& 
   return 1.0 - margin_voxels / range_voxels;
 }
 
+/// Drift in voxels.
+class DriftLimit {
+ public:
+  DriftLimit(const Drift& drift, double resolution_m)
+      : position_(drift.position_m / resolution_m), rotation_(drift.rotation_rad), is_none_(drift.is_none()),
+        reach_(drift.range_m(0.5 * resolution_m) / resolution_m) {}
+
+  bool is_none() const { return is_none_; }
+  double reach() const { return reach_; }  ///< up to which anything is said; infinite without drift
+  /// How far the surface at this distance may be from where it was measured.
+  double margin(double range) const { return kDriftMargin_sigmas * (position_ + rotation_ * range); }
+  /// Length of the ray to a surface at this distance within which cells may get a miss.
+  double free_length(double range) const { return std::min(reach_, range - margin(range)); }
+
+ private:
+  double position_, rotation_;
+  bool is_none_;
+  double reach_;
+};
+
 /// What a hit is worth [1/256 vote]: the probability that the noise of its depth is less than half a voxel.
 std::uint16_t hit_weight(double depth_m, const IntegrationConfig& config, double resolution_m) {
   const double half_voxel_sigmas = 0.5 * resolution_m / depth_sigma_m(depth_m, config);  // infinite without noise
@@ -490,6 +527,12 @@ struct CellHit {
   std::uint16_t label_weight;  ///< for the label [1/256 vote]
   std::uint16_t weight;        ///< altogether
 };
+
+CellHit hit_of(CellId id, const CellSummary& cell, double depth_m, const IntegrationConfig& config,
+               double resolution_m) {
+  const std::uint16_t weight = hit_weight(depth_m, config, resolution_m);
+  return {id, cell.label, static_cast<std::uint16_t>(weight * cell.label_weight / kOneVote), weight};
+}
 
 bool is_within_heights(const BlockIndex& block, int layer, const IntegrationConfig& config, double resolution_m) {
   const double center_m = (block.z * kBlockEdge + layer + 0.5) * resolution_m;
@@ -588,6 +631,11 @@ FrameVotes collect(const FrameBox& box, const std::vector<CellHit>& hits, const 
 
 }  // namespace
 
+double Drift::range_m(double limit_m) const {
+  if (position_m > limit_m) return 0.0;
+  return rotation_rad > 0.0 ? (limit_m - position_m) / rotation_rad : std::numeric_limits<double>::infinity();
+}
+
 double sparse_kernel(double share) {
   if (share >= 1.0) return 0.0;
   const double angle = 2.0 * std::numbers::pi * share;
@@ -611,9 +659,11 @@ void validate(const IntegrationConfig& config) {
 }
 
 FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_camera, const IntegrationConfig& config,
-                         double resolution_m) {
+                         double resolution_m, const Drift& drift) {
   if (config.max_range_m / resolution_m > kMaxRangeInVoxels)
     throw std::runtime_error("integration: max_range_m exceeds 500 voxels; lower it or raise the map resolution");
+  const DriftLimit limit(drift, resolution_m);
+  if (limit.reach() * resolution_m <= config.min_range_m) return {};
   thread_local Scratch s;
   const FrameBox box = box_of(frame, T_map_camera, config, resolution_m);
   const Projector projector(frame, T_map_camera, box, resolution_m);
@@ -623,25 +673,28 @@ FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_
   Marks marks(box, s.marks);
   std::vector<CellHit> hits;
   std::vector<LabelTally> tally;
+  std::vector<Eigen::Vector3d> drifting;  // rays to surfaces that may be elsewhere
   for (std::size_t first = 0, last = 0; first < s.runs.size(); first = last) {
     while (last < s.runs.size() && s.runs[last].cell == s.runs[first].cell) ++last;
     const CellSummary cell = summarise(&s.runs[first], &s.runs[first] + (last - first), frame.confidence(), tally);
-    const double depth_mm = frame.depth_mm()[cell.ray_sample];
+    const double depth_mm = frame.depth_mm()[cell.ray_sample], depth_m = depth_mm * 1e-3;
     Eigen::Vector3d ray = projector.direction_of_sample(cell.ray_sample) * depth_mm;
     const double range = ray.norm();
     double t_end = 1.0;
-    if (cell.is_hit) {
-      const std::uint16_t weight = hit_weight(depth_mm * 1e-3, config, resolution_m);
-      const auto label_weight = static_cast<std::uint16_t>(weight * cell.label_weight / kOneVote);
-      hits.push_back({s.runs[first].cell, cell.label, label_weight, weight});
-      if (config.kernel_length_voxels > 0.0)
-        spread(hits.back(), projector.camera() + ray, config.kernel_length_voxels, box, s.kernel_votes);
-      t_end = free_share(range, depth_mm * 1e-3, config, resolution_m);
-    } else {
+    if (!cell.is_hit) {
       ray *= config.max_range_m / resolution_m / range;
+    } else {
+      t_end = free_share(range, depth_m, config, resolution_m);
+      if (!limit.is_none()) drifting.push_back(ray);
+      if (range <= limit.reach()) hits.push_back(hit_of(s.runs[first].cell, cell, depth_m, config, resolution_m));
+      if (range <= limit.reach() && config.kernel_length_voxels > 0.0)
+        spread(hits.back(), projector.camera() + ray, config.kernel_length_voxels, box, s.kernel_votes);
     }
+    if (!limit.is_none()) t_end = std::min(t_end, limit.free_length(range) / ray.norm());
     marks.add_ray(projector.camera(), ray, t_end);
   }
+  for (const Eigen::Vector3d& ray : drifting)
+    marks.clear_around(projector.camera(), ray, limit.margin(ray.norm()), limit.reach());
   if (config.kernel_length_voxels > 0.0) {
     sort_by_cell(s.kernel_votes, s.sorted_kernel_votes, box.block_count() * kBlockVoxels);
     smooth(s.kernel_votes, hits);

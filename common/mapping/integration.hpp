@@ -25,6 +25,21 @@ struct IntegrationConfig {
 /// So long that every hit votes for its own voxel, and so short that a frame's box stays bounded.
 inline constexpr double kMinKernelLength_voxels = 1.5, kMaxKernelLength_voxels = 3.0;
 
+/// By how much the pose of a frame may be off: sigmas of what odometry alone has added since vision or surfaces held
+/// it.
+struct Drift {
+  double position_m = 0.0;
+  double rotation_rad = 0.0;
+
+  bool operator==(const Drift&) const = default;
+  bool is_none() const { return *this == Drift{}; }
+  /// Distance up to which the displacement is at most `limit_m`; 0 when it is more everywhere, else possibly infinite.
+  double range_m(double limit_m) const;
+};
+
+/// A surface that drifts is taken to be within so many displacements of where it was measured.
+inline constexpr double kDriftMargin_sigmas = 3.0;
+
 /// Compact kernel at a distance of `share` of its length: 1 at 0, 0 from 1 on [Melkumyan & Ramos 2009].
 double sparse_kernel(double share);
 
@@ -46,10 +61,13 @@ inline constexpr double kMaxRangeInVoxels = 500.0;
 /// With a kernel each voxel with a hit asks the hits around it, too: a hit is worth, at the point at which its ray
 /// ends, what the kernel is worth at the distance to the voxel's centre. The sum, at most one vote, goes to the class
 /// with most of it. Voxels in which nothing was measured get no votes: walls would grow.
+/// With drift nothing is said beyond the range at which the displacement reaches half a voxel, and voxels within
+/// kDriftMargin_sigmas displacements of a measured surface get no misses, so that a frame that is off by no more than
+/// that takes away no surface that it sees. Of a surface beyond max_range_m only its own ray keeps that distance.
 ///
 /// Deterministic: the same frame, pose, configuration and resolution give the same votes. Throws std::runtime_error
 /// when max_range_m / resolution_m exceeds kMaxRangeInVoxels.
 FrameVotes compute_votes(const CompactFrame& frame, const geometry::Pose& T_map_camera, const IntegrationConfig& config,
-                         double resolution_m);
+                         double resolution_m, const Drift& drift = {});
 
 }  // namespace lapis::mapping

@@ -22,5 +22,8 @@ inline constexpr dds::Topic<nav_msgs::msg::OccupancyGrid> kObstacles{"/semantic_
 inline constexpr dds::Topic<nav_msgs::msg::OccupancyGrid> kOccupancyGrid{
     "/semantic_mapper/occupancy_grid", dds::kLatched, "semantic_mapper", "at most 1 Hz",
     "floor plan; made only for readers"};
+inline constexpr dds::Topic<nav_msgs::msg::OccupancyGrid> kProvisionalArea{
+    "/map/provisional", dds::kLatched, "semantic_mapper", "on change, at most 1 Hz",
+    "0 where frames have looked that wait for a corrected pose to enter the map"};
 
 }  // namespace lapis::topics

@@ -1,5 +1,6 @@
 #include "semantic_mapper/conversions.hpp"
 
+#include <cmath>
 #include <cstring>
 
 #include "common/messages/camera.hpp"
@@ -65,18 +66,25 @@ messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& 
   if (!T_map_keyframe) return Result::refused("keyframe_pose: " + T_map_keyframe.reason);
   const auto T_keyframe_camera = messages::from_message(tracked.pose_in_keyframe());
   if (!T_keyframe_camera) return Result::refused("pose_in_keyframe: " + T_keyframe_camera.reason);
+  const mapping::Drift drift{tracked.drift_m(), tracked.drift_rad()};
+  const auto is_sigma = [](double value) { return std::isfinite(value) && value >= 0.0; };
+  if (!is_sigma(drift.position_m) || !is_sigma(drift.rotation_rad)) return Result::refused("drift is no sigma");
+  const bool is_held = tracked.source() != lapis_msgs::msg::TrackedFrame_Constants::SOURCE_ODOMETRY;
+  if (!is_held && drift.is_none()) return Result::refused("a pose by odometry alone does not say its drift");
   return AnchoredFrame{messages::from_message(tracked.header().stamp()),
                        tracked.keyframe_id(),
                        *T_map_keyframe,
                        *T_keyframe_camera,
                        tracked.graph_version(),
-                       std::move(frame)};
+                       std::move(frame),
+                       drift,
+                       tracked.is_keyframe()};
 }
 
 std::vector<KeyframePose> to_core(const lapis_msgs::msg::PoseGraph& graph) {
   std::vector<KeyframePose> poses;
   for (const auto& node : graph.nodes()) {
-    if (const auto T = messages::from_message(node.pose())) poses.push_back({node.id(), *T});
+    if (const auto T = messages::from_message(node.pose())) poses.push_back({node.id(), *T, node.is_drifting()});
   }
   return poses;
 }

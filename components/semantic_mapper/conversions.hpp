@@ -24,7 +24,8 @@ messages::Converted<mapping::CompactFrame> to_core(const sensor_msgs::msg::Image
                                                    const sensor_msgs::msg::Image* confidence,
                                                    const sensor_msgs::msg::CameraInfo& info,
                                                    const mapping::CompactFrameConfig& config);
-/// A tracked frame's anchor around its compact frame; refused when the poses are not valid.
+/// A tracked frame's anchor around its compact frame; refused when the poses are not valid, or odometry alone gave them
+/// and no drift is said.
 messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& tracked, mapping::CompactFrame frame);
 /// Valid key-frame poses of a graph.
 std::vector<KeyframePose> to_core(const lapis_msgs::msg::PoseGraph& graph);

@@ -34,6 +34,11 @@ double seconds_since(const std::optional<time::Time>& then, time::Time now) {
   return then ? (now - *then).seconds() : std::numeric_limits<double>::infinity();
 }
 
+bool has_pose(const lapis_msgs::msg::TrackedFrame& frame) {
+  namespace Constants = lapis_msgs::msg::TrackedFrame_Constants;
+  return frame.state() == Constants::STATE_TRACKING || frame.state() == Constants::STATE_DEAD_RECKONING;
+}
+
 /// A number among the notes of a map file; 0 when it is not there.
 std::uint64_t note(const mapping::MapFile& file, const char* key) {
   const auto found = file.provenance.find(key);
@@ -63,12 +68,14 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
       tiles_(context.advertise(topics::kVoxelTiles)), map_state_(context.advertise(topics::kMapState)),
       obstacles_(context.advertise(topics::kObstacles)), octomap_(context.advertise(topics::kOctomap)),
       points_(context.advertise(topics::kMapPoints)), grid_(context.advertise(topics::kOccupancyGrid)),
+      provisional_(context.advertise(topics::kProvisionalArea)),
       tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       confidence_(context, topics::kLabelConfidence, "label confidence", kWaitingFrames),
       info_(context, topics::kColorInfo, "camera info", kWaitingFrames) {
   config_.map.integration.max_range_m = config_.robot.sensing_range_m;
+  config_.map.band = {config_.robot.obstacle_min_height_m, config_.robot.obstacle_max_height_m};
   if (config_.sensor_model.fusion == "bki") {
     config_.map.integration.kernel_length_voxels = config_.kernel_length_voxels;
   }
@@ -163,6 +170,7 @@ void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
   } else {
     mapper_->re_anchor(static_cast<std::size_t>(config_.re_anchor_work_per_cycle));
   }
+  report_drift();
   publish(cycle.is_final);
 }
 
@@ -189,8 +197,8 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
     if (match == Match::kWait) return false;
   }
   published_stamp_ = now;
-  if (tracked.state() != lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING) {
-    drop("slam does not track");
+  if (!has_pose(tracked)) {
+    drop("slam has no pose");
   } else if (depth == nullptr) {
     drop("no depth image for a tracked frame");
   } else if (info == nullptr) {
@@ -233,6 +241,12 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
   report_store(mapper_->store());
 }
 
+/// Frames that are not whole in the map, because odometry alone gave their poses.
+void SemanticMapperComponent::report_drift() {
+  context_.status().value("frames_waiting", static_cast<std::uint64_t>(mapper_->frames_waiting()));
+  context_.status().value("frames_in_part", static_cast<std::uint64_t>(mapper_->frames_in_part()));
+}
+
 void SemanticMapperComponent::report_store(const FrameStore& store) {
   context_.status().value("spilled_frames_mb", std::to_string(store.disk_bytes() >> 20));
   if (store.let_go() == 0) return;
@@ -241,6 +255,12 @@ void SemanticMapperComponent::report_store(const FrameStore& store) {
     spdlog::warn("{} frames stay in the map where they are: {}; see semantic_mapper.stored_frames", store.let_go(),
                  store.problem());
   }
+}
+
+void SemanticMapperComponent::log_drift() const {
+  if (mapper_->frames_waiting() + mapper_->frames_in_part() == 0) return;
+  spdlog::warn("{} frames at poses by odometry alone wait for a correction, {} more stay in the map in part",
+               mapper_->frames_waiting(), mapper_->frames_in_part());
 }
 
 void SemanticMapperComponent::drop(const std::string& reason) {
@@ -260,6 +280,7 @@ void SemanticMapperComponent::forget_resumed() {
 void SemanticMapperComponent::end_map() {
   if (mapper_ == nullptr) return;
   spdlog::warn("slam began a new map; so does the mapper");
+  log_drift();
   if (!config_.output_dir.empty()) {
     if (const auto problem = save()) spdlog::error("map not saved: {}; mapping continues", *problem);
   }
@@ -298,14 +319,14 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
   mapper_ = begin_map(session);
   if (!config_.output_dir.empty()) set_old_files_aside();
   resumed_.reset();
-  const mapping::HeightBand band{config_.robot.obstacle_min_height_m, config_.robot.obstacle_max_height_m};
-  floor_plan_.emplace(band);
-  obstacle_layer_.emplace(config_.obstacles, band, config_.map.resolution_m);
+  floor_plan_.emplace(config_.map.band);
+  obstacle_layer_.emplace(config_.obstacles, config_.map.band, config_.map.resolution_m);
   session_ = session;
   begin_epoch(stamp);
   tiles_stamp_.reset();
   views_stamp_.reset();
   obstacles_stamp_.reset();
+  provisional_stamp_.reset();
   saved_stamp_ = stamp;
 }
 
@@ -329,6 +350,8 @@ void SemanticMapperComponent::follow_graph(const Graph& graph) {
 void SemanticMapperComponent::publish(bool is_final) {
   if (is_final || seconds_since(tiles_stamp_, stamp_) >= config_.tile_period_s) publish_tiles();
   if (seconds_since(obstacles_stamp_, published_stamp_) >= config_.obstacle_period_s) publish_obstacles();
+  if (is_final || seconds_since(provisional_stamp_, published_stamp_) >= config_.view_period_s)
+    publish_provisional_area();
   publish_views(is_final || seconds_since(views_stamp_, stamp_) >= config_.view_period_s);
   if (config_.output_dir.empty() || seconds_since(saved_stamp_, stamp_) < config_.save_period_s) return;
   saved_stamp_ = stamp_;
@@ -375,6 +398,15 @@ void SemanticMapperComponent::publish_tiles() {
 void SemanticMapperComponent::publish_obstacles() {
   obstacles_stamp_ = published_stamp_;
   obstacles_.publish(to_message(obstacle_layer_->grid(), header(published_stamp_)));
+}
+
+/// When it has changed, as it has when a new map begins: nothing waits in it.
+void SemanticMapperComponent::publish_provisional_area() {
+  provisional_stamp_ = published_stamp_;
+  OccupancyGrid area = mapper_->provisional_area();
+  if (area == provisional_area_) return;
+  provisional_.publish(to_message(area, header(published_stamp_)));
+  provisional_area_ = std::move(area);
 }
 
 /// True when a view is due and read by anybody, or when a reader has come since the last look.
@@ -454,6 +486,8 @@ void SemanticMapperComponent::finish() {
   if (mapper_ == nullptr) return;
   if (graph_) follow_graph(*graph_);
   flush();
+  log_drift();
+  publish_provisional_area();
   publish_tiles();
   for (dds::Writer* writer : std::initializer_list<dds::Writer*>{&map_description_, &tiles_, &map_state_}) {
     writer->wait_until_acknowledged(kFarewell_s);

@@ -44,6 +44,8 @@ class SemanticMapperComponent {
                  const Info& info);
   void follow_graph(const Graph& graph);
   void report_store(const FrameStore& store);
+  void report_drift();
+  void log_drift() const;
   void drop(const std::string& reason);
   void start_new_map(std::int64_t session, time::Time stamp);
   void begin_epoch(time::Time stamp);
@@ -54,6 +56,7 @@ class SemanticMapperComponent {
   void publish(bool is_final);
   void publish_tiles();
   void publish_obstacles();
+  void publish_provisional_area();
   void publish_views(bool is_due);
   bool wants_view(const dds::Writer& writer, bool is_due);
   std_srvs::srv::Trigger_Response save_on_request();
@@ -73,6 +76,7 @@ class SemanticMapperComponent {
   dds::Publisher<octomap_msgs::msg::Octomap>& octomap_;
   dds::Publisher<sensor_msgs::msg::PointCloud2>& points_;
   dds::Publisher<nav_msgs::msg::OccupancyGrid>& grid_;
+  dds::Publisher<nav_msgs::msg::OccupancyGrid>& provisional_;
 
   runtime::StampedInput<Tracked> tracked_;
   runtime::StampedInput<Image> depth_;
@@ -98,6 +102,8 @@ class SemanticMapperComponent {
   std::optional<time::Time> tiles_stamp_;  // published last
   std::optional<time::Time> views_stamp_;
   std::optional<time::Time> obstacles_stamp_;
+  std::optional<time::Time> provisional_stamp_;
+  OccupancyGrid provisional_area_;  // published last
   std::optional<time::Time> saved_stamp_;
   std::set<std::tuple<int, int, int>> published_tiles_;  // of this epoch
   std::map<const dds::Writer*, std::uint64_t> seen_matches_;

@@ -18,6 +18,8 @@ struct OccupancyGrid {
   int width = 0;                   ///< columns, along x
   int height = 0;                  ///< rows, along y
   std::vector<std::int8_t> cells;  ///< row by row: kOccupied, kFree, kUnknown
+
+  bool operator==(const OccupancyGrid&) const = default;
 };
 
 /// What is known of a column of voxels.

@@ -54,7 +54,8 @@ SemanticMapper::SemanticMapper(const MapperConfig& config)
 SemanticMapper::SemanticMapper(const MapperConfig& config, mapping::VoxelMap base)
     : config_(validated(config)),
       blocks_per_tile_edge_(mapping::blocks_per_tile_edge(config.resolution_m, config.tile_edge_m)),
-      map_(std::move(base)), frames_before_(most_votes(map_)), store_(config.stored_frames) {
+      map_(std::move(base)), frames_before_(most_votes(map_)), store_(config.stored_frames),
+      provisional_(config.band, config.resolution_m) {
   if (map_.resolution_m() != config.resolution_m)
     throw std::runtime_error("mapper: the map to resume has voxels of another size");
   mark_all_changed();
@@ -65,20 +66,42 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
     return {IntegrationStatus::kInvalidPose, {}};
   if (!is_near(input.T_map_keyframe) || !is_near(input.T_keyframe_camera)) return {IntegrationStatus::kTooFarAway, {}};
   if (frames_before_ + frames_integrated_ >= kMaxFrames) return {IntegrationStatus::kMapIsFull, {}};
-  const bool is_newer = input.graph_version >= graph_version_;
-  if (is_newer || !keyframe_poses_.contains(input.keyframe_id)) move_keyframe(input.keyframe_id, input.T_map_keyframe);
+  const bool is_newer = input.graph_version >= graph_version_, is_known = keyframe_poses_.contains(input.keyframe_id);
+  if (is_newer || !is_known) move_keyframe(input.keyframe_id, input.T_map_keyframe);
+  // The graph says so, too, but later.
+  if (!is_known && input.is_keyframe && !input.drift.is_none()) drifting_.insert(input.keyframe_id);
 
   StoredFrame stored{input.stamp, input.keyframe_id, input.T_keyframe_camera, Pose::Identity()};
   stored.T_map_camera = wanted_pose(stored);
   stored.median_depth_m = input.frame.median_depth_m();
-  mapping::FrameVotes votes =
-      mapping::compute_votes(input.frame, stored.T_map_camera, config_.integration, config_.resolution_m);
+  stored.drift = input.drift;
+  const Pose T_map_camera = stored.T_map_camera;
+  mapping::FrameVotes votes = votes_of(input.frame, T_map_camera, input.drift);
   map_.add(votes);
   mark_changed(votes);
-  p_map_robot_ = stored.T_map_camera.translation();
+  p_map_robot_ = T_map_camera.translation();
   ++frames_integrated_;
   if (config_.re_anchor) store(std::move(stored), input.frame, votes);
-  return {IntegrationStatus::kIntegrated, std::move(votes)};
+  if (input.drift.is_none()) return {IntegrationStatus::kIntegrated, std::move(votes)};
+  mapping::FrameVotes whole = votes_of(input.frame, T_map_camera);
+  if (votes != whole) keep_rest(input.keyframe_id, whole);
+  return {IntegrationStatus::kIntegrated, std::move(whole)};
+}
+
+mapping::FrameVotes SemanticMapper::votes_of(const mapping::CompactFrame& samples, const Pose& T_map_camera,
+                                             const mapping::Drift& drift) const {
+  return mapping::compute_votes(samples, T_map_camera, config_.integration, config_.resolution_m, drift);
+}
+
+/// Of the newest frame, which is in the map in part.
+void SemanticMapper::keep_rest(std::uint64_t keyframe_id, const mapping::FrameVotes& whole) {
+  const std::size_t index = frames_.size() - 1;
+  if (!config_.re_anchor || !store_.has(index) || !drifting_.contains(keyframe_id)) {
+    ++frames_in_part_;
+    return;
+  }
+  waiting_[keyframe_id].push_back(index);
+  provisional_.set(index, whole);
 }
 
 void SemanticMapper::store(StoredFrame frame, const mapping::CompactFrame& samples, const mapping::FrameVotes& votes) {
@@ -92,9 +115,23 @@ void SemanticMapper::store(StoredFrame frame, const mapping::CompactFrame& sampl
 void SemanticMapper::update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses) {
   if (graph_version < graph_version_) return;
   graph_version_ = graph_version;
-  for (const KeyframePose& pose : poses)
-    if (geometry::is_valid(pose.T_map_keyframe) && is_near(pose.T_map_keyframe))
-      move_keyframe(pose.id, pose.T_map_keyframe);
+  for (const KeyframePose& pose : poses) {
+    if (!geometry::is_valid(pose.T_map_keyframe) || !is_near(pose.T_map_keyframe)) continue;
+    move_keyframe(pose.id, pose.T_map_keyframe);
+    set_drifting(pose.id, pose.is_drifting);
+  }
+}
+
+void SemanticMapper::set_drifting(std::uint64_t keyframe_id, bool is_drifting) {
+  if (is_drifting) {
+    drifting_.insert(keyframe_id);
+    return;
+  }
+  drifting_.erase(keyframe_id);
+  const auto waiting = waiting_.extract(keyframe_id);
+  if (waiting.empty()) return;
+  corrected_.insert(waiting.mapped().begin(), waiting.mapped().end());
+  off_.insert(waiting.mapped().begin(), waiting.mapped().end());
 }
 
 void SemanticMapper::move_keyframe(std::uint64_t id, const Pose& T_map_keyframe) {
@@ -104,7 +141,8 @@ void SemanticMapper::move_keyframe(std::uint64_t id, const Pose& T_map_keyframe)
   const auto anchored = frames_of_keyframe_.find(id);
   if (anchored == frames_of_keyframe_.end()) return;
   for (const std::size_t index : anchored->second) {
-    if (offset_voxels(frames_[index], wanted_pose(frames_[index])) > config_.re_anchor_threshold_voxels)
+    const bool is_far = offset_voxels(frames_[index], wanted_pose(frames_[index])) > config_.re_anchor_threshold_voxels;
+    if (is_far || corrected_.contains(index))
       off_.insert(index);
     else
       off_.erase(index);
@@ -124,15 +162,20 @@ double SemanticMapper::offset_voxels(const StoredFrame& frame, const Pose& T_map
 
 /// False when the frame was let go, so that it stays where it is.
 bool SemanticMapper::move_frame(std::size_t index) {
+  const bool is_whole_now = corrected_.erase(index) > 0;
+  if (is_whole_now) provisional_.erase(index);
   if (!store_.has(index)) return false;
   const auto samples = store_.frame(index);
   auto gone = store_.votes(index);
   if (!samples || !gone) return false;
   const Pose wanted = wanted_pose(frames_[index]);
-  mapping::FrameVotes come = mapping::compute_votes(*samples, wanted, config_.integration, config_.resolution_m);
+  const mapping::Drift drift = is_whole_now ? mapping::Drift{} : frames_[index].drift;
+  mapping::FrameVotes come = votes_of(*samples, wanted, drift);
   if (!store_.replace_votes(index, come)) return false;
   frames_[index].T_map_camera = wanted;
+  frames_[index].drift = drift;
   frames_[index].work = samples->samples() + come.hit_count() + come.miss_count();
+  if (provisional_.contains(index)) provisional_.set(index, votes_of(*samples, wanted));
   mapping::drop_common(*gone, come);
   map_.subtract(*gone);
   map_.add(come);
@@ -152,7 +195,7 @@ std::size_t SemanticMapper::re_anchor(std::size_t max_work) {
     std::pop_heap(nearest.begin(), nearest.end(), std::greater<>());
     const std::size_t index = nearest.back().second;
     nearest.pop_back();
-    if (offset_voxels(frames_[index], wanted_pose(frames_[index])) <= 1.0) {
+    if (!corrected_.contains(index) && offset_voxels(frames_[index], wanted_pose(frames_[index])) <= 1.0) {
       if (credit_ <= 0) continue;
       credit_ -= static_cast<std::int64_t>(frames_[index].work);
     }
@@ -166,7 +209,8 @@ std::size_t SemanticMapper::re_anchor(std::size_t max_work) {
 std::size_t SemanticMapper::flush() {
   std::size_t moved = 0;
   for (std::size_t index = 0; index < frames_.size(); ++index)
-    if (!is_equal(wanted_pose(frames_[index]), frames_[index].T_map_camera)) moved += move_frame(index) ? 1 : 0;
+    if (corrected_.contains(index) || !is_equal(wanted_pose(frames_[index]), frames_[index].T_map_camera))
+      moved += move_frame(index) ? 1 : 0;
   off_.clear();
   return moved;
 }

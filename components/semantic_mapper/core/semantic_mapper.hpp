@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
+#include "common/mapping/column_projection.hpp"
 #include "common/mapping/compact_frame.hpp"
 #include "common/mapping/integration.hpp"
 #include "common/mapping/map_description.hpp"
@@ -19,6 +20,7 @@
 #include "common/mapping/voxel_map.hpp"
 #include "common/time/time.hpp"
 #include "semantic_mapper/core/frame_store.hpp"
+#include "semantic_mapper/core/provisional_area.hpp"
 
 namespace lapis::semantic_mapper {
 
@@ -31,6 +33,7 @@ struct MapperConfig {
   /// False: frames stay where they were first put (the paper's frozen map) and are not stored.
   bool re_anchor = true;
   FrameStoreConfig stored_frames;
+  mapping::HeightBand band = {};  ///< of the provisional area
 };
 
 /// A camera frame and where it was taken: T_map_camera = T_map_keyframe * T_keyframe_camera. The pose graph may move
@@ -42,11 +45,14 @@ struct AnchoredFrame {
   geometry::Pose T_keyframe_camera = geometry::Pose::Identity();
   std::uint64_t graph_version = 0;  ///< of T_map_keyframe
   mapping::CompactFrame frame;
+  mapping::Drift drift = {};
+  bool is_keyframe = false;  ///< it is its own reference
 };
 
 struct KeyframePose {
   std::uint64_t id = 0;
   geometry::Pose T_map_keyframe = geometry::Pose::Identity();
+  bool is_drifting = false;  ///< odometry alone knows it, and nothing has corrected it since
 };
 
 /// A frame in the map; FrameStore has its samples and votes.
@@ -56,7 +62,8 @@ struct StoredFrame {
   geometry::Pose T_keyframe_camera = geometry::Pose::Identity();
   geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< at which its votes are in the map now
   double median_depth_m = 0.0;
-  std::size_t work = 0;  ///< of moving it: its samples and votes
+  std::size_t work = 0;       ///< of moving it: its samples and votes
+  mapping::Drift drift = {};  ///< within which its votes are in the map now
 };
 
 struct TileUpdate {
@@ -74,13 +81,17 @@ enum class IntegrationStatus {
 
 struct IntegrationReport {
   IntegrationStatus status = IntegrationStatus::kIntegrated;
-  mapping::FrameVotes votes;  ///< that are in the map now
+  mapping::FrameVotes votes;  ///< of the whole frame at its pose; those of a frame with drift are not all in the map
 };
 
 /// Semantic map that follows the pose graph. Every integrated frame is kept in compact form with the pose at which it
 /// is in the map and the votes that it has there (but for MapperConfig::re_anchor); when the graph moves its key-frame,
 /// the difference between these votes and those at the new pose is put into the map. At any instant the map equals, bit
 /// for bit, one built from the stored frames at their recorded poses, plus the map that it began with.
+///
+/// Of a frame with drift only that enters the map which its drift allows (integration.hpp). What is left waits when its
+/// key-frame drifts, too, and comes in at the corrected pose as soon as the graph says that it does not any more. On
+/// any other key-frame nothing will ever correct the frame, and it stays in the map in part.
 class SemanticMapper {
  public:
   /// Throws std::runtime_error naming the value that is out of range.
@@ -91,18 +102,25 @@ class SemanticMapper {
 
   /// Puts a frame into the map at its key-frame's newest known pose.
   IntegrationReport integrate(AnchoredFrame input);
-  /// Newest poses of the graph. Key-frames that are not listed keep theirs; older versions are ignored. Moves nothing
-  /// yet.
+  /// Newest poses of the graph, and which of them drift. Key-frames that are not listed keep theirs; older versions are
+  /// ignored. Moves nothing yet.
   void update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses);
-  /// Moves frames that are off by more than the threshold, nearest to the newest frame first, until their
-  /// StoredFrame::work exceeds `max_work` (at least one); returns how many. Frames that are off by less than a voxel
-  /// wait when, over time, moving such frames would cost more work than integrating new ones: bundle adjustment may
-  /// correct its key-frames again and again.
+  /// Moves frames that are off by more than the threshold or were corrected while they waited, nearest to the newest
+  /// frame first, until their StoredFrame::work exceeds `max_work` (at least one); returns how many. Frames that are
+  /// off by less than a voxel wait when, over time, moving such frames would cost more work than integrating new ones:
+  /// bundle adjustment may correct its key-frames again and again.
   std::size_t re_anchor(std::size_t max_work);
-  /// Moves every frame that is off at all: afterwards the map equals a build at the graph's poses. Returns how many.
+  /// Moves every frame that is off at all or was corrected while it waited: afterwards the map equals a build at the
+  /// graph's poses. Returns how many.
   std::size_t flush();
   /// Frames that re_anchor has still to move.
   std::size_t frames_off() const { return off_.size(); }
+  /// Frames that are in the map in part and will come in whole once they are corrected.
+  std::size_t frames_waiting() const { return provisional_.size(); }
+  /// Frames with drift that are in the map in part for good.
+  std::size_t frames_in_part() const { return frames_in_part_; }
+  /// Where the waiting frames have looked.
+  OccupancyGrid provisional_area() const { return provisional_.grid(); }
 
   const mapping::VoxelMap& map() const { return map_; }
   /// Samples of a stored frame; nothing when it was let go (FrameStore).
@@ -137,7 +155,11 @@ class SemanticMapper {
   std::size_t tiles_too_large() const { return tiles_too_large_; }
 
  private:
+  mapping::FrameVotes votes_of(const mapping::CompactFrame& samples, const geometry::Pose& T_map_camera,
+                               const mapping::Drift& drift = {}) const;
   void store(StoredFrame frame, const mapping::CompactFrame& samples, const mapping::FrameVotes& votes);
+  void keep_rest(std::uint64_t keyframe_id, const mapping::FrameVotes& whole);
+  void set_drifting(std::uint64_t keyframe_id, bool is_drifting);
   bool move_frame(std::size_t index);
   void move_keyframe(std::uint64_t id, const geometry::Pose& T_map_keyframe);
   geometry::Pose wanted_pose(const StoredFrame& frame) const;
@@ -158,7 +180,13 @@ class SemanticMapper {
   std::uint64_t graph_version_ = 0;
   std::unordered_map<std::uint64_t, geometry::Pose> keyframe_poses_;
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> frames_of_keyframe_;
-  std::set<std::size_t> off_;  ///< frames beyond the threshold
+  std::set<std::size_t> off_;  ///< frames beyond the threshold, and corrected ones
+
+  std::unordered_set<std::uint64_t> drifting_;                           ///< key-frames
+  std::unordered_map<std::uint64_t, std::vector<std::size_t>> waiting_;  ///< frames, by key-frames that drift
+  std::unordered_set<std::size_t> corrected_;  ///< frames that have waited and can come in whole
+  ProvisionalArea provisional_;                ///< of the frames of both
+  std::size_t frames_in_part_ = 0;
 
   std::unordered_set<mapping::TileIndex, mapping::GridIndexHash> changed_tiles_;
   std::unordered_map<mapping::TileIndex, std::uint64_t, mapping::GridIndexHash> tile_versions_;

@@ -47,7 +47,10 @@ const Spoiled kSpoiled[] = {
     {"keyframe_pose: pose has numbers that are not finite",
      [](CameraFrame&, TrackedFrame& pose) { pose.keyframe_pose().orientation().y(INFINITY); }},
     {"more than 10 km", [](CameraFrame&, TrackedFrame& pose) { pose.pose_in_keyframe().position().x(1e7); }},
-    {"slam does not track",
+    {"drift is no sigma", [](CameraFrame&, TrackedFrame& pose) { pose.drift_rad(std::nan("")); }},
+    {"a pose by odometry alone does not say its drift",
+     [](CameraFrame&, TrackedFrame& pose) { pose.source(lapis_msgs::msg::TrackedFrame_Constants::SOURCE_ODOMETRY); }},
+    {"slam has no pose",
      [](CameraFrame&, TrackedFrame& pose) {
        pose.state(lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST);
        pose.keyframe_pose({});

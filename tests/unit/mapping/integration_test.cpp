@@ -255,6 +255,122 @@ TEST(ComputeVotes, FarReturnsCarveWithoutHitAndMissingDepthSaysNothing) {
   EXPECT_TRUE(compute_votes(frame_of(s.camera, s.depth), s.T, exact_config(), 0.5).blocks.empty());
 }
 
+/// A camera that looks along +x at a wall, and a drift that reaches half a voxel of 0.1 m at 2 m.
+struct DriftingFrame {
+  explicit DriftingFrame(double wall_m) : depth(camera.width, camera.height, static_cast<float>(wall_m)) {}
+
+  PlainVotes votes(const Drift& with) const {
+    return plain(compute_votes(frame_of(camera, depth), T, exact_config(), 0.1, with));
+  }
+  /// How far the voxels in front of the camera are free: x of the last one that gets a miss, all before get one, too.
+  static int last_free(const PlainVotes& votes) {
+    int x = kCameraVoxel;
+    while (votes.misses.contains({x + 1, 1, 1})) ++x;
+    for (int behind = x + 1; behind < 60; ++behind) EXPECT_FALSE(votes.misses.contains({behind, 1, 1})) << behind;
+    return x;
+  }
+
+  static constexpr int kCameraVoxel = 1;
+  static constexpr double kReach_m = 2.0;
+  geometry::PinholeCamera camera{161, 91, 80, 80, 80, 45};
+  Pose T = lapis::test::look({0.13, 0.15, 0.15}, 0.0);
+  geometry::DepthImage depth;
+  Drift drift{0.01, 0.02};
+};
+
+TEST(ComputeVotesWithDrift, HitsOnlyWhereTheDisplacementIsBelowHalfAVoxel) {
+  const DriftingFrame s(1.93);  // the wall is at x = 2.06, in voxel 20
+  const PlainVotes all = s.votes({}), near = s.votes(s.drift);
+  const double radius_m = std::sqrt(s.kReach_m * s.kReach_m - 1.93 * 1.93);
+  constexpr double kVoxelDiagonal_m = 0.1415;
+  std::size_t inside = 0;
+  for (const auto& [voxel, ballot] : all.hits) {
+    const double off_axis_m = std::hypot(0.1 * voxel.y + 0.05 - 0.15, 0.1 * voxel.z + 0.05 - 0.15);
+    if (off_axis_m < radius_m - kVoxelDiagonal_m / 2) {
+      EXPECT_TRUE(near.hits.contains(voxel) && near.hits.at(voxel) == ballot);
+      ++inside;
+    }
+    if (off_axis_m > radius_m + kVoxelDiagonal_m / 2) {
+      EXPECT_FALSE(near.hits.contains(voxel));
+    }
+  }
+  EXPECT_GT(inside, 50u);
+  EXPECT_LT(near.hits.size(), all.hits.size() / 4);
+}
+
+TEST(ComputeVotesWithDrift, MissesEndThreeDisplacementsBeforeTheSurface) {
+  const DriftingFrame s(1.93);
+  EXPECT_EQ(s.last_free(s.votes({})), 19);
+  // 0.1458 m before x = 2.06 begins voxel 19; between it and the wall's voxel 20 lies less than that, and so it does
+  // between voxels 18 and 20.
+  EXPECT_EQ(s.last_free(s.votes(s.drift)), 17);
+  // A third of it is less than a voxel: 18 is further than that from 20.
+  EXPECT_EQ(s.last_free(s.votes({0.01 / 3, 0.02 / 3})), 18);
+}
+
+TEST(ComputeVotesWithDrift, MissesNeverReachBeyondTheRangeAndKeepAwayFromSurfacesBehindIt) {
+  const DriftingFrame far(3.0);
+  const PlainVotes votes = far.votes(far.drift);
+  EXPECT_TRUE(votes.hits.empty());
+  EXPECT_EQ(far.last_free(votes), 20) << "x = 2.13 is the end";
+  for (const VoxelIndex& voxel : votes.misses) {
+    const Eigen::Vector3d center(0.1 * voxel.x + 0.05, 0.1 * voxel.y + 0.05, 0.1 * voxel.z + 0.05);
+    EXPECT_LT((center - far.T.translation()).norm(), far.kReach_m + 0.0866);
+  }
+  const DriftingFrame just_behind(2.1);  // x = 2.23; 0.156 m less is 2.074, but voxels 20 and 21 are too near to 22
+  EXPECT_TRUE(just_behind.votes(just_behind.drift).hits.empty());
+  EXPECT_EQ(just_behind.last_free(just_behind.votes(just_behind.drift)), 19);
+}
+
+TEST(ComputeVotesWithDrift, ReturnsBeyondTheSensorsRangeKeepTheMarginToo) {
+  const DriftingFrame s(5.05);
+  const Drift drift{0.049, 0.0};  // allowed everywhere
+  EXPECT_EQ(s.last_free(s.votes({})), 50) << "up to 5 m";
+  EXPECT_EQ(s.last_free(s.votes(drift)), 49) << "up to 5.05 m less 0.147 m";
+}
+
+TEST(ComputeVotesWithDrift, NothingIsSaidWhenThePositionAloneIsOffByHalfAVoxel) {
+  const DriftingFrame s(1.0);
+  EXPECT_TRUE(s.votes({0.051, 0.0}) == PlainVotes{});
+  EXPECT_TRUE(s.votes({0.0, 0.3}) == PlainVotes{}) << "0.17 m are nearer than the sensor sees";
+  EXPECT_EQ(s.votes({0.049, 0.0}).hits, s.votes({}).hits);
+}
+
+// The frame is off by three sigmas in any direction: it takes away no surface that it sees.
+TEST(ComputeVotesWithDrift, NoVoxelWithASeenSurfaceGetsAMissWithinThreeSigmas) {
+  const geometry::PinholeCamera camera{160, 90, 80, 80, 79.5, 44.5};
+  const auto room = lapis::test::furnished_room();
+  std::mt19937 random(3);
+  const auto direction = [&random] {
+    std::normal_distribution<double> n;
+    return Eigen::Vector3d(n(random), n(random), n(random)).normalized();
+  };
+  std::size_t without = 0, seen = 0;
+  for (int trial = 0; trial < 60; ++trial) {
+    const double r = trial % 2 == 0 ? 0.25 : 0.1, size = r * (0.05 + 0.1 * (trial % 5));
+    const Drift drift{size * (trial % 3) / 2.0, size / 2.0};
+    const Pose T = lapis::test::look({-1.0 + 0.02 * trial, 0.3, 1.1}, 0.1 * trial, 0.2);
+    const auto image = lapis::test::render(room, camera, T);
+    Pose claimed = T;
+    claimed.translation() += 3.0 * drift.position_m * direction();
+    claimed.linear() = Eigen::AngleAxisd(3.0 * drift.rotation_rad, direction()) * T.linear();
+    const CompactFrame frame = frame_of(camera, image.depth, &image.labels);
+    const PlainVotes held = plain(compute_votes(frame, claimed, {}, r));
+    const PlainVotes drifting = plain(compute_votes(frame, claimed, {}, r, drift));
+    const VoxelMap grid(r);
+    for (int row = 0; row < camera.height; ++row)
+      for (int column = 0; column < camera.width; ++column) {
+        const Eigen::Vector3d p = camera.unproject(column, row, image.depth(column, row));
+        if (p.norm() > 5.0) continue;
+        const VoxelIndex voxel = grid.index_of(T * p);
+        ++seen;
+        without += held.misses.contains(voxel);
+        ASSERT_FALSE(drifting.misses.contains(voxel)) << trial << ", " << p.norm() << " m away";
+      }
+  }
+  EXPECT_GT(without, seen / 10);
+}
+
 TEST(ComputeVotes, NothingOutsideTheHeightLimits) {
   const geometry::PinholeCamera camera{64, 36, 32, 32, 31.5, 17.5};
   const Pose T = lapis::test::look({-1.0, 0.3, 1.1}, 0.7, 0.2);

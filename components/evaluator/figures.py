@@ -446,7 +446,8 @@ def draw_sureness(axes, seconds, sigma_m, error_m):
         if np.isfinite(values).any():
             axes.plot(seconds, np.maximum(values, LEAST_SHOWN_M), color=colour, linewidth=1.5, label=name)
     axes.set_yscale("log")
-    axes.set_ylim(bottom=LEAST_SHOWN_M)
+    axes.set_ylim(LEAST_SHOWN_M, max(0.1, axes.get_ylim()[1]))
+    axes.yaxis.set_major_locator(matplotlib.ticker.LogLocator(subs=(1, 2, 5)))
     axes.yaxis.set_major_formatter(metres)
     axes.yaxis.set_minor_formatter(matplotlib.ticker.NullFormatter())
     axes.set_ylabel("position")

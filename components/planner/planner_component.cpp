@@ -193,6 +193,7 @@ void PlannerComponent::note_frame(const Tracked& frame) {
   context_.status().value("frames", ++frames_);
   stamp_ = messages::from_message(frame.header().stamp());
   tracking_ = tracking_of(frame);
+  slam_reason_ = frame.reason();
   if (tracking_ == Tracking::kLost) robot_.reset();
 }
 
@@ -290,6 +291,12 @@ void PlannerComponent::update_obstacles() {
 
 Report PlannerComponent::report() const { return {stamp_, robot_, tracking_, is_blocked_}; }
 
+/// Why it does what it does; without a pose, what slam lacks.
+std::string PlannerComponent::reason() const {
+  const bool is_lacking = tracking_ == Tracking::kLost && !slam_reason_.empty();
+  return is_lacking ? explorer_.reason() + "; slam: " + slam_reason_ : explorer_.reason();
+}
+
 PlannerComponent::GraphVersions PlannerComponent::versions_of_graph() const {
   const auto landmarks = landmarks_.state().value_or(mapping::LandmarkState{});
   return {graph_->session, graph_->version, landmarks.session, landmarks.graph_version};
@@ -338,7 +345,7 @@ void PlannerComponent::publish_status() {
   const bool has_changed = explorer_.state() != reported_state_ || explorer_.reason() != reported_reason_;
   const bool has_decided = decisions_ != reported_decisions_;  // each decision's time is published
   if (reported_at_ == stamp_ && !has_changed && !has_decided) return;
-  if (has_changed) spdlog::info("{}", explorer_.reason());
+  if (has_changed) spdlog::info("{}", reason());
   reported_at_ = stamp_;
   reported_state_ = explorer_.state();
   reported_reason_ = explorer_.reason();
@@ -346,7 +353,7 @@ void PlannerComponent::publish_status() {
   lapis_msgs::msg::PlannerStatus message;
   message.header(header());
   message.state(to_message(explorer_.state()));
-  message.reason(explorer_.reason());
+  message.reason(reason());
   message.explored_volume_m3(surroundings_ ? surroundings_->explored_volume_m3() : 0.0);
   message.decision_time_s(decision_time_s_);
   message.decisions(decisions_);

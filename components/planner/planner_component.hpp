@@ -54,6 +54,7 @@ class PlannerComponent {
   void update_map();
   void update_obstacles();
   Report report() const;
+  std::string reason() const;
   GraphVersions versions_of_graph() const;
   void begin_decision();
   void publish();
@@ -82,6 +83,7 @@ class PlannerComponent {
   std::uint64_t frames_ = 0;
   time::Time stamp_;  // of the newest frame
   Tracking tracking_ = Tracking::kLost;
+  std::string slam_reason_;  // of the newest frame; empty while it tracks
   std::optional<Pose2> robot_;
   double position_variance_m2_ = 0.0;  // of robot_, each axis, as slam says; 0: it does not
   bool is_blocked_ = false;

@@ -33,6 +33,8 @@ lapis_msgs::msg::TrackedFrame to_tracked_frame(const TrackingResult& result, con
   message.keyframe_pose(messages::to_message(result.T_map_keyframe));
   message.pose_in_keyframe(messages::to_message(result.T_keyframe_camera));
   message.covariance(messages::to_row_major(result.covariance));
+  message.drift_m(result.drift_m);
+  message.drift_rad(result.drift_rad);
   return message;
 }
 
@@ -94,6 +96,7 @@ lapis_msgs::msg::PoseGraph to_message(const PoseGraphSnapshot& graph, const Fram
     item.id(node.id);
     item.stamp(messages::to_message(node.stamp));
     item.pose(messages::to_message(node.T_map_camera));
+    item.is_drifting(node.is_drifting);
     message.nodes().push_back(item);
   }
   for (const auto& edge : graph.edges) {

@@ -1,5 +1,6 @@
 #include "slam/slam_component.hpp"
 
+#include <cmath>
 #include <filesystem>
 #include <opencv2/core/utility.hpp>
 #include <sstream>
@@ -24,6 +25,15 @@ constexpr const char* kGraphFile = "pose_graph.g2o";
 constexpr const char* kKeyframesFile = "keyframes.txt";
 constexpr const char* kMapFile = "slam.lapis";
 constexpr time::Duration kStatusPeriod{1'000'000'000};
+
+void set_wheels(const std::optional<WheelCalibration>& wheels, lapis_msgs::msg::SlamStatus& message) {
+  if (!wheels) return;
+  message.distance_scale(wheels->distance_scale);
+  message.distance_scale_sigma(std::sqrt(wheels->distance_variance));
+  message.turn_scale(wheels->turn_scale);
+  message.turn_scale_sigma(std::sqrt(wheels->turn_variance));
+  message.wheel_noise(wheels->noise);
+}
 
 }  // namespace
 
@@ -63,7 +73,7 @@ void SlamComponent::load_map() {
 void SlamComponent::work(const runtime::Cycle& cycle) {
   while (next_frame(cycle)) {
   }
-  if (slam_ == nullptr) return;
+  if (slam_ == nullptr) return report_waiting();
   publish_graph(cycle.is_final);
   publish_landmarks(cycle.is_final);
   autosave();
@@ -95,6 +105,7 @@ bool SlamComponent::prepare(const JoinedFrame& first) {
     const std::string problem = "no transform from " + ids_.base + " to " + frame_.optical_frame + " on /tf_static";
     context_.status().set(runtime::Status::Level::kWarn, "waiting: " + problem);
     if (context_.rate_limit().pass("mount")) spdlog::warn("waiting: {}", problem);
+    waits_for_ = problem;
     return false;
   }
   frame_.T_base_camera = *T_base_camera;
@@ -186,6 +197,7 @@ void SlamComponent::drop(time::Time stamp, const std::string& reason) {
   ++frames_dropped_;
   context_.status().count("frames dropped: " + reason);
   if (context_.rate_limit().pass(reason)) spdlog::warn("frame dropped: {}", reason);
+  waits_for_ = reason;
   if (slam_ == nullptr) return;  // no session yet to which it could belong
   frame_.stamp = stamp;
   publish(slam_->skip(stamp, reason));
@@ -202,6 +214,7 @@ void SlamComponent::end_map() {
   last_pose_.reset();
   graph_stamp_.reset();
   reported_.reset();
+  waits_for_.clear();
 }
 
 void SlamComponent::publish(const TrackingResult& result) {
@@ -264,6 +277,7 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   context_.status().value("frames", frames_total_);
   context_.status().value("frames_tracked", frames_tracked_);
   context_.status().value("odometry_slips", slam_->slip_count());
+  context_.status().value("places_doubted", slam_->places_doubted());
   const bool has_changed = !reported_ || reported_->second != std::pair(result.state, result.source);
   const bool was_tracking = !reported_ || reported_->second.first == TrackingState::kTracking;
   if (has_changed && !is_tracking && was_tracking) spdlog::warn("tracking lost: {}", result.reason);
@@ -285,6 +299,22 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   if (loops.last) message.last_loop_closure(messages::to_message(*loops.last));
   message.frames_total(frames_total_);
   message.frames_tracked(frames_tracked_);
+  message.frames_dropped(frames_dropped_);
+  message.loops_removed(static_cast<std::uint32_t>(loops.removed));
+  message.places_doubted(static_cast<std::uint32_t>(slam_->places_doubted()));
+  set_wheels(slam_->wheels(), message);
+  status_.publish(message);
+}
+
+/// Before the first frame that could be used, nobody would know why there is no pose.
+void SlamComponent::report_waiting() {
+  if (waiting_at_ && context_.now() - *waiting_at_ < kStatusPeriod && context_.now() >= *waiting_at_) return;
+  waiting_at_ = context_.now();
+  lapis_msgs::msg::SlamStatus message;
+  message.header().stamp(messages::to_message(context_.now()));
+  message.header().frame_id(ids_.map);
+  message.reason(waits_for_.empty() ? "waits for the camera's images" : "waits: " + waits_for_);
+  message.frames_total(frames_total_);
   message.frames_dropped(frames_dropped_);
   status_.publish(message);
 }

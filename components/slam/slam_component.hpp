@@ -46,6 +46,7 @@ class SlamComponent {
   void publish_graph(bool is_final);
   void publish_landmarks(bool is_final);
   void publish_status(const TrackingResult& result);
+  void report_waiting();
   void autosave();
   void note_save(const std::optional<std::string>& problem);
   SlamFile saved_map() const;
@@ -77,6 +78,8 @@ class SlamComponent {
   std::optional<time::Time> graph_stamp_;
   std::uint64_t graph_version_ = 0;  // published last
   std::optional<std::pair<time::Time, std::pair<TrackingState, PoseSource>>> reported_;
+  std::string waits_for_;                 // before the first frame: what is missing
+  std::optional<time::Time> waiting_at_;  // when that was published last
   MapSaver saver_;
   std::optional<time::Time> save_stamp_;  // from which the period counts
   std::uint64_t saved_version_ = 0;       // of the graph, handed to the saver last

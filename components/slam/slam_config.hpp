@@ -81,6 +81,8 @@ void describe(Field& field, TrackerConfig& c) {
   field("refine_iterations", c.refine_iterations, config::in_range(1, 50), "Levenberg-Marquardt steps per round");
   field("max_blind_frames", c.max_blind_frames, config::in_range(1, 1000),
         "frames in a row with enough features but no pose, before the map continues where odometry says");
+  field("max_contradictions", c.max_contradictions, config::in_range(1, 1000),
+        "frames in a row that see through surfaces of the map where odometry says, before slam is lost");
   field("max_prediction_s", c.max_prediction_s, config::in_range(0.01, 5), "longest gap that the motion model bridges");
 }
 
@@ -145,6 +147,11 @@ void describe(Field& field, RelocalizationConfig& c) {
   field("patience_s", c.patience_s, config::in_range(0, 10),
         "without a pose, after which one that can be reached from the last is still believed at once [s]");
   field("memory_s", c.memory_s, config::in_range(0.01, 10), "longest time between such frames [s]");
+  field(
+      "slip_share", c.slip_share, config::in_range(0, 1),
+      "a place that odometry contradicts by more than this share of path and turn since the last pose needs evidence");
+  field("evidence_m", c.evidence_m, config::in_range(0.5, 100), "path along which views have to agree with it [m]");
+  field("evidence_views", c.evidence_views, config::in_range(1, 20), "number of these views; they share no landmarks");
 }
 
 template <class Field>
@@ -152,7 +159,8 @@ void describe(Field& field, OdometryConfig& c) {
   field("distance_sigma", c.distance_sigma, config::in_range(0, 1), "of wheel odometry along the path, after 1 m [m]");
   field("turn_sigma", c.turn_sigma, config::in_range(0, 1), "of its heading, after a turn of 1 rad [rad]");
   field("turn_sigma_per_m", c.turn_sigma_per_m, config::in_range(0, 1), "of its heading, after 1 m [rad]");
-  field("scale_sigma", c.scale_sigma, config::in_range(0, 0.5), "share of path and turn by which odometry always errs");
+  field("scale_sigma", c.scale_sigma, config::in_range(0, 0.5),
+        "share of path and turn by which odometry always errs, before its scales are learnt");
   field("vertical_sigma", c.vertical_sigma, config::in_range(0, 1), "how far the floor rises or sinks in 1 m [m]");
   field("tilt_sigma", c.tilt_sigma, config::in_range(0, 1), "change of roll and pitch in 1 m [rad]");
   field("least_sigma", c.least_sigma, config::in_range(1e-6, 0.1), "of every motion [m], [rad]");
@@ -161,6 +169,8 @@ void describe(Field& field, OdometryConfig& c) {
   field("max_turn_rate_rad_s", c.max_turn_rate_rad_s, config::in_range(0.1, 100), "the same [rad/s]");
   field("max_disagreement", c.max_disagreement, config::in_range(1, 100),
         "with vision between key-frames, in sigmas; odometry that disagrees more counts as slip and is left out");
+  field("max_drift_m", c.max_drift_m, config::in_range(0.01, 1000),
+        "sigma of the position by odometry alone, beyond which slam is lost [m]");
 }
 
 template <class Field>

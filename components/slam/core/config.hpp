@@ -52,6 +52,7 @@ struct TrackerConfig {
   double ransac_error_px = 4.0;    ///< PnP inlier threshold [0.5, 20]
   int refine_iterations = 4;       ///< Levenberg-Marquardt steps per round [1, 50]
   int max_blind_frames = 8;        ///< in a row with enough features, before the map continues by odometry [1, 1000]
+  int max_contradictions = 5;      ///< frames in a row that see through what was mapped, before slam is lost [1, 1000]
   double max_prediction_s = 0.5;   ///< longest gap that the motion model bridges [0.01, 5]
 };
 
@@ -106,6 +107,10 @@ struct RelocalizationConfig {
   double speed_m_s = 1.0;        ///< between frames, without odometry [0, 10]
   double patience_s = 2.0;       ///< without a pose, after which one within reach of the last is still believed [0, 10]
   double memory_s = 0.5;         ///< longest time between frames that confirm each other [0.01, 10]
+  // Where odometry contradicts the place:
+  double slip_share = 0.3;  ///< of path and turn by which odometry may have erred since the last pose [0, 1]
+  double evidence_m = 4.0;  ///< path along which views have to agree with a place beyond that [0.5, 100]
+  int evidence_views = 3;   ///< that share no landmarks, along this path [1, 20]
 };
 
 /// Wheel odometry. Standard deviations of a random walk are those after the first metre or radian: they grow with its
@@ -115,7 +120,7 @@ struct OdometryConfig {
   double distance_sigma = 0.02;       ///< along the path [m] after 1 m [0, 1]
   double turn_sigma = 0.02;           ///< of the heading [rad] after a turn of 1 rad [0, 1]
   double turn_sigma_per_m = 0.01;     ///< of the heading [rad] after 1 m [0, 1]
-  double scale_sigma = 0.01;          ///< share of path and turn by which odometry always errs [0, 0.5]
+  double scale_sigma = 0.02;          ///< share of path and turn by which it errs always, before it is learnt [0, 0.5]
   double vertical_sigma = 0.001;      ///< [m] after 1 m [0, 1]
   double tilt_sigma = 0.0005;         ///< of roll and pitch [rad] after 1 m [0, 1]
   double least_sigma = 1e-4;          ///< of every motion [m], [rad] [1e-6, 0.1]
@@ -123,6 +128,7 @@ struct OdometryConfig {
   double max_speed_m_s = 5.0;         ///< faster steps are no motion of the robot [0.1, 50]
   double max_turn_rate_rad_s = 15.0;  ///< the same [0.1, 100]
   double max_disagreement = 8.0;      ///< with vision, in sigmas; odometry that disagrees more is slip [1, 100]
+  double max_drift_m = 3.0;  ///< sigma of the position by odometry alone, beyond which slam is lost [0.01, 1000]
 };
 
 struct SlamConfig {

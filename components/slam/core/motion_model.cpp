@@ -61,6 +61,19 @@ std::optional<OdometryMotion> MotionModel::odometry_between(time::Time from, tim
   return motion;
 }
 
+void MotionModel::learn_wheels(time::Time from, time::Time to, const Pose& T_from_to, const Matrix6d& covariance) {
+  const auto walked = odometry_.uncorrected_between(from, to);
+  if (!walked) return;
+  const Matrix6d move = geometry::adjoint(T_base_camera_);
+  wheels_.learn(*walked, T_base_camera_ * T_from_to * T_base_camera_.inverse(), move * covariance * move.transpose());
+  odometry_.calibrate(wheels_.belief());
+}
+
+void MotionModel::set_wheels(const OdometryConfig& config, const WheelCalibration& wheels) {
+  wheels_ = WheelCalibrator(config, wheels);
+  odometry_.calibrate(wheels);
+}
+
 Matrix6d compound_covariance(const Matrix6d& covariance_a, const Pose& B, const Matrix6d& covariance_b) {
   // A exp(a) B exp(b) = A B exp(Ad(B^-1) a) exp(b)
   const Matrix6d move = geometry::adjoint(B.inverse());

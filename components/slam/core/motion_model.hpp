@@ -23,7 +23,7 @@ class MotionModel {
  public:
   /// `T_base_camera`: pose of the camera on the robot, for odometry.
   MotionModel(double max_gap_s, const OdometryConfig& odometry, const geometry::Pose& T_base_camera)
-      : max_gap_s_(max_gap_s), odometry_(odometry), T_base_camera_(T_base_camera) {}
+      : max_gap_s_(max_gap_s), odometry_(odometry), wheels_(odometry), T_base_camera_(T_base_camera) {}
 
   /// See OdometryTrack::add.
   bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base) { return odometry_.add(stamp, T_odom_base); }
@@ -46,6 +46,14 @@ class MotionModel {
   std::optional<OdometryMotion> odometry_between(time::Time from, time::Time to) const;
   /// See OdometryTrack::pose_at.
   std::optional<geometry::Pose> odometry_at(time::Time stamp) const { return odometry_.pose_at(stamp); }
+  /// Calibrates the wheels by a motion of the camera that vision knows, with its covariance.
+  void learn_wheels(time::Time from, time::Time to, const geometry::Pose& T_from_to,
+                    const geometry::Matrix6d& covariance);
+  /// Continues with what was learnt in an earlier run.
+  void set_wheels(const OdometryConfig& config, const WheelCalibration& wheels);
+  const WheelCalibration& wheels() const { return wheels_.belief(); }
+  /// When a pose was found last.
+  std::optional<time::Time> last_stamp() const { return last_ ? std::optional(last_->stamp) : std::nullopt; }
   /// Odometry before `stamp` will not be asked for.
   void forget_before(time::Time stamp) { odometry_.forget_before(stamp); }
 
@@ -57,6 +65,7 @@ class MotionModel {
   };
   double max_gap_s_;
   OdometryTrack odometry_;
+  WheelCalibrator wheels_;
   geometry::Pose T_base_camera_;
   std::optional<Last> last_;
 };

@@ -17,10 +17,11 @@ double squared(double x) { return x * x; }
 
 // Random walk with the path and the turn [after Thrun, Burgard, Fox, Probabilistic Robotics, 5.4], and a share of both
 // for what the wheels' size and distance are not known to.
-Matrix6d motion_covariance(const OdometryConfig& c, double path_m, double turned_rad) {
-  const double along = squared(c.distance_sigma) * path_m + squared(c.scale_sigma * path_m);
-  const double yaw =
-      squared(c.turn_sigma) * turned_rad + squared(c.turn_sigma_per_m) * path_m + squared(c.scale_sigma * turned_rad);
+Matrix6d motion_covariance(const OdometryConfig& c, const WheelCalibration& wheels, double path_m, double turned_rad) {
+  const double noise = squared(wheels.noise);
+  const double along = noise * squared(c.distance_sigma) * path_m + wheels.distance_variance * squared(path_m);
+  const double yaw = noise * (squared(c.turn_sigma) * turned_rad + squared(c.turn_sigma_per_m) * path_m) +
+                     wheels.turn_variance * squared(turned_rad);
   const double least = squared(c.least_sigma);
   Matrix6d covariance = Matrix6d::Zero();
   // Sideways a robot errs because its heading does, on average half of the path.
@@ -28,6 +29,10 @@ Matrix6d motion_covariance(const OdometryConfig& c, double path_m, double turned
       squared(c.vertical_sigma) * path_m + least, squared(c.tilt_sigma) * path_m + least,
       squared(c.tilt_sigma) * path_m + least, yaw + least;
   return covariance;
+}
+
+Pose between_poses(const Pose& a, const Pose& b, double share) {
+  return a * geometry::se3_exp(share * geometry::se3_log(a.inverse() * b));
 }
 
 }  // namespace
@@ -43,9 +48,10 @@ bool OdometryTrack::add(time::Time stamp, const Pose& T_odom_base) {
   if (!readings_.empty() && readings_.back().stamp - stamp > time::kRestartGap) readings_.clear();
   if (!readings_.empty() && stamp <= readings_.back().stamp) return false;
   if (!readings_.empty() && !continues(stamp, T_odom_base)) readings_.clear();
-  Reading reading{stamp, T_odom_base};
+  Reading reading{stamp, T_odom_base, T_odom_base};
   if (!readings_.empty()) {
-    const Pose step = readings_.back().T_odom_base.inverse() * T_odom_base;
+    const Pose step = corrected(wheels_, readings_.back().T_odom_base.inverse() * T_odom_base);
+    reading.T_corrected = readings_.back().T_corrected * step;
     reading.path_m = readings_.back().path_m + step.translation().norm();
     reading.turned_rad = readings_.back().turned_rad + geometry::rotation_angle(step.linear());
   }
@@ -81,8 +87,8 @@ std::optional<OdometryTrack::Reading> OdometryTrack::at(time::Time stamp) const 
   const Reading& a = *(after - 1);
   const Reading& b = *after;
   const double share = (stamp - a.stamp).seconds() / (b.stamp - a.stamp).seconds();
-  const geometry::Vector6d step = geometry::se3_log(a.T_odom_base.inverse() * b.T_odom_base);
-  return Reading{stamp, a.T_odom_base * geometry::se3_exp(share * step), a.path_m + share * (b.path_m - a.path_m),
+  return Reading{stamp, between_poses(a.T_odom_base, b.T_odom_base, share),
+                 between_poses(a.T_corrected, b.T_corrected, share), a.path_m + share * (b.path_m - a.path_m),
                  a.turned_rad + share * (b.turned_rad - a.turned_rad)};
 }
 
@@ -90,8 +96,16 @@ std::optional<OdometryMotion> OdometryTrack::between(time::Time from, time::Time
   const auto a = at(from);
   const auto b = at(to);
   if (!a || !b || to < from) return std::nullopt;
-  return OdometryMotion{a->T_odom_base.inverse() * b->T_odom_base,
-                        motion_covariance(config_, b->path_m - a->path_m, b->turned_rad - a->turned_rad)};
+  return OdometryMotion{a->T_corrected.inverse() * b->T_corrected,
+                        motion_covariance(config_, wheels_, b->path_m - a->path_m, b->turned_rad - a->turned_rad),
+                        b->path_m - a->path_m, b->turned_rad - a->turned_rad};
+}
+
+std::optional<Pose> OdometryTrack::uncorrected_between(time::Time from, time::Time to) const {
+  const auto a = at(from);
+  const auto b = at(to);
+  if (!a || !b || to < from) return std::nullopt;
+  return Pose(a->T_odom_base.inverse() * b->T_odom_base);
 }
 
 }  // namespace lapis::slam

@@ -7,6 +7,7 @@
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
 #include "slam/core/config.hpp"
+#include "slam/core/wheel_calibration.hpp"
 
 namespace lapis::slam {
 
@@ -14,6 +15,8 @@ namespace lapis::slam {
 struct OdometryMotion {
   geometry::Pose T_from_to = geometry::Pose::Identity();       ///< of base_link
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  ///< right perturbation (translation, rotation)
+  double path_m = 0.0;                                         ///< forwards and backwards alike
+  double turned_rad = 0.0;                                     ///< the same
 };
 
 /// By how many sigmas two independent measurements of the same motion disagree: the Mahalanobis length of
@@ -27,7 +30,10 @@ class OdometryTrack {
  public:
   static constexpr std::size_t kMostReadings = 100'000;  ///< half an hour at 50 Hz
 
-  explicit OdometryTrack(const OdometryConfig& config) : config_(config) {}
+  explicit OdometryTrack(const OdometryConfig& config) : config_(config), wheels_(WheelCalibrator(config).belief()) {}
+
+  /// Readings that follow are corrected by this calibration, and covariances are those that it leaves.
+  void calibrate(const WheelCalibration& wheels) { wheels_ = wheels; }
 
   /// The next reading: `T_odom_base` at `stamp`. False when it cannot be used: it is not later than the last one, or no
   /// rigid transform. A new track begins, because what happened is not known: after a gap of more than
@@ -40,20 +46,24 @@ class OdometryTrack {
   /// Motion between two stamps, `from` not later than `to`; interpolated between readings, carried on for at most half
   /// of OdometryConfig::max_gap_s after the newest. None outside of what is known.
   std::optional<OdometryMotion> between(time::Time from, time::Time to) const;
-  /// T_odom_base at a stamp, known as far as motions are.
+  /// The same as the wheels said it, without calibration.
+  std::optional<geometry::Pose> uncorrected_between(time::Time from, time::Time to) const;
+  /// T_odom_base at a stamp as the wheels said it, known as far as motions are.
   std::optional<geometry::Pose> pose_at(time::Time stamp) const;
 
  private:
   struct Reading {
     time::Time stamp;
-    geometry::Pose T_odom_base;
-    double path_m = 0.0;      // since the track began, forwards and backwards alike
-    double turned_rad = 0.0;  // the same
+    geometry::Pose T_odom_base;  // as it came
+    geometry::Pose T_corrected;  // the same track, corrected
+    double path_m = 0.0;         // since the track began, forwards and backwards alike
+    double turned_rad = 0.0;     // the same
   };
   bool continues(time::Time stamp, const geometry::Pose& T_odom_base) const;
   std::optional<Reading> at(time::Time stamp) const;
 
   OdometryConfig config_;
+  WheelCalibration wheels_;
   std::deque<Reading> readings_;
 };
 

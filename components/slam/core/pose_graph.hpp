@@ -14,6 +14,7 @@ struct PoseGraphNode {
   std::uint64_t id = 0;
   time::Time stamp;
   geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< camera optical frame
+  bool is_drifting = false;  ///< it hangs on odometry alone, and no loop has corrected it since
 };
 
 enum class EdgeType : std::uint8_t { kOdometry, kCovisibility, kLoopClosure, kWheelOdometry, kSurface };

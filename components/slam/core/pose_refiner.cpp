@@ -180,7 +180,8 @@ Alignment Refinement::summarise() const {
   Term points;  // once more, because the inliers have changed
   add_points(T_camera_reference, points);
   Alignment result;
-  result.T_reference_camera = T_;
+  // Products of many rotations drift from orthonormal, and what inverts by transposing drifts faster.
+  result.T_reference_camera = geometry::make_pose(T_.translation(), Eigen::Quaterniond(T_.linear()));
   const double samples = config_.surface.weight * last_.surface.residuals;
   result.surface_information = scaled_information(last_.surface, samples);
   if (samples > 6.0) result.surface_variance = unit_variance(last_.surface, samples);

@@ -60,6 +60,7 @@ class RgbdSlam::Implementation {
     reference_ = state.reference;
     version_ = state.graph_version;
     saved_keyframes_ = map_.keyframes().size();
+    if (state.wheels.motions > 0.0) motion_.set_wheels(config_.odometry, state.wheels);
     is_placed_ = false;
     tracker_.set_reference(map_, reference_);
     must_optimize_ = graph_.count(EdgeType::kLoopClosure) > 0;  // it may have been under way
@@ -67,9 +68,15 @@ class RgbdSlam::Implementation {
   }
 
   SlamState state() const {
-    SlamState state{
-        config_.features.scale_factor, version_, reference_, map_.keyframes(), {}, graph_.edges(), graph_.links(),
-        graph_.covariances()};
+    SlamState state{config_.features.scale_factor,
+                    version_,
+                    reference_,
+                    map_.keyframes(),
+                    {},
+                    graph_.edges(),
+                    graph_.links(),
+                    graph_.covariances(),
+                    motion_.wheels()};
     state.landmarks.reserve(map_.landmarks().size());
     for (const Landmark& landmark : map_.landmarks()) {
       state.landmarks.push_back({landmark.p_map, landmark.finest_distance_m});
@@ -77,7 +84,10 @@ class RgbdSlam::Implementation {
     return state;
   }
 
-  bool add_odometry(time::Time stamp, const Pose& T_odom_base) { return motion_.add_odometry(stamp, T_odom_base); }
+  bool add_odometry(time::Time stamp, const Pose& T_odom_base) {
+    has_odometry_ = true;
+    return motion_.add_odometry(stamp, T_odom_base);
+  }
 
   TrackingResult process(const RgbdFrame& input) {
     ++frame_count_;
@@ -91,7 +101,8 @@ class RgbdSlam::Implementation {
     blind_frames_ = 0;
     is_placed_ = true;
     ++frames_since_keyframe_;
-    return continue_with(frame, seen, PoseSource::kVision, needs_keyframe(config_.keyframe, evidence(seen)));
+    const bool is_keyframe = needs_keyframe(config_.keyframe, evidence(seen));
+    return continue_with(frame, seen, PoseSource::kVision, is_keyframe || ends_drift(seen));
   }
 
   std::optional<Pose> odometry_at(time::Time stamp) const { return motion_.odometry_at(stamp); }
@@ -101,12 +112,18 @@ class RgbdSlam::Implementation {
   }
 
   PoseGraphSnapshot pose_graph() const { return graph_.snapshot(map_, version_); }
-  LoopSummary loops() const { return {graph_.count(EdgeType::kLoopClosure), last_loop_, loops_.revisits()}; }
+  LoopSummary loops() const {
+    return {graph_.count(EdgeType::kLoopClosure), last_loop_, loops_.revisits(), graph_.loops_removed()};
+  }
   std::uint64_t version() const { return version_; }
   std::size_t keyframe_count() const { return map_.keyframes().size(); }
   std::size_t landmark_count() const { return map_.landmark_count(); }
   const Map& map() const { return map_; }
   std::size_t slip_count() const { return slips_; }
+  std::optional<WheelCalibration> wheels() const {
+    return has_odometry_ ? std::optional(motion_.wheels()) : std::nullopt;
+  }
+  std::size_t places_doubted() const { return relocalizer_.doubted(); }
   TrackingResult without_vision(time::Time stamp, const std::string& reason, const Frame* frame = nullptr) const {
     TrackingResult result;
     result.state = map_.empty() ? TrackingState::kInitializing : TrackingState::kLost;
@@ -115,18 +132,32 @@ class RgbdSlam::Implementation {
     if (frame != nullptr) result.features = static_cast<std::uint32_t>(frame->features.size());
     const auto reckoned = motion_.dead_reckon(stamp);
     if (!reckoned) return result;
-    result.state = TrackingState::kDeadReckoning;
-    result.source = PoseSource::kOdometry;
-    set_pose(*reckoned, result);
+    set_drift(stamp, result);
+    if (is_contradicted()) {
+      result.reason = "what odometry says contradicts what the camera sees: the robot was carried, or its wheels spin";
+    } else if (result.drift_m > config_.odometry.max_drift_m) {
+      result.reason = "odometry alone, and its sigma is beyond slam.odometry.max_drift_m: " + reason;
+    } else {
+      result.state = TrackingState::kDeadReckoning;
+      result.source = PoseSource::kOdometry;
+      set_pose(*reckoned, result);
+    }
     return result;
   }
 
  private:
   TrackingResult continue_with(const Frame& frame, const TrackOutcome& outcome, PoseSource source, bool is_keyframe) {
+    contradictions_ = 0;
+    held_stamp_ = frame.input->stamp;
+    const bool ends_a_drift = ends_drift(outcome);
     follow_reference(outcome);
     TrackingResult result = with_pose(frame, outcome);
     result.source = source;
     if (is_keyframe) insert_keyframe(frame, &outcome, result);
+    if (is_keyframe && ends_a_drift) {
+      must_optimize_ = true;
+      optimize();
+    }
     motion_.update(map_, frame.input->stamp, {result.keyframe_id, result.T_keyframe_camera, result.covariance});
     return result;
   }
@@ -142,6 +173,7 @@ class RgbdSlam::Implementation {
     const MotionModel::Expected expected{map_.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera,
                                          reckoned->covariance};
     const TrackOutcome aligned = surfaces_.track(map_, frame, reference_, expected);
+    contradictions_ = aligned.is_contradicted ? contradictions_ + 1 : is_contradicted() ? contradictions_ : 0;
     if (!aligned.is_tracked) {
       const bool is_new_view = aligned.is_new_view && !could_start && !awaits_confirmation_;
       return continue_blind(frame, reason + "; " + aligned.reason, is_new_view);
@@ -149,7 +181,23 @@ class RgbdSlam::Implementation {
     const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames;
     if (begins_anew) blind_frames_ = 0;
     return continue_with(frame, aligned, PoseSource::kSurfaces,
-                         begins_anew || has_moved(aligned.alignment.T_reference_camera));
+                         begins_anew || has_moved(aligned.alignment.T_reference_camera) || ends_drift(aligned));
+  }
+
+  // The camera sees through what was mapped, for too long. Only vision, or surfaces that fit again, end that.
+  bool is_contradicted() const { return contradictions_ >= config_.tracker.max_contradictions; }
+
+  // Vision or surfaces tie the camera to the map on the other side of a stretch that hangs on odometry alone.
+  bool ends_drift(const TrackOutcome& outcome) const {
+    const KeyframeId newest = map_.keyframes().back().id;
+    return outcome.reference != newest && graph_.is_drifting(newest);
+  }
+
+  void set_drift(time::Time stamp, TrackingResult& result) const {
+    const auto motion = held_stamp_ ? motion_.odometry_between(*held_stamp_, stamp) : std::nullopt;
+    if (!motion) return;
+    result.drift_m = largest_sigma(motion->covariance, 0);
+    result.drift_rad = largest_sigma(motion->covariance, 3);
   }
 
   // Far enough from the reference for another key-frame.
@@ -187,7 +235,7 @@ class RgbdSlam::Implementation {
   TrackingResult continue_blind(const Frame& frame, const std::string& reason, bool is_new_view) {
     TrackingResult result = without_vision(frame.input->stamp, reason, &frame);
     if (result.state != TrackingState::kDeadReckoning) return result;
-    const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames;
+    const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames && contradictions_ == 0;
     if (!begins_anew && !(is_new_view && has_moved(result.T_keyframe_camera) && shows_surfaces(frame))) return result;
     if (begins_anew) {
       blind_frames_ = 0;
@@ -242,10 +290,14 @@ class RgbdSlam::Implementation {
     // Without odometry a map of surfaces would be lost for ever as soon as they tell too little.
     const bool has_surfaces = !has_features && motion_.odometry_at(frame.input->stamp) && shows_surfaces(frame);
     if (!has_features && !has_surfaces) {
-      return without_vision(frame.input->stamp,
-                            std::to_string(frame.features_with_depth) + " features with depth, " +
-                                std::to_string(config_.tracker.min_matches) + " needed",
-                            &frame);
+      const char* surfaces = motion_.odometry_at(frame.input->stamp)
+                                 ? ", and too few surfaces"
+                                 : "; without odometry, surfaces are not enough to begin";
+      return without_vision(
+          frame.input->stamp,
+          "the view shows too little to begin (a blank wall?): " + std::to_string(frame.features_with_depth) +
+              " features with depth, " + std::to_string(config_.tracker.min_matches) + " needed" + surfaces,
+          &frame);
     }
     const KeyframeId id = add_keyframe(frame, T_map_first_camera_);
     graph_.add_root();
@@ -253,6 +305,7 @@ class RgbdSlam::Implementation {
     add_landmarks(id);
     tracker_.set_reference(map_, id);
     motion_.update(map_, frame.input->stamp, {id, Pose::Identity(), Matrix6d::Zero()});
+    held_stamp_ = frame.input->stamp;
     TrackingResult result;
     result.state = TrackingState::kTracking;
     result.source = has_features ? PoseSource::kVision : PoseSource::kSurfaces;
@@ -335,15 +388,23 @@ class RgbdSlam::Implementation {
     optimize();
   }
 
-  // Odometry of wheels that slipped is left out: vision is sure of its pose, and odometry gives another one.
+  // Odometry of wheels that slipped is left out: vision is sure of its pose, and odometry gives another one. But where
+  // it is all that a stretch hangs on, it stays, as uncertain as it turned out to be.
   void add_odometry_edge(KeyframeId from, KeyframeId to, const TrackOutcome& outcome) {
-    const auto motion = motion_.odometry_between(map_.keyframe(from).stamp, map_.keyframe(to).stamp);
-    motion_.forget_before(map_.keyframe(to).stamp);
-    if (!motion) return;
+    const time::Time from_stamp = map_.keyframe(from).stamp, to_stamp = map_.keyframe(to).stamp;
+    auto motion = motion_.odometry_between(from_stamp, to_stamp);
+    if (!motion) return motion_.forget_before(to_stamp);
     const Pose T_from_to = map_.keyframe(from).T_map_camera.inverse() * map_.keyframe(to).T_map_camera;
     const Matrix6d covariance = edge_information(config_.pose_graph, outcome.alignment.information).inverse();
     const bool vision_is_sure = outcome.alignment.inliers >= config_.tracker.min_matches;
-    if (vision_is_sure && disagreement(*motion, T_from_to, covariance) > config_.odometry.max_disagreement) {
+    const double sigmas = disagreement(*motion, T_from_to, covariance);
+    const bool is_all = graph_.is_drifting(from);
+    if (is_all) motion->covariance *= std::max(1.0, sigmas * sigmas / 6.0);
+    if (vision_is_sure && outcome.reference == from) {
+      motion_.learn_wheels(from_stamp, to_stamp, outcome.alignment.T_reference_camera, covariance);
+    }
+    motion_.forget_before(to_stamp);
+    if (vision_is_sure && !is_all && sigmas > config_.odometry.max_disagreement) {
       ++slips_;
       return;
     }
@@ -369,7 +430,7 @@ class RgbdSlam::Implementation {
     Keyframe keyframe;
     keyframe.stamp = input.stamp;
     keyframe.camera = input.camera;
-    keyframe.T_map_camera = T_map_camera;
+    keyframe.T_map_camera = geometry::make_pose(T_map_camera.translation(), Eigen::Quaterniond(T_map_camera.linear()));
     keyframe.features = frame.features;
     if (config_.surface.enabled) {
       keyframe.surface = sample_surface(config_.surface, config_.noise, input.camera, input.depth);
@@ -406,7 +467,10 @@ class RgbdSlam::Implementation {
   std::uint64_t frame_count_ = 0;
   int frames_since_keyframe_ = 0;
   std::size_t slips_ = 0;
-  int blind_frames_ = 0;              // in a row, with enough to see
+  int blind_frames_ = 0;                  // in a row, with enough to see
+  int contradictions_ = 0;                // in a row, of surfaces with odometry
+  std::optional<time::Time> held_stamp_;  // of the newest pose by vision or surfaces
+  bool has_odometry_ = false;
   bool awaits_confirmation_ = false;  // a place was recognised in the newest frame, and is not believed yet
   std::uint64_t version_ = 0;
   std::size_t saved_keyframes_ = 0;  // their stamps are of another time: no odometry leads from them
@@ -436,5 +500,7 @@ std::size_t RgbdSlam::keyframe_count() const { return implementation_->keyframe_
 std::size_t RgbdSlam::landmark_count() const { return implementation_->landmark_count(); }
 const Map& RgbdSlam::map() const { return implementation_->map(); }
 std::size_t RgbdSlam::slip_count() const { return implementation_->slip_count(); }
+std::optional<WheelCalibration> RgbdSlam::wheels() const { return implementation_->wheels(); }
+std::size_t RgbdSlam::places_doubted() const { return implementation_->places_doubted(); }
 
 }  // namespace lapis::slam

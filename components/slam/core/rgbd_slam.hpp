@@ -14,6 +14,7 @@
 #include "slam/core/map.hpp"
 #include "slam/core/pose_graph.hpp"
 #include "slam/core/slam_state.hpp"
+#include "slam/core/wheel_calibration.hpp"
 
 namespace lapis::slam {
 
@@ -42,6 +43,8 @@ struct TrackingResult {
   std::uint32_t matches = 0;
   std::uint32_t inliers = 0;
   double rms_px = 0.0;  ///< reprojection error of the inliers
+  /// Sigma of position [m] and rotation [rad] by odometry since vision or surfaces held the pose last; 0 while they do.
+  double drift_m = 0.0, drift_rad = 0.0;
 };
 
 /// True when the result says where the camera is.
@@ -54,6 +57,7 @@ struct LoopSummary {
   std::size_t closures = 0;        ///< edges of the graph
   std::optional<time::Time> last;  ///< stamp of the key-frame that found the newest
   std::vector<Revisit> revisits;   ///< recognised and confirmed, more than there are edges
+  std::size_t removed = 0;         ///< closed, and found to be wrong later
 };
 
 /// RGB-D SLAM: features and surfaces aligned with a local map, local bundle adjustment, loop closure, pose graph.
@@ -92,6 +96,10 @@ class RgbdSlam {
   const Map& map() const;
   /// Motions of odometry between key-frames that were left out (OdometryConfig::max_disagreement).
   std::size_t slip_count() const;
+  /// What is known of the wheels; none as long as there is no odometry.
+  std::optional<WheelCalibration> wheels() const;
+  /// Recognised places that were not believed, because odometry contradicted them.
+  std::size_t places_doubted() const;
 
  private:
   class Implementation;

@@ -17,7 +17,8 @@ using geometry::Matrix6d;
 using geometry::Pose;
 
 constexpr std::string_view kMagic = "LAPISLAM";
-constexpr std::uint32_t kFormatVersion = 1;
+constexpr std::uint32_t kFormatVersion = 2;
+constexpr std::uint32_t kWithoutWheels = 1;  // the version before, which is still read
 constexpr std::size_t kTagSize = 4;
 constexpr double kUnit16 = 32767.0;  // a direction's component 1
 
@@ -60,7 +61,12 @@ void fields(auto& data, Is<PoseGraphEdge> auto& edge) {
 
 void fields(auto& data, Is<KeyframeLink> auto& link) { data(link.from, link.to, link.T_from_to, link.information); }
 
-void sections(auto& section, Is<SlamFile> auto& file) {
+void fields(auto& data, Is<WheelCalibration> auto& wheels) {
+  data(wheels.distance_scale, wheels.distance_variance, wheels.turn_scale, wheels.turn_variance, wheels.noise,
+       wheels.motions);
+}
+
+void sections(auto& section, Is<SlamFile> auto& file, std::uint32_t version) {
   auto& state = file.state;
   section("INFO", file.session, state.graph_version, state.reference, state.scale_factor);
   section("KEYF", state.keyframes);
@@ -68,6 +74,7 @@ void sections(auto& section, Is<SlamFile> auto& file) {
   section("LAND", state.landmarks);
   section("EDGE", state.edges);
   section("LINK", state.links);
+  if (version > kWithoutWheels) section("WHEE", state.wheels);
 }
 
 class Encoder {
@@ -231,8 +238,13 @@ class SectionReader {
   std::string problem_;
 };
 
+struct Content {
+  std::uint32_t version = 0;
+  std::span<const std::uint8_t> bytes;
+};
+
 /// What follows the header; nothing with a reason otherwise.
-std::optional<std::span<const std::uint8_t>> check_header(std::span<const std::uint8_t> bytes, std::string& error) {
+std::optional<Content> check_header(std::span<const std::uint8_t> bytes, std::string& error) {
   files::ByteReader in(bytes);
   const auto magic = in.raw(kMagic.size());
   if (!std::equal(magic.begin(), magic.end(), kMagic.begin(), kMagic.end())) {
@@ -240,7 +252,8 @@ std::optional<std::span<const std::uint8_t>> check_header(std::span<const std::u
     return std::nullopt;
   }
   const std::uint32_t version = in.u32();
-  if (in.is_good() && version == kFormatVersion) return bytes.last(in.remaining());
+  if (in.is_good() && (version == kFormatVersion || version == kWithoutWheels))
+    return Content{version, bytes.last(in.remaining())};
   error = in.is_good() ? "has format version " + std::to_string(version) + ", this program reads " +
                              std::to_string(kFormatVersion)
                        : "is cut off";
@@ -254,7 +267,7 @@ std::vector<std::uint8_t> encode_slam_file(const SlamFile& file) {
   for (const char c : kMagic) out.u8(static_cast<std::uint8_t>(c));
   out.u32(kFormatVersion);
   SectionWriter section(out);
-  sections(section, file);
+  sections(section, file, kFormatVersion);
   return out.take();
 }
 
@@ -262,8 +275,8 @@ std::optional<SlamFile> decode_slam_file(std::span<const std::uint8_t> bytes, st
   const auto content = check_header(bytes, error);
   if (!content) return std::nullopt;
   SlamFile file;
-  SectionReader section(*content);
-  sections(section, file);
+  SectionReader section(content->bytes);
+  sections(section, file, content->version);
   error = section.problem();
   if (!error.empty()) return std::nullopt;
   if (file.session < 0 || file.session > kLastStamp_ns) {

@@ -25,7 +25,7 @@ SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink>
     const auto to = static_cast<std::size_t>(edge.to);
     if (edge.type == EdgeType::kLoopClosure || has_parent[to]) continue;
     has_parent[to] = true;
-    parents_[to] = {edge.from, edge.information.inverse()};
+    parents_[to] = {edge.from, edge.information.inverse(), edge.type == EdgeType::kWheelOdometry};
     if (edge.type == EdgeType::kSurface) surfaces[to] = edge.information;
   }
   // Surfaces leave directions open, which odometry's edge beside them holds.
@@ -34,6 +34,10 @@ SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink>
     if (found == surfaces.end() || edge.type != EdgeType::kWheelOdometry || edge.from != parents_[found->first].id)
       continue;
     parents_[found->first].covariance = (found->second + edge.information).inverse();
+  }
+  for (const PoseGraphEdge& edge : edges_) {
+    if (edge.type != EdgeType::kWheelOdometry) parents_[static_cast<std::size_t>(edge.from)].is_drifting = false;
+    hold_circle(edge);
   }
 }
 
@@ -44,7 +48,9 @@ void SlamGraph::add_root() {
 
 void SlamGraph::add_keyframe(const PoseGraphEdge& edge, const Matrix6d& covariance) {
   edges_.push_back(edge);
-  parents_.push_back({edge.from, covariance});
+  const bool is_odometry = edge.type == EdgeType::kWheelOdometry;
+  parents_.push_back({edge.from, covariance, is_odometry});
+  if (!is_odometry) parents_[static_cast<std::size_t>(edge.from)].is_drifting = false;
   covariances_.push_back(compound_covariance(this->covariance(edge.from), edge.T_from_to, covariance));
 }
 
@@ -95,9 +101,26 @@ void SlamGraph::apply(const GraphCorrection& correction, Map& map) {
   map.move(moves);
   std::vector<PoseGraphEdge> kept;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
-    if (i >= correction.weights.size() || correction.weights[i] >= kLeastWeight) kept.push_back(edges_[i]);
+    const bool is_known = i < correction.weights.size();
+    if (is_known && correction.weights[i] < kLeastWeight) {
+      ++loops_removed_;
+      continue;
+    }
+    kept.push_back(edges_[i]);
+    if (is_known) hold_circle(edges_[i]);
   }
   edges_ = std::move(kept);
+}
+
+// An edge beside those to the parents closes a circle with them: the two paths to the common ancestor.
+void SlamGraph::hold_circle(const PoseGraphEdge& edge) {
+  auto a = static_cast<std::size_t>(edge.from), b = static_cast<std::size_t>(edge.to);
+  if (parents_[b].id == edge.from || parents_[a].id == edge.to) return;
+  while (a != b) {
+    std::size_t& younger = a > b ? a : b;
+    parents_[younger].is_drifting = false;
+    younger = static_cast<std::size_t>(parents_[younger].id);
+  }
 }
 
 std::size_t SlamGraph::count(EdgeType type) const {
@@ -108,7 +131,7 @@ std::size_t SlamGraph::count(EdgeType type) const {
 PoseGraphSnapshot SlamGraph::snapshot(const Map& map, std::uint64_t version) const {
   PoseGraphSnapshot snapshot{version, {}, edges_};
   for (const Keyframe& keyframe : map.keyframes()) {
-    snapshot.nodes.push_back({keyframe.id, keyframe.stamp, keyframe.T_map_camera});
+    snapshot.nodes.push_back({keyframe.id, keyframe.stamp, keyframe.T_map_camera, is_drifting(keyframe.id)});
   }
   return snapshot;
 }

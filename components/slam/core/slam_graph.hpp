@@ -49,6 +49,11 @@ class SlamGraph {
   const std::vector<PoseGraphEdge>& edges() const { return edges_; }
   const std::vector<geometry::Matrix6d>& covariances() const { return covariances_; }
   std::size_t count(EdgeType type) const;
+  /// Whether the key-frame hangs on odometry alone: no vision or surface ties it to another one, and no optimisation
+  /// has known a circle of edges that it lies on.
+  bool is_drifting(KeyframeId id) const { return parents_[static_cast<std::size_t>(id)].is_drifting; }
+  /// Loop closures that were accepted, and found to be outliers later.
+  std::size_t loops_removed() const { return loops_removed_; }
   const std::vector<KeyframeLink>& links() const { return links_; }
   /// Of the key-frame's pose in the map.
   const geometry::Matrix6d& covariance(KeyframeId id) const { return covariances_[static_cast<std::size_t>(id)]; }
@@ -58,11 +63,15 @@ class SlamGraph {
   struct Parent {
     KeyframeId id = 0;
     geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // of T_parent_keyframe
+    bool is_drifting = false;                                    // of the key-frame itself
   };
+  void hold_circle(const PoseGraphEdge& edge);
+
   std::vector<PoseGraphEdge> edges_;
   std::vector<KeyframeLink> links_;
   std::vector<Parent> parents_;                  // of each key-frame; the first is its own
   std::vector<geometry::Matrix6d> covariances_;  // of each key-frame's pose in the map
+  std::size_t loops_removed_ = 0;
 };
 
 }  // namespace lapis::slam

@@ -87,6 +87,17 @@ Fault find_edge_fault(const PoseGraphEdge& edge, std::size_t keyframes) {
   return std::nullopt;
 }
 
+Fault find_wheel_fault(const WheelCalibration& wheels) {
+  const auto is_scale = [](double scale, double variance) {
+    return scale > 0.0 && std::isfinite(scale) && variance >= 0.0 && std::isfinite(variance);
+  };
+  if (!is_scale(wheels.distance_scale, wheels.distance_variance) || !is_scale(wheels.turn_scale, wheels.turn_variance))
+    return "scale out of range";
+  if (!(wheels.noise > 0.0 && std::isfinite(wheels.noise))) return "noise out of range";
+  if (!(wheels.motions >= 0.0 && std::isfinite(wheels.motions))) return "number of motions out of range";
+  return std::nullopt;
+}
+
 }  // namespace
 
 Fault find_fault(const SlamState& state) {
@@ -100,6 +111,7 @@ Fault find_fault(const SlamState& state) {
   for (std::size_t i = 0; i < keyframes; ++i) {
     if (state.keyframes[i].id != i) return "key-frame " + std::to_string(i) + ": wrong id";
   }
+  if (auto fault = find_wheel_fault(state.wheels)) return "calibration of the wheels: " + *fault;
   const auto check_keyframe = [&](const Keyframe& k) { return find_keyframe_fault(k, landmarks); };
   if (auto fault = first_fault(state.keyframes, "key-frame", check_keyframe)) return fault;
   if (auto fault = first_fault(state.landmarks, "landmark", find_landmark_fault)) return fault;

@@ -9,6 +9,7 @@
 #include "slam/core/local_bundle.hpp"
 #include "slam/core/map.hpp"
 #include "slam/core/pose_graph.hpp"
+#include "slam/core/wheel_calibration.hpp"
 
 namespace lapis::slam {
 
@@ -31,6 +32,7 @@ struct SlamState {
   std::vector<PoseGraphEdge> edges;
   std::vector<KeyframeLink> links;
   std::vector<geometry::Matrix6d> covariances;  ///< of each key-frame's pose in the map, as TrackingResult's
+  WheelCalibration wheels;                      ///< of no motions: nothing was learnt
 };
 
 /// What is wrong with a state that did not come from RgbdSlam itself: ids that point nowhere, numbers that are not

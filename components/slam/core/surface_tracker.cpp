@@ -15,6 +15,9 @@ using geometry::Vector6d;
 constexpr std::size_t kNewest = 5;  // key-frames that are looked at, besides those that share landmarks
 constexpr double kMostAway_m = 2.0, kMostTurned_rad = 0.9;
 constexpr double kKeyframeSigma_m = 0.003, kKeyframeSigma_rad = 0.002;  // of key-frames near each other
+// A view contradicts the map when it sees through so large a share of what should be in view, by more than the margin,
+// and sees little of it. A door that was opened is less.
+constexpr double kMostSeenThrough = 0.25, kLittleSeen = 0.3, kMargin_m = 0.3;
 constexpr double kMetresPerRadian = 1.5;  // how far turning counts, when key-frames are compared
 
 /// Directions of the tangent that the measurements know, and their information. Coordinates a in these directions are
@@ -85,16 +88,24 @@ std::vector<KeyframeId> SurfaceTracker::near_keyframes(const Map& map, KeyframeI
   return out;
 }
 
-double SurfaceTracker::share_seen(const AlignmentProblem& problem, const Pose& T_reference_camera) const {
+SurfaceTracker::Sight SurfaceTracker::look(const AlignmentProblem& problem, const Pose& T_reference_camera,
+                                           const Matrix6d& covariance) const {
+  const double sigma_m = largest_sigma(covariance, 0), sigma_rad = largest_sigma(covariance, 3);
   const Pose T_camera_reference = T_reference_camera.inverse();
-  std::size_t visible = 0, seen = 0;
+  Sight sight;
   for (const SurfaceSample& sample : problem.surface) {
     const auto residual = surface_residual(config_.noise, problem.camera, *problem.depth, sample, T_camera_reference);
     if (!residual) continue;
-    ++visible;
-    if (std::abs(residual->distance_m) < std::max(3.0 * residual->sigma_m, 0.02)) ++seen;
+    const double margin_m = kMargin_m + 3.0 * (sigma_m + sigma_rad * sample.point.norm() + residual->sigma_m);
+    if (std::abs(residual->distance_m) < std::max(3.0 * residual->sigma_m, 0.02)) {
+      ++sight.seen;
+    } else if (residual->distance_m < -margin_m) {
+      ++sight.seen_through;
+    } else {
+      ++sight.differs;
+    }
   }
-  return visible == 0 ? 0.0 : static_cast<double>(seen) / static_cast<double>(visible);
+  return sight;
 }
 
 TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeId reference,
@@ -122,10 +133,15 @@ TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeI
   const AlignmentProblem problem{frame.input->camera, {}, surface, &frame.input->depth, PosePrior{T_expected, prior}};
   Alignment alignment = refine_pose(config_, problem, T_expected);
   const auto& surfaces = config_.surface;
-  if (!geometry::is_valid(alignment.T_reference_camera) || alignment.surface_matches < surfaces.min_matches ||
-      share_seen(problem, alignment.T_reference_camera) < surfaces.min_share) {
+  const bool is_valid = geometry::is_valid(alignment.T_reference_camera);
+  const Sight sight = look(problem, is_valid ? alignment.T_reference_camera : T_expected, expected.covariance);
+  if (!is_valid || alignment.surface_matches < surfaces.min_matches ||
+      sight.seen < surfaces.min_share * sight.in_view()) {
     outcome.reason = "too little of the near surfaces is seen again";
     outcome.is_new_view = true;
+    outcome.is_contradicted = sight.in_view() >= surfaces.min_matches &&
+                              sight.seen_through > kMostSeenThrough * sight.in_view() &&
+                              sight.seen < kLittleSeen * sight.in_view();
     return outcome;
   }
   const KnownDirections known =

@@ -22,7 +22,7 @@ class SurfaceTracker {
   /// @return as for vision, without matches: T_reference_camera is what the surfaces say in the directions that they
   ///   know, and what was expected in the others; `alignment.information` is zero there. Not tracked, with the reason,
   ///   when too little of the surfaces is seen again, no direction is known, or surfaces and motion contradict each
-  ///   other (SurfaceConfig::max_disagreement)
+  ///   other (SurfaceConfig::max_disagreement, or the frame sees through the surfaces)
   TrackOutcome track(const Map& map, const Frame& frame, KeyframeId reference,
                      const MotionModel::Expected& expected) const;
 
@@ -33,8 +33,14 @@ class SurfaceTracker {
   };
   std::vector<KeyframeId> near_keyframes(const Map& map, KeyframeId reference,
                                          const geometry::Pose& T_map_camera) const;
-  /// Of the samples that the frame could see again, the share that it does.
-  double share_seen(const AlignmentProblem& problem, const geometry::Pose& T_reference_camera) const;
+  /// What becomes of the samples that are in view. `seen_through`: the frame sees what is behind them, beyond all
+  /// doubt about the pose; `differs`: it sees something else, for example what is before them.
+  struct Sight {
+    int seen = 0, seen_through = 0, differs = 0;
+    int in_view() const { return seen + seen_through + differs; }
+  };
+  Sight look(const AlignmentProblem& problem, const geometry::Pose& T_reference_camera,
+             const geometry::Matrix6d& covariance) const;
 
   SlamConfig config_;
 };

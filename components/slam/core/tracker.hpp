@@ -14,8 +14,9 @@ namespace lapis::slam {
 /// Pose of a frame relative to a key-frame, or the reason why there is none.
 struct TrackOutcome {
   bool is_tracked = false;
-  std::string reason;        ///< empty when tracked
-  bool is_new_view = false;  ///< by surfaces: too little of the view was seen before
+  std::string reason;            ///< empty when tracked
+  bool is_new_view = false;      ///< by surfaces: too little of the view was seen before
+  bool is_contradicted = false;  ///< by surfaces: the frame sees through those that should be in view
   KeyframeId reference = 0;
   Alignment alignment;
   std::vector<Match> inliers;

@@ -1,5 +1,7 @@
 #include "slam/core/relocalizer.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 namespace lapis::slam {
@@ -70,6 +72,55 @@ TEST_F(RelocalizerTest, OdometryThatLeadsElsewhereMakesAPlaceAwaitConfirmation) 
   for (int i = 0; i <= 20; ++i) ASSERT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose::Identity()));
   EXPECT_FALSE(believes(1.5, found(1.5)));
   EXPECT_TRUE(believes(1.6, found(0.1, 46)));
+}
+
+// The robot drives 8 m in 8 s by odometry alone; vision finds it 5 m beside, again and again.
+class ContradictedPlaceTest : public RelocalizerTest {
+ protected:
+  ContradictedPlaceTest() {
+    for (int i = 0; i <= 80; ++i) {
+      EXPECT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose(Eigen::Translation3d(0.1 * i, 0.0, 0.0))));
+    }
+  }
+  // After so much of the path, with landmarks of its own or the same ones as ever.
+  TrackOutcome beside(double path_m, bool is_own_view) const {
+    TrackOutcome outcome = found(path_m);
+    outcome.alignment.T_reference_camera.translation().y() = 5.0;
+    const auto first = static_cast<LandmarkId>(is_own_view ? 100 * std::lround(10.0 * path_m) : 0);
+    for (int i = 0; i < 90; ++i) outcome.inliers.push_back({i, first + static_cast<LandmarkId>(i)});
+    return outcome;
+  }
+};
+
+TEST_F(ContradictedPlaceTest, IsNotBelievedBeforeViewsAgreeAlongMetres) {
+  for (int i = 10; i < 50; ++i) ASSERT_FALSE(believes(0.1 * i, beside(0.1 * i, true))) << 0.1 * i << " m";
+  EXPECT_TRUE(believes(5.05, beside(5.05, true)));
+  EXPECT_EQ(relocalizer_.doubted(), 40u);
+}
+
+TEST_F(ContradictedPlaceTest, IsNeverBelievedForOneViewSeenAgain) {
+  for (int i = 10; i < 80; ++i) ASSERT_FALSE(believes(0.1 * i, beside(0.1 * i, false)));
+}
+
+TEST_F(ContradictedPlaceTest, LosesAgainstOdometryThatIsConfirmed) {
+  for (int i = 10; i < 45; ++i) ASSERT_FALSE(believes(0.1 * i, beside(0.1 * i, true)));
+  EXPECT_TRUE(believes(4.5, found(4.5, 46))) << "where odometry leads";
+  for (int i = 46; i < 80; ++i) ASSERT_FALSE(believes(0.1 * i, beside(0.1 * i, true))) << "evidence begins anew";
+}
+
+TEST_F(ContradictedPlaceTest, PlacesThatDoNotAgreeAreNoEvidence) {
+  for (int i = 10; i < 80; ++i) {
+    TrackOutcome outcome = beside(0.1 * i, true);
+    outcome.alignment.T_reference_camera.translation().y() += i % 4;
+    ASSERT_FALSE(believes(0.1 * i, outcome));
+  }
+}
+
+// Wheels that spun for three metres may have got nowhere.
+TEST_F(ContradictedPlaceTest, WhatSlipExplainsOnlyHasToBeFoundAgain) {
+  const int needed = config_.relocalization.confirmations;
+  for (int i = 0; i < needed; ++i) ASSERT_FALSE(believes(6.0 + 0.1 * i, found(4.5 + 0.1 * i)));
+  EXPECT_TRUE(believes(6.0 + 0.1 * needed, found(4.5 + 0.1 * needed)));
 }
 
 }  // namespace

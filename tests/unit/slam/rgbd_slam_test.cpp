@@ -268,7 +268,9 @@ TEST_F(RgbdSlamWithOdometry, WhiteWallsAreTrackedByTheirSurfaces) {
 TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {
   RgbdSlam slam({}, Pose::Identity());
   EXPECT_EQ(slam.process(black_room_frame(0)).state, TrackingState::kInitializing);
-  EXPECT_EQ(slam.process(black_room_frame(0)).reason, "0 features with depth, 30 needed");
+  EXPECT_EQ(slam.process(black_room_frame(0)).reason,
+            "the view shows too little to begin (a blank wall?): 0 features with depth, 30 needed; without odometry, "
+            "surfaces are not enough to begin");
   ASSERT_EQ(slam.process(room_frame(0)).state, TrackingState::kTracking);
 
   RgbdFrame no_depth = room_frame(1);

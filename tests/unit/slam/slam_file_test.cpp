@@ -204,12 +204,12 @@ TEST(SlamFile, ErrorsNameFileVersionAndSection) {
 
   Bytes bytes = encode_slam_file(test::sample_file(1, 2));
   bytes.back() ^= 1U;
-  EXPECT_EQ(refusal(bytes), "is damaged: its section LINK has another checksum than when it was written");
+  EXPECT_EQ(refusal(bytes), "is damaged: its section WHEE has another checksum than when it was written");
   SlamFile timeless = test::sample_file(1, 1);
   timeless.session = -1;
   EXPECT_EQ(refusal(encode_slam_file(timeless)), "has a session out of range");
   bytes[8] = 9;
-  EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1");
+  EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 2");
 }
 
 TEST(SlamFile, OldFileStaysWholeWhenThereIsNoSpace) {

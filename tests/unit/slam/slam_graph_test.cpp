@@ -54,6 +54,72 @@ class SlamGraphTest : public ::testing::Test {
   SlamGraph graph_;
 };
 
+// 5 and 6 follow 3 by odometry alone.
+class DriftingStretchTest : public SlamGraphTest {
+ protected:
+  DriftingStretchTest() {
+    add(3, 5, EdgeType::kWheelOdometry);
+    add(5, 6, EdgeType::kWheelOdometry);
+  }
+  void add(KeyframeId from, KeyframeId to, EdgeType type) {
+    while (map_.keyframes().size() <= to) {
+      Keyframe keyframe;
+      keyframe.T_map_camera = map_.keyframe(from).T_map_camera * steps_[0];
+      map_.add_keyframe(keyframe);
+    }
+    graph_.add_keyframe({from, to, type, steps_[0], covariance_.inverse()});
+  }
+  PoseGraphEdge edge(KeyframeId from, KeyframeId to, EdgeType type) const {
+    return {from, to, type, map_.keyframe(from).T_map_camera.inverse() * map_.keyframe(to).T_map_camera,
+            covariance_.inverse()};
+  }
+  // As an optimisation that moves nothing, and keeps what has this weight.
+  void optimise(double weight_of_last = 1.0) {
+    GraphCorrection correction;
+    for (const Keyframe& keyframe : map_.keyframes()) correction.T_map_camera.push_back(keyframe.T_map_camera);
+    correction.T_map_before = correction.T_map_camera;
+    correction.covariances.resize(map_.keyframes().size());
+    correction.weights.assign(graph_.edges().size(), 1.0);
+    correction.weights.back() = weight_of_last;
+    graph_.apply(correction, map_);
+  }
+  std::vector<KeyframeId> drifting() const {
+    std::vector<KeyframeId> ids;
+    for (const auto& node : graph_.snapshot(map_, 1).nodes) {
+      if (node.is_drifting) ids.push_back(node.id);
+    }
+    return ids;
+  }
+};
+
+TEST_F(DriftingStretchTest, HangsOnOdometryUntilVisionTiesItToAnotherKeyframe) {
+  EXPECT_EQ(drifting(), (std::vector<KeyframeId>{5, 6}));
+  add(6, 7, EdgeType::kOdometry);
+  EXPECT_EQ(drifting(), (std::vector<KeyframeId>{5}));
+}
+
+TEST_F(DriftingStretchTest, IsCorrectedByAnOptimisationOfTheCircleThatItLiesOn) {
+  optimise();
+  EXPECT_EQ(drifting(), (std::vector<KeyframeId>{5, 6})) << "there is no circle";
+  add(2, 7, EdgeType::kOdometry);
+  graph_.add_edge(edge(6, 7, EdgeType::kWheelOdometry));
+  EXPECT_EQ(drifting(), (std::vector<KeyframeId>{5, 6})) << "nothing has corrected it yet";
+  optimise();
+  EXPECT_TRUE(drifting().empty());
+}
+
+TEST_F(DriftingStretchTest, ALoopThatIsRemovedCorrectsNothing) {
+  graph_.add_edge(edge(4, 6, EdgeType::kLoopClosure));
+  optimise(0.0);
+  EXPECT_EQ(drifting(), (std::vector<KeyframeId>{5, 6}));
+  EXPECT_EQ(graph_.loops_removed(), 1u);
+}
+
+TEST_F(DriftingStretchTest, IsRestoredWithTheGraph) {
+  const SlamGraph restored(graph_.edges(), graph_.links(), graph_.covariances());
+  for (KeyframeId id = 0; id < 7; ++id) EXPECT_EQ(restored.is_drifting(id), id >= 5) << id;
+}
+
 // Against the sample covariance of chains whose steps are disturbed.
 TEST_F(SlamGraphTest, ChainCovarianceIsThatOfDisturbedChains) {
   const KeyframeId from = 3, to = 4;  // over their ancestor 1

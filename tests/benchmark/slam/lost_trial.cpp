@@ -4,14 +4,14 @@
 #include <cmath>
 #include <memory>
 #include <numbers>
-#include <random>
 #include <stdexcept>
 #include <utility>
 
 #include "simulator/core/robot/starts.hpp"
 #include "simulator/core/robot/tour_follower.hpp"
 #include "slam/core/pose_graph.hpp"
-#include "tests/benchmark/slam/tour_recording.hpp"
+#include "tests/benchmark/slam/dice.hpp"
+#include "tests/benchmark/slam/trial_rig.hpp"
 
 namespace lapis::slam::benchmark {
 namespace {
@@ -21,19 +21,6 @@ using simulator::DriveCommand;
 using simulator::RobotState;
 using simulator::StartPose;
 
-// Numbers that a seed draws.
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : generator_(seed) {}
-  double between(double low, double high) {
-    return low + (high - low) * static_cast<double>(generator_() >> 11U) * 0x1p-53;
-  }
-  double sign() { return between(-1.0, 1.0) < 0.0 ? -1.0 : 1.0; }
-
- private:
-  std::mt19937_64 generator_;
-};
-
 StartPose draw_place(const simulator::World& world, double radius_m, Dice& dice) {
   constexpr double kRoom_m = 0.3;  // the robot drives a little while it turns
   const auto cells = simulator::open_cells(world.nav_map(), radius_m + kRoom_m);
@@ -41,75 +28,6 @@ StartPose draw_place(const simulator::World& world, double radius_m, Dice& dice)
   const auto index = static_cast<std::size_t>(dice.between(0.0, static_cast<double>(cells.size())));
   return {world.nav_map().grid().center(cells[index]), dice.between(-std::numbers::pi, std::numbers::pi)};
 }
-
-Pose planar(const Eigen::Vector2d& position, double yaw_rad, double z_m) {
-  return geometry::make_pose({position.x(), position.y(), z_m},
-                             Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
-}
-
-// As simulator::Simulation, but only frames that are looked at are rendered.
-class Rig {
- public:
-  Rig(const simulator::World& world, const simulator::SimulationConfig& config, const StartPose& start)
-      : world_(world), config_(config), robot_(world.nav_map(), config.robot, at_rest(start)),
-        sensors_(config.sensors, config.camera, world.scene().labels, config.seed) {}
-
-  const RobotState& robot() const { return robot_.state(); }
-  Pose T_world_camera() const {
-    const Pose T_world_base = planar(robot().position, robot().yaw_rad, world_.scene().floor_z_m);
-    return T_world_base * T_base_camera(config_.mount);
-  }
-
-  // Drives to the next frame's stamp; what odometry said on the way.
-  std::vector<simulator::OdometrySample> advance(const DriveCommand& command) {
-    constexpr std::int64_t kOdometryPeriod_ns = 20'000'000;
-    const time::Time stamp{std::llround(static_cast<double>(++tick_) * 1e9 / config_.camera_rate_hz)};
-    const double yaw_before_rad = robot().yaw_rad;
-    if (!robot_.command(command)) throw std::runtime_error("a command is not finite");
-    std::vector<simulator::OdometrySample> odometry;
-    while (robot().stamp < stamp) {
-      const time::Time due{(robot().stamp.nanoseconds / kOdometryPeriod_ns + 1) * kOdometryPeriod_ns};
-      sensors_.feel(robot_.advance(std::min(stamp, due)));
-      if (robot().stamp == due) odometry.push_back(sensors_.read_odometry(due, {kOdometryPeriod_ns}));
-    }
-    turned_rad_ = std::remainder(robot().yaw_rad - yaw_before_rad, 2.0 * std::numbers::pi);
-    return odometry;
-  }
-
-  RgbdFrame see() const {
-    const simulator::View view{tick_, T_world_camera(), turned_rad_};
-    const auto ideal = world_.renderer().render(config_.camera, view.T_world_camera);
-    return to_frame(robot().stamp, config_.camera, sensors_.see(ideal, view));
-  }
-
-  RgbdFrame see_cover(bool with_depth) const {
-    constexpr double kGrey = 90.0, kSigma = 2.5;  // of 255; sensor noise
-    constexpr float kDistance_m = 0.3F;
-    const int width = config_.camera.width, height = config_.camera.height;
-    RgbdFrame frame{robot().stamp, config_.camera, geometry::GrayImage(width, height),
-                    geometry::DepthImage(width, height, with_depth ? kDistance_m : 0.0F)};
-    if (!with_depth) return frame;
-    std::mt19937_64 generator(config_.seed * 100'000 + tick_);
-    std::normal_distribution<double> noise(kGrey, kSigma);
-    for (auto& pixel : frame.gray.pixels) pixel = static_cast<std::uint8_t>(std::lround(noise(generator)));
-    return frame;
-  }
-
- private:
-  static RobotState at_rest(const StartPose& start) {
-    RobotState state;
-    state.position = start.position;
-    state.yaw_rad = start.yaw_rad;
-    return state;
-  }
-
-  const simulator::World& world_;
-  simulator::SimulationConfig config_;
-  simulator::Robot robot_;
-  simulator::Sensors sensors_;
-  std::uint64_t tick_ = 0;
-  double turned_rad_ = 0.0;  // since the frame before
-};
 
 std::function<bool(const RobotState&)> over_after(double end_s) {
   return [end_s](const RobotState& robot) { return robot.stamp.seconds() >= end_s; };
@@ -174,12 +92,12 @@ std::vector<TrialStep> drive_trial(const simulator::World& world, const simulato
   const Pose T_base_camera = geometry::T_base_camera(simulation.mount);
   const FeatureExtractor extractor(config.features);
   RgbdSlam slam(config, T_base_camera, T_base_camera);
-  Rig rig(world, simulation, plan.start);
+  TrialRig rig(world, simulation, plan.start);
   std::vector<TrialStep> steps;
   Pose T_odom_base = Pose::Identity();
   while (!plan.is_over(rig.robot())) {
     for (const auto& reading : rig.advance(plan.command(rig.robot()))) {
-      T_odom_base = planar(reading.position, reading.yaw_rad, 0.0);
+      T_odom_base = pose_of(reading);
       if (with_odometry) slam.add_odometry(reading.stamp, T_odom_base);
     }
     TrialStep step;

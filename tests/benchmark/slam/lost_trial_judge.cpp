@@ -13,11 +13,6 @@ using Steps = std::vector<TrialStep>;
 
 bool is_tracked(const TrialStep& step) { return step.state == TrackingState::kTracking; }
 
-PoseError difference(const Pose& a, const Pose& b) {
-  const Pose d = a.inverse() * b;
-  return {d.translation().norm(), geometry::rotation_angle(d.linear())};
-}
-
 // How far `measured` (a member of TrialStep) is wrong about the motion between two steps.
 PoseError motion_error(const TrialStep& a, const TrialStep& b, Pose TrialStep::*measured) {
   return difference((a.*measured).inverse() * (b.*measured), a.truth.inverse() * b.truth);

@@ -4,13 +4,9 @@
 #include <vector>
 
 #include "tests/benchmark/slam/lost_trial.hpp"
+#include "tests/benchmark/slam/pose_error.hpp"
 
 namespace lapis::slam::benchmark {
-
-/// Of a pose, or of a motion.
-struct PoseError {
-  double m = 0.0, rad = 0.0;
-};
 
 /// Limits on poses are on top of what odometry has erred meanwhile, when slam gets them.
 struct TrialLimits {

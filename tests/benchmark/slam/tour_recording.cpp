@@ -106,13 +106,14 @@ RgbdFrame to_frame(time::Time stamp, const geometry::PinholeCamera& camera, cons
   return {stamp, camera, to_gray(images.color), to_metres(images.depth_mm)};
 }
 
-TourConfig tour_config(const std::vector<std::string>& assignments) {
+TourConfig tour_config(const std::vector<std::string>& assignments, const std::vector<std::string>& worlds) {
   TourConfig tour;
   config::Schema schema;
   schema("simulator", tour.simulated);
   schema("robot", tour.simulated.robot);
   schema("slam", tour.slam);
   tour.simulated.tour = "bundled";
+  for (const std::string& world : worlds) config::apply_file(schema, world);
   for (const std::string& assignment : assignments) config::apply_override(schema, assignment);
   config::check(schema);
   return tour;

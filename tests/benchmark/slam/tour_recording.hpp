@@ -31,8 +31,9 @@ struct TourConfig {
 };
 
 /// The default configuration with assignments of the command line: slam.KEY=VALUE, simulator.KEY=VALUE,
-/// robot.KEY=VALUE. Throws std::runtime_error with one line that says what is wrong.
-TourConfig tour_config(const std::vector<std::string>& assignments);
+/// robot.KEY=VALUE. `worlds`: files of config/worlds, applied before. Throws std::runtime_error with one line that says
+/// what is wrong.
+TourConfig tour_config(const std::vector<std::string>& assignments, const std::vector<std::string>& worlds = {});
 
 /// Plays the tour of a simulated scene. With `folder`, the frames of a tour are kept there, 0.7 MB each, and read from
 /// there the next time.

@@ -1,0 +1,191 @@
+#include "tests/benchmark/slam/carried_trial.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+#include <stdexcept>
+
+#include "simulator/core/robot/starts.hpp"
+#include "simulator/core/robot/tour_follower.hpp"
+#include "tests/benchmark/slam/dice.hpp"
+#include "tests/benchmark/slam/trial_rig.hpp"
+
+namespace lapis::slam::benchmark {
+namespace {
+
+using geometry::Pose;
+using simulator::StartPose;
+
+constexpr double kFoundFor_s = 2.0;
+constexpr double kWrong_m = 1.0;
+
+bool is_right(const WatchedFrame& frame) {
+  constexpr double kWithin_m = 0.3, kWithin_rad = 10.0 * std::numbers::pi / 180.0;
+  return frame.source != PoseSource::kNone && frame.error.m <= kWithin_m && frame.error.rad <= kWithin_rad;
+}
+
+// First frame of a stretch of right poses, from `begin` on; it begins with one that the camera gives.
+std::optional<std::size_t> find_found(const std::vector<WatchedFrame>& frames, std::size_t begin) {
+  std::optional<std::size_t> first;
+  for (std::size_t i = begin; i < frames.size(); ++i) {
+    if (!is_right(frames[i])) first.reset();
+    if (!first && is_right(frames[i]) && is_held(frames[i])) first = i;
+    if (first && frames[i].t_s - frames[*first].t_s >= kFoundFor_s) return first;
+  }
+  return std::nullopt;
+}
+
+// One trial as it goes on.
+class Course {
+ public:
+  Course(const TourSetting& setting, const SlamConfig& config)
+      : setting_(setting), dice_(setting.simulation.seed), rig_(setting.world, setting.simulation, setting.start),
+        slam_(config, T_base_camera(setting.simulation.mount)) {}
+
+  CarriedTrial run() {
+    drive_first_tour();
+    trial_.lifted = slam_.frames().size();
+    hang();
+    set_down();
+    trial_.set_down = slam_.frames().size();
+    drive_second_tour();
+    trial_.frames = slam_.frames();
+    trial_.map = slam_.finish();
+    return trial_;
+  }
+
+ private:
+  void drive_first_tour() {
+    constexpr double kEarliest = 0.5;  // share of the tour
+    simulator::Tour tour =
+        plan_tour(setting_.world.nav_map(), setting_.start.position, setting_.world.scene().tour, setting_.tour);
+    const double whole_s = setting_.longest_s > 0.0 ? std::min(setting_.longest_s, tour.duration_s) : tour.duration_s;
+    const double end_s = whole_s * dice_.between(kEarliest, 1.0);
+    simulator::TourFollower follower(setting_.world.nav_map(), std::move(tour), setting_.tour);
+    while (!follower.is_finished() && rig_.robot().stamp.seconds() < end_s) drive_on(follower);
+  }
+
+  void hang() {
+    constexpr double kInAir_s = 2.0;
+    const double end_s = rig_.robot().stamp.seconds() + kInAir_s;
+    while (rig_.robot().stamp.seconds() < end_s) {
+      tell(rig_.hang());
+      slam_.process(rig_.see_cover(false), rig_.T_world_camera());
+    }
+  }
+
+  void set_down() {
+    const Eigen::Vector2d from = rig_.robot().position;
+    trial_.place = {draw_place(from), dice_.between(-std::numbers::pi, std::numbers::pi)};
+    trial_.carried_m = (trial_.place.position - from).norm();
+    rig_.set_down(trial_.place);
+  }
+
+  // Where the robot has been, or beside, but not near.
+  Eigen::Vector2d draw_place(const Eigen::Vector2d& from) {
+    constexpr double kLeast_m = 3.0, kBeside_m = 0.5;
+    const simulator::NavMap& map = setting_.world.nav_map();
+    std::vector<Eigen::Vector2d> places;
+    for (const simulator::Cell cell : simulator::open_cells(map, setting_.simulation.robot.radius_m)) {
+      const Eigen::Vector2d p = map.grid().center(cell);
+      const bool was_passed = std::any_of(passed_.begin(), passed_.end(),
+                                          [&](const Eigen::Vector2d& q) { return (p - q).norm() < kBeside_m; });
+      if ((p - from).norm() >= kLeast_m && was_passed) places.push_back(p);
+    }
+    if (places.empty()) throw std::runtime_error("the robot has been nowhere else that is 3 m away");
+    return places[static_cast<std::size_t>(dice_.between(0.0, static_cast<double>(places.size())))];
+  }
+
+  // Until 30 s after it is found, or for 120 s.
+  void drive_second_tour() {
+    constexpr double kLongest_s = 120.0, kAfter_s = 30.0;
+    const double begin_s = rig_.robot().stamp.seconds();
+    double end_s = begin_s + kLongest_s;
+    simulator::TourFollower follower(setting_.world.nav_map(), plan_second_tour(), setting_.tour);
+    while (!follower.is_finished() && rig_.robot().stamp.seconds() < end_s) {
+      drive_on(follower);
+      const auto found = find_found(slam_.frames(), trial_.set_down);
+      if (found) end_s = std::min(end_s, slam_.frames()[*found].t_s + kAfter_s);
+    }
+  }
+
+  // All rooms, beginning with the nearest.
+  simulator::Tour plan_second_tour() const {
+    const Eigen::Vector2d here = rig_.robot().position;
+    std::vector<Eigen::Vector2d> waypoints = setting_.world.scene().tour;
+    const auto nearest = std::min_element(waypoints.begin(), waypoints.end(), [&](const auto& a, const auto& b) {
+      return (a - here).squaredNorm() < (b - here).squaredNorm();
+    });
+    std::rotate(waypoints.begin(), nearest, waypoints.end());
+    return plan_tour(setting_.world.nav_map(), here, waypoints, setting_.tour);
+  }
+
+  void drive_on(simulator::TourFollower& follower) {
+    tell(rig_.advance(follower.command(rig_.robot())));
+    if (const auto problem = follower.stalled(); !problem.empty()) throw std::runtime_error(problem);
+    passed_.push_back(rig_.robot().position);
+    slam_.process(rig_.see(), rig_.T_world_camera());
+  }
+
+  void tell(const std::vector<simulator::OdometrySample>& readings) {
+    for (const auto& reading : readings) slam_.add_odometry(reading.stamp, pose_of(reading));
+  }
+
+  const TourSetting& setting_;
+  Dice dice_;
+  TrialRig rig_;
+  WatchedSlam slam_;
+  CarriedTrial trial_;
+  std::vector<Eigen::Vector2d> passed_;  // by the robot, at every frame
+};
+
+double path_m(const std::vector<WatchedFrame>& frames, std::size_t begin, std::size_t end) {
+  double path_m = 0.0;
+  for (std::size_t i = begin + 1; i <= end; ++i) {
+    path_m += (frames[i].truth.translation() - frames[i - 1].truth.translation()).norm();
+  }
+  return path_m;
+}
+
+void judge_wrong_poses(const CarriedTrial& trial, CarriedVerdict& verdict) {
+  bool was_lost = false;
+  for (std::size_t i = trial.set_down; i < trial.frames.size(); ++i) {
+    const WatchedFrame& frame = trial.frames[i];
+    const double period_s = frame.t_s - trial.frames[i - 1].t_s;
+    was_lost = was_lost || frame.source == PoseSource::kNone;
+    if (frame.source == PoseSource::kNone || frame.error.m <= kWrong_m) continue;
+    if (frame.source == PoseSource::kVision) verdict.wrong_vision_s += period_s;
+    if (frame.source == PoseSource::kSurfaces) verdict.wrong_surfaces_s += period_s;
+    if (frame.source == PoseSource::kOdometry) verdict.wrong_odometry_s += period_s;
+    if (was_lost && is_held(frame)) verdict.wrong_return_s += period_s;
+  }
+}
+
+}  // namespace
+
+CarriedTrial drive_carried(const TourSetting& setting, const SlamConfig& config) {
+  return Course(setting, config).run();
+}
+
+CarriedVerdict judge(const CarriedTrial& trial) {
+  constexpr double kWrongFor_s = 2.0;
+  const auto& frames = trial.frames;
+  CarriedVerdict verdict;
+  verdict.before = frames[trial.lifted - 1].error;
+  const double set_down_s = frames[trial.set_down].t_s;
+  const auto begin = frames.begin() + static_cast<std::ptrdiff_t>(trial.set_down);
+  const auto lost =
+      std::find_if(begin, frames.end(), [](const WatchedFrame& frame) { return frame.source == PoseSource::kNone; });
+  if (lost != frames.end()) verdict.declared_s = lost->t_s - set_down_s;
+  if (const auto found = find_found(frames, trial.set_down)) {
+    verdict.is_found = true;
+    verdict.found_s = frames[*found].t_s - set_down_s;
+    verdict.found_m = path_m(frames, trial.set_down, *found);
+  }
+  judge_wrong_poses(trial, verdict);
+  verdict.is_wrong = verdict.wrong_return_s > kWrongFor_s || trial.map.wrong_loops > 0;
+  return verdict;
+}
+
+}  // namespace lapis::slam::benchmark

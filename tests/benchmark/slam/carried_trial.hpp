@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <string>
+
+#include "simulator/core/robot/tour.hpp"
+#include "simulator/core/simulation.hpp"
+#include "tests/benchmark/slam/watched_slam.hpp"
+
+namespace lapis::slam::benchmark {
+
+/// A robot that is lifted on its tour, and set down at another place that it has been to.
+struct CarriedTrial {
+  std::vector<WatchedFrame> frames;
+  WatchedMap map;
+  simulator::StartPose place;  ///< where it was set down, in the world
+  double carried_m = 0.0;      ///< how far
+  std::size_t lifted = 0;      ///< first frame in the air
+  std::size_t set_down = 0;    ///< first frame on the floor again
+};
+
+/// What a tour is driven with.
+struct TourSetting {
+  const simulator::World& world;
+  simulator::SimulationConfig simulation;
+  simulator::TourConfig tour;
+  simulator::StartPose start;
+  double longest_s = 0.0;  ///< it is cut there; 0: nowhere
+};
+
+/// Drives a tour through all rooms; somewhere in its second half the robot is lifted for 2 s, in which the camera sees
+/// nothing and the wheels stand still. Then a tour through all rooms again, until it has been found for long.
+/// @throws std::runtime_error with one line that says why the trial cannot be driven
+CarriedTrial drive_carried(const TourSetting& setting, const SlamConfig& config);
+
+struct CarriedVerdict {
+  bool is_found = false;
+  double found_s = std::numeric_limits<double>::infinity();     ///< after the set-down
+  double found_m = std::numeric_limits<double>::infinity();     ///< path driven until then
+  double declared_s = std::numeric_limits<double>::infinity();  ///< from the set-down to the first frame that is lost
+  PoseError before;                                             ///< of the last pose before it was lifted
+  // Time for which poses off by more than 1 m were published after the set-down, by source:
+  double wrong_vision_s = 0.0, wrong_surfaces_s = 0.0, wrong_odometry_s = 0.0;
+  double wrong_return_s = 0.0;  ///< ... by vision or surfaces once it had been lost: a place that it is not at
+  bool is_wrong = false;        ///< by more than 2 s of that, or by a loop in the map at the end
+};
+
+/// Found: vision or surfaces give a pose within 0.3 m and 10 degrees of the truth, and for 2 s from there every frame
+/// has one.
+CarriedVerdict judge(const CarriedTrial& trial);
+
+}  // namespace lapis::slam::benchmark

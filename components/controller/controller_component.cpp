@@ -158,13 +158,18 @@ void ControllerComponent::take_map(time::Time now) {
 /// A path that cannot be used stops the robot as an empty one does: the one before it is not wanted any more.
 void ControllerComponent::take_path(const Path& message) {
   auto path = to_core(message);
-  std::string problem = path.reason;
-  if (path && message.header().frame_id() != map_frame_) problem = "its frame is not " + map_frame_;
-  if (!problem.empty()) {
-    drop("path", problem);
-    return controller_.set_path({}, "path refused: " + problem);
-  }
-  controller_.set_path(std::move(*path), "the planner's path is empty");
+  if (!path) return refuse_path(path.reason);
+  const std::string& frame = message.header().frame_id();
+  if (frame == map_frame_) return controller_.set_path(std::move(*path), "the planner's path is empty");
+  if (frame != base_frame_) return refuse_path("its frame is neither " + map_frame_ + " nor " + base_frame_);
+  const auto turn_rad = turn_on_the_spot(*path);
+  if (!turn_rad) return refuse_path("in " + base_frame_ + " it may only turn on the spot");
+  controller_.set_turn(*turn_rad);
+}
+
+void ControllerComponent::refuse_path(const std::string& problem) {
+  drop("path", problem);
+  controller_.set_path({}, "path refused: " + problem);
 }
 
 void ControllerComponent::add_mount(const tf2_msgs::msg::TFMessage& message) {

@@ -75,8 +75,10 @@ void describe(Field& field, ControllerComponentConfig& c) {
   field("recovery_turn_rad", c.method.recovery_turn_rad, config::in_range(0.0, 3.0), "to look around after that [rad]");
   field("progress_timeout_s", c.method.progress_timeout_s, config::in_range(1.0, 600.0),
         "without moving 0.3 m before the robot backs up, and then reports that it is blocked [s]");
-  field("lost_turn_rate_rad_s", c.method.lost_turn_rate_rad_s, config::in_range(0.0, 2.0),
-        "without a pose the robot turns on the spot, once around; 0: it stands still [rad/s]");
+  field("look_around_rad_s", c.method.look_around_rad_s, config::in_range(0.05, 2.0),
+        "of a turn on the spot that the planner asks for: slow, or images blur [rad/s]");
+  field.moved("lost_turn_rate_rad_s", "controller.look_around_rad_s",
+              "the planner has the robot look around for its pose (planner.lost_timeout_s)");
 }
 
 }  // namespace lapis::controller

@@ -105,6 +105,8 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { add_tile(m); });
   context.subscribe(topics::kMapState, [this](const auto& m) { set_map_state(m); });
   context.subscribe(topics::kObstacles, [this](nav_msgs::msg::OccupancyGrid& m) { set_obstacles(std::move(m)); });
+  context.subscribe(topics::kProvisionalArea,
+                    [this](nav_msgs::msg::OccupancyGrid& m) { set_provisional_area(std::move(m)); });
   context.subscribe(topics::kPoseGraph, [this](const auto& m) { set_graph(m); });
   context.subscribe(topics::kLandmarks, [this](const auto& m) { add_landmarks(m); });
   context.subscribe(topics::kLandmarkState,
@@ -174,12 +176,18 @@ void PlannerComponent::set_obstacles(nav_msgs::msg::OccupancyGrid message) {
   obstacles_ = std::move(message);
 }
 
+void PlannerComponent::set_provisional_area(nav_msgs::msg::OccupancyGrid message) {
+  if (message.header().frame_id() != map_frame_) return drop("provisional area", "it is not in " + map_frame_);
+  provisional_area_ = std::move(message);
+}
+
 /// Nothing that is known is in the map frame of the new session.
 void PlannerComponent::begin_session(std::int64_t session) {
   session_ = session;
   worker_.discard();
   robot_.reset();
   obstacles_.reset();
+  provisional_area_.reset();
   surroundings_.reset();
   surroundings_state_.reset();
   decision_ = {};
@@ -193,6 +201,7 @@ void PlannerComponent::note_frame(const Tracked& frame) {
   context_.status().value("frames", ++frames_);
   stamp_ = messages::from_message(frame.header().stamp());
   tracking_ = tracking_of(frame);
+  drift_m_ = frame.drift_m();
   slam_reason_ = frame.reason();
   if (tracking_ == Tracking::kLost) robot_.reset();
 }
@@ -214,7 +223,7 @@ void PlannerComponent::note_controller(const lapis_msgs::msg::ControllerStatus& 
 void PlannerComponent::work(const runtime::Cycle& cycle) {
   if (cycle.is_final) return worker_.discard();
   take_decision(cycle.inputs_complete);
-  if (!worker_.is_busy()) {
+  if (!worker_.is_busy() && frames_ > 0) {
     refresh();
     if (explorer_.step(report(), surroundings_ ? &*surroundings_ : nullptr)) begin_decision();
   }
@@ -246,6 +255,7 @@ void PlannerComponent::take_decision(bool waits) {
 void PlannerComponent::refresh() {
   if (is_map_readable()) update_map();
   if (surroundings_) update_obstacles();
+  if (surroundings_) update_provisional_area();
 }
 
 /// True when what the mapper says of a map is said of the one that is there.
@@ -289,7 +299,18 @@ void PlannerComponent::update_obstacles() {
   obstacles_.reset();
 }
 
-Report PlannerComponent::report() const { return {stamp_, robot_, tracking_, is_blocked_}; }
+void PlannerComponent::update_provisional_area() {
+  if (!provisional_area_) return;
+  const auto area = to_core(*provisional_area_);
+  if (!area) {
+    drop("provisional area", area.reason);
+  } else if (!surroundings_->set_provisional_area(*area)) {
+    drop("provisional area", "its cells are not those of the map");
+  }
+  provisional_area_.reset();
+}
+
+Report PlannerComponent::report() const { return {stamp_, robot_, tracking_, is_blocked_, drift_m_}; }
 
 /// Why it does what it does; without a pose, what slam lacks.
 std::string PlannerComponent::reason() const {
@@ -326,7 +347,7 @@ void PlannerComponent::publish() {
     published_path_ = explorer_.path_number();
     path_stamp_ = stamp_;
     is_blocked_ = false;
-    path_.publish(to_message(explorer_.path(), header()));
+    path_.publish(to_message(explorer_.path(), header(explorer_.is_turn() ? base_frame_ : map_frame_)));
   }
   publish_markers();
   publish_status();
@@ -367,7 +388,9 @@ void PlannerComponent::drop(const std::string& what, const std::string& reason) 
   if (context_.rate_limit().pass(what + reason)) spdlog::warn("{} dropped: {}", what, reason);
 }
 
-std_msgs::msg::Header PlannerComponent::header() const { return messages::header(stamp_, map_frame_); }
+std_msgs::msg::Header PlannerComponent::header(const std::string& frame) const {
+  return messages::header(stamp_, frame);
+}
 
 /// The robot first: a decision may take long.
 void PlannerComponent::finish() {

@@ -42,6 +42,7 @@ class PlannerComponent {
   void add_landmarks(const lapis_msgs::msg::LandmarkTile& message);
   void set_graph(const lapis_msgs::msg::PoseGraph& message);
   void set_obstacles(nav_msgs::msg::OccupancyGrid message);
+  void set_provisional_area(nav_msgs::msg::OccupancyGrid message);
   void begin_session(std::int64_t session);
   void note_frame(const Tracked& frame);
   void set_pose(const nav_msgs::msg::Odometry& message);
@@ -53,6 +54,7 @@ class PlannerComponent {
   bool is_map_readable();
   void update_map();
   void update_obstacles();
+  void update_provisional_area();
   Report report() const;
   std::string reason() const;
   GraphVersions versions_of_graph() const;
@@ -61,7 +63,8 @@ class PlannerComponent {
   void publish_markers();
   void publish_status();
   void drop(const std::string& what, const std::string& reason);
-  std_msgs::msg::Header header() const;
+  std_msgs::msg::Header header() const { return header(map_frame_); }
+  std_msgs::msg::Header header(const std::string& frame) const;
 
   Config config_;
   runtime::Context& context_;
@@ -78,11 +81,12 @@ class PlannerComponent {
   mapping::MapMirror map_;
   mapping::LandmarkMirror landmarks_;
   std::optional<GraphMessage> graph_;
-  std::optional<nav_msgs::msg::OccupancyGrid> obstacles_;  // newest, not yet taken over
-  std::int64_t session_ = 0;                               // of slam
+  std::optional<nav_msgs::msg::OccupancyGrid> obstacles_, provisional_area_;  // newest, not yet taken over
+  std::int64_t session_ = 0;                                                  // of slam
   std::uint64_t frames_ = 0;
   time::Time stamp_;  // of the newest frame
   Tracking tracking_ = Tracking::kLost;
+  double drift_m_ = 0.0;     // of its pose since slam tracked last
   std::string slam_reason_;  // of the newest frame; empty while it tracks
   std::optional<Pose2> robot_;
   double position_variance_m2_ = 0.0;  // of robot_, each axis, as slam says; 0: it does not

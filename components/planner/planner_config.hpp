@@ -159,10 +159,11 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "a path that takes longer than at this speed has failed [m/s]");
   field("settle_s", c.explorer.settle_s, config::in_range(0.0, 60.0),
         "after arriving, until the map shows whether the view has failed [s]");
-  field("dead_reckoning_s", c.explorer.dead_reckoning_s, config::in_range(0.0, 10.0),
-        "by odometry alone before the robot drives back: a turn past a blank wall [s]");
+  field("max_drift_m", c.explorer.max_drift_m, config::in_range(0.0, 100.0),
+        "sigma of the position by odometry alone beyond which the robot drives back to where slam tracked [m]");
+  field.moved("dead_reckoning_s", "planner.max_drift_m", "slam says how far a pose by odometry alone has drifted");
   field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),
-        "without tracking, exploration has failed [s]");
+        "without a pose, or driving back to where slam tracked, exploration has failed [s]");
   field("path_spacing_m", c.explorer.path_spacing_m, config::in_range(0.02, 1.0), "between poses of /planner/path [m]");
   field("confirmations", c.explorer.confirmations, config::in_range(2, 12),
         "looks around, a full turn in all, that find nothing before exploration is over");

@@ -20,7 +20,6 @@ constexpr double kJump_rad = 0.15;
 constexpr double kLongestBlind_s = 1.0;   // for which the robot may have moved without a pose; then it stands
 constexpr double kMoved_m = 0.3;          // less is no progress
 constexpr double kRearRoom_m = 0.15;      // that has to be free to back up
-constexpr double kLostPause_s = 1.0;      // before the robot turns to find its pose
 constexpr double kPhasePatience_s = 5.0;  // of turning and backing up, if the robot does not do it
 
 /// Distance to the nearest point that is not behind the robot [m]; infinity without any.
@@ -45,6 +44,7 @@ Controller::Controller(const ControllerConfig& config, const RobotLimits& limits
 
 void Controller::set_path(std::vector<PlanarPose> path, const std::string& reason_if_empty) {
   if (recovery_ == Recovery::kStuck) recovery_ = Recovery::kNone;
+  turn_rad_.reset();
   if (track_ && is_same(track_->poses(), path)) return;
   track_.reset();
   is_arrived_ = false;
@@ -55,22 +55,31 @@ void Controller::set_path(std::vector<PlanarPose> path, const std::string& reaso
   }
 }
 
+void Controller::set_turn(double turn_rad) {
+  if (turn_rad_ == turn_rad) return;
+  set_path({}, "the turn is done");
+  turn_rad_ = turn_rad;
+  turned_rad_ = 0.0;
+}
+
 void Controller::set_pose(const PlanarPose& T_map_base, time::Time stamp, time::Time now) {
   watchdog_.note(Input::kPose, now, stamp);
   if (pose_stamp_) {
-    const PlanarPose T_last_base = T_map_base_.inverse() * T_map_base;
+    const PlanarPose T_map_last = T_map_base_ * planar_pose({0.0, 0.0}, blindly_rad_);
+    const PlanarPose T_last_base = T_map_last.inverse() * T_map_base;
     const double elapsed_s = std::min(abs(stamp - *pose_stamp_).seconds(), kLongestBlind_s);
     const bool is_jump = T_last_base.translation().norm() > limits_.max_speed_m_s * elapsed_s + kJump_m ||
                          std::abs(yaw_of(T_last_base)) > limits_.max_turn_rate_rad_s * elapsed_s + kJump_rad;
-    if (is_jump) map_.move_points(T_map_base * T_map_base_.inverse());
+    if (is_jump) map_.move_points(T_map_base * T_map_last.inverse());
   }
+  blindly_rad_ = 0.0;
   pose_stamp_ = stamp;
   T_map_base_ = T_map_base;
 }
 
 void Controller::see(const DepthView& view, time::Time stamp, time::Time now) {
   watchdog_.note(Input::kView, now, stamp);
-  map_.add(view, T_map_base_, stamp, track_.has_value());
+  map_.add(view, T_map_base_, stamp, track_ || turn_rad_);
 }
 
 void Controller::set_obstacles(Grid grid, time::Time stamp, time::Time now) {
@@ -89,27 +98,27 @@ Decision Controller::step(time::Time now) {
 
 Decision Controller::decide(time::Time now, double elapsed_s) {
   const auto stale = watchdog_.stale(now);
-  if (track_ && !stale) {
-    lost_at_.reset();
-    return follow(now, elapsed_s);
-  }
+  if (track_ && !stale) return follow(now, elapsed_s);
   local_path_.reset();
   moved_at_.reset();
-  if (track_) return stop_for(*stale, now);
+  if (track_) return stop_for(*stale);
   recovery_ = Recovery::kNone;
   tried_at_.reset();
+  if (turn_rad_) return turn(now, elapsed_s);
   return {State::kIdle, idle_reason_, {}, 0.0, {}};
 }
 
-/// Zero at once. Without a pose, if it is wanted, the robot pauses and then looks around once for what it knows.
-Decision Controller::stop_for(Input stale, time::Time now) {
-  Decision decision{State::kStopped, watchdog_.describe(stale), {}, 0.0, {}};
-  if (stale != Input::kPose || config_.lost_turn_rate_rad_s == 0.0) return decision;
-  if (!lost_at_) lost_at_ = now;
-  const double turning_s = (now - *lost_at_).seconds() - kLostPause_s;
-  if (turning_s < 0.0 || turning_s * config_.lost_turn_rate_rad_s > 2.0 * std::numbers::pi) return decision;
-  decision.command.turn_rad_s = config_.lost_turn_rate_rad_s;
-  return decision;
+Decision Controller::stop_for(Input stale) const { return {State::kStopped, watchdog_.describe(stale), {}, 0.0, {}}; }
+
+/// A disc that turns on the spot touches nothing; somebody has to want it, and to see something by it.
+Decision Controller::turn(time::Time now, double elapsed_s) {
+  const double commanded_rad = last_.turn_rad_s * elapsed_s;
+  turned_rad_ += commanded_rad;
+  blindly_rad_ += commanded_rad;
+  if (const auto stale = watchdog_.stale(now, {Input::kCamera, Input::kPlanner})) return stop_for(*stale);
+  if (std::abs(turned_rad_) >= std::abs(*turn_rad_)) return {State::kIdle, idle_reason_, {}, 0.0, {}};
+  const Velocity wanted{0.0, std::copysign(config_.look_around_rad_s, *turn_rad_)};
+  return {State::kFollowing, "turns on the spot", ramped(last_, wanted, elapsed_s, limits_), 0.0, {}};
 }
 
 Decision Controller::follow(time::Time now, double elapsed_s) {

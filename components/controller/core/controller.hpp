@@ -26,7 +26,7 @@ struct ControllerConfig {
   double back_up_speed_m_s = 0.15;     ///< in [0.01, 1]
   double recovery_turn_rad = 1.6;      ///< in [0, 3]
   double progress_timeout_s = 6.0;     ///< in [1, 600]
-  double lost_turn_rate_rad_s = 0.0;   ///< on the spot, without a pose; in [0, 2]
+  double look_around_rad_s = 0.3;      ///< rate of a turn on the spot: slow, or images blur; in [0.05, 2]
 };
 
 /// Points in base_link.
@@ -53,6 +53,10 @@ class Controller {
   /// In the map frame. Empty: the robot stands still, for that reason. The same path again: it continues where it is;
   /// when it was blocked, it tries again.
   void set_path(std::vector<PlanarPose> path, const std::string& reason_if_empty);
+  /// In place of a path: on the spot, from where the robot stands now, to the left; more than a full turn is one, too.
+  /// It needs no pose, no map and no room: how far the robot has turned is told by its own commands. The same turn
+  /// again is continued.
+  void set_turn(double turn_rad);
   void note_planner(time::Time now) { watchdog_.note(Input::kPlanner, now); }
   void note_camera(time::Time stamp, time::Time now) { watchdog_.note(Input::kCamera, now, stamp); }
   void set_pose(const PlanarPose& T_map_base, time::Time stamp, time::Time now);
@@ -69,7 +73,8 @@ class Controller {
   enum class Recovery { kNone, kWaiting, kBackingUp, kTurning, kNoPath, kStuck };
 
   Decision decide(time::Time now, double elapsed_s);
-  Decision stop_for(Input stale, time::Time now);
+  Decision stop_for(Input stale) const;
+  Decision turn(time::Time now, double elapsed_s);
   Decision follow(time::Time now, double elapsed_s);
   Decision align(double elapsed_s);
   Decision drive(const Obstacles& obstacles, double elapsed_s) const;
@@ -95,12 +100,14 @@ class Controller {
   std::optional<time::Time> pose_stamp_;
 
   std::optional<PathTrack> track_;
+  std::optional<double> turn_rad_;  // on the spot, instead of a path
+  double turned_rad_ = 0.0;         // of it, by commands
+  double blindly_rad_ = 0.0;        // turned so since the pose that was set last
   std::string idle_reason_ = "no path yet";
   bool is_arrived_ = false;  // at the path's end, but for its heading
   std::optional<time::Time> last_step_;
   Velocity last_;                        // command
   std::optional<LocalPath> local_path_;  // of the last step
-  std::optional<time::Time> lost_at_;    // since when there is no pose
 
   Recovery recovery_ = Recovery::kNone;
   time::Time phase_began_;

@@ -5,6 +5,22 @@
 #include <utility>
 
 namespace lapis::controller {
+namespace {
+
+constexpr double kOnTheSpot_m = 0.01;
+
+}  // namespace
+
+std::optional<double> turn_on_the_spot(const std::vector<PlanarPose>& poses) {
+  if (poses.empty()) return std::nullopt;
+  double turn_rad = 0.0, heading_rad = 0.0;
+  for (const PlanarPose& pose : poses) {
+    if (pose.translation().norm() > kOnTheSpot_m) return std::nullopt;
+    turn_rad += wrapped(yaw_of(pose) - heading_rad);
+    heading_rad = yaw_of(pose);
+  }
+  return turn_rad;
+}
 
 PathTrack::PathTrack(std::vector<PlanarPose> poses) : poses_(std::move(poses)), along_m_{0.0} {
   for (std::size_t i = 1; i < poses_.size(); ++i) {

@@ -1,10 +1,15 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "controller/core/planar.hpp"
 
 namespace lapis::controller {
+
+/// What a path in base_link asks for: to turn through the headings of its poses, each the short way from the one
+/// before, the first from straight ahead; their sum [rad, to the left]. Nothing when it is empty or leads away (1 cm).
+std::optional<double> turn_on_the_spot(const std::vector<PlanarPose>& poses);
 
 /// A path in the map frame and how far the robot has come on it.
 class PathTrack {

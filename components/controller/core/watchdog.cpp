@@ -18,9 +18,9 @@ void Watchdog::note(Input input, time::Time arrival, std::optional<time::Time> s
   watched.stamp = stamp;
 }
 
-std::optional<Input> Watchdog::stale(time::Time now) const {
-  for (std::size_t i = 0; i < inputs_.size(); ++i) {
-    if (is_stale(inputs_[i], now)) return static_cast<Input>(i);
+std::optional<Input> Watchdog::stale(time::Time now, std::initializer_list<Input> needed) const {
+  for (const Input input : needed) {
+    if (is_stale(inputs_[static_cast<std::size_t>(input)], now)) return input;
   }
   return std::nullopt;
 }

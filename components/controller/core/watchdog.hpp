@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <initializer_list>
 #include <optional>
 #include <string>
 
@@ -20,6 +21,8 @@ struct WatchdogConfig {
 /// What the robot must not move without: depth images, its pose, a depth image that could be used together with a pose,
 /// the mapper's obstacles, and a planner.
 enum class Input : std::size_t { kCamera, kPose, kView, kMap, kPlanner };
+inline constexpr std::initializer_list<Input> kAllInputs{Input::kCamera, Input::kPose, Input::kView, Input::kMap,
+                                                         Input::kPlanner};
 
 /// Knows how old every input is. Times of arrival are given by the caller on any one clock; stamps are those of the
 /// data, and are compared with the camera's newest: so an input that lags behind is old, too, however late it came.
@@ -30,8 +33,8 @@ class Watchdog {
 
   /// Something new arrived. The same stamp again is nothing new: its source, or its clock, has stopped.
   void note(Input input, time::Time arrival, std::optional<time::Time> stamp = std::nullopt);
-  /// The first input that is too old, in the order of Input; nothing when all are fresh.
-  std::optional<Input> stale(time::Time now) const;
+  /// The first of these inputs that is too old; nothing when all are fresh.
+  std::optional<Input> stale(time::Time now, std::initializer_list<Input> needed = kAllInputs) const;
   /// "no pose for more than 0.22 s"
   std::string describe(Input input) const;
 

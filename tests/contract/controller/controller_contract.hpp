@@ -77,6 +77,19 @@ class Surroundings {
     path.publish(message);
   }
 
+  /// By which the robot is to turn on the spot, a heading after the other.
+  void send_turn(const std::vector<double>& headings_rad, const std::string& frame = "base_link") {
+    nav_msgs::msg::Path message;
+    message.header(messages::header(stamp, frame));
+    for (const double heading_rad : headings_rad) {
+      geometry_msgs::msg::PoseStamped pose;
+      pose.pose(messages::to_message(geometry::make_pose(
+          Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(heading_rad, Eigen::Vector3d::UnitZ())))));
+      message.poses().push_back(pose);
+    }
+    path.publish(message);
+  }
+
   std::vector<Box> boxes{{{-9, -9, -0.3}, {9, 9, 0}, 2}, {{8, -9, 0}, {8.3, 9, 2.6}, 1}};  ///< the first is the floor
   time::Time stamp{1'000'000'000};
   Eigen::Vector2d position{0.0, 0.0};

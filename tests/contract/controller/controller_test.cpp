@@ -43,6 +43,51 @@ TEST_F(LockstepController, FollowsThePathToItsEnd) {
   EXPECT_TRUE(had_local_path);
 }
 
+TEST_F(LockstepController, TurnsOnTheSpotWithoutAPoseAndAMap) {
+  world.yaw_rad = 0.7;
+  world.send_turn({2.0, 4.0, 6.0});
+  const Speaking without{.pose = false, .map = false};
+  ASSERT_LE(ticks_until(false, 1.0, without), 0.2);
+  EXPECT_EQ(statuses.back().state(), Constants::STATE_FOLLOWING);
+  EXPECT_EQ(statuses.back().reason(), "turns on the spot");
+  EXPECT_NEAR(ticks_until(true, 30.0, without), 6.0 / 0.3, 0.5) << "slowly";
+  EXPECT_EQ(statuses.back().reason(), "the turn is done");
+  EXPECT_EQ(statuses.back().state(), Constants::STATE_IDLE);
+  EXPECT_NEAR(world.yaw_rad, 6.7, 0.1);
+  EXPECT_EQ(world.position, Eigen::Vector2d(0.0, 0.0));
+}
+
+TEST_F(LockstepController, ATurnStandsStillWithoutAPlannerAndWithoutImages) {
+  for (const Speaking& who : {Speaking{.pose = false, .planner = false}, Speaking{.camera = false, .pose = false}}) {
+    world.send_path({});
+    ASSERT_TRUE(tick({.pose = false}));
+    world.send_turn({2.0, 4.0, 6.0});
+    ASSERT_LE(ticks_until(false, 1.0, {.pose = false}), 0.2);
+    EXPECT_LE(ticks_until(true, 2.0, who), kStopWithin_s);
+  }
+}
+
+TEST_F(LockstepController, APathInBaseLinkThatLeadsAwayIsRefused) {
+  get_going();
+  world.send_turn({1.0});
+  ASSERT_TRUE(tick());
+  EXPECT_EQ(commands.back().linear().x(), 0.0);
+  EXPECT_EQ(statuses.back().reason(), "turns on the spot");
+  nav_msgs::msg::Path away;
+  away.header(messages::header(world.stamp, "base_link"));
+  away.poses().resize(1);
+  away.poses()[0].pose().position().x(1.0);
+  away.poses()[0].pose().orientation().w(1.0);
+  world.path.publish(away);
+  ASSERT_TRUE(tick());
+  EXPECT_TRUE(is_zero(commands.back()));
+  EXPECT_EQ(statuses.back().reason(), "path refused: in base_link it may only turn on the spot");
+  world.send_turn({1.0}, "odom");
+  ASSERT_TRUE(tick());
+  EXPECT_TRUE(is_zero(commands.back()));
+  EXPECT_EQ(statuses.back().reason(), "path refused: its frame is neither map nor base_link");
+}
+
 // F16 and F2: within 300 ms of the last message ---------------------------------------------------------------------
 
 TEST_F(LockstepController, StandsStillWithoutAPose) {

@@ -66,7 +66,8 @@ class Peers {
         map_state(context.advertise(topics::kMapState)), obstacles(context.advertise(topics::kObstacles)),
         pose_graph(context.advertise(topics::kPoseGraph)), landmarks(context.advertise(topics::kLandmarks)),
         landmark_state(context.advertise(topics::kLandmarkState)), frames(context.advertise(topics::kTrackedFrame)),
-        odometry(context.advertise(topics::kSlamOdometry)), controller(context.advertise(topics::kControllerStatus)) {}
+        odometry(context.advertise(topics::kSlamOdometry)), controller(context.advertise(topics::kControllerStatus)),
+        provisional_area(context.advertise(topics::kProvisionalArea)) {}
 
   /// What the mapper says of the map of this epoch and session.
   void describe_map() {
@@ -143,9 +144,12 @@ class Peers {
     frame.map_frame_id("map");
     frame.session(session);
     frame.state(tracking);
+    frame.reason(reason);
+    frame.drift_m(drift_m);
     frames.publish(frame);
     drive();
-    if (tracking != lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST) odometry.publish(pose());
+    using namespace lapis_msgs::msg::TrackedFrame_Constants;
+    if (tracking == STATE_TRACKING || tracking == STATE_DEAD_RECKONING) odometry.publish(pose());
   }
   nav_msgs::msg::Odometry pose() const {
     nav_msgs::msg::Odometry message;
@@ -176,6 +180,7 @@ class Peers {
   std_msgs::msg::Header header() const { return messages::header(stamp, "map"); }
   void follow(const nav_msgs::msg::Path& path) {
     path_.clear();
+    if (path.header().frame_id() != "map") return;  // a turn on the spot
     for (const auto& pose : path.poses()) path_.push_back(*messages::from_message(pose.pose()));
   }
 
@@ -189,6 +194,7 @@ class Peers {
   dds::Publisher<Tracked>& frames;
   dds::Publisher<nav_msgs::msg::Odometry>& odometry;
   dds::Publisher<lapis_msgs::msg::ControllerStatus>& controller;
+  dds::Publisher<nav_msgs::msg::OccupancyGrid>& provisional_area;
 
   mapping::MapDescription description;  ///< resolution, epoch and session are filled in
   bool draws_without_description = false;
@@ -199,6 +205,8 @@ class Peers {
   Eigen::Vector2d position{2.0, 2.0};
   double yaw_rad = 0.0;
   double position_sigma_m = 0.0;  ///< that slam publishes, each axis
+  double drift_m = 0.0;           ///< since slam tracked, as it says
+  std::string reason;             ///< why it does not track
   bool drives = false;
 
  private:
@@ -280,7 +288,9 @@ class PlannerRun {
     return false;
   }
 
-  bool has_path() const { return !paths.empty() && !paths.back().poses().empty(); }
+  bool has_path() const { return !paths.empty() && !paths.back().poses().empty() && !turns(); }
+  /// On the spot.
+  bool turns() const { return !paths.empty() && paths.back().header().frame_id() == "base_link"; }
   bool stands() const { return !paths.empty() && paths.back().poses().empty(); }
   std::uint8_t state() const { return statuses.empty() ? std::uint8_t{255} : statuses.back().state(); }
   std::string reason() const { return statuses.empty() ? "no status" : statuses.back().reason(); }
@@ -302,12 +312,13 @@ class PlannerRun {
   bool wait_for_count(const std::string& text) {
     return wait_until([&] { return count_of(text) > 0.0; }, Seconds(5));
   }
-  /// All paths so far are in the map frame, finite, and go in small steps.
+  /// All paths so far are in the map frame, finite, and go in small steps, or turn on the spot.
   bool are_paths_sound() const { return std::all_of(paths.begin(), paths.end(), is_sound); }
 
   static constexpr auto kTracking = lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING;
   static constexpr auto kReckoning = lapis_msgs::msg::TrackedFrame_Constants::STATE_DEAD_RECKONING;
   static constexpr auto kLost = lapis_msgs::msg::TrackedFrame_Constants::STATE_LOST;
+  static constexpr auto kInitializing = lapis_msgs::msg::TrackedFrame_Constants::STATE_INITIALIZING;
 
   runtime::Context context;
   Peers peers;
@@ -320,14 +331,16 @@ class PlannerRun {
   using Driver = runtime::LockstepDriver::State;
 
   static bool is_sound(const Path& path) {
+    const std::string& frame = path.header().frame_id();
     std::optional<geometry::Pose> before;
     for (const auto& stamped : path.poses()) {
       const auto T = messages::from_message(stamped.pose());
-      if (!T || stamped.header().frame_id() != "map") return false;
+      if (!T || stamped.header().frame_id() != frame) return false;
       if (before && (before->translation() - T->translation()).norm() > 0.15) return false;
+      if (frame == "base_link" && T->translation().norm() > 0.0) return false;
       before = *T;
     }
-    return path.header().frame_id() == "map";
+    return frame == "map" || frame == "base_link";
   }
 
   std::vector<diagnostic_msgs::msg::DiagnosticArray> diagnostics_;

@@ -19,16 +19,47 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 // slam ---------------------------------------------------------------------------------------------------------------
 
-TEST_F(PlannerContract, StandsWhileSlamIsLostAndContinuesAfterwards) {
+TEST_F(PlannerContract, SaysWhatSlamLacksAndLooksAroundUntilThereIsAFirstPose) {
+  ASSERT_TRUE(start()) << planner->log();
+  EXPECT_EQ(reason(), "waits for slam's first pose") << "before the first frame";
+  peers.reason = "no features with depth: the camera looks at a blank wall";
+  ASSERT_TRUE(tick(kInitializing));
+  EXPECT_EQ(state(), STATE_EXPLORING);
+  EXPECT_EQ(reason(), "waits for slam's first pose; slam: " + peers.reason);
+  const auto looked_after = ticks_until([this] { return turns(); }, 3.0, kInitializing);
+  ASSERT_TRUE(looked_after) << reason() << planner->log();
+  EXPECT_NEAR(*looked_after / kRate_hz, 2.0, 0.1);
+  EXPECT_EQ(reason(), "looks around for slam's first pose; slam: " + peers.reason);
+  EXPECT_EQ(paths.back().header().stamp(), messages::to_message(peers.stamp));
+  peers.reason = "";
+  ASSERT_TRUE(tick()) << planner->log();
+  EXPECT_TRUE(stands()) << "there is a pose";
+  peers.draw(kRoomWithDoor);
+  ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
+}
+
+TEST_F(PlannerContract, WithoutAFirstPoseItSaysWhatToDo) {
+  ASSERT_TRUE(start({"lost_timeout_s=4"})) << planner->log();
+  peers.reason = "no features with depth: the camera looks at a blank wall";
+  ASSERT_TRUE(ticks_until([this] { return state() == STATE_FAILED; }, 5.0, kInitializing)) << reason();
+  EXPECT_THAT(reason(), HasSubstr("move the robot to where there is something to see"));
+  EXPECT_THAT(reason(), HasSubstr("the camera looks at a blank wall"));
+  EXPECT_TRUE(stands());
+}
+
+TEST_F(PlannerContract, StandsWhileSlamIsLostLooksAroundAndContinuesAfterwards) {
   get_going();
   constexpr double kLatency_s = 3 / kRate_hz;  // a decision may be under way
   ASSERT_TRUE(ticks_until([this] { return state() == STATE_RECOVERING; }, kLatency_s + 1 / kRate_hz, kLost))
       << reason() << planner->log();
   EXPECT_EQ(reason(), "slam is lost");
   EXPECT_TRUE(stands());
-  for (int i = 0; i < 30; ++i) ASSERT_TRUE(tick(kLost)) << planner->log();
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(tick(kLost)) << planner->log();
   EXPECT_TRUE(stands());
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(tick(kLost)) << planner->log();
+  EXPECT_TRUE(turns()) << reason();
   ASSERT_TRUE(ticks_until([this] { return state() == STATE_EXPLORING; })) << reason();
+  EXPECT_TRUE(stands());
   ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
 }
 
@@ -38,9 +69,20 @@ TEST_F(PlannerContract, DrivesBackByOdometryToWhereSlamWasLastSure) {
   ASSERT_TRUE(ticks_until([this] { return (peers.position - Eigen::Vector2d(2, 2)).norm() > 0.5; })) << reason();
   const Eigen::Vector2d last_tracked = peers.position;
   peers.position.x() -= 0.5;  // a slip that only odometry knows of
+  peers.drift_m = 0.6;
   ASSERT_TRUE(ticks_until([this] { return state() == STATE_RECOVERING && has_path(); }, 4.0, kReckoning)) << reason();
-  EXPECT_EQ(reason(), "slam reckons by odometry alone");
+  EXPECT_EQ(reason(), "slam reckons by odometry alone, and has drifted");
   EXPECT_LT((goal() - last_tracked).norm(), 0.3);
+}
+
+TEST_F(PlannerContract, DrivesOnByOdometryThatHasNotDriftedFar) {
+  peers.drives = true;
+  get_going();
+  peers.drift_m = 0.4;
+  const std::size_t decisions = candidates.size();
+  ASSERT_TRUE(ticks_until([&] { return candidates.size() >= decisions + 3; }, 10.0, kReckoning)) << reason();
+  EXPECT_EQ(state(), STATE_EXPLORING);
+  EXPECT_GT((peers.position - Eigen::Vector2d(2, 2)).norm(), 0.5);
 }
 
 TEST_F(PlannerContract, FailsWhenSlamStaysLost) {
@@ -239,6 +281,32 @@ TEST_F(PlannerContract, ObstacleThatIsPutOnThePathMovesOrEmptiesIt) {
   grid.header(messages::header(peers.stamp, "map"));
   peers.obstacles.publish(grid);
   ASSERT_TRUE(ticks_until([this] { return stands() || goal().x() < 3.25; }, 2.0)) << reason() << planner->log();
+}
+
+TEST_F(PlannerContract, WhatWaitsForACorrectionIsLeftAloneAsLongAsAnythingElseIsLeft) {
+  ASSERT_TRUE(start()) << planner->log();
+  auto area = peers.free_grid();  // behind the door on the right
+  area.info().width(8);
+  area.info().height(16);
+  area.info().origin().position().x(5.0);
+  area.data().assign(128, 0);
+  peers.provisional_area.publish(area);
+  peers.draw(kRoomWithTwoDoors);
+  ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
+  EXPECT_LT(goal().x(), 2.5) << "the other door";
+  const auto is_left_alone = [this] {
+    const auto& all = candidates.back().candidates();
+    return std::any_of(all.begin(), all.end(), [](const auto& c) { return c.reason() == "left alone for now"; });
+  };
+  EXPECT_TRUE(is_left_alone());
+  area.info().width(0);
+  area.data().clear();
+  peers.provisional_area.publish(area);
+  ASSERT_TRUE(ticks_until([&] { return !is_left_alone(); }, 4.0)) << reason();
+  area.header().frame_id("odom");
+  peers.provisional_area.publish(area);
+  ASSERT_TRUE(tick());
+  EXPECT_TRUE(wait_for_count("provisional area dropped: it is not in map")) << planner->log();
 }
 
 // The controller -----------------------------------------------------------------------------------------------------

@@ -271,29 +271,96 @@ TEST(Controller, WithoutAPoseItStandsStillAtOnceAndContinuesWithOne) {
   EXPECT_EQ(world.last.state, State::kStopped);
   EXPECT_EQ(world.last.reason, "no pose for more than 0.22 s");
   EXPECT_EQ(world.run_until([](const Decision& d) { return d.command.turn_rad_s != 0.0; }, 3.0),
-            std::numeric_limits<double>::infinity());
+            std::numeric_limits<double>::infinity())
+      << "nobody has asked for a turn";
   world.has_pose = true;
   EXPECT_LT(world.run_until(State::kIdle, 20.0), 20.0) << world.last.reason;
   expect_reached(world, planar_pose({4, 0}, 0.0));
 }
 
-TEST(Controller, LooksAroundOnceForItsPoseWhenConfigured) {
-  ControllerConfig config;
-  config.lost_turn_rate_rad_s = 0.5;
-  KinematicWorld world(hall(), config);
-  world.controller.set_path(straight({0, 0}, {4, 0}, 0.0), "");
-  world.run_until([](const Decision&) { return false; }, 2.0);
-  world.has_pose = false;
-  world.run_until(State::kStopped, 1.0);
+/// Turns by so much to the left as long as the controller wants to; what the robot itself has turned by [rad].
+double turned_on_the_spot(KinematicWorld& world, double turn_rad, double limit_s) {
+  world.controller.set_turn(turn_rad);
   double turned_rad = 0.0;
-  world.run_until(
-      [&](const Decision& d) {
-        EXPECT_EQ(d.command.forward_m_s, 0.0);
-        turned_rad += d.command.turn_rad_s / KinematicWorld::kRate_hz;
-        return false;
-      },
-      20.0);
-  EXPECT_NEAR(turned_rad, 6.28, 0.1);
+  PlanarPose before = world.T_map_base;
+  const auto is_over = [&](const Decision& decision) {
+    EXPECT_EQ(decision.command.forward_m_s, 0.0);
+    turned_rad += yaw_of(before.inverse() * world.T_map_base);
+    before = world.T_map_base;
+    return decision.state != State::kFollowing;
+  };
+  EXPECT_LT(world.run_until(is_over, limit_s), limit_s) << world.last.reason;
+  return turned_rad;
+}
+
+TEST(Controller, TurnsOnTheSpotWithoutPoseMapOrRoom) {
+  for (const double turn_rad : {12.6, -1.0}) {
+    KinematicWorld world(with(hall(), {wall(0.21, -1, 0.4, 1), wall(-0.4, -1, -0.21, 1)}));
+    world.has_pose = world.has_map = false;
+    EXPECT_NEAR(turned_on_the_spot(world, turn_rad, 60.0), turn_rad, 0.1);
+    EXPECT_EQ(world.last.state, State::kIdle);
+    EXPECT_EQ(world.last.reason, "the turn is done");
+    world.controller.set_turn(turn_rad);
+    EXPECT_TRUE(world.step().state == State::kIdle) << "the same turn again, by a planner that repeats itself";
+  }
+}
+
+TEST(Controller, TurnsOnTheSpotSlowly) {
+  ControllerConfig config;
+  config.look_around_rad_s = 0.2;
+  KinematicWorld world(hall(), config);
+  world.controller.set_turn(3.0);
+  double fastest = 0.0;
+  world.run_until([&](const Decision& d) { return (fastest = std::max(fastest, d.command.turn_rad_s), false); }, 5.0);
+  EXPECT_DOUBLE_EQ(fastest, 0.2);
+}
+
+TEST(Controller, ATurnWaitsForImagesAndForThePlanner) {
+  for (bool KinematicWorld::*input : {&KinematicWorld::has_camera, &KinematicWorld::has_planner}) {
+    KinematicWorld world(hall());
+    world.has_pose = false;
+    world.controller.set_turn(1.5);
+    world.run_until([](const Decision&) { return false; }, 1.0);
+    ASSERT_GT(world.last.command.turn_rad_s, 0.0) << world.last.reason;
+    world.*input = false;
+    EXPECT_LE(world.run_until(State::kStopped, 1.0), 0.22 + 1.01 / KinematicWorld::kRate_hz);
+    EXPECT_EQ(world.last.command.turn_rad_s, 0.0);
+    world.run_until([](const Decision&) { return false; }, 10.0);
+    world.*input = true;
+    EXPECT_LT(world.run_until(State::kIdle, 10.0), 10.0) << world.last.reason;
+    EXPECT_NEAR(yaw_of(world.T_map_base), 1.5, 0.1) << "where it went on";
+  }
+}
+
+TEST(Controller, ANewPathEndsATurnAndATurnEndsAPath) {
+  KinematicWorld world(hall());
+  const Path path = straight({0, 0}, {3, 0}, 0.0);
+  world.controller.set_path(path, "");
+  world.run_until([](const Decision&) { return false; }, 2.0);
+  ASSERT_GT(world.last.command.forward_m_s, 0.5);
+  world.controller.set_turn(6.0);
+  EXPECT_EQ(world.step().reason, "turns on the spot");
+  world.run_until([](const Decision&) { return false; }, 3.0);
+  world.controller.set_path(path, "");
+  EXPECT_LT(world.run_until(State::kIdle, 20.0), 20.0) << world.last.reason;
+  expect_reached(world, path.back());
+  world.controller.set_turn(6.0);
+  EXPECT_EQ(world.step().reason, "turns on the spot") << "it is asked for anew";
+}
+
+// Slam finds itself again after half a turn: what the robot remembers is where it was in the map.
+TEST(Controller, WhatIsRememberedStaysInTheMapThroughATurnWithoutAPose) {
+  const Box low{{0.8, -3.0, 0.0}, {1.2, 3.0, 0.3}, 9};  // below the image from where it stops
+  KinematicWorld world(with(hall(), {low}));
+  world.controller.set_path(straight({-2, 0}, {0, 0}, 0.0), "");
+  world.T_map_base = planar_pose({-2.0, 0.0}, 0.0);
+  ASSERT_LT(world.run_until(State::kIdle, 20.0), 20.0) << world.last.reason;
+  world.has_pose = false;
+  turned_on_the_spot(world, 3.1, 30.0);
+  world.has_pose = true;
+  world.controller.set_path(straight(world.T_map_base.translation(), {3, 0}, 0.0), "");
+  world.run_until([](const Decision&) { return false; }, 10.0);
+  EXPECT_GT(world.least_room_m, 0.0) << "touched";
 }
 
 // A box that is below the image is known by memory alone.

@@ -30,8 +30,8 @@ class KinematicWorld {
   Decision step() {
     drive();
     now = now + time::Duration::from_seconds(1.0 / kRate_hz);
-    controller.note_camera(now, now);
-    controller.note_planner(now);
+    if (has_camera) controller.note_camera(now, now);
+    if (has_planner) controller.note_planner(now);
     frames_.push_back({T_published_map * T_map_base, {image(), camera, T_base_camera()}, now});
     if (frames_.size() > late_frames) {
       const Frame& frame = frames_.front();
@@ -39,7 +39,7 @@ class KinematicWorld {
       if (has_pose) controller.see(frame.view, frame.stamp, now);
       frames_.pop_front();
     }
-    controller.set_obstacles(grid(), now, now);
+    if (has_map) controller.set_obstacles(grid(), now, now);
     Decision decision = controller.step(now);
     acting_ = commanded_;
     commanded_ = decision.command;
@@ -77,7 +77,7 @@ class KinematicWorld {
   std::size_t late_frames = 0;  ///< so late come pose and depth image; the camera's stamp does not
   Velocity velocity;            ///< of the drives
   time::Time now{1'000'000'000};
-  bool has_pose = true;
+  bool has_camera = true, has_pose = true, has_map = true, has_planner = true;
   bool knows_floor = false;  ///< the mapper's grid says that all but boxes is free; else it knows nothing
   Decision last;
   double least_room_m = std::numeric_limits<double>::infinity();

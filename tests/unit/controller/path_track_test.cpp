@@ -2,8 +2,29 @@
 
 #include <gtest/gtest.h>
 
+#include <numbers>
+
 namespace lapis::controller {
 namespace {
+
+std::vector<PlanarPose> headings(const std::vector<double>& yaws_rad) {
+  std::vector<PlanarPose> poses;
+  for (const double yaw_rad : yaws_rad) poses.push_back(planar_pose({0.0, 0.0}, yaw_rad));
+  return poses;
+}
+
+TEST(TurnOnTheSpot, IsTheSumOfShortWaysFromHeadingToHeading) {
+  constexpr double kThird_rad = 2.0 * std::numbers::pi / 3.0;
+  EXPECT_NEAR(turn_on_the_spot(headings({1.0})).value(), 1.0, 1e-12);
+  EXPECT_NEAR(turn_on_the_spot(headings({-3.0})).value(), -3.0, 1e-12);
+  EXPECT_NEAR(turn_on_the_spot(headings({kThird_rad, 2 * kThird_rad, 0.0, kThird_rad})).value(), 4 * kThird_rad, 1e-12);
+  EXPECT_NEAR(turn_on_the_spot(headings({-2.0, 2.5, 1.0})).value(), 1.0 - 2.0 * std::numbers::pi, 1e-12);
+}
+
+TEST(TurnOnTheSpot, IsNoneWhereThePathLeadsAwayOrThereIsNoPath) {
+  EXPECT_FALSE(turn_on_the_spot({}));
+  EXPECT_FALSE(turn_on_the_spot({planar_pose({0, 0}, 1.0), planar_pose({0.0, 0.02}, 1.0)}));
+}
 
 PathTrack corner() { return PathTrack({planar_pose({0, 0}, 0), planar_pose({2, 0}, 0), planar_pose({2, 3}, 1.5)}); }
 

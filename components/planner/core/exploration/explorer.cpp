@@ -11,8 +11,10 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kBlockedRadius_m = 0.2;      // what stops the robot nearer to each other is one
-constexpr double kLeastDecisionTime_s = 0.5;  // from one decision to the next, whatever happens
+constexpr double kBlockedRadius_m = 0.2;       // what stops the robot nearer to each other is one
+constexpr double kLeastDecisionTime_s = 0.5;   // from one decision to the next, whatever happens
+constexpr double kBlindPatience_s = 2.0;       // without a pose, before it looks around for it
+constexpr int kBlindTurns = 2, kHeadings = 3;  // of such a look around: full turns, and poses of the path for each
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
 
@@ -21,6 +23,13 @@ GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
   config.radius_m = kBlockedRadius_m;
   config.max_failures = std::numeric_limits<int>::max();
   return config;
+}
+
+std::vector<Pose2> turns_on_the_spot() {
+  std::vector<Pose2> headings;
+  for (int i = 1; i <= kBlindTurns * kHeadings; ++i)
+    headings.push_back({{0.0, 0.0}, 2.0 * std::numbers::pi * i / kHeadings});
+  return headings;
 }
 
 }  // namespace
@@ -40,7 +49,8 @@ void Explorer::start() {
   empty_decisions_ = 0;
   nothing_since_.reset();
   lost_at_.reset();
-  enter(State::kExploring, "started");
+  blind_since_.reset();
+  enter(State::kExploring, home_ ? "started" : "waits for slam's first pose");
 }
 
 void Explorer::stop() {
@@ -68,6 +78,9 @@ void Explorer::forget_map() {
   nothing_since_.reset();
   failed_views_.clear();
   losses_.clear();
+  awaited_.clear();
+  looks_again_ = false;
+  blind_since_.reset();
   home_.reset();
   trail_.clear();
   decided_at_.reset();
@@ -84,8 +97,9 @@ void Explorer::enter(State state, std::string reason) {
   reason_ = std::move(reason);
 }
 
-void Explorer::set_path(std::vector<Pose2> path) {
+void Explorer::set_path(std::vector<Pose2> path, bool is_turn) {
   path_ = std::move(path);
+  is_turn_ = is_turn;
   ++path_number_;
 }
 
@@ -99,15 +113,19 @@ bool Explorer::is_active() const {
 }
 
 bool Explorer::step(const Report& report, Surroundings* surroundings) {
-  if (report.robot && !home_) home_ = report.robot;
-  if (report.robot && report.tracking == Tracking::kTracking) trail_.add(*report.robot);
+  note_pose(report);
   if (!is_active()) return false;
+  if (report.tracking != Tracking::kLost) {
+    blind_since_.reset();
+    if (is_turn_) drop_goal();
+  } else if (!blind_since_) {
+    blind_since_ = report.now;
+  }
   if (!home_) {
-    reason_ = "waits for slam's first pose";
+    await_first_pose(report.now);
     return false;
   }
-  if (is_briefly_untracked(report)) return false;
-  if (report.tracking != Tracking::kTracking || state_ == State::kRecovering) {
+  if (!is_led(report) || state_ == State::kRecovering) {
     recover(report, surroundings);
     return false;
   }
@@ -124,10 +142,41 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
   return explore(report, *surroundings);
 }
 
+void Explorer::note_pose(const Report& report) {
+  if (!report.robot) return;
+  robot_ = *report.robot;
+  if (!home_) home_ = robot_;
+  if (report.tracking == Tracking::kTracking) trail_.add(robot_);
+}
+
+/// By a pose that is good enough to drive on with.
+bool Explorer::is_led(const Report& report) const {
+  if (report.tracking == Tracking::kDeadReckoning) return report.drift_m <= config_.max_drift_m;
+  return report.tracking == Tracking::kTracking;
+}
+
+void Explorer::await_first_pose(time::Time now) {
+  reason_ = "waits for slam's first pose";
+  if (!blind_since_) return;
+  if ((now - *blind_since_).seconds() <= config_.lost_timeout_s) return look_for_pose(now);
+  drop_goal();
+  enter(State::kFailed, "slam has found no first pose in " + std::to_string(std::lround(config_.lost_timeout_s)) +
+                            " s: move the robot to where there is something to see, and start again");
+}
+
+// Other views may show slam where it is. The controller turns slowly, and the robot stands when it has turned twice.
+void Explorer::look_for_pose(time::Time now) {
+  if ((now - *blind_since_).seconds() < kBlindPatience_s) return;
+  reason_ = state_ == State::kRecovering ? "slam is lost: looks around" : "looks around for slam's first pose";
+  if (!is_turn_) set_path(turns_on_the_spot(), true);
+}
+
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   for (const FailedView& view : failed_views_.judge(surroundings, report.now))
     memory_.add_failure(view.target_map, report.now);
   may_change_ = surroundings.grid().has_passing_obstacles();
+  awaited_ = surroundings.awaited_targets();
+  if (awaited_.empty()) looks_again_ = false;
   const bool may_decide = !chosen_at_ || (report.now - *chosen_at_).seconds() >= kLeastDecisionTime_s;
   if (!goal_) return may_decide;
   if (is_at(goal_->pose, *report.robot)) {
@@ -167,7 +216,7 @@ void Explorer::note_vanished(const Decision& decision, time::Time now) {
     return (c.rejection.empty() || c.rejection == kOutranked) &&
            (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
   });
-  if (!is_there) await({*goal_->target_map, trail_.newest()->p_map}, now, config_.memory.expiry_s);
+  if (!is_there) await({*goal_->target_map, robot_.p_map}, now, config_.memory.expiry_s);
 }
 
 /// Leaves the target alone until then, when it is judged whether the view has failed.
@@ -209,6 +258,7 @@ void Explorer::add_failure(time::Time now) {
 Memory Explorer::memory(time::Time now) const {
   Memory memory;
   memory.left_alone = memory_.left_alone(now);
+  if (!looks_again_) memory.left_alone.insert(memory.left_alone.end(), awaited_.begin(), awaited_.end());
   memory.revisited = revisited_.left_alone(now);
   memory.failed_views = failed_views_.all();
   memory.radius_m = config_.memory.radius_m;
@@ -221,7 +271,7 @@ void Explorer::take(const Decision& decision, const Report& report) {
   const time::Time now = report.now;
   decided_at_ = chosen_at_ = now;
   note_vanished(decision, now);
-  if (!decision.chosen) return end_or_look_around(decision, now);
+  if (!decision.chosen) return end_or_look_around(decision, report);
   empty_decisions_ = 0;
   nothing_since_.reset();
   follow(decision, now);
@@ -262,40 +312,49 @@ void Explorer::follow(const Decision& decision, time::Time now) {
 }
 
 // A turn in all directions may show what has been missed. After it what has failed gets another chance.
-void Explorer::end_or_look_around(const Decision& decision, time::Time now) {
-  const bool turns = goal_ && !goal_->target_map && distance(*trail_.newest(), goal_->pose) <= config_.goal_tolerance_m;
+void Explorer::end_or_look_around(const Decision& decision, const Report& report) {
+  const time::Time now = report.now;
+  const bool turns = goal_ && !goal_->target_map && distance(robot_, goal_->pose) <= config_.goal_tolerance_m;
   if (turns) return;
   drop_goal();
   if (!nothing_since_) nothing_since_ = now;
   const bool is_worth_waiting = may_change_ && (now - *nothing_since_).seconds() < config_.patience_s;
   if (empty_decisions_ < config_.confirmations || is_worth_waiting) {
     ++empty_decisions_;
-    goal_ = Goal{.pose = *trail_.newest(), .moved_from = *trail_.newest(), .moved_at = now};
+    goal_ = Goal{.pose = robot_, .moved_from = robot_, .moved_at = now};
     goal_->pose.yaw_rad += 2.0 * std::numbers::pi / config_.confirmations;
     reason_ = "looks around: no frontier can be driven to";
     return set_path({goal_->pose});
   }
   empty_decisions_ = 0;
-  const bool is_any_left_alone = std::any_of(decision.candidates.begin(), decision.candidates.end(),
-                                             [](const Candidate& c) { return c.rejection == kLeftAlone; });
-  const bool has_forgiven = is_any_left_alone && memory_.forgive(now), has_unblocked = blocked_.forgive(now);
-  if (has_forgiven || has_unblocked) return;
+  if (has_another_chance(decision, report)) return;
   enter(config_.returns_home ? State::kReturning : State::kDone, "nothing is left that can be reached");
 }
 
-// By odometry it continues for a moment: where it would turn back at once, it would never get past a view of a blank
-// wall.
-bool Explorer::is_briefly_untracked(const Report& report) {
-  if (report.tracking == Tracking::kTracking) {
-    untracked_since_.reset();
-    return false;
-  }
-  if (!untracked_since_) untracked_since_ = report.now;
-  return state_ != State::kRecovering && report.tracking == Tracking::kDeadReckoning &&
-         (report.now - *untracked_since_).seconds() < config_.dead_reckoning_s;
+// What is left alone for a time is tried again, then, once, what waits for the map's correction: where slam tracks, it
+// may come.
+bool Explorer::has_another_chance(const Decision& decision, const Report& report) {
+  const bool is_any_left_alone = std::any_of(decision.candidates.begin(), decision.candidates.end(),
+                                             [](const Candidate& c) { return c.rejection == kLeftAlone; });
+  const bool has_forgiven = is_any_left_alone && memory_.forgive(report.now);
+  const bool has_unblocked = blocked_.forgive(report.now);
+  if (has_forgiven || has_unblocked) return true;
+  if (awaited_.empty() || std::exchange(looks_again_, true)) return false;
+  if (report.tracking == Tracking::kDeadReckoning)
+    begin_recovery(report, "drives back to where slam tracked: what is left waits for the map's correction");
+  return true;
+}
+
+void Explorer::begin_recovery(const Report& report, std::string reason) {
+  drop_goal();
+  interrupted_ = state_;
+  lost_at_ = report.now;
+  trail_.turn_back();
+  enter(State::kRecovering, std::move(reason));
 }
 
 void Explorer::recover(const Report& report, const Surroundings* surroundings) {
+  const bool is_lost = report.tracking == Tracking::kLost;
   if (report.tracking == Tracking::kTracking) {
     lost_at_.reset();
     drop_goal();
@@ -303,19 +362,15 @@ void Explorer::recover(const Report& report, const Surroundings* surroundings) {
   }
   if (state_ != State::kRecovering) {
     note_loss(report.now);
-    drop_goal();
-    interrupted_ = state_;
-    lost_at_ = report.now;
-    trail_.turn_back();
-    enter(State::kRecovering, report.tracking == Tracking::kLost ? "slam is lost" : "slam reckons by odometry alone");
+    begin_recovery(report, is_lost ? "slam is lost" : "slam reckons by odometry alone, and has drifted");
   }
   if ((report.now - *lost_at_).seconds() > config_.lost_timeout_s) {
     drop_goal();
     return enter(State::kFailed,
                  "slam has not tracked for " + std::to_string(std::lround(config_.lost_timeout_s)) + " s");
   }
-  const bool can_drive = report.tracking == Tracking::kDeadReckoning && report.robot && !trail_.is_empty();
-  if (can_drive && surroundings != nullptr) retrace(report, *surroundings);
+  if (is_lost) return look_for_pose(report.now);
+  if (report.robot && !trail_.is_empty() && surroundings != nullptr) retrace(report, *surroundings);
 }
 
 // Slam may lose itself anywhere; on the way to the same target again, it does so for what is seen there.

@@ -17,7 +17,7 @@ enum class State {
   kIdle,        ///< nobody has asked for anything
   kExploring,   ///< drives to frontiers
   kPaused,      ///< stands still until it is started again
-  kRecovering,  ///< slam does not track: stands still, or drives back to where it did
+  kRecovering,  ///< slam has no pose, or one that has drifted far: looks around, or drives back to where it tracked
   kReturning,   ///< drives to where it started
   kDone,        ///< nothing is left that can be reached, or it has returned
   kFailed,      ///< needs help; the reason says why
@@ -32,8 +32,8 @@ struct ExplorerConfig {
   double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
   double slowest_m_s = 0.15;        ///< a path that takes longer than at this speed has failed, in [0.01, 5]
   double settle_s = 1.5;            ///< after arriving, until the map shows whether the view has failed, in [0, 60]
-  double dead_reckoning_s = 2.0;    ///< by odometry alone, before it drives back: a turn past a blank wall, in [0, 10]
-  double lost_timeout_s = 60.0;     ///< without tracking, exploration has failed, in [1, 3600]
+  double max_drift_m = 0.5;         ///< of a pose by odometry alone, beyond which it drives back, in [0, 100]
+  double lost_timeout_s = 60.0;     ///< without such a pose, exploration has failed, in [1, 3600]
   double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
   int confirmations = 3;      ///< looks around, a full turn in all, that find nothing before it is over, in [2, 12]
   double patience_s = 20.0;   ///< for obstacles that may go away before it is over, in [0, 600]
@@ -48,6 +48,7 @@ struct Report {
   std::optional<Pose2> robot;  ///< nothing while slam has no pose
   Tracking tracking = Tracking::kLost;
   bool is_blocked = false;  ///< the controller finds no path; only true when it speaks of the newest path
+  double drift_m = 0.0;     ///< sigma of the position since slam tracked last
 };
 
 /// The mission: when to decide, what to do with the decision, and when it is over.
@@ -75,6 +76,8 @@ class Explorer {
   const std::string& reason() const { return reason_; }
   /// To the current goal; empty: stand still.
   const std::vector<Pose2>& path() const { return path_; }
+  /// The path is not of the map: it turns on the spot, through headings relative to the one that the robot has now.
+  bool is_turn() const { return is_turn_; }
   /// Grows with every new path.
   std::uint64_t path_number() const { return path_number_; }
 
@@ -91,14 +94,19 @@ class Explorer {
   };
 
   void enter(State state, std::string reason);
-  void set_path(std::vector<Pose2> path);
+  void set_path(std::vector<Pose2> path, bool is_turn = false);
   void drop_goal();
   bool explore(const Report& report, Surroundings& surroundings);
+  void note_pose(const Report& report);
+  bool is_led(const Report& report) const;
+  void await_first_pose(time::Time now);
+  void look_for_pose(time::Time now);
   void follow(const Decision& decision, time::Time now);
   bool is_detour(const Decision& decision) const;
   void set_deadline(const Candidate& chosen, bool is_detour, time::Time now);
-  void end_or_look_around(const Decision& decision, time::Time now);
-  bool is_briefly_untracked(const Report& report);
+  void end_or_look_around(const Decision& decision, const Report& report);
+  bool has_another_chance(const Decision& decision, const Report& report);
+  void begin_recovery(const Report& report, std::string reason);
   void recover(const Report& report, const Surroundings* surroundings);
   void note_loss(time::Time now);
   void retrace(const Report& report, const Surroundings& surroundings);
@@ -123,15 +131,20 @@ class Explorer {
   State interrupted_ = State::kExploring;  ///< what to resume when slam tracks again
   std::string reason_ = "not started";
   std::vector<Pose2> path_;
+  bool is_turn_ = false;
   std::uint64_t path_number_ = 0;
   std::optional<Goal> goal_;
   FailedViews failed_views_;
-  std::vector<Eigen::Vector2d> losses_;  ///< targets on the way to which slam stopped tracking [m, map]
+  std::vector<Eigen::Vector2d> losses_;   ///< targets on the way to which slam stopped tracking [m, map]
+  std::vector<Eigen::Vector2d> awaited_;  ///< targets that wait for a correction of the map [m, map]
+  bool looks_again_ = false;              ///< at these, too: nothing else is left
   std::optional<Pose2> home_;
+  Pose2 robot_;  ///< where it was known to be last
   Trail trail_;
-  std::optional<time::Time> decided_at_;  ///< in this state
-  std::optional<time::Time> chosen_at_;   ///< the last decision took effect
-  std::optional<time::Time> untracked_since_, lost_at_, nothing_since_;
+  std::optional<time::Time> decided_at_;   ///< in this state
+  std::optional<time::Time> chosen_at_;    ///< the last decision took effect
+  std::optional<time::Time> blind_since_;  ///< while it was active: slam has no pose
+  std::optional<time::Time> lost_at_, nothing_since_;
   int empty_decisions_ = 0;
   bool may_change_ = false;  ///< obstacles stand where there may soon be none
 };

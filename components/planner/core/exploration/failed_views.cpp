@@ -10,6 +10,7 @@ bool has_frontier_at(const Surroundings& surroundings, const Eigen::Vector2d& ta
   const auto& frontiers = surroundings.frontiers().frontiers();
   return std::any_of(frontiers.begin(), frontiers.end(), [&](const auto& entry) {
     const auto& cells = entry.second.cells;
+    if (surroundings.is_awaited(entry.second)) return false;
     return std::any_of(cells.begin(), cells.end(),
                        [&](Cell c) { return (grid.center_of(c) - target_map).norm() <= grid.resolution_m(); });
   });

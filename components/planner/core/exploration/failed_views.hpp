@@ -9,7 +9,7 @@
 namespace lapis::planner {
 
 /// Views of targets, judged when the map has had time to show: where a frontier is still there after a view of it, that
-/// view has failed: the target is glass, or noise.
+/// view has failed: the target is glass, or noise. But not where frames that show it wait for the map's correction.
 class FailedViews {
  public:
   /// The target is judged at the first call of judge() from `due` on.

@@ -1,10 +1,12 @@
 #include "planner/core/exploration/surroundings.hpp"
 
-#include <set>
+#include <cmath>
 #include <utility>
 
 namespace lapis::planner {
 namespace {
+
+constexpr double kSameEdge_m = 1e-6;
 
 int observed_voxels(const mapping::VoxelBlock* block) {
   if (block == nullptr) return 0;
@@ -43,6 +45,41 @@ bool Surroundings::update_obstacles(const ObstacleGrid& grid, time::Time stamp) 
   if (!changed) return false;
   frontiers_.update(grid_, *changed);
   return true;
+}
+
+bool Surroundings::set_provisional_area(const ObstacleGrid& area) {
+  const bool is_same_grid = std::abs(area.resolution_m - grid_.resolution_m()) <= kSameEdge_m;
+  if (!area.cells.empty() && !is_same_grid) return false;
+  provisional_.clear();
+  for (int row = 0; row < area.height; ++row) {
+    for (int column = 0; column < area.width; ++column) {
+      const Eigen::Vector2d center = area.origin + grid_.resolution_m() * Eigen::Vector2d(column + 0.5, row + 0.5);
+      if (area.at(column, row) == mapping::kFree) provisional_.insert(grid_.cell_of(center));
+    }
+  }
+  return true;
+}
+
+bool Surroundings::is_awaited(const Frontier& frontier) const {
+  if (provisional_.empty()) return false;
+  int unknown = 0, seen = 0;
+  for (const Cell& c : frontier.cells) {
+    for (std::size_t i = 0; i < kStraightSteps; ++i) {
+      if (grid_.state(c + kSteps[i]) != mapping::kUnknown) continue;
+      ++unknown;
+      seen += provisional_.contains(c + kSteps[i]) ? 1 : 0;
+    }
+  }
+  return 2 * seen > unknown;
+}
+
+std::vector<Eigen::Vector2d> Surroundings::awaited_targets() const {
+  std::vector<Eigen::Vector2d> targets;
+  for (const auto& [id, frontier] : frontiers_.frontiers()) {
+    if (!is_awaited(frontier)) continue;
+    for (const Cell& c : frontier.representatives) targets.push_back(grid_.center_of(c));
+  }
+  return targets;
 }
 
 void Surroundings::set_blocked(std::span<const Eigen::Vector2d> places_map) {

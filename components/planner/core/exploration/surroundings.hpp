@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <set>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -35,6 +36,13 @@ class Surroundings {
   void update_map(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed);
   /// False when the grid is malformed.
   bool update_obstacles(const ObstacleGrid& grid, time::Time stamp);
+  /// Where frames have looked that wait for a correction to enter the map: the cells that are free in `area`. False,
+  /// and no change, when its cells are not those of the map.
+  bool set_provisional_area(const ObstacleGrid& area);
+  /// The frontier will move when these frames have entered the map: they have seen most of the unknown cells beside it.
+  bool is_awaited(const Frontier& frontier) const;
+  /// What stands for such frontiers [m, map].
+  std::vector<Eigen::Vector2d> awaited_targets() const;
   /// The robot is there [m, map]: it can pass.
   void mark_driven(const Eigen::Vector2d& robot_map) { grid_.mark_driven(robot_map); }
   /// Places that the robot found it cannot pass, whatever the map says [m, map]; all others are as the map says.
@@ -46,6 +54,7 @@ class Surroundings {
   mapping::BeliefReader reader_;
   PlanningGrid grid_;
   FrontierMap frontiers_;
+  std::set<Cell> provisional_;
   InformationField field_;
   std::vector<InformationField> compared_fields_;
   std::unordered_map<mapping::BlockIndex, int, mapping::GridIndexHash> observed_;  ///< voxels by block, none with 0

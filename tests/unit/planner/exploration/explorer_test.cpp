@@ -1,6 +1,9 @@
 #include "planner/core/exploration/explorer.hpp"
 
 #include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -121,18 +124,37 @@ TEST(Explorer, PausesAndContinues) {
   EXPECT_EQ(world.explorer.state(), State::kDone);
 }
 
-TEST(Explorer, StandsStillWhileLostAndFailsInTheEnd) {
+/// Headings of a turn on the spot, each the short way from the one before, summed [rad].
+double turn_of(const Explorer& explorer) {
+  double turn_rad = 0.0, heading_rad = 0.0;
+  for (const Pose2& pose : explorer.path()) {
+    EXPECT_EQ(pose.p_map, Eigen::Vector2d(0.0, 0.0));
+    turn_rad += std::remainder(pose.yaw_rad - heading_rad, 2.0 * std::numbers::pi);
+    heading_rad = pose.yaw_rad;
+  }
+  return turn_rad;
+}
+
+TEST(Explorer, LooksAroundWhileLostAndFailsInTheEnd) {
   WalkWorld world(closed(kThreeRooms), {.lost_timeout_s = 20.0});
   world.explorer.start();
   world.run(5.0);
   world.tracking = Tracking::kLost;
-  world.run(10.0);
+  world.run(1.8);
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
   EXPECT_EQ(world.explorer.reason(), "slam is lost");
-  EXPECT_TRUE(world.explorer.path().empty());
+  EXPECT_TRUE(world.explorer.path().empty()) << "it may be gone in a moment";
+  world.run(2.0);
+  EXPECT_EQ(world.explorer.reason(), "slam is lost: looks around");
+  ASSERT_TRUE(world.explorer.is_turn());
+  EXPECT_NEAR(turn_of(world.explorer), 4.0 * std::numbers::pi, 1e-9);
+  const auto number = world.explorer.path_number();
+  world.run(4.0);
+  EXPECT_EQ(world.explorer.path_number(), number) << "one turn, not one after the other";
   world.tracking = Tracking::kTracking;
   world.run(2.0);
   EXPECT_EQ(world.explorer.state(), State::kExploring);
+  EXPECT_FALSE(world.explorer.is_turn());
   world.tracking = Tracking::kLost;
   world.run(30.0);
   EXPECT_EQ(world.explorer.state(), State::kFailed);
@@ -140,50 +162,149 @@ TEST(Explorer, StandsStillWhileLostAndFailsInTheEnd) {
   EXPECT_TRUE(world.explorer.path().empty());
 }
 
-TEST(Explorer, ContinuesByOdometryForAMoment) {
-  WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 2.0});
+TEST(Explorer, ATurnEndsWhenOdometryLeadsBack) {
+  WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
   world.run(5.0);
-  double blind_m = 0.0;
-  for (int moment = 0; moment < 3; ++moment) {  // each for itself
-    const double travelled_m = world.travelled_m;
-    const auto number = world.explorer.path_number();
-    world.tracking = Tracking::kDeadReckoning;
-    world.run(1.8);
-    EXPECT_EQ(world.explorer.state(), State::kExploring);
-    EXPECT_EQ(world.explorer.path_number(), number) << "along the path that it had";
-    blind_m += world.travelled_m - travelled_m;
-    world.tracking = Tracking::kTracking;
-    world.run(1.0);
-  }
-  EXPECT_GT(blind_m, 1.0);
+  world.tracking = Tracking::kLost;
+  world.run(5.0);
+  ASSERT_TRUE(world.explorer.is_turn());
   world.tracking = Tracking::kDeadReckoning;
-  world.run(2.4);
+  world.drift_m = 1.0;
+  world.run(0.6);
+  EXPECT_EQ(world.explorer.state(), State::kRecovering);
+  EXPECT_FALSE(world.explorer.is_turn());
+}
+
+TEST(Explorer, LooksAroundForTheFirstPose) {
+  WalkWorld world(closed(kThreeRooms));
+  world.tracking = Tracking::kLost;
+  world.explorer.start();
+  world.run(1.8);
+  EXPECT_EQ(world.explorer.reason(), "waits for slam's first pose");
+  EXPECT_TRUE(world.explorer.path().empty());
+  world.run(1.0);
+  EXPECT_EQ(world.explorer.state(), State::kExploring);
+  EXPECT_EQ(world.explorer.reason(), "looks around for slam's first pose");
+  ASSERT_TRUE(world.explorer.is_turn());
+  EXPECT_NEAR(turn_of(world.explorer), 4.0 * std::numbers::pi, 1e-9);
+  world.run(10.0);
+  world.tracking = Tracking::kTracking;
+  world.tick();
+  EXPECT_FALSE(world.explorer.is_turn());
+  world.run(300.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  EXPECT_GT(world.explored_share(), 0.98);
+}
+
+TEST(Explorer, SaysWhatToDoWhenThereIsNoFirstPose) {
+  WalkWorld world(closed(kThreeRooms), {.lost_timeout_s = 60.0});
+  world.tracking = Tracking::kLost;
+  for (int time = 0; time < 2; ++time) {
+    world.explorer.start();
+    world.run(59.0);
+    EXPECT_EQ(world.explorer.state(), State::kExploring) << "each start has the same time";
+    world.run(2.0);
+    EXPECT_EQ(world.explorer.state(), State::kFailed);
+    EXPECT_THAT(world.explorer.reason(), HasSubstr("in 60 s: move the robot to where there is something to see"));
+    EXPECT_TRUE(world.explorer.path().empty());
+    EXPECT_FALSE(world.explorer.is_turn());
+  }
+}
+
+TEST(Explorer, ExploresByOdometryAloneAsLongAsItHasNotDriftedFar) {
+  WalkWorld world(closed(kThreeRooms), {.max_drift_m = 0.5});
+  world.explorer.start();
+  world.run(2.0);
+  world.tracking = Tracking::kDeadReckoning;
+  world.drift_m = 0.5;
+  world.run(8.0);
+  EXPECT_EQ(world.explorer.state(), State::kExploring) << world.explorer.reason();
+  EXPECT_GT(world.travelled_m, 3.0);
+  world.drift_m = 0.51;
+  world.run(0.4);
+  EXPECT_EQ(world.explorer.state(), State::kRecovering);
+  world.tracking = Tracking::kTracking;
+  world.run(300.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  EXPECT_GT(world.explored_share(), 0.98);
+}
+
+TEST(Explorer, DriftThatIsNoNumberIsFar) {
+  WalkWorld world(closed(kThreeRooms), {.max_drift_m = 100.0});
+  world.explorer.start();
+  world.run(2.0);
+  world.tracking = Tracking::kDeadReckoning;
+  world.drift_m = std::numeric_limits<double>::quiet_NaN();
+  world.tick();
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
 }
 
-TEST(Explorer, DrivesBackToWhereItWasTrackedWhenOdometryLeads) {
-  WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 0.0});
+TEST(Explorer, DrivesBackToWhereItWasTrackedWhenItHasDriftedFar) {
+  WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
   world.run(5.0);
   const Eigen::Vector2d place = world.robot.p_map;
   world.tick();
   world.tracking = Tracking::kDeadReckoning;
+  world.drift_m = 1.0;
   world.robot.p_map += Eigen::Vector2d(0.0, -0.5);
   world.run(0.8);
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
-  EXPECT_EQ(world.explorer.reason(), "slam reckons by odometry alone");
+  EXPECT_EQ(world.explorer.reason(), "slam reckons by odometry alone, and has drifted");
   EXPECT_LT((world.robot.p_map - place).norm(), 0.4);
+}
+
+/// Of the map's cells, those from `column` on.
+ObstacleGrid area_from(int column) {
+  ObstacleGrid area{{column * WalkWorld::kResolution_m, 0.0}, WalkWorld::kResolution_m, 40, 10, {}};
+  area.cells.assign(400, mapping::kFree);
+  return area;
+}
+
+constexpr int kSecondRoom = 12;  // its first column
+
+TEST(Explorer, ViewsThatWaitForACorrectionAreNotChosenAgainWhileOthersAreLeft) {
+  WalkWorld world(closed(kThreeRooms));
+  ASSERT_TRUE(world.surroundings.set_provisional_area(area_from(kSecondRoom)));
+  world.explorer.start();
+  double farthest_m = 0.0;
+  while (world.explorer.reason().find("looks around") == std::string::npos && world.now.seconds() < 100.0) {
+    world.tick();
+    farthest_m = std::max(farthest_m, world.robot.p_map.x());
+  }
+  EXPECT_LT(farthest_m, kSecondRoom * WalkWorld::kResolution_m);
+  world.run(400.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  EXPECT_GT(world.explored_share(), 0.98) << "in the end there is nothing else";
+}
+
+TEST(Explorer, DrivesBackToBeCorrectedWhenAllElseIsDone) {
+  WalkWorld world(closed(kThreeRooms));
+  ASSERT_TRUE(world.surroundings.set_provisional_area(area_from(kSecondRoom)));
+  world.explorer.start();
+  world.run(1.0);
+  world.tracking = Tracking::kDeadReckoning;
+  world.drift_m = 0.2;
+  for (int i = 0; i < 500 && world.explorer.state() == State::kExploring; ++i) world.tick();
+  EXPECT_EQ(world.explorer.state(), State::kRecovering);
+  EXPECT_THAT(world.explorer.reason(), HasSubstr("waits for the map's correction"));
+  world.tracking = Tracking::kTracking;
+  ASSERT_TRUE(world.surroundings.set_provisional_area({}));
+  world.run(400.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  EXPECT_GT(world.explored_share(), 0.98);
 }
 
 // In a view that shows slam nothing the robot is where it was tracked last.
 TEST(Explorer, GoesBackFartherWhereItIsStillNotTracked) {
-  WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 0.0});
+  WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
   world.run(5.0);
   const double travelled_m = world.travelled_m;
   const Eigen::Vector2d place = world.robot.p_map;
   world.tracking = Tracking::kDeadReckoning;
+  world.drift_m = 1.0;
   world.run(10.0);
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
   EXPECT_GT((world.robot.p_map - place).norm(), 1.0);
@@ -191,10 +312,11 @@ TEST(Explorer, GoesBackFartherWhereItIsStillNotTracked) {
 }
 
 TEST(Explorer, GoesBackPastAPlaceThatItCannotGetTo) {
-  WalkWorld world(closed(kThreeRooms), {.dead_reckoning_s = 0.0});
+  WalkWorld world(closed(kThreeRooms));
   world.explorer.start();
   world.run(5.0);
   world.tracking = Tracking::kDeadReckoning;
+  world.drift_m = 1.0;
   world.tick();
   ASSERT_FALSE(world.explorer.path().empty());
   const Eigen::Vector2d place = world.explorer.path().back().p_map;
@@ -214,6 +336,7 @@ TEST(Explorer, GivesUpARoomInWhichSlamDoesNotTrack) {
     const bool is_lost = world.robot.p_map.x() > 22 * WalkWorld::kResolution_m;
     if (is_lost && world.tracking == Tracking::kTracking) ++losses;
     world.tracking = is_lost ? Tracking::kDeadReckoning : Tracking::kTracking;
+    world.drift_m = is_lost ? 1.0 : 0.0;
     world.tick();
   }
   EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();

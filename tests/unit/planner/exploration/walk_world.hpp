@@ -134,7 +134,7 @@ class WalkWorld {
     return true;
   }
   Report report() const {
-    return {now, tracking == Tracking::kLost ? std::nullopt : std::optional(robot), tracking, is_blocked};
+    return {now, tracking == Tracking::kLost ? std::nullopt : std::optional(robot), tracking, is_blocked, drift_m};
   }
   void decide_now() {
     ++decisions;
@@ -181,8 +181,12 @@ class WalkWorld {
     if (at(c) != 'N') return at(c) == 'O' ? 100 : 0;
     return (robot.p_map - center(c)).norm() < kNear_m ? 100 : -1;
   }
-  /// 0.6 m/s along the path, turning at once; walls stop it.
+  /// 0.6 m/s along the path, turning at once; walls stop it. On the spot 0.3 rad/s.
   void move() {
+    if (explorer.is_turn()) {
+      robot.yaw_rad += 0.3 * kTick_s;
+      return;
+    }
     if (explorer.path_number() != followed_) {
       followed_ = explorer.path_number();
       next_ = 0;
@@ -214,6 +218,7 @@ class WalkWorld {
   time::Time now;
   Tracking tracking = Tracking::kTracking;
   bool is_blocked = false;
+  double drift_m = 0.0;
   int decisions = 0;
   double travelled_m = 0.0;
   double longest_idle_s = 0.0;  ///< without moving or turning while it explored

@@ -9,6 +9,7 @@
 #include "simulator/core/robot/starts.hpp"
 #include "simulator/core/robot/tour_follower.hpp"
 #include "tests/benchmark/slam/dice.hpp"
+#include "tests/benchmark/slam/tour_recording.hpp"
 #include "tests/benchmark/slam/trial_rig.hpp"
 
 namespace lapis::slam::benchmark {

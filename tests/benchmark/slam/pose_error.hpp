@@ -18,4 +18,10 @@ inline PoseError difference(const geometry::Pose& a, const geometry::Pose& b) {
   return {d.translation().norm(), geometry::rotation_angle(d.linear())};
 }
 
+/// Whether a measured motion is another one than the true one: by more than 0.2 m or 0.1 rad.
+inline bool is_wrong(const geometry::Pose& measured, const geometry::Pose& truth) {
+  const PoseError error = difference(measured, truth);
+  return error.m > 0.2 || error.rad > 0.1;
+}
+
 }  // namespace lapis::slam::benchmark

@@ -102,8 +102,20 @@ std::filesystem::path recording_of(const SimulatorConfig& config, const std::fil
 
 }  // namespace
 
+geometry::Pose planar(const Eigen::Vector2d& position, double yaw_rad, double z_m) {
+  return geometry::make_pose({position.x(), position.y(), z_m},
+                             Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
+}
+
+geometry::Pose pose_of(const OdometrySample& reading) { return planar(reading.position, reading.yaw_rad); }
+
 RgbdFrame to_frame(time::Time stamp, const geometry::PinholeCamera& camera, const simulator::CameraImages& images) {
   return {stamp, camera, to_gray(images.color), to_metres(images.depth_mm)};
+}
+
+RgbdFrame black_frame(time::Time stamp, const geometry::PinholeCamera& camera) {
+  return {stamp, camera, geometry::GrayImage(camera.width, camera.height),
+          geometry::DepthImage(camera.width, camera.height)};
 }
 
 TourConfig tour_config(const std::vector<std::string>& assignments, const std::vector<std::string>& worlds) {

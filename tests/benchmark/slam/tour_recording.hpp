@@ -21,8 +21,15 @@ struct TourFrame {
   geometry::Pose T_start_camera;                    ///< true; from where base_link began
 };
 
+/// Pose in the plane at height `z_m`.
+geometry::Pose planar(const Eigen::Vector2d& position, double yaw_rad, double z_m = 0.0);
+/// What slam is told of a reading: T_odom_base.
+geometry::Pose pose_of(const simulator::OdometrySample& reading);
 /// Colour and depth as slam gets them.
 RgbdFrame to_frame(time::Time stamp, const geometry::PinholeCamera& camera, const simulator::CameraImages& images);
+
+/// Black, without depth.
+RgbdFrame black_frame(time::Time stamp, const geometry::PinholeCamera& camera);
 
 /// A simulator with the bundled tour, and slam.
 struct TourConfig {

@@ -16,6 +16,8 @@
 #include "evaluator/core/ate.hpp"
 #include "simulator/set_up.hpp"
 #include "slam/core/rgbd_slam.hpp"
+#include "tests/benchmark/slam/edge_honesty.hpp"
+#include "tests/benchmark/slam/pose_error.hpp"
 #include "tests/benchmark/slam/tour_recording.hpp"
 #include "tests/benchmark/slam/wrong_loop_trials.hpp"
 
@@ -25,7 +27,7 @@ namespace {
 struct Options {
   std::vector<std::string> scenes{"apartment"};
   std::vector<int> seeds{1, 2, 3, 4, 5};
-  std::vector<std::string> overrides;
+  std::vector<std::string> worlds, overrides;
   std::string folder;
   bool no_odometry = false;
   bool with_loops = false;
@@ -42,6 +44,7 @@ struct View {
 
 struct Run {
   int frames = 0, tracked = 0;
+  std::map<std::string, int> frames_by_source;
   std::vector<double> milliseconds;              // CPU time of each frame
   std::vector<double> online_errors_m;           // of every frame as published at its time
   std::map<std::int64_t, geometry::Pose> truth;  // T_map_camera by stamp
@@ -75,17 +78,6 @@ double mean(const std::vector<double>& values) {
   double sum = 0.0;
   for (const double v : values) sum += v;
   return values.empty() ? NAN : sum / static_cast<double>(values.size());
-}
-
-// Squared error in units of its information, per degree of freedom: 1 on average when the information is honest.
-double nees(const geometry::Pose& estimate, const geometry::Pose& truth, const geometry::Matrix6d& information) {
-  const geometry::Vector6d error = geometry::se3_log(estimate.inverse() * truth);
-  return error.dot(information * error) / 6.0;
-}
-
-geometry::Pose pose_of(const simulator::OdometrySample& reading) {
-  return geometry::make_pose({reading.position.x(), reading.position.y(), 0.0},
-                             Eigen::Quaterniond(Eigen::AngleAxisd(reading.yaw_rad, Eigen::Vector3d::UnitZ())));
 }
 
 View make_view(const RgbdFrame& frame, const geometry::Pose& T_map_camera) {
@@ -123,10 +115,8 @@ bool is_revisit(const View& older, const View& newer) {
          std::min(common_surface(older, newer), common_surface(newer, older)) >= kCommon;
 }
 
-bool is_wrong(const PoseGraphEdge& loop, const std::vector<View>& views) {
-  const geometry::Pose truth = views[loop.from].T_map_camera.inverse() * views[loop.to].T_map_camera;
-  const geometry::Pose error = truth.inverse() * loop.T_from_to;
-  return error.translation().norm() > 0.2 || geometry::rotation_angle(error.linear()) > 0.1;
+bool is_wrong_loop(const PoseGraphEdge& loop, const std::vector<View>& views) {
+  return is_wrong(loop.T_from_to, views[loop.from].T_map_camera.inverse() * views[loop.to].T_map_camera);
 }
 
 // Revisits by the truth: key-frames within 1 m, 30 degrees and 30 % common surface of one so much older that it is no
@@ -141,7 +131,7 @@ Recall recall_of(const Run& run) {
   std::set<KeyframeId> recognised;
   for (const Revisit& revisit : run.loops.revisits) recognised.insert(revisit.to);
   for (const PoseGraphEdge& edge : run.graph.edges) {
-    if (edge.type == EdgeType::kLoopClosure && is_wrong(edge, run.views)) ++recall.wrong;
+    if (edge.type == EdgeType::kLoopClosure && is_wrong_loop(edge, run.views)) ++recall.wrong;
   }
   bool in_passage = false, is_closed = false;
   for (std::size_t id = kNeighbours; id < run.views.size(); ++id) {
@@ -163,6 +153,12 @@ Recall recall_of(const Run& run) {
   return recall;
 }
 
+std::string source_of(const TrackingResult& result) {
+  if (!has_pose(result)) return result.state == TrackingState::kInitializing ? "before the first pose" : "lost";
+  if (result.source == PoseSource::kVision) return "vision";
+  return result.source == PoseSource::kSurfaces ? "surfaces" : "odometry";
+}
+
 // What slam says of a tour. The truth is brought into its map by the first frame with a pose, as the evaluator does: a
 // robot that begins in front of a bare wall has moved before there is a map.
 Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, const std::string& folder,
@@ -179,6 +175,7 @@ Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, cons
     const TrackingResult result = slam.process(tour_frame.frame);
     run.milliseconds.push_back(cpu_ms() - before_ms);
     ++run.frames;
+    ++run.frames_by_source[source_of(result)];
     const geometry::Pose T_map_camera = result.T_map_keyframe * result.T_keyframe_camera;
     const bool is_tracked = result.state == TrackingState::kTracking;
     if (is_tracked && !T_map_start) T_map_start = T_map_camera * tour_frame.T_start_camera.inverse();
@@ -258,6 +255,22 @@ void print_row(const std::string& scene, int seed, const Run& run) {
   std::fflush(stdout);
 }
 
+EdgeHonesty honesty_of(const Run& run, const geometry::CameraMount& mount, const PoseGraphConfig& config) {
+  EdgeHonesty honesty(T_base_camera(mount), config.min_information);
+  honesty.add(run.graph, run.truth);
+  return honesty;
+}
+
+void print_sources(const std::map<std::string, int>& frames_by_source) {
+  int all = 0;
+  for (const auto& [source, frames] : frames_by_source) all += frames;
+  std::printf("  frames");
+  for (const auto& [source, frames] : frames_by_source) {
+    std::printf(" | %s %d, %.2f %%", source.c_str(), frames, 100.0 * frames / all);
+  }
+  std::printf("\n");
+}
+
 void spoil(const Run& run, int seeds) {
   std::vector<Eigen::Vector3d> truth;
   for (const auto& node : run.graph.nodes) {
@@ -266,17 +279,38 @@ void spoil(const Run& run, int seeds) {
   print_wrong_loop_trials(run.graph, truth, seeds);
 }
 
+// All runs together.
+struct Pool {
+  std::optional<EdgeHonesty> edges;
+  std::map<std::string, int> frames_by_source;
+};
+
+void print_honesty(const Run& run, const EdgeHonesty& honesty, Pool& pool) {
+  print_sources(run.frames_by_source);
+  honesty.print("  ");
+  if (!pool.edges) {
+    pool.edges = honesty;
+  } else {
+    pool.edges->add(honesty);
+  }
+  for (const auto& [source, frames] : run.frames_by_source) pool.frames_by_source[source] += frames;
+}
+
 int run(const Options& options) {
   bool are_complete = true;
+  Pool pool;
   print_header();
   for (const std::string& scene : options.scenes) {
     for (const int seed : options.seeds) {
-      auto [simulated, slam] = tour_config(options.overrides);
+      auto [simulated, slam] = tour_config(options.overrides, options.worlds);
       simulated.scene = scene;
       simulated.seed = seed;
       try {
-        const Run tour = play(simulated, slam.method, options.folder, !options.no_odometry);
+        const bool with_odometry = !options.no_odometry && simulated.wheels.odometry;
+        const Run tour = play(simulated, slam.method, options.folder, with_odometry);
         print_row(scene, seed, tour);
+        const auto mount = camera_mount(simulated.robot.camera);
+        print_honesty(tour, honesty_of(tour, mount, slam.method.pose_graph), pool);
         if (options.with_loops) print_loops(tour);
         if (options.wrong_loop_seeds > 0) spoil(tour, options.wrong_loop_seeds);
       } catch (const std::exception& error) {
@@ -285,6 +319,9 @@ int run(const Options& options) {
       }
     }
   }
+  std::printf("all runs\n");
+  print_sources(pool.frames_by_source);
+  if (pool.edges) pool.edges->print("  ");
   std::printf(
       "errors in cm (position, map frame, no alignment unless se3); visual, loop, odom, end: NEES per degree of "
       "freedom\nrevisits: key-frames that truly show an old place again, recognised of all; passages: rows of such, "
@@ -293,15 +330,23 @@ int run(const Options& options) {
   return are_complete ? 0 : 1;
 }
 
+constexpr const char* kHelp =
+    R"(Tours of simulated scenes through slam, without DDS: a table of errors, honesty and time. Below each row and, of all
+runs together, at the end: frames by what gave their pose, and NEES per degree of freedom of edges by what measured
+them. Edges of surfaces leave directions open: an eigenvalue of an edge's information counts as a degree of freedom
+when it is more than ten times slam.pose_graph.min_information. "wheels, in the plane" are x, y and the turn of
+base_link alone, since a robot on a floor has no errors in the other directions.)";
+
 }  // namespace
 }  // namespace lapis::slam::benchmark
 
 int main(int argc, char** argv) {
   using lapis::slam::benchmark::Options;
-  CLI::App app("Tours of simulated scenes through slam, without DDS: a table of errors, honesty and time.");
+  CLI::App app(lapis::slam::benchmark::kHelp);
   Options options;
   app.add_option("--scenes", options.scenes, "bundled names or files")->delimiter(',');
   app.add_option("--seeds", options.seeds, "a run each")->delimiter(',');
+  app.add_option("--world", options.worlds, "file of config/worlds: what wheels and camera are like")->delimiter(',');
   app.add_option("--set", options.overrides, "slam.KEY=VALUE, simulator.KEY=VALUE or robot.KEY=VALUE");
   app.add_option(
       "--recordings", options.folder,

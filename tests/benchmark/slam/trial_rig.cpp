@@ -27,18 +27,6 @@ RobotState at_rest(const StartPose& place, time::Time stamp) {
 
 }  // namespace
 
-Pose planar(const Eigen::Vector2d& position, double yaw_rad, double z_m) {
-  return geometry::make_pose({position.x(), position.y(), z_m},
-                             Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
-}
-
-Pose pose_of(const OdometrySample& reading) { return planar(reading.position, reading.yaw_rad); }
-
-RgbdFrame black_frame(time::Time stamp, const geometry::PinholeCamera& camera) {
-  return {stamp, camera, geometry::GrayImage(camera.width, camera.height),
-          geometry::DepthImage(camera.width, camera.height)};
-}
-
 TrialRig::TrialRig(const simulator::World& world, const simulator::SimulationConfig& config, const StartPose& start)
     : world_(world), config_(config), robot_(world.nav_map(), config.robot, at_rest(start, {})),
       sensors_(config.sensors, config.camera, world.scene().labels, config.seed) {}

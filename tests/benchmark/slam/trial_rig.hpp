@@ -9,13 +9,6 @@
 
 namespace lapis::slam::benchmark {
 
-/// Pose in the plane at height `z_m`.
-geometry::Pose planar(const Eigen::Vector2d& position, double yaw_rad, double z_m = 0.0);
-/// What slam is told of a reading: T_odom_base.
-geometry::Pose pose_of(const simulator::OdometrySample& reading);
-/// A black image without depth.
-RgbdFrame black_frame(time::Time stamp, const geometry::PinholeCamera& camera);
-
 /// As simulator::Simulation, but only frames that are looked at are rendered, and the robot can be carried.
 class TrialRig {
  public:

@@ -50,11 +50,6 @@ const char* word_for(const WatchedFrame& frame) {
   return frame.state == TrackingState::kInitializing ? "initializing" : "lost";
 }
 
-bool is_wrong(const Pose& T_from_to, const Pose& T_from_to_true) {
-  const PoseError error = difference(T_from_to, T_from_to_true);
-  return error.m > 0.2 || error.rad > 0.1;
-}
-
 WatchedSlam::WatchedSlam(const SlamConfig& config, const Pose& T_base_camera)
     : slam_(config, T_base_camera, T_base_camera) {}
 
@@ -111,16 +106,18 @@ WatchedMap WatchedSlam::finish() {
   return map;
 }
 
-void print_stretches(const std::vector<WatchedFrame>& frames) {
+void print_stretches(const std::vector<WatchedFrame>& frames, double from_s) {
+  const auto word = [](const WatchedFrame& frame) { return is_held(frame) ? "held" : word_for(frame); };
   std::size_t begin = 0;
   for (std::size_t i = 1; i <= frames.size(); ++i) {
     const WatchedFrame &first = frames[begin], &last = frames[i - 1];
-    if (i < frames.size() && word_for(frames[i]) == word_for(first)) continue;
+    if (i < frames.size() && word(frames[i]) == word(first)) continue;
+    begin = i;
+    if (last.t_s < from_s) continue;
     std::printf("    %7.2f to %7.2f s %-12s %s -> %s sigma %5.2f m %4.1f dg, key-frame %4zu, %3u of %3u %s\n",
-                first.t_s, last.t_s, word_for(first), error_of(first).c_str(), error_of(last).c_str(), last.sigma_m,
+                first.t_s, last.t_s, word(first), error_of(first).c_str(), error_of(last).c_str(), last.sigma_m,
                 last.sigma_rad * kDegrees, static_cast<std::size_t>(last.reference), last.inliers, last.matches,
                 first.reason.c_str());
-    begin = i;
   }
 }
 

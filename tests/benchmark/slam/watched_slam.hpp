@@ -40,9 +40,6 @@ struct WatchedMap {
   std::vector<std::string> remarks;  ///< a line for each wrong loop
 };
 
-/// Whether a measured motion is another one than the true one: by more than 0.2 m or 0.1 rad.
-bool is_wrong(const geometry::Pose& T_from_to, const geometry::Pose& T_from_to_true);
-
 /// RGB-D SLAM beside the truth, which the first frame with a pose brings into the map.
 class WatchedSlam {
  public:
@@ -62,8 +59,9 @@ class WatchedSlam {
   std::vector<WatchedFrame> frames_;
 };
 
-/// A line for every stretch of one source: from when to when, its last reason, error at both ends.
-void print_stretches(const std::vector<WatchedFrame>& frames);
+/// A line for every stretch from `from_s` on in which the pose is held, by odometry, or lost: from when to when, error
+/// at both ends, why it began.
+void print_stretches(const std::vector<WatchedFrame>& frames, double from_s);
 /// A line for every frame.
 void print_frames(const std::vector<WatchedFrame>& frames);
 

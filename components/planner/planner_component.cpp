@@ -187,7 +187,6 @@ void PlannerComponent::begin_session(std::int64_t session) {
   worker_.discard();
   robot_.reset();
   obstacles_.reset();
-  provisional_area_.reset();
   surroundings_.reset();
   surroundings_state_.reset();
   decision_ = {};

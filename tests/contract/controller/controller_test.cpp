@@ -57,16 +57,6 @@ TEST_F(LockstepController, TurnsOnTheSpotWithoutAPoseAndAMap) {
   EXPECT_EQ(world.position, Eigen::Vector2d(0.0, 0.0));
 }
 
-TEST_F(LockstepController, ATurnStandsStillWithoutAPlannerAndWithoutImages) {
-  for (const Speaking& who : {Speaking{.pose = false, .planner = false}, Speaking{.camera = false, .pose = false}}) {
-    world.send_path({});
-    ASSERT_TRUE(tick({.pose = false}));
-    world.send_turn({2.0, 4.0, 6.0});
-    ASSERT_LE(ticks_until(false, 1.0, {.pose = false}), 0.2);
-    EXPECT_LE(ticks_until(true, 2.0, who), kStopWithin_s);
-  }
-}
-
 TEST_F(LockstepController, APathInBaseLinkThatLeadsAwayIsRefused) {
   get_going();
   world.send_turn({1.0});
@@ -301,6 +291,16 @@ INSTANTIATE_TEST_SUITE_P(Each, FreeControllerWithout,
 
 TEST_F(FreeController, StandsStillWhenAllFallSilentAtOnce) {
   EXPECT_LT(seconds_until_still({.camera = false, .pose = false, .map = false, .planner = false}), kStopWithin_s);
+}
+
+TEST_F(FreeController, ATurnStandsStillWithin300MillisecondsOfTheLastImageOrWordOfThePlanner) {
+  for (const Speaking& who : {Speaking{.pose = false, .planner = false}, Speaking{.camera = false, .pose = false}}) {
+    world.send_path({});
+    world.send_turn({2.0, 4.0, 6.0, 8.0, 10.0});
+    const auto turns = [&] { return commands.back().angular().z() > 0.0 && commands.back().linear().x() == 0.0; };
+    ASSERT_TRUE(frames_until(turns, {.pose = false})) << statuses.back().reason() << controller.log();
+    EXPECT_LT(seconds_until_still(who), kStopWithin_s);
+  }
 }
 
 TEST_F(FreeController, StandsStillWhenTheStampsStandStill) {

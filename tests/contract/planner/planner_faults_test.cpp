@@ -21,7 +21,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 TEST_F(PlannerContract, SaysWhatSlamLacksAndLooksAroundUntilThereIsAFirstPose) {
   ASSERT_TRUE(start()) << planner->log();
-  EXPECT_EQ(reason(), "waits for slam's first pose") << "before the first frame";
   peers.reason = "no features with depth: the camera looks at a blank wall";
   ASSERT_TRUE(tick(kInitializing));
   EXPECT_EQ(state(), STATE_EXPLORING);
@@ -293,7 +292,7 @@ TEST_F(PlannerContract, WhatWaitsForACorrectionIsLeftAloneAsLongAsAnythingElseIs
   peers.provisional_area.publish(area);
   peers.draw(kRoomWithTwoDoors);
   ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
-  EXPECT_LT(goal().x(), 2.5) << "the other door";
+  EXPECT_LT(goal().x(), 2.5) << "the other door" << planner->log();
   const auto is_left_alone = [this] {
     const auto& all = candidates.back().candidates();
     return std::any_of(all.begin(), all.end(), [](const auto& c) { return c.reason() == "left alone for now"; });

@@ -15,6 +15,8 @@
 namespace lapis::test {
 namespace {
 
+constexpr auto kInitializing = lapis_msgs::msg::TrackedFrame_Constants::STATE_INITIALIZING;
+
 using nav_msgs::msg::Odometry;
 using ::testing::HasSubstr;
 
@@ -198,6 +200,24 @@ TEST_F(SlamContract, FrameWithoutDepthIsCounted) {
   EXPECT_EQ(frames[3].state(), kLost);
   EXPECT_THAT(frames[3].reason(), HasSubstr("no depth image"));
   EXPECT_TRUE(wait_for_count("no depth image", 1)) << slam.log();
+}
+
+// Who waits for a first pose reads why there is none, within two seconds.
+TEST_F(SlamContract, SaysWhatItLacksForAFirstPose) {
+  const auto& status = probe.collect(topics::kSlamStatus);
+  const auto says = [&](const std::string& reason) {
+    return probe.wait_until([&] { return !status.empty() && status.back().reason().find(reason) == 0; }, Seconds(2));
+  };
+  EXPECT_TRUE(says("waits for the camera's images")) << slam.log();
+  auto wall = feed.frame(0);
+  std::fill(wall.color->data().begin(), wall.color->data().end(), std::uint8_t{200});
+  ASSERT_TRUE(answers(wall, 0)) << slam.log();
+  EXPECT_EQ(frames.back().state(), kInitializing);
+  EXPECT_THAT(frames.back().reason(), HasSubstr("a blank wall?): 0 features with depth"));
+  EXPECT_TRUE(says(frames.back().reason())) << status.back().reason() << slam.log();
+  EXPECT_EQ(status.back().state(), kInitializing);
+  ASSERT_TRUE(track(1)) << slam.log();
+  EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
 }
 
 TEST_F(SlamContract, SilenceIsSurvivedAndEndsCleanly) {

@@ -327,6 +327,7 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
   views_stamp_.reset();
   obstacles_stamp_.reset();
   provisional_stamp_.reset();
+  provisional_changes_.reset();
   saved_stamp_ = stamp;
 }
 
@@ -403,6 +404,8 @@ void SemanticMapperComponent::publish_obstacles() {
 /// When it has changed, as it has when a new map begins: nothing waits in it.
 void SemanticMapperComponent::publish_provisional_area() {
   provisional_stamp_ = published_stamp_;
+  if (provisional_changes_ == mapper_->provisional_changes()) return;
+  provisional_changes_ = mapper_->provisional_changes();
   OccupancyGrid area = mapper_->provisional_area();
   if (area == provisional_area_) return;
   provisional_.publish(to_message(area, header(published_stamp_)));

@@ -103,7 +103,8 @@ class SemanticMapperComponent {
   std::optional<time::Time> views_stamp_;
   std::optional<time::Time> obstacles_stamp_;
   std::optional<time::Time> provisional_stamp_;
-  OccupancyGrid provisional_area_;  // published last
+  OccupancyGrid provisional_area_;                    // published last
+  std::optional<std::uint64_t> provisional_changes_;  // of the map's, when it was looked at last
   std::optional<time::Time> saved_stamp_;
   std::set<std::tuple<int, int, int>> published_tiles_;  // of this epoch
   std::map<const dds::Writer*, std::uint64_t> seen_matches_;

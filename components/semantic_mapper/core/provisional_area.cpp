@@ -27,6 +27,7 @@ void ProvisionalArea::set(std::size_t frame, const mapping::FrameVotes& votes) {
     }
     if (cells != 0) columns[{of_block.block.x, of_block.block.y}] |= cells;
   }
+  ++changes_;
   seen_[frame].assign(columns.begin(), columns.end());
 }
 

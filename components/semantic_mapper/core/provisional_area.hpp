@@ -21,9 +21,10 @@ class ProvisionalArea {
 
   /// What a frame says without regard to its drift; in place of what it said before.
   void set(std::size_t frame, const mapping::FrameVotes& votes);
-  void erase(std::size_t frame) { seen_.erase(frame); }
+  void erase(std::size_t frame) { changes_ += seen_.erase(frame); }
   bool contains(std::size_t frame) const { return seen_.contains(frame); }
   std::size_t size() const { return seen_.size(); }
+  std::uint64_t changes() const { return changes_; }
   /// kFree where any of the frames has looked, else kUnknown; without frames a grid without cells.
   OccupancyGrid grid() const;
 
@@ -33,6 +34,7 @@ class ProvisionalArea {
 
   mapping::HeightBand band_;
   double resolution_m_;
+  std::uint64_t changes_ = 0;
   std::unordered_map<std::size_t, std::vector<std::pair<mapping::BlockColumn, std::uint64_t>>> seen_;  ///< by frame
 };
 

@@ -69,7 +69,7 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   const bool is_newer = input.graph_version >= graph_version_, is_known = keyframe_poses_.contains(input.keyframe_id);
   if (is_newer || !is_known) move_keyframe(input.keyframe_id, input.T_map_keyframe);
   // The graph says so, too, but later.
-  if (!is_known && input.is_keyframe && !input.drift.is_none()) drifting_.insert(input.keyframe_id);
+  if (!is_known && input.is_keyframe) is_drifting_[input.keyframe_id] = !input.drift.is_none();
 
   StoredFrame stored{input.stamp, input.keyframe_id, input.T_keyframe_camera, Pose::Identity()};
   stored.T_map_camera = wanted_pose(stored);
@@ -96,7 +96,9 @@ mapping::FrameVotes SemanticMapper::votes_of(const mapping::CompactFrame& sample
 /// Of the newest frame, which is in the map in part.
 void SemanticMapper::keep_rest(std::uint64_t keyframe_id, const mapping::FrameVotes& whole) {
   const std::size_t index = frames_.size() - 1;
-  if (!config_.re_anchor || !store_.has(index) || !drifting_.contains(keyframe_id)) {
+  const auto known = is_drifting_.find(keyframe_id);  // nobody has said yet: the graph will
+  const bool is_held = known != is_drifting_.end() && !known->second;
+  if (!config_.re_anchor || !store_.has(index) || is_held) {
     ++frames_in_part_;
     return;
   }
@@ -123,11 +125,8 @@ void SemanticMapper::update_keyframe_poses(std::uint64_t graph_version, std::spa
 }
 
 void SemanticMapper::set_drifting(std::uint64_t keyframe_id, bool is_drifting) {
-  if (is_drifting) {
-    drifting_.insert(keyframe_id);
-    return;
-  }
-  drifting_.erase(keyframe_id);
+  is_drifting_[keyframe_id] = is_drifting;
+  if (is_drifting) return;
   const auto waiting = waiting_.extract(keyframe_id);
   if (waiting.empty()) return;
   corrected_.insert(waiting.mapped().begin(), waiting.mapped().end());

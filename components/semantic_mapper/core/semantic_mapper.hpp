@@ -121,6 +121,8 @@ class SemanticMapper {
   std::size_t frames_in_part() const { return frames_in_part_; }
   /// Where the waiting frames have looked.
   OccupancyGrid provisional_area() const { return provisional_.grid(); }
+  /// Grows with every change of the area.
+  std::uint64_t provisional_changes() const { return provisional_.changes(); }
 
   const mapping::VoxelMap& map() const { return map_; }
   /// Samples of a stored frame; nothing when it was let go (FrameStore).
@@ -182,7 +184,7 @@ class SemanticMapper {
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> frames_of_keyframe_;
   std::set<std::size_t> off_;  ///< frames beyond the threshold, and corrected ones
 
-  std::unordered_set<std::uint64_t> drifting_;                           ///< key-frames
+  std::unordered_map<std::uint64_t, bool> is_drifting_;                  ///< of key-frames, as far as it is known
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> waiting_;  ///< frames, by key-frames that drift
   std::unordered_set<std::size_t> corrected_;  ///< frames that have waited and can come in whole
   ProvisionalArea provisional_;                ///< of the frames of both

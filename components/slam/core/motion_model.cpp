@@ -69,9 +69,9 @@ void MotionModel::learn_wheels(time::Time from, time::Time to, const Pose& T_fro
   odometry_.calibrate(wheels_.belief());
 }
 
-void MotionModel::set_wheels(const OdometryConfig& config, const WheelCalibration& wheels) {
-  wheels_ = WheelCalibrator(config, wheels);
-  odometry_.calibrate(wheels);
+void MotionModel::resume_wheels(const WheelCalibration& wheels) {
+  wheels_.resume(wheels);
+  odometry_.calibrate(wheels_.belief());
 }
 
 Matrix6d compound_covariance(const Matrix6d& covariance_a, const Pose& B, const Matrix6d& covariance_b) {

@@ -50,7 +50,7 @@ class MotionModel {
   void learn_wheels(time::Time from, time::Time to, const geometry::Pose& T_from_to,
                     const geometry::Matrix6d& covariance);
   /// Continues with what was learnt in an earlier run.
-  void set_wheels(const OdometryConfig& config, const WheelCalibration& wheels);
+  void resume_wheels(const WheelCalibration& wheels);
   const WheelCalibration& wheels() const { return wheels_.belief(); }
   /// When a pose was found last.
   std::optional<time::Time> last_stamp() const { return last_ ? std::optional(last_->stamp) : std::nullopt; }

@@ -101,11 +101,12 @@ std::optional<OdometryMotion> OdometryTrack::between(time::Time from, time::Time
                         b->path_m - a->path_m, b->turned_rad - a->turned_rad};
 }
 
-std::optional<Pose> OdometryTrack::uncorrected_between(time::Time from, time::Time to) const {
+std::optional<WheelCalibrator::Walk> OdometryTrack::uncorrected_between(time::Time from, time::Time to) const {
   const auto a = at(from);
   const auto b = at(to);
   if (!a || !b || to < from) return std::nullopt;
-  return Pose(a->T_odom_base.inverse() * b->T_odom_base);
+  return WheelCalibrator::Walk{a->T_odom_base.inverse() * b->T_odom_base, b->path_m - a->path_m,
+                               b->turned_rad - a->turned_rad};
 }
 
 }  // namespace lapis::slam

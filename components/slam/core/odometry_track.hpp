@@ -47,7 +47,7 @@ class OdometryTrack {
   /// of OdometryConfig::max_gap_s after the newest. None outside of what is known.
   std::optional<OdometryMotion> between(time::Time from, time::Time to) const;
   /// The same as the wheels said it, without calibration.
-  std::optional<geometry::Pose> uncorrected_between(time::Time from, time::Time to) const;
+  std::optional<WheelCalibrator::Walk> uncorrected_between(time::Time from, time::Time to) const;
   /// T_odom_base at a stamp as the wheels said it, known as far as motions are.
   std::optional<geometry::Pose> pose_at(time::Time stamp) const;
 

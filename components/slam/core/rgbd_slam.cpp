@@ -60,7 +60,7 @@ class RgbdSlam::Implementation {
     reference_ = state.reference;
     version_ = state.graph_version;
     saved_keyframes_ = map_.keyframes().size();
-    if (state.wheels.motions > 0.0) motion_.set_wheels(config_.odometry, state.wheels);
+    if (state.wheels.motions > 0.0) motion_.resume_wheels(state.wheels);
     is_placed_ = false;
     tracker_.set_reference(map_, reference_);
     must_optimize_ = graph_.count(EdgeType::kLoopClosure) > 0;  // it may have been under way
@@ -102,7 +102,7 @@ class RgbdSlam::Implementation {
     is_placed_ = true;
     ++frames_since_keyframe_;
     const bool is_keyframe = needs_keyframe(config_.keyframe, evidence(seen));
-    return continue_with(frame, seen, PoseSource::kVision, is_keyframe || ends_drift(seen));
+    return continue_with(frame, seen, PoseSource::kVision, is_keyframe);
   }
 
   std::optional<Pose> odometry_at(time::Time stamp) const { return motion_.odometry_at(stamp); }
@@ -131,8 +131,7 @@ class RgbdSlam::Implementation {
     result.graph_version = version_;
     if (frame != nullptr) result.features = static_cast<std::uint32_t>(frame->features.size());
     const auto reckoned = motion_.dead_reckon(stamp);
-    if (!reckoned) return result;
-    set_drift(stamp, result);
+    if (!reckoned || !set_drift(stamp, result)) return result;
     if (is_contradicted()) {
       result.reason = "what odometry says contradicts what the camera sees: the robot was carried, or its wheels spin";
     } else if (result.drift_m > config_.odometry.max_drift_m) {
@@ -147,14 +146,14 @@ class RgbdSlam::Implementation {
 
  private:
   TrackingResult continue_with(const Frame& frame, const TrackOutcome& outcome, PoseSource source, bool is_keyframe) {
-    contradictions_ = 0;
+    contradictions_ = fits_ = 0;
     held_stamp_ = frame.input->stamp;
     const bool ends_a_drift = ends_drift(outcome);
     follow_reference(outcome);
     TrackingResult result = with_pose(frame, outcome);
     result.source = source;
-    if (is_keyframe) insert_keyframe(frame, &outcome, result);
-    if (is_keyframe && ends_a_drift) {
+    if (is_keyframe || ends_a_drift) insert_keyframe(frame, &outcome, result);
+    if (ends_a_drift) {
       must_optimize_ = true;
       optimize();
     }
@@ -174,30 +173,34 @@ class RgbdSlam::Implementation {
                                          reckoned->covariance};
     const TrackOutcome aligned = surfaces_.track(map_, frame, reference_, expected);
     contradictions_ = aligned.is_contradicted ? contradictions_ + 1 : is_contradicted() ? contradictions_ : 0;
-    if (!aligned.is_tracked) {
+    fits_ = aligned.is_tracked ? fits_ + 1 : 0;
+    const bool fits_by_chance = is_contradicted() && fits_ < config_.tracker.max_contradictions;
+    if (!aligned.is_tracked || fits_by_chance) {
       const bool is_new_view = aligned.is_new_view && !could_start && !awaits_confirmation_;
       return continue_blind(frame, reason + "; " + aligned.reason, is_new_view);
     }
     const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames;
     if (begins_anew) blind_frames_ = 0;
     return continue_with(frame, aligned, PoseSource::kSurfaces,
-                         begins_anew || has_moved(aligned.alignment.T_reference_camera) || ends_drift(aligned));
+                         begins_anew || has_moved(aligned.alignment.T_reference_camera));
   }
 
-  // The camera sees through what was mapped, for too long. Only vision, or surfaces that fit again, end that.
+  // The camera sees through what was mapped, for too long. Vision ends that, or surfaces that fit for as long.
   bool is_contradicted() const { return contradictions_ >= config_.tracker.max_contradictions; }
 
-  // Vision or surfaces tie the camera to the map on the other side of a stretch that hangs on odometry alone.
+  // The camera is back in a part of the map that is tied to the newest by odometry alone: a key-frame here closes the
+  // circle, and the stretch between can be corrected.
   bool ends_drift(const TrackOutcome& outcome) const {
-    const KeyframeId newest = map_.keyframes().back().id;
-    return outcome.reference != newest && graph_.is_drifting(newest);
+    return graph_.are_apart(outcome.reference, map_.keyframes().back().id);
   }
 
-  void set_drift(time::Time stamp, TrackingResult& result) const {
+  // False when odometry does not reach back to the last pose by vision or surfaces: nobody knows.
+  bool set_drift(time::Time stamp, TrackingResult& result) const {
     const auto motion = held_stamp_ ? motion_.odometry_between(*held_stamp_, stamp) : std::nullopt;
-    if (!motion) return;
+    if (!motion) return false;
     result.drift_m = largest_sigma(motion->covariance, 0);
     result.drift_rad = largest_sigma(motion->covariance, 3);
+    return true;
   }
 
   // Far enough from the reference for another key-frame.
@@ -223,7 +226,7 @@ class RgbdSlam::Implementation {
       if (!found.is_tracked) return outcome;
       outcome = std::move(found);
     }
-    if (relocalizer_.believes(map_, motion_, frame.input->stamp, outcome)) return outcome;
+    if (relocalizer_.believes({map_, graph_, motion_, frame.input->stamp, is_contradicted()}, outcome)) return outcome;
     outcome.is_tracked = false;
     outcome.reason = "a recognised place awaits confirmation";
     awaits_confirmation_ = true;
@@ -262,7 +265,9 @@ class RgbdSlam::Implementation {
     result.graph_version = version_;
     const RelativeCamera seen{outcome.reference, outcome.alignment.T_reference_camera,
                               edge_information(config_.pose_graph, outcome.alignment.information).inverse()};
-    set_pose(fuse(seen, motion_.dead_reckon(frame.input->stamp)), result);
+    auto reckoned = motion_.dead_reckon(frame.input->stamp);
+    if (reckoned && graph_.are_apart(reckoned->reference, seen.reference)) reckoned.reset();  // it leads astray
+    set_pose(fuse(seen, reckoned), result);
     result.features = static_cast<std::uint32_t>(frame.features.size());
     result.matches = static_cast<std::uint32_t>(outcome.matches);
     result.inliers = static_cast<std::uint32_t>(outcome.alignment.inliers);
@@ -389,27 +394,26 @@ class RgbdSlam::Implementation {
   }
 
   // Odometry of wheels that slipped is left out: vision is sure of its pose, and odometry gives another one. But where
-  // it is all that a stretch hangs on, it stays, as uncertain as it turned out to be.
+  // the path between is of odometry alone, it is that path which is wrong, and its circle has to close.
   void add_odometry_edge(KeyframeId from, KeyframeId to, const TrackOutcome& outcome) {
     const time::Time from_stamp = map_.keyframe(from).stamp, to_stamp = map_.keyframe(to).stamp;
-    auto motion = motion_.odometry_between(from_stamp, to_stamp);
-    if (!motion) return motion_.forget_before(to_stamp);
-    const Pose T_from_to = map_.keyframe(from).T_map_camera.inverse() * map_.keyframe(to).T_map_camera;
     const Matrix6d covariance = edge_information(config_.pose_graph, outcome.alignment.information).inverse();
     const bool vision_is_sure = outcome.alignment.inliers >= config_.tracker.min_matches;
-    const double sigmas = disagreement(*motion, T_from_to, covariance);
-    const bool is_all = graph_.is_drifting(from);
-    if (is_all) motion->covariance *= std::max(1.0, sigmas * sigmas / 6.0);
     if (vision_is_sure && outcome.reference == from) {
       motion_.learn_wheels(from_stamp, to_stamp, outcome.alignment.T_reference_camera, covariance);
     }
+    const auto motion = motion_.odometry_between(from_stamp, to_stamp);
     motion_.forget_before(to_stamp);
-    if (vision_is_sure && !is_all && sigmas > config_.odometry.max_disagreement) {
+    if (!motion) return;
+    const Matrix6d information = bounded_information(config_.pose_graph, motion->covariance.inverse());
+    const PoseGraphEdge edge{from, to, EdgeType::kWheelOdometry, motion->T_from_to, information};
+    if (graph_.are_apart(from, outcome.reference)) return graph_.add_edge(edge);
+    const Pose T_from_to = map_.keyframe(from).T_map_camera.inverse() * map_.keyframe(to).T_map_camera;
+    if (vision_is_sure && disagreement(*motion, T_from_to, covariance) > config_.odometry.max_disagreement) {
       ++slips_;
       return;
     }
-    const Matrix6d information = bounded_information(config_.pose_graph, motion->covariance.inverse());
-    graph_.add_edge({from, to, EdgeType::kWheelOdometry, motion->T_from_to, information});
+    graph_.add_edge(edge);
     graph_.add_link({from, to, motion->T_from_to, information});
   }
 
@@ -469,6 +473,7 @@ class RgbdSlam::Implementation {
   std::size_t slips_ = 0;
   int blind_frames_ = 0;                  // in a row, with enough to see
   int contradictions_ = 0;                // in a row, of surfaces with odometry
+  int fits_ = 0;                          // in a row, of the same
   std::optional<time::Time> held_stamp_;  // of the newest pose by vision or surfaces
   bool has_odometry_ = false;
   bool awaits_confirmation_ = false;  // a place was recognised in the newest frame, and is not believed yet

@@ -18,7 +18,8 @@
 
 namespace lapis::slam {
 
-/// kTracking: by vision, or by surfaces where features are too few. kDeadReckoning: neither has a pose, wheel odometry
+/// kTracking: by vision, or by surfaces where features are too few; or the map begins anew where odometry says.
+/// kDeadReckoning: neither has a pose, wheel odometry
 /// carries the last one on. kLost: nothing is known.
 enum class TrackingState : std::uint8_t { kInitializing, kTracking, kDeadReckoning, kLost };
 

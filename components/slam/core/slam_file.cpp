@@ -255,7 +255,7 @@ std::optional<Content> check_header(std::span<const std::uint8_t> bytes, std::st
   if (in.is_good() && (version == kFormatVersion || version == kWithoutWheels))
     return Content{version, bytes.last(in.remaining())};
   error = in.is_good() ? "has format version " + std::to_string(version) + ", this program reads " +
-                             std::to_string(kFormatVersion)
+                             std::to_string(kWithoutWheels) + " and " + std::to_string(kFormatVersion)
                        : "is cut off";
   return std::nullopt;
 }

@@ -25,7 +25,7 @@ SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink>
     const auto to = static_cast<std::size_t>(edge.to);
     if (edge.type == EdgeType::kLoopClosure || has_parent[to]) continue;
     has_parent[to] = true;
-    parents_[to] = {edge.from, edge.information.inverse(), edge.type == EdgeType::kWheelOdometry};
+    parents_[to] = {edge.from, edge.information.inverse(), edge.type == EdgeType::kWheelOdometry, false};
     if (edge.type == EdgeType::kSurface) surfaces[to] = edge.information;
   }
   // Surfaces leave directions open, which odometry's edge beside them holds.
@@ -36,7 +36,7 @@ SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink>
     parents_[found->first].covariance = (found->second + edge.information).inverse();
   }
   for (const PoseGraphEdge& edge : edges_) {
-    if (edge.type != EdgeType::kWheelOdometry) parents_[static_cast<std::size_t>(edge.from)].is_drifting = false;
+    if (edge.type != EdgeType::kWheelOdometry) parents_[static_cast<std::size_t>(edge.from)].has_child = true;
     hold_circle(edge);
   }
 }
@@ -49,8 +49,8 @@ void SlamGraph::add_root() {
 void SlamGraph::add_keyframe(const PoseGraphEdge& edge, const Matrix6d& covariance) {
   edges_.push_back(edge);
   const bool is_odometry = edge.type == EdgeType::kWheelOdometry;
-  parents_.push_back({edge.from, covariance, is_odometry});
-  if (!is_odometry) parents_[static_cast<std::size_t>(edge.from)].is_drifting = false;
+  parents_.push_back({edge.from, covariance, is_odometry, false});
+  if (!is_odometry) parents_[static_cast<std::size_t>(edge.from)].has_child = true;
   covariances_.push_back(compound_covariance(this->covariance(edge.from), edge.T_from_to, covariance));
 }
 
@@ -112,13 +112,23 @@ void SlamGraph::apply(const GraphCorrection& correction, Map& map) {
   edges_ = std::move(kept);
 }
 
+bool SlamGraph::are_apart(KeyframeId a, KeyframeId b) const {
+  while (a != b) {
+    KeyframeId& younger = a > b ? a : b;
+    const Parent& parent = parents_[static_cast<std::size_t>(younger)];
+    if (parent.is_bridge) return true;
+    younger = parent.id;
+  }
+  return false;
+}
+
 // An edge beside those to the parents closes a circle with them: the two paths to the common ancestor.
 void SlamGraph::hold_circle(const PoseGraphEdge& edge) {
   auto a = static_cast<std::size_t>(edge.from), b = static_cast<std::size_t>(edge.to);
   if (parents_[b].id == edge.from || parents_[a].id == edge.to) return;
   while (a != b) {
     std::size_t& younger = a > b ? a : b;
-    parents_[younger].is_drifting = false;
+    parents_[younger].is_bridge = false;
     younger = static_cast<std::size_t>(parents_[younger].id);
   }
 }

@@ -51,7 +51,12 @@ class SlamGraph {
   std::size_t count(EdgeType type) const;
   /// Whether the key-frame hangs on odometry alone: no vision or surface ties it to another one, and no optimisation
   /// has known a circle of edges that it lies on.
-  bool is_drifting(KeyframeId id) const { return parents_[static_cast<std::size_t>(id)].is_drifting; }
+  bool is_drifting(KeyframeId id) const {
+    const Parent& parent = parents_[static_cast<std::size_t>(id)];
+    return parent.is_bridge && !parent.has_child;
+  }
+  /// Whether on the path of edges between two key-frames there is one of odometry alone that nothing has corrected.
+  bool are_apart(KeyframeId a, KeyframeId b) const;
   /// Loop closures that were accepted, and found to be outliers later.
   std::size_t loops_removed() const { return loops_removed_; }
   const std::vector<KeyframeLink>& links() const { return links_; }
@@ -63,7 +68,8 @@ class SlamGraph {
   struct Parent {
     KeyframeId id = 0;
     geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // of T_parent_keyframe
-    bool is_drifting = false;                                    // of the key-frame itself
+    bool is_bridge = false;  // the edge is of odometry, and no optimisation has known a circle that it lies on
+    bool has_child = false;  // by vision or surfaces
   };
   void hold_circle(const PoseGraphEdge& edge);
 

@@ -93,7 +93,7 @@ Fault find_wheel_fault(const WheelCalibration& wheels) {
   };
   if (!is_scale(wheels.distance_scale, wheels.distance_variance) || !is_scale(wheels.turn_scale, wheels.turn_variance))
     return "scale out of range";
-  if (!(wheels.noise > 0.0 && std::isfinite(wheels.noise))) return "noise out of range";
+  if (!(wheels.noise >= 0.1 && wheels.noise <= 10.0)) return "noise out of range";
   if (!(wheels.motions >= 0.0 && std::isfinite(wheels.motions))) return "number of motions out of range";
   return std::nullopt;
 }

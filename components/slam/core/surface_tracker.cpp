@@ -16,8 +16,8 @@ constexpr std::size_t kNewest = 5;  // key-frames that are looked at, besides th
 constexpr double kMostAway_m = 2.0, kMostTurned_rad = 0.9;
 constexpr double kKeyframeSigma_m = 0.003, kKeyframeSigma_rad = 0.002;  // of key-frames near each other
 // A view contradicts the map when it sees through so large a share of what should be in view, by more than the margin,
-// and sees little of it. A door that was opened is less.
-constexpr double kMostSeenThrough = 0.25, kLittleSeen = 0.3, kMargin_m = 0.3;
+// and sees little of it.
+constexpr double kMostSeenThrough = 0.25, kLittleSeen = 0.3, kMargin_m = 0.3, kLevelCosine = 0.9;
 constexpr double kMetresPerRadian = 1.5;  // how far turning counts, when key-frames are compared
 
 /// Directions of the tangent that the measurements know, and their information. Coordinates a in these directions are
@@ -108,6 +108,19 @@ SurfaceTracker::Sight SurfaceTracker::look(const AlignmentProblem& problem, cons
   return sight;
 }
 
+bool SurfaceTracker::is_contradicted(const AlignmentProblem& problem, const Pose& T_reference_camera,
+                                     const Matrix6d& covariance, const Eigen::Vector3d& up_reference) const {
+  std::vector<SurfaceSample> upright;
+  for (const SurfaceSample& sample : problem.surface) {
+    if (std::abs(sample.normal.dot(up_reference)) < kLevelCosine) upright.push_back(sample);
+  }
+  AlignmentProblem walls = problem;
+  walls.surface = upright;
+  const Sight sight = look(walls, T_reference_camera, covariance);
+  return 2 * sight.in_view() >= config_.surface.min_matches &&
+         sight.seen_through > kMostSeenThrough * sight.in_view() && sight.seen < kLittleSeen * sight.in_view();
+}
+
 TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeId reference,
                                    const MotionModel::Expected& expected) const {
   TrackOutcome outcome;
@@ -139,9 +152,8 @@ TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeI
       sight.seen < surfaces.min_share * sight.in_view()) {
     outcome.reason = "too little of the near surfaces is seen again";
     outcome.is_new_view = true;
-    outcome.is_contradicted = sight.in_view() >= surfaces.min_matches &&
-                              sight.seen_through > kMostSeenThrough * sight.in_view() &&
-                              sight.seen < kLittleSeen * sight.in_view();
+    const Eigen::Vector3d up_reference = T_reference_map.linear() * Eigen::Vector3d::UnitZ();
+    outcome.is_contradicted = is_contradicted(problem, T_expected, expected.covariance, up_reference);
     return outcome;
   }
   const KnownDirections known =

@@ -39,6 +39,10 @@ class SurfaceTracker {
     int seen = 0, seen_through = 0, differs = 0;
     int in_view() const { return seen + seen_through + differs; }
   };
+  /// Whether the walls and furniture that should be in view are not there. Floors and ceilings, which are the same
+  /// everywhere, do not count.
+  bool is_contradicted(const AlignmentProblem& problem, const geometry::Pose& T_reference_camera,
+                       const geometry::Matrix6d& covariance, const Eigen::Vector3d& up_reference) const;
   Sight look(const AlignmentProblem& problem, const geometry::Pose& T_reference_camera,
              const geometry::Matrix6d& covariance) const;
 

@@ -19,22 +19,27 @@ struct WheelCalibration {
 /// Learns the calibration from motions that vision knows as well: Gaussian beliefs in both scales, each motion one
 /// measurement (a Kalman filter of constants); the noise is the root of the mean squared innovation in its sigmas,
 /// where kPriorMotions say that the configuration is right. One motion never weighs for more than kMostSigmas: slip
-/// says nothing of the scale.
+/// says nothing of the scale. No scale is ever known better than kLeastSigma: it changes with load and floor.
 class WheelCalibrator {
  public:
   static constexpr double kPriorMotions = 20.0;
   static constexpr double kMostSigmas = 4.0;
+  static constexpr double kLeastSigma = 1e-3;
 
   /// Begins with scales of 1, known to OdometryConfig::scale_sigma.
   explicit WheelCalibrator(const OdometryConfig& config);
-  /// Continues with what was saved.
-  WheelCalibrator(const OdometryConfig& config, const WheelCalibration& saved) : config_(config), belief_(saved) {}
+  /// Continues with what was saved, a little less sure: tyres wear, and it may be another robot.
+  void resume(const WheelCalibration& saved);
 
   const WheelCalibration& belief() const { return belief_; }
-  /// The robot has moved by `odometry` as its wheels say, uncorrected, and by `seen` as vision says, with this
-  /// covariance (right perturbation; translation, rotation); both of base_link. Motions under 5 cm and 3 degrees say
-  /// nothing.
-  void learn(const geometry::Pose& odometry, const geometry::Pose& seen, const geometry::Matrix6d& covariance);
+  /// How the robot has moved as its wheels say, uncorrected.
+  struct Walk {
+    geometry::Pose T_from_to = geometry::Pose::Identity();  ///< of base_link
+    double path_m = 0.0, turned_rad = 0.0;                  ///< forwards and backwards alike
+  };
+  /// The robot has walked so, and moved by `seen` as vision says, with this covariance (right perturbation;
+  /// translation, rotation). Motions under 5 cm and 3 degrees say nothing.
+  void learn(const Walk& walk, const geometry::Pose& seen, const geometry::Matrix6d& covariance);
 
  private:
   /// @param walked by the wheels, `seen` by vision with `variance`; `nominal` variance of the wheels' noise

@@ -14,6 +14,7 @@ class RelocalizerTest : public ::testing::Test {
  protected:
   RelocalizerTest() {
     map_.add_keyframe({});
+    graph_.add_root();
     motion_.update(map_, stamp(0.0), {0, Pose::Identity(), geometry::Matrix6d::Zero()});
   }
 
@@ -31,11 +32,13 @@ class RelocalizerTest : public ::testing::Test {
     return outcome;
   }
   bool believes(double seconds, const TrackOutcome& outcome) {
-    return relocalizer_.believes(map_, motion_, stamp(seconds), outcome);
+    return relocalizer_.believes({map_, graph_, motion_, stamp(seconds), is_odometry_refuted_}, outcome);
   }
 
   SlamConfig config_;
   Map map_;
+  SlamGraph graph_;
+  bool is_odometry_refuted_ = false;
   MotionModel motion_{config_.tracker.max_prediction_s, config_.odometry, Pose::Identity()};
   Relocalizer relocalizer_{config_};
 };
@@ -95,7 +98,7 @@ class ContradictedPlaceTest : public RelocalizerTest {
 TEST_F(ContradictedPlaceTest, IsNotBelievedBeforeViewsAgreeAlongMetres) {
   for (int i = 10; i < 50; ++i) ASSERT_FALSE(believes(0.1 * i, beside(0.1 * i, true))) << 0.1 * i << " m";
   EXPECT_TRUE(believes(5.05, beside(5.05, true)));
-  EXPECT_EQ(relocalizer_.doubted(), 40u);
+  EXPECT_EQ(relocalizer_.doubted(), 1U) << "it is one place";
 }
 
 TEST_F(ContradictedPlaceTest, IsNeverBelievedForOneViewSeenAgain) {
@@ -116,11 +119,44 @@ TEST_F(ContradictedPlaceTest, PlacesThatDoNotAgreeAreNoEvidence) {
   }
 }
 
-// Wheels that spun for three metres may have got nowhere.
 TEST_F(ContradictedPlaceTest, WhatSlipExplainsOnlyHasToBeFoundAgain) {
   const int needed = config_.relocalization.confirmations;
-  for (int i = 0; i < needed; ++i) ASSERT_FALSE(believes(6.0 + 0.1 * i, found(4.5 + 0.1 * i)));
-  EXPECT_TRUE(believes(6.0 + 0.1 * needed, found(4.5 + 0.1 * needed)));
+  for (int i = 0; i < needed; ++i) ASSERT_FALSE(believes(6.0 + 0.1 * i, found(4.9 + 0.1 * i)));
+  EXPECT_TRUE(believes(6.0 + 0.1 * needed, found(4.9 + 0.1 * needed)));
+}
+
+TEST_F(ContradictedPlaceTest, SlipDoesNotExplainTheNextRoom) {
+  for (int i = 0; i < 5; ++i) ASSERT_FALSE(believes(7.0 + 0.1 * i, found(4.6 + 0.1 * i)));
+}
+
+// On the spot, all around; the camera does not see what it should.
+TEST_F(RelocalizerTest, WhereOdometryIsRefutedATurnIsEvidenceEnough) {
+  for (int i = 0; i <= 80; ++i) {
+    ASSERT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose(Eigen::AngleAxisd(0.05 * i, Eigen::Vector3d::UnitY()))));
+  }
+  for (const bool is_refuted : {false, true}) {
+    is_odometry_refuted_ = is_refuted;
+    int believed_at = 0;
+    for (int i = 10; i < 80 && believed_at == 0; ++i) {
+      TrackOutcome outcome = found(5.0);
+      outcome.alignment.T_reference_camera.linear() =
+          Eigen::AngleAxisd(0.05 * i, Eigen::Vector3d::UnitY()).toRotationMatrix();
+      for (int k = 0; k < 90; ++k) outcome.inliers.push_back({k, static_cast<LandmarkId>(100 * (i / 10) + k)});
+      if (believes(0.1 * i, outcome)) believed_at = i;
+    }
+    EXPECT_NEAR(believed_at, is_refuted ? 50 : 0, is_refuted ? 1 : 0) << "2 rad after 0.5 rad";
+  }
+}
+
+TEST_F(RelocalizerTest, APoseThatIsUnsureOfItsPlaceIsNotUnsureOfItsDirection) {
+  geometry::Matrix6d covariance = 1e-6 * geometry::Matrix6d::Identity();
+  covariance.topLeftCorner<3, 3>() = Eigen::Matrix3d::Identity();
+  motion_.update(map_, stamp(0.0), {0, Pose::Identity(), covariance});
+  for (int i = 0; i <= 20; ++i) ASSERT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose::Identity()));
+  TrackOutcome turned = found(1.0);
+  turned.alignment.T_reference_camera.linear() = Eigen::AngleAxisd(3.0, Eigen::Vector3d::UnitY()).toRotationMatrix();
+  EXPECT_FALSE(believes(0.1, turned));
+  EXPECT_TRUE(believes(0.2, found(1.0, 46)));
 }
 
 }  // namespace

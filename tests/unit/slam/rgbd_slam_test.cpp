@@ -1,6 +1,7 @@
 #include "slam/core/rgbd_slam.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
@@ -263,6 +264,113 @@ TEST_F(RgbdSlamWithOdometry, WhiteWallsAreTrackedByTheirSurfaces) {
                                       [](const PoseGraphEdge& edge) { return edge.type == EdgeType::kSurface; });
   EXPECT_EQ(static_cast<std::size_t>(surfaces), slam_.keyframe_count() - keyframes);
   EXPECT_EQ(slam_.loops().closures, 0U) << "surfaces alone close no loop";
+}
+
+// What the camera sees from somewhere else.
+RgbdFrame white_frame_at(const Pose& T_room_camera, int index) {
+  RgbdFrame frame = test::render_room(test::small_camera(), T_room_camera, room_stamp(index));
+  std::fill(frame.gray.pixels.begin(), frame.gray.pixels.end(), std::uint8_t{240});
+  return frame;
+}
+
+TEST(RgbdSlam, ARobotThatIsCarriedIsLostAndItsMapUntouched) {
+  const Pose upright(Eigen::AngleAxisd(-M_PI / 2.0, Eigen::Vector3d::UnitX()));  // z of the map is up
+  RgbdSlam slam({}, upright * test::room_path(0));
+  for (int i = 0; i <= 80; ++i) slam.add_odometry(room_stamp(i), test::room_path(std::min(i, 20)));
+  for (int i = 0; i <= 20; ++i) ASSERT_EQ(slam.process(room_frame(i)).state, TrackingState::kTracking);
+  const auto version = slam.graph_version();
+  const Pose elsewhere = test::room_path(20) * Pose(Eigen::Translation3d(0.0, 0.0, -1.2)) *
+                         Pose(Eigen::AngleAxisd(0.8, Eigen::Vector3d::UnitY()));
+  const int late = 21 + SlamConfig{}.tracker.max_contradictions - 1;
+  for (int i = 21; i < 60; ++i) {
+    const TrackingResult result = slam.process(white_frame_at(elsewhere, i));
+    ASSERT_EQ(result.state, i >= late ? TrackingState::kLost : TrackingState::kDeadReckoning) << i << result.reason;
+    EXPECT_EQ(result.reason.find("carried") != std::string::npos, i >= late) << result.reason;
+  }
+  EXPECT_EQ(slam.process(black_room_frame(60)).state, TrackingState::kLost) << "something is before the camera";
+  EXPECT_EQ(slam.graph_version(), version);
+  // It is back where odometry says: believed when it lasts.
+  for (int i = 61; i < 61 + SlamConfig{}.tracker.max_contradictions; ++i) {
+    const TrackingResult back = slam.process(white_frame_at(test::room_path(20), i));
+    const bool is_believed = i == 61 + SlamConfig{}.tracker.max_contradictions - 1;
+    EXPECT_EQ(back.source, is_believed ? PoseSource::kSurfaces : PoseSource::kNone) << i << back.reason;
+    if (!is_believed) continue;
+    EXPECT_LT((upright.inverse() * T_map_camera(back).translation() - test::room_path(20).translation()).norm(), 0.02);
+  }
+}
+
+TEST_F(RgbdSlamWithOdometry, TellsHowFarOdometryMayHaveDrifted) {
+  feel(0, 41);
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(slam_.process(room_frame(i)).drift_m, 0.0);
+  double drift_m = 0.0;
+  for (int i = 10; i < 40; ++i) {
+    const TrackingResult result = slam_.process(covered_frame(i));
+    EXPECT_GT(result.drift_m, drift_m);
+    EXPECT_GT(result.drift_rad, 0.0);
+    drift_m = result.drift_m;
+  }
+  EXPECT_EQ(slam_.process(room_frame(40)).drift_m, 0.0);
+  EXPECT_EQ(slam_.process(room_frame(41)).drift_rad, 0.0);
+}
+
+TEST(RgbdSlam, IsLostWhenOdometryMayHaveDriftedTooFar) {
+  SlamConfig config;
+  config.odometry.max_drift_m = 0.012;
+  RgbdSlam slam(config, test::room_path(0));
+  for (int i = 0; i <= 60; ++i) slam.add_odometry(room_stamp(i), test::room_path(i));
+  for (int i = 0; i < 10; ++i) slam.process(room_frame(i));
+  EXPECT_EQ(slam.process(covered_frame(10)).state, TrackingState::kDeadReckoning);
+  const TrackingResult result = slam.process(covered_frame(60));
+  EXPECT_EQ(result.state, TrackingState::kLost);
+  EXPECT_GT(result.drift_m, config.odometry.max_drift_m);
+  EXPECT_NE(result.reason.find("max_drift_m"), std::string::npos) << result.reason;
+}
+
+// The camera turns away in the dark, sees another wall, and comes back in the dark, while odometry turns
+// 9 degrees too far each time: where it looked between can only be known when the circle closes.
+TEST(RgbdSlam, AStretchByOdometryIsCorrectedWhenTheOldViewReturns) {
+  constexpr int kDark = 20, kAway = 120, kDarkAgain = 150, kBack = 285, kEnd = 330;
+  const auto path = [](int i) {
+    return test::room_path(i < kDarkAgain ? i : std::max(5, kDarkAgain + kDarkAgain - i));
+  };
+  const auto is_dark = [](int i) { return (i >= kDark && i < kAway) || (i >= kDarkAgain && i < kBack); };
+  const geometry::Vector6d wrong = (geometry::Vector6d() << 0.0, 0.0, 0.0, 0.0, 0.0015, 0.0).finished();  // a frame
+  RgbdSlam slam({}, test::room_path(0));
+  Pose T_odom = Pose::Identity();
+  for (int i = 0; i < kEnd; ++i) {
+    if (i > 0) T_odom = T_odom * path(i - 1).inverse() * path(i);
+    if (is_dark(i)) T_odom = T_odom * geometry::se3_exp(wrong);
+    ASSERT_TRUE(slam.add_odometry(room_stamp(i), T_odom));
+  }
+  const auto turned_wrong = [&](const Pose& T_map_camera, int i) {
+    return geometry::rotation_angle((path(i).inverse() * T_map_camera).linear());
+  };
+  struct Passed {
+    KeyframeId id;
+    int frame;
+    double error_rad;
+  };
+  std::vector<Passed> stretch;
+  for (int i = 0; i < kEnd; ++i) {
+    const RgbdFrame frame =
+        is_dark(i) ? covered_frame(i) : test::render_room(test::small_camera(), path(i), room_stamp(i));
+    const TrackingResult result = slam.process(frame);
+    const bool is_away = i >= kAway && i < kDarkAgain;
+    if (result.is_keyframe && is_away)
+      stretch.push_back({result.keyframe_id, i, turned_wrong(T_map_camera(result), i)});
+    if (i >= kBack + 5) {
+      EXPECT_LT(turned_wrong(T_map_camera(result), i), 0.01) << i << result.reason;
+    }
+  }
+  slam.settle();
+  ASSERT_GE(stretch.size(), 3U);
+  const PoseGraphSnapshot graph = slam.pose_graph();
+  for (const Passed& passed : stretch) {
+    const auto& node = graph.nodes[static_cast<std::size_t>(passed.id)];
+    EXPECT_GT(passed.error_rad, 0.14) << passed.frame;
+    EXPECT_LT(turned_wrong(node.T_map_camera, passed.frame), 0.3 * passed.error_rad) << passed.frame;
+    EXPECT_FALSE(node.is_drifting);
+  }
 }
 
 TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {

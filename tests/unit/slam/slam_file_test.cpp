@@ -209,7 +209,7 @@ TEST(SlamFile, ErrorsNameFileVersionAndSection) {
   timeless.session = -1;
   EXPECT_EQ(refusal(encode_slam_file(timeless)), "has a session out of range");
   bytes[8] = 9;
-  EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 2");
+  EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1 and 2");
 }
 
 TEST(SlamFile, OldFileStaysWholeWhenThereIsNoSpace) {

@@ -108,6 +108,18 @@ TEST_F(DriftingStretchTest, IsCorrectedByAnOptimisationOfTheCircleThatItLiesOn) 
   EXPECT_TRUE(drifting().empty());
 }
 
+TEST_F(DriftingStretchTest, PartsThatOdometryJoinsAreApartUntilTheirCircleIsOptimised) {
+  add(6, 7, EdgeType::kOdometry);
+  EXPECT_TRUE(graph_.are_apart(0, 7));
+  EXPECT_TRUE(graph_.are_apart(7, 4));
+  EXPECT_FALSE(graph_.are_apart(6, 7));
+  EXPECT_FALSE(graph_.are_apart(0, 4));
+  graph_.add_edge(edge(0, 7, EdgeType::kLoopClosure));
+  EXPECT_TRUE(graph_.are_apart(0, 7));
+  optimise();
+  EXPECT_FALSE(graph_.are_apart(0, 7));
+}
+
 TEST_F(DriftingStretchTest, ALoopThatIsRemovedCorrectsNothing) {
   graph_.add_edge(edge(4, 6, EdgeType::kLoopClosure));
   optimise(0.0);

@@ -1,6 +1,7 @@
 #include "tests/benchmark/slam/edge_honesty.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 
 #include <Eigen/Eigenvalues>
@@ -89,7 +90,7 @@ void EdgeHonesty::print(const std::string& indent) const {
     }
     std::sort(values.begin(), values.end());
     const auto count = static_cast<double>(values.size());
-    const auto p95 = static_cast<std::size_t>(0.95 * (count - 1.0));
+    const auto p95 = static_cast<std::size_t>(std::ceil(0.95 * count)) - 1;
     std::printf(
         "%s%-20s %6zu edges, %3.1f degrees of freedom; NEES of each: mean %8.2f, median %6.2f, p95 %8.2f, max %8.1f\n",
         indent.c_str(), name.c_str(), values.size(), freedoms / count, sum / count, values[values.size() / 2],

@@ -25,10 +25,10 @@ GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
   return config;
 }
 
-std::vector<Pose2> turns_on_the_spot() {
+std::vector<Pose2> turns_on_the_spot(bool is_to_the_left) {
+  const double turn_rad = (is_to_the_left ? 2.0 : -2.0) * std::numbers::pi / kHeadings;
   std::vector<Pose2> headings;
-  for (int i = 1; i <= kBlindTurns * kHeadings; ++i)
-    headings.push_back({{0.0, 0.0}, 2.0 * std::numbers::pi * i / kHeadings});
+  for (int i = 1; i <= kBlindTurns * kHeadings; ++i) headings.push_back({{0.0, 0.0}, turn_rad * i});
   return headings;
 }
 
@@ -164,11 +164,12 @@ void Explorer::await_first_pose(time::Time now) {
                             " s: move the robot to where there is something to see, and start again");
 }
 
-// Other views may show slam where it is. The controller turns slowly, and the robot stands when it has turned twice.
+// Other views may show slam where it is, first those that it has turned away from. The controller turns slowly, and the
+// robot stands when it has turned twice.
 void Explorer::look_for_pose(time::Time now) {
   if ((now - *blind_since_).seconds() < kBlindPatience_s) return;
   reason_ = state_ == State::kRecovering ? "slam is lost: looks around" : "looks around for slam's first pose";
-  if (!is_turn_) set_path(turns_on_the_spot(), true);
+  if (!is_turn_) set_path(turns_on_the_spot(!trail_.turned_left()), true);
 }
 
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {

@@ -26,11 +26,14 @@ class Trail {
   bool step_back();
   /// Where slam tracked last.
   const std::optional<Pose2>& newest() const { return newest_; }
+  /// Its last turn was to the left.
+  bool turned_left() const { return turned_left_; }
   void clear();
 
  private:
   std::deque<Pose2> poses_;  ///< each somewhere else than the one before
   std::optional<Pose2> newest_;
+  bool turned_left_ = false;
 };
 
 }  // namespace lapis::planner

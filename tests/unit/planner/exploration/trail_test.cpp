@@ -32,6 +32,17 @@ TEST(Trail, ForgetsTheOldest) {
   EXPECT_EQ(next_back(trail), 950.0);
 }
 
+TEST(Trail, KnowsWhereItTurnedLast) {
+  Trail trail;
+  EXPECT_FALSE(trail.turned_left());
+  for (const double yaw_rad : {3.0, -3.2}) trail.add({{0.0, 0.0}, yaw_rad});
+  EXPECT_TRUE(trail.turned_left()) << "by 0.08, across pi";
+  trail.add({{1.0, 0.0}, -3.205});
+  EXPECT_TRUE(trail.turned_left()) << "noise";
+  trail.add({{1.0, 0.0}, -3.3});
+  EXPECT_FALSE(trail.turned_left());
+}
+
 TEST(Trail, IsEmptyBeforeSlamHasTracked) {
   Trail trail;
   trail.turn_back();

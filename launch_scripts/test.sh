@@ -8,7 +8,7 @@ usage() {
   cat <<TEXT
 usage: launch_scripts/test.sh [--tier unit|contract|integration|interop|long]
   --tier NAME  only this tier; default: all of them but long
-  long: tests that take over a minute, the benchmarks' build, contract tests and unit tests with DDS with
+  long: tests that take over a minute, the benchmarks' build, 25 generated buildings, contract tests and unit tests with DDS with
   AddressSanitizer and UndefinedBehaviorSanitizer, and clang-tidy on any number of changed files; docs/long_tests.md gets the results
 Environment: LAPIS_TEST_DATA, the folder of recorded test data (default ../shared/data beside the repository, when it
 exists); tests that need it are skipped without it.
@@ -76,6 +76,12 @@ test_shells_sanitized() {
   UBSAN_OPTIONS=print_stacktrace=1 ctest --preset asan-shell --no-tests=error
 }
 
+# Five of each kind that the unit test does not draw, with the check of features, which takes most of the time.
+check_buildings() {
+  rm -f "$build/Testing/buildings.csv"
+  launch_scripts/buildings.py "$build/Testing/buildings.csv" --first 101 --count 5
+}
+
 write_results() {
   cat >docs/long_tests.md <<TEXT
 # Long tests
@@ -93,6 +99,7 @@ TEXT
 for tier in "${tiers[@]}"; do run_tier "$tier"; done
 if [[ "${tiers[*]}" == long ]]; then
   check "benchmarks build" cmake --build --preset release --target benchmarks
+  check "generated buildings" check_buildings
   check "tests with DDS, with ASan and UBSan" test_shells_sanitized
   check "clang-tidy on changed files" .ci/tidy
   write_results

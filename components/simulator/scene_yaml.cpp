@@ -47,6 +47,11 @@ SurfaceSpec surface(YamlEntry& room, const std::string& key) {
   YamlEntry entry = room.entry(key);
   spec.texture = entry.text("texture", "");
   if (entry.has("color")) spec.color = color(entry);
+  if (entry.has("variant")) {
+    const int variant = entry.whole_number("variant", 0);
+    if (variant < 0) entry.refuse("variant must not be negative");
+    spec.variant = static_cast<std::uint64_t>(variant);
+  }
   entry.done();
   return spec;
 }

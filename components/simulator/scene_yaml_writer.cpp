@@ -32,6 +32,7 @@ void write_surface(YAML::Emitter& out, const char* key, const SurfaceSpec& surfa
   out << YAML::Key << key << YAML::Value << YAML::Flow << YAML::BeginMap;
   out << YAML::Key << "texture" << YAML::Value << surface.texture << YAML::Key << "color" << YAML::Value;
   write_list(out, color);
+  if (surface.variant) out << YAML::Key << "variant" << YAML::Value << *surface.variant;
   out << YAML::EndMap;
 }
 

@@ -72,6 +72,7 @@ void SimulatorComponent::add_options(CLI::App& app, Config& config) {
       ->needs(generate)
       ->check(CLI::IsMember(building_kinds()))
       ->capture_default_str();
+  app.add_flag("--panes", config.generates_panes, "of --generate: glass and mirrors that stand free")->needs(generate);
   app.add_option("--export-tum", config.export_dir, "write the tour as a TUM RGB-D data set, and exit");
 }
 

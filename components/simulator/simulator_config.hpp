@@ -61,6 +61,7 @@ struct SimulatorConfig {
   bool credits = false;
   std::optional<std::uint64_t> generated_seed;
   std::string generated_kind = "flat";
+  bool generates_panes = false;
   std::string snapshot_dir;
   std::string export_dir;
   std::string truth_dir;

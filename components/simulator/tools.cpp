@@ -65,8 +65,8 @@ int write_ground_truth(const SimulatorConfig& config) {
 }
 
 int print_generated(const SimulatorConfig& config) {
-  const BuildingName name =
-      parse_building_name(config.generated_kind + '_' + std::to_string(*config.generated_seed)).value();
+  BuildingName name = parse_building_name(config.generated_kind + '_' + std::to_string(*config.generated_seed)).value();
+  name.has_panes = config.generates_panes;
   std::cout << to_scene_yaml(generated_building(name));
   return 0;
 }

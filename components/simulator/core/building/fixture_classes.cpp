@@ -101,6 +101,17 @@ void mirror(Workshop& s) {
   framed(s, frame, s.textured("mirror"));
 }
 
+/// A pane of glass between two posts on feet: no camera sees it, and nothing passes it.
+void glass_screen(Workshop& s) {
+  const auto steel = s.metal();
+  const float post = 0.03F;
+  for (const float x : {-s.w / 2, s.w / 2 - post}) {
+    s.box(x, x + post, -s.d / 2, s.d / 2, 0, 0.03F, steel);
+    s.box(x, x + post, -post / 2, post / 2, 0.03F, s.h, steel);
+  }
+  s.shapes.picture({-s.w / 2 + post, 0, 0.03F}, {s.w - 2 * post, 0, 0}, {0, 0, s.h - 0.03F}, s.shapes.glass("glass"));
+}
+
 void board_panel(Workshop& s) {
   const auto frame = s.metal();
   framed(s, frame, s.painting(s.w / s.h));
@@ -177,14 +188,15 @@ void appliances(Workshop& s) {
 }
 
 constexpr std::array kFixtureClasses{
-    FurnitureClass{"curtain", 0.6, 0.1, 2.2, curtain},   FurnitureClass{"sink", 0.55, 0.45, 0.95, sink},
-    FurnitureClass{"stairs", 1.0, 2.4, 1.8, stairs},     FurnitureClass{"toilet", 0.38, 0.65, 0.78, toilet},
-    FurnitureClass{"towel", 0.5, 0.08, 0.7, towel},      FurnitureClass{"mirror", 0.6, 0.04, 1.4, mirror},
-    FurnitureClass{"shower", 0.9, 0.9, 2.1, shower},     FurnitureClass{"column", 0.35, 0.35, 2.6, column},
-    FurnitureClass{"bathtub", 1.7, 0.75, 0.58, bathtub}, FurnitureClass{"fireplace", 1.3, 0.4, 1.1, fireplace},
-    FurnitureClass{"lighting", 0.4, 0.4, 1.6, lighting}, FurnitureClass{"railing", 2.0, 0.06, 1.0, railing},
-    FurnitureClass{"blinds", 1.2, 0.05, 1.2, blinds},    FurnitureClass{"board_panel", 1.4, 0.04, 0.9, board_panel},
-    FurnitureClass{"picture", 0.6, 0.03, 0.45, picture}, FurnitureClass{"appliances", 0.6, 0.6, 0.86, appliances},
+    FurnitureClass{"curtain", 0.6, 0.1, 2.2, curtain},     FurnitureClass{"sink", 0.55, 0.45, 0.95, sink},
+    FurnitureClass{"stairs", 1.0, 2.4, 1.8, stairs},       FurnitureClass{"toilet", 0.38, 0.65, 0.78, toilet},
+    FurnitureClass{"towel", 0.5, 0.08, 0.7, towel},        FurnitureClass{"mirror", 0.6, 0.04, 1.4, mirror},
+    FurnitureClass{"shower", 0.9, 0.9, 2.1, shower},       FurnitureClass{"column", 0.35, 0.35, 2.6, column},
+    FurnitureClass{"bathtub", 1.7, 0.75, 0.58, bathtub},   FurnitureClass{"fireplace", 1.3, 0.4, 1.1, fireplace},
+    FurnitureClass{"lighting", 0.4, 0.4, 1.6, lighting},   FurnitureClass{"railing", 2.0, 0.06, 1.0, railing},
+    FurnitureClass{"blinds", 1.2, 0.05, 1.2, blinds},      FurnitureClass{"board_panel", 1.4, 0.04, 0.9, board_panel},
+    FurnitureClass{"picture", 0.6, 0.03, 0.45, picture},   FurnitureClass{"appliances", 0.6, 0.6, 0.86, appliances},
+    FurnitureClass{"window", 1.4, 0.3, 1.9, glass_screen},
 };
 
 }  // namespace

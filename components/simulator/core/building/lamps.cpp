@@ -29,6 +29,21 @@ std::vector<Eigen::Vector2d> floor_points(const Polygon& polygon) {
   return points;
 }
 
+bool is_far_from_walls(const Polygon& polygon, const Eigen::Vector2d& p) {
+  return contains(polygon, p) && distance_to_border(polygon, p) > kFromWall_m;
+}
+
+/// Moves what is too near to a wall to the nearest point that is not, if there is one.
+void leave_walls(std::vector<Eigen::Vector2d>& centers, std::vector<Eigen::Vector2d> points, const Polygon& polygon) {
+  std::erase_if(points, [&](const auto& point) { return !is_far_from_walls(polygon, point); });
+  for (Eigen::Vector2d& center : centers) {
+    if (points.empty() || is_far_from_walls(polygon, center)) continue;
+    center = *std::min_element(points.begin(), points.end(), [&](const auto& a, const auto& b) {
+      return (a - center).squaredNorm() < (b - center).squaredNorm();
+    });
+  }
+}
+
 /// `count` centres that share the floor among them, by Lloyd's algorithm.
 std::vector<Eigen::Vector2d> spread(const Polygon& polygon, std::size_t count) {
   const auto points = floor_points(polygon);
@@ -49,9 +64,10 @@ std::vector<Eigen::Vector2d> spread(const Polygon& polygon, std::size_t count) {
     for (std::size_t i = 0; i < centers.size(); ++i) {
       // The middle of a bent share may lie in a wall, or outside of the room; such a lamp stays where it is.
       const Eigen::Vector2d middle = counts[i] > 0.0 ? sums[i] / counts[i] : centers[i];
-      if (contains(polygon, middle) && distance_to_border(polygon, middle) > kFromWall_m) centers[i] = middle;
+      if (is_far_from_walls(polygon, middle)) centers[i] = middle;
     }
   }
+  leave_walls(centers, points, polygon);
   return centers;
 }
 

@@ -146,7 +146,66 @@ void books(Workshop& s, float z, float height) {
   }
 }
 
+constexpr float kPallet_m = 0.75F;  // shelves so deep carry pallets, and so do things so large
+
+/// A pallet with cartons in layers, each a little smaller or larger.
+void pallet(Workshop& s, const Eigen::AlignedBox3f& space) {
+  const Eigen::Vector3f low = space.min(), size = space.sizes();
+  const auto wood = s.plain(178, 146, 104);
+  for (const float share : {0.0F, 0.43F, 0.86F})
+    s.box(low.x() + share * size.x(), low.x() + (share + 0.14F) * size.x(), low.y(), low.y() + size.y(), low.z(),
+          low.z() + 0.1F, wood);
+  s.box(low.x(), low.x() + size.x(), low.y(), low.y() + size.y(), low.z() + 0.1F, low.z() + 0.13F, wood);
+  const bool is_printed = s.dice.chance(0.4);
+  const auto tone = static_cast<std::uint8_t>(s.dice.whole(150, 200));
+  const auto carton = is_printed ? s.textured("clutter") : s.plain(tone, static_cast<std::uint8_t>(tone * 0.82F), 120);
+  const auto label = s.painting(1.4);
+  const int layers = std::max(1, static_cast<int>((size.z() - 0.13F) / 0.35F));
+  const float step = (size.z() - 0.13F) / static_cast<float>(layers);
+  for (int i = 0; i < layers; ++i) {
+    const float inset = static_cast<float>(s.dice(0.0, 0.05)), z = low.z() + 0.13F + step * static_cast<float>(i);
+    const float x0 = low.x() + inset, x1 = low.x() + size.x() - inset, middle = 0.5F * (x0 + x1);
+    for (const auto& [a, b] : {std::pair{x0, middle - 0.005F}, std::pair{middle + 0.005F, x1}}) {
+      s.box(a, b, low.y() + inset, low.y() + size.y() - inset, z, z + step - 0.006F, carton);
+      const float wide = 0.6F * (b - a), tall = 0.6F * step, x = a + 0.1F * wide;
+      s.shapes.picture({x, low.y() + inset - 0.002F, z + 0.15F * step}, {wide, 0, 0}, {0, 0, tall}, label);
+      s.shapes.picture({x + wide, low.y() + size.y() - inset + 0.002F, z + 0.15F * step}, {-wide, 0, 0}, {0, 0, tall},
+                       label);
+    }
+  }
+}
+
+/// A rack of posts and beams; on the floor and on its decks stand pallets, and some places are empty.
+void pallet_rack(Workshop& s) {
+  const auto post = s.plain(44, 78, 140), beam = s.plain(214, 104, 38), deck = s.metal();
+  const float t = 0.09F;
+  for (const float x : {-s.w / 2, s.w / 2 - t}) {
+    for (const float y : {-s.d / 2, s.d / 2 - t}) s.box(x, x + t, y, y + t, 0, s.h, post);
+    for (float z = 0.3F; z + 0.05F < s.h; z += 0.7F) s.box(x, x + t, -s.d / 2 + t, s.d / 2 - t, z, z + 0.05F, post);
+  }
+  const int levels = std::max(2, static_cast<int>(std::lround(s.h / 1.25F)));
+  const float step = s.h / static_cast<float>(levels), inside = s.w - 2 * t;
+  const int places = inside > 2.0F ? 3 : 2;
+  const float wide = inside / static_cast<float>(places);
+  for (int level = 0; level < levels; ++level) {
+    const float z = step * static_cast<float>(level);
+    if (level > 0) {
+      for (const float y : {-s.d / 2, s.d / 2 - 0.05F})
+        s.box(-s.w / 2 + t, s.w / 2 - t, y, y + 0.05F, z - 0.12F, z, beam);
+      s.box(-s.w / 2 + t, s.w / 2 - t, -s.d / 2 + 0.05F, s.d / 2 - 0.05F, z - 0.03F, z, deck);
+    }
+    for (int i = 0; i < places; ++i) {
+      const float x = -s.w / 2 + t + wide * static_cast<float>(i),
+                  tall = (step - 0.16F) * static_cast<float>(s.dice(0.45, 0.95));
+      if (s.dice.chance(0.12)) continue;
+      pallet(s,
+             {Eigen::Vector3f(x + 0.04F, -0.46F * s.d, z), Eigen::Vector3f(x + wide - 0.04F, 0.46F * s.d, z + tall)});
+    }
+  }
+}
+
 void shelving(Workshop& s) {
+  if (s.d >= kPallet_m) return pallet_rack(s);
   const auto wood = s.wood();
   const float t = 0.025F;
   for (const float x : {-s.w / 2, s.w / 2 - t}) s.box(x, x + t, -s.d / 2, s.d / 2, 0, s.h, wood);
@@ -188,6 +247,8 @@ void clothes(Workshop& s) {
 
 /// A pile of boxes with printed sides.
 void objects(Workshop& s) {
+  if (s.w > kPallet_m && s.d > kPallet_m && s.h > kPallet_m)
+    return pallet(s, {Eigen::Vector3f(-s.w / 2, -s.d / 2, 0), Eigen::Vector3f(s.w / 2, s.d / 2, s.h)});
   const auto print = s.textured("clutter"), plain = s.paint();
   s.box(-s.w / 2, s.w / 2, -s.d / 2, s.d / 2, 0, 0.55F * s.h, print);
   s.box(-0.4F * s.w, 0.25F * s.w, -0.4F * s.d, 0.4F * s.d, 0.55F * s.h, 0.8F * s.h, plain);

@@ -33,6 +33,14 @@ std::uint32_t Shapes::emissive_material(const std::string& name, const geometry:
   return index;
 }
 
+std::uint32_t Shapes::glass(const std::string& name) {
+  TextureImage hole(1, 1);
+  hole(0, 0).a = 0;
+  const std::uint32_t index = material(name, {255, 255, 255}, std::make_shared<const TextureImage>(std::move(hole)));
+  mesh_.materials[index].is_cut_out = true;
+  return index;
+}
+
 std::uint32_t Shapes::vertex(const Eigen::Vector3f& position, const Eigen::Vector2f& texture_coordinate) {
   mesh_.positions.emplace_back(T_mesh_shape * position);
   mesh_.texture_coordinates.push_back(texture_coordinate);

@@ -37,6 +37,8 @@ class Shapes {
                          std::shared_ptr<const TextureImage> texture = nullptr);
   std::uint32_t emissive_material(const std::string& name, const geometry::Rgb8& color,
                                   std::shared_ptr<const TextureImage> texture = nullptr);
+  /// Neither colour nor depth show it.
+  std::uint32_t glass(const std::string& name);
 
   /// Six sides.
   void box(const Eigen::Vector3f& low, const Eigen::Vector3f& high, std::uint32_t material);

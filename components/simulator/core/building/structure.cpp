@@ -43,8 +43,10 @@ class RoomBuilder {
 
  private:
   std::uint32_t surface(const SurfaceSpec& spec) {
-    return shapes_.material(spec.texture, spec.color, textures_.surface(spec.texture, number_));
+    return shapes_.material(spec.texture, spec.color, textures_.surface(spec.texture, variant_of(spec)));
   }
+
+  std::uint64_t variant_of(const SurfaceSpec& spec) const { return spec.variant.value_or(number_); }
 
   void build_floor_and_ceiling() {
     const std::uint32_t floor = surface(room_.floor), ceiling = surface(room_.ceiling);
@@ -93,7 +95,7 @@ class RoomBuilder {
                 -Vector::UnitX(),
                 Vector::UnitZ(),
                 texture_period_m(room_.wall.texture)};
-    sheet.texture_offset.x() = static_cast<float>(Random(number_, RandomStream::kTexture, index).uniform(0));
+    sheet.texture_offset.x() = static_cast<float>(Random(variant_of(room_.wall), RandomStream::kTexture, index).uniform(0));
     std::vector<double> us{0.0, wall.length_m}, vs{0.0, plan_.height_m};
     std::vector<Eigen::AlignedBox2d> holes;
     for (const WallOpening& opening : wall.openings) {

@@ -43,8 +43,10 @@ enum class Stock {
   kFloorThings,
   kStores,
   kGoods,
+  kPallets,
   kRacks,
-  kCounters
+  kCounters,
+  kPanes
 };
 
 /// A piece of furniture that generated rooms may get: its model in the catalogue of sweethome3d-furniture, nullptr for

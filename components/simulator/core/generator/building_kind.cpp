@@ -4,6 +4,11 @@
 #include <charconv>
 
 namespace lapis::simulator {
+namespace {
+
+constexpr const char* kPanes = "_panes";
+
+}  // namespace
 
 const std::vector<std::string>& building_kinds() {
   static const std::vector<std::string> names{"flat", "office", "ring", "warehouse", "clinic"};
@@ -11,7 +16,8 @@ const std::vector<std::string>& building_kinds() {
 }
 
 std::string to_string(const BuildingName& name) {
-  return building_kinds()[static_cast<std::size_t>(name.kind)] + '_' + std::to_string(name.seed);
+  return building_kinds()[static_cast<std::size_t>(name.kind)] + '_' + std::to_string(name.seed) +
+         (name.has_panes ? kPanes : "");
 }
 
 std::optional<BuildingName> parse_building_name(const std::string& text) {
@@ -22,9 +28,10 @@ std::optional<BuildingName> parse_building_name(const std::string& text) {
   BuildingName name;
   const char *first = text.data() + split + 1, *last = text.data() + text.size();
   const auto [end, error] = std::from_chars(first, last, name.seed);
-  if (kind == kinds.end() || error != std::errc() || end != last) return std::nullopt;
+  if (kind == kinds.end() || error != std::errc()) return std::nullopt;
+  name.has_panes = end != last;
   name.kind = static_cast<BuildingKind>(kind - kinds.begin());
-  if (to_string(name) != text) return std::nullopt;  // "office_007"
+  if (to_string(name) != text) return std::nullopt;  // "office_007", "office_7x"
   return name;
 }
 

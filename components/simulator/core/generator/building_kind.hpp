@@ -23,9 +23,10 @@ const std::vector<std::string>& building_kinds();
 struct BuildingName {
   BuildingKind kind = BuildingKind::kFlat;
   std::uint64_t seed = 1;
+  bool has_panes = false;  ///< of glass, and mirrors, that stand free in rooms
 };
 
-/// "office_17": how commands and tables call a generated building.
+/// "office_17", with panes "office_17_panes": how commands and tables call a generated building.
 std::string to_string(const BuildingName& name);
 
 /// Nothing for names that are not of this form.

@@ -1,7 +1,11 @@
 #include "simulator/core/generator/furnish.hpp"
 
+#include <algorithm>
+#include <array>
 #include <numbers>
 #include <string>
+
+#include "simulator/core/generator/furnish_hall.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -25,12 +29,13 @@ void add_desk(RoomFurnisher& room) {
   room.hang_above(*desk, room.dice().chance(0.4) ? "board_panel" : "picture", {0.9, 0.6}, 1.6);
 }
 
-/// A table with chairs along its long sides.
-void add_table(RoomFurnisher& room, Stock tables, Stock chairs) {
+/// A table with chairs along its long sides, nearer to a wall where there is little space. False when it does not fit.
+bool add_table(RoomFurnisher& room, Stock tables, Stock chairs) {
   const Article& article = room.any(tables);
   const Article& chair = room.any(chairs);
-  const Index table = room.free_standing(article, 0.9);
-  if (!table) return;
+  Index table = room.free_standing(article, 0.9);
+  if (!table) table = room.free_standing(article, 0.5);
+  if (!table) return false;
   const int pairs = article.width_m > 1.9 ? 3 : article.width_m > 1.3 ? 2 : 1;
   for (int i = 0; i < pairs; ++i) {
     const double aside = (i - 0.5 * (pairs - 1)) * (article.width_m - 0.3) / pairs;
@@ -42,6 +47,15 @@ void add_table(RoomFurnisher& room, Stock tables, Stock chairs) {
     if (const Index behind = room.at(chair, turned.at + back, turned.yaw_deg)) room.set_movable(*behind);
   }
   room.on(*table, room.any(Stock::kKitchenThings), {0.1, 0.0});
+  return true;
+}
+
+/// The first of its kind that fits.
+Index put_one(RoomFurnisher& room, Stock stock) {
+  for (const Article& article : articles(stock)) {
+    if (const Index added = room.against_wall(article, true)) return added;
+  }
+  return std::nullopt;
 }
 
 void put_some(RoomFurnisher& room, Stock stock, int most, bool near_corner) {
@@ -80,6 +94,7 @@ void kitchen(RoomFurnisher& room) {
       const Article& unit = articles(Stock::kKitchenUnits)[i % articles(Stock::kKitchenUnits).size()];
       Index next = room.beside(*last, unit, to_the_right);
       if (!next && i == 0) next = room.beside(*last, unit, !to_the_right);
+      if (!next) next = room.against_wall(unit);
       if (!next) break;
       if (unit.class_name == std::string("counter")) room.on(*next, room.any(Stock::kKitchenThings), {0.0, 0.1});
       last = next;
@@ -90,14 +105,18 @@ void kitchen(RoomFurnisher& room) {
 }
 
 void bedroom(RoomFurnisher& room) {
-  if (const Index bed = room.against_wall(room.any(Stock::kDoubleBeds))) {
+  Index bed = room.against_wall(room.any(Stock::kDoubleBeds), room.area_m2() < 13.0);
+  if (!bed) bed = put_one(room, Stock::kDoubleBeds);
+  if (!bed) bed = put_one(room, Stock::kSingleBeds);
+  if (bed) {
     for (const bool right : {true, false}) {
       const Index table = room.beside(*bed, room.any(Stock::kBedsideTables), right);
       if (table) room.on(*table, room.any(Stock::kSmallLamps), {0.0, 0.0});
     }
     room.hang_above(*bed, "picture", {0.9, 0.6}, 1.7);
   }
-  room.against_wall(room.any(Stock::kWardrobes), true);
+  if (!room.against_wall(room.any(Stock::kWardrobes), true) && !put_one(room, Stock::kWardrobes))
+    put_one(room, Stock::kSideboards);
   if (room.area_m2() > 11.0) room.against_wall(room.any(Stock::kSideboards));
   put_some(room, Stock::kPlants, 1, true);
   if (room.dice().chance(0.4)) room.free_standing(room.any(Stock::kRugs), 0.2);
@@ -130,7 +149,8 @@ void office(RoomFurnisher& room) {
 }
 
 void meeting(RoomFurnisher& room) {
-  add_table(room, Stock::kMeetingTables, Stock::kMeetingChairs);
+  if (!add_table(room, Stock::kMeetingTables, Stock::kMeetingChairs))
+    add_table(room, Stock::kDiningTables, Stock::kMeetingChairs);
   if (const Index stand = room.against_wall(room.any(Stock::kTelevisionStands)))
     room.on(*stand, room.any(Stock::kTelevisions), {0.0, 0.0});
   put_some(room, Stock::kPlants, 2, true);
@@ -156,7 +176,7 @@ void lounge(RoomFurnisher& room) {
 void ward(RoomFurnisher& room) {
   const int beds = room.area_m2() > 14.0 ? 2 : 1;
   for (int i = 0; i < beds; ++i) {
-    const Index bed = room.against_wall(room.any(Stock::kHospitalBeds));
+    const Index bed = room.against_wall(room.any(Stock::kHospitalBeds), room.area_m2() < 18.0);
     if (bed) room.beside(*bed, room.any(Stock::kBedsideTables), i == 0);
   }
   room.against_wall(room.any(Stock::kBasins));
@@ -190,38 +210,6 @@ void hallway(RoomFurnisher& room) {
   room.against_wall({Stock::kBookcases, "shelving", nullptr, 0.8, 0.3, 1.9});
 }
 
-/// One row of racks, from x0 on; the back of a second one leans on it when `is_double`.
-void add_racks(RoomFurnisher& room, const Article& rack, double x0, double x1, double y, bool is_double) {
-  for (double x = x0 + 0.5 * rack.width_m; x + 0.5 * rack.width_m <= x1; x += rack.width_m + 0.04) {
-    room.at(rack, {x, y + 0.5 * rack.depth_m}, 0);
-    if (is_double) room.at(rack, {x, y + 1.5 * rack.depth_m + 0.04}, 180);
-  }
-}
-
-void hall(RoomFurnisher& room) {
-  Eigen::AlignedBox2d bounds;
-  for (const auto& corner : room.polygon()) bounds.extend(corner);
-  const double width = bounds.sizes().x(), depth = bounds.sizes().y(), aisle = room.dice()(2.0, 2.6);
-  Article rack = room.any(Stock::kRacks);
-  rack.height_m = room.dice()(2.2, 3.2);
-  const bool is_double = room.dice().chance(0.5), is_cut = width > 16.0;
-  const double thick = is_double ? 2.0 * rack.depth_m + 0.04 : rack.depth_m;
-  const double yard = room.dice()(2.6, 4.0);  // left free along one side, where goods stand
-  for (double y = 2.2; y + thick < depth - 1.8; y += thick + aisle) {
-    const double end = width - yard;
-    if (is_cut) {
-      const double middle = 0.5 * (1.8 + end);
-      add_racks(room, rack, 1.8, middle - 1.1, y, is_double);
-      add_racks(room, rack, middle + 1.1, end, y, is_double);
-    } else {
-      add_racks(room, rack, 1.8, end, y, is_double);
-    }
-  }
-  for (int i = 0; i < static_cast<int>(depth / 2.0); ++i) room.against_wall(room.any(Stock::kGoods));
-  for (int i = 0; i < static_cast<int>(depth / 4.0); ++i) room.free_standing(room.any(Stock::kGoods), 0.8);
-  if (const Index counter = room.against_wall(room.any(Stock::kCounters))) add_on_table(room, *counter, true);
-}
-
 void furnish_for_use(RoomFurnisher& room, RoomUse use) {
   switch (use) {
     case RoomUse::kHallway: return hallway(room);
@@ -239,19 +227,36 @@ void furnish_for_use(RoomFurnisher& room, RoomUse use) {
     case RoomUse::kWard: return ward(room);
     case RoomUse::kExamination: return examination(room);
     case RoomUse::kWaiting: return waiting(room);
-    case RoomUse::kHall: return hall(room);
+    case RoomUse::kHall: return furnish_hall(room);
   }
+}
+
+bool is_home(RoomUse use) {
+  constexpr std::array kRooms{RoomUse::kHallway, RoomUse::kLiving,   RoomUse::kDining,
+                              RoomUse::kBedroom, RoomUse::kChildren, RoomUse::kLounge};
+  return std::find(kRooms.begin(), kRooms.end(), use) != kRooms.end();
+}
+
+/// How much of its bare stretches gets large pictures, so that a camera near the wall finds something on it.
+double covered_share(const PlannedRoom& room) {
+  const bool has_pattern = room.wall.texture == "brick" || room.wall.texture == "wall_tiles";
+  if (room.use == RoomUse::kHall) return has_pattern ? 0.3 : 0.5;
+  return has_pattern ? 0.4 : is_home(room.use) ? 1.0 : 0.9;
 }
 
 }  // namespace
 
-RoomContents furnish(const PlannedRoom& room, const std::vector<LocalOpening>& openings, double height_m, bool is_plain,
-                     Dice dice) {
+RoomContents furnish(const PlannedRoom& room, const std::vector<LocalOpening>& openings, double height_m,
+                     const FurnishOptions& options, Dice dice) {
   RoomFurnisher furnisher(room, openings, height_m, dice);
   furnish_for_use(furnisher, room.use);
-  const bool is_path = room.use == RoomUse::kCorridor || room.use == RoomUse::kHall;
-  const double spacing = is_plain ? 6.0 : is_path ? 2.4 : 1.3;
-  furnisher.hang_pictures(spacing, is_plain ? 0.25 : 0.9);
+  if (options.has_panes) {
+    for (const Article& pane : articles(Stock::kPanes)) furnisher.free_standing(pane, 0.5);
+  }
+  const bool is_wide = options.is_plain || room.use == RoomUse::kHall;
+  const double spacing = is_wide ? 6.0 : room.use == RoomUse::kCorridor ? 2.4 : 1.3;
+  if (!options.is_plain) furnisher.hang_low(is_home(room.use) ? "picture" : "board_panel", covered_share(room));
+  furnisher.hang_pictures(spacing, options.is_plain ? 0.25 : 0.9);
   return std::move(furnisher).contents();
 }
 

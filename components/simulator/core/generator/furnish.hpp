@@ -4,9 +4,13 @@
 
 namespace lapis::simulator {
 
+struct FurnishOptions {
+  bool is_plain = false;   ///< few pictures, as in a clinic
+  bool has_panes = false;  ///< of glass, and mirrors, that stand free
+};
+
 /// Furnishes a room for its use: a pure function of its arguments.
-/// @param is_plain few pictures, as in a clinic
-RoomContents furnish(const PlannedRoom& room, const std::vector<LocalOpening>& openings, double height_m, bool is_plain,
-                     Dice dice);
+RoomContents furnish(const PlannedRoom& room, const std::vector<LocalOpening>& openings, double height_m,
+                     const FurnishOptions& options, Dice dice);
 
 }  // namespace lapis::simulator

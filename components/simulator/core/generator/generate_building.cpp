@@ -67,7 +67,8 @@ class BuildingGenerator {
       contents_.push_back(contents_[*room.copy_of]);
     } else {
       const Dice dice(Random(name_.seed, RandomStream::kBuilding, 1000 + index));
-      contents_.push_back(furnish(room, openings_of(plan_, room), height_of(room), plan_.is_plain, dice));
+      contents_.push_back(
+          furnish(room, openings_of(plan_, room), height_of(room), {plan_.is_plain, name_.has_panes}, dice));
     }
     const std::size_t motifs = index_of_motif(index);
     const RoomContents& contents = contents_.back();
@@ -135,6 +136,7 @@ class BuildingGenerator {
         for (int column = 0; column < columns; ++column) {
           const Eigen::Vector2d share((column + 0.5) / columns, (row + 0.5) / rows);
           const Eigen::Vector2d local = box.min() + share.cwiseProduct(box.sizes());
+          if (!contains(room.polygon, local)) continue;
           spec_.lamps.push_back({rounded(room.frame.at(local)), {}, room.use == RoomUse::kHall ? 3.0 : 1.0});
         }
       }

@@ -6,8 +6,8 @@
 namespace lapis::simulator {
 
 /// Draws a furnished building with starts and a tour through all rooms: a pure function of its arguments. Rooms that
-/// are copies have equal furniture and pictures, which no seed moves. No pane stands free: glass is in windows with a
-/// sill, mirrors hang on walls.
+/// are copies have equal furniture and pictures, which no seed moves. Unless the name asks for panes, none stands
+/// free: glass is in windows with a sill, mirrors hang on walls.
 /// @param labels has the classes of mpcat40
 SceneSpec generate_building(const BuildingName& name, const mapping::LabelList& labels);
 

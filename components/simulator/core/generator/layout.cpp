@@ -9,7 +9,8 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kDoubleDoor_m = 3.0;
+constexpr double kGate_m = 3.0;
+constexpr std::size_t kEast = 1, kNorth = 2, kWest = 3;  // walls of a hall
 
 /// Draws one building; the corridor of the simple kinds begins in the origin and runs along x.
 class Layout {
@@ -75,30 +76,27 @@ class Layout {
         side({0, 0}, {0, 1}, {-1, 0}, y, cm(dice_(3.2, 4.2))), side({x, 0}, {0, 1}, {1, 0}, y, cm(dice_(3.2, 4.2)))};
     const int left_out = dice_.whole(0, 3);
     for (int i = 0; i < 4; ++i) {
-      if (i == left_out || (i != (left_out + 1) % 4 && dice_.chance(0.35))) continue;
-      add_offices(sides[static_cast<std::size_t>(i)], is_clinic);
+      const Strip& strip = sides[static_cast<std::size_t>(i)];
+      if (i == left_out || (i != (left_out + 1) % 4 && dice_.chance(0.35))) {
+        if (dice_.chance(0.6)) add_corridor_windows(strip);
+      } else {
+        add_offices(strip, is_clinic);
+      }
     }
     add_ring_corridor(x, y, c);
     return finished(is_clinic);
   }
 
   BuildingPlan warehouse() && {
-    const double width = cm(dice_(13.0, 26.0)), depth = cm(dice_(10.0, 20.0));
-    plan_.height_m = cm(dice_(4.2, 5.6));
-    const std::size_t hall = draw_.add_rectangle(RoomUse::kHall, {0, 0}, {width, depth});
-    const double length = cm(std::min(width, dice_(8.0, 13.0)));
-    const Strip offices = side({0, 0}, {1, 0}, {0, -1}, length, cm(dice_(3.4, 4.4)));
-    std::vector<StripRoom> rooms{{RoomUse::kOffice, 3.2}, {RoomUse::kLounge, 3.2}, {RoomUse::kBath, 2.2}};
-    if (length > 10.5) rooms.push_back({RoomUse::kStorage, 2.6});
-    for (const std::size_t room : draw_.add_strip(offices, rooms, false)) plan_.rooms[room].height_m = 2.6;
-    draw_.add_opening(OpeningKind::kLeaf, {cm(0.5 * width), depth}, kDoubleDoor_m);
-    plan_.openings.back().top_m = 3.0;
-    for (const std::size_t wall : {std::size_t{1}, std::size_t{3}}) {
-      draw_.add_windows(plan_.rooms[hall], wall);
-      for (std::size_t i = plan_.openings.size() - 2; i < plan_.openings.size(); ++i) {
-        plan_.openings[i].bottom_m = plan_.height_m - 1.4;
-        plan_.openings[i].top_m = plan_.height_m - 0.6;
-      }
+    const double width = cm(dice_(13.0, 26.0)), depth = cm(dice_(10.0, 18.0));
+    plan_.height_m = cm(dice_(4.2, 5.8));
+    const std::size_t hall = dice_.chance(0.5) ? hall_beside_offices(width, depth) : hall_around_offices(width, depth);
+    std::vector<std::size_t> halls{hall};
+    if (width < 19.0 && dice_.chance(0.5)) halls.push_back(add_second_hall(width, depth));
+    const std::size_t gates = halls.size() == 1 && dice_.chance(0.4) ? kEast : kNorth;
+    for (const std::size_t room : halls) {
+      add_gates(room, gates);
+      for (const std::size_t edge : {kEast, kNorth, kWest}) add_high_windows(room, edge);
     }
     return finished(false);
   }
@@ -158,6 +156,16 @@ class Layout {
     if (length_m - right > 2.4) add_offices(side({right, c}, {1, 0}, {0, 1}, cm(length_m - right), shallow), is_clinic);
   }
 
+  /// In the outer wall of a corridor, where a strip of rooms might have been.
+  void add_corridor_windows(const Strip& strip) {
+    const double spacing = dice_(3.5, 5.5);
+    const int count = std::max(1, static_cast<int>(strip.length_m / spacing));
+    for (int i = 0; i < count; ++i) {
+      const double along = cm((i + 0.5) / count * strip.length_m);
+      draw_.add_opening(OpeningKind::kWindow, strip.begin + along * strip.along - 0.5 * wall() * strip.away, 1.2);
+    }
+  }
+
   /// Two halves of a corridor round an island, which fire doors join where no other door is.
   void add_ring_corridor(double x, double y, double c) {
     const double south = gap_in_doors(0.0, c, x), north = gap_in_doors(y - c, y, x), t = 0.5 * wall();
@@ -196,6 +204,70 @@ class Layout {
       best = x;
     }
     return cm(best);
+  }
+
+  void add_low_rooms(const Strip& strip) {
+    std::vector<StripRoom> rooms{{RoomUse::kOffice, 3.2}, {RoomUse::kLounge, 3.2}};
+    if (strip.length_m > 8.5) rooms.push_back({RoomUse::kBath, 2.2});
+    if (strip.length_m > 10.5) rooms.push_back({dice_.chance(0.5) ? RoomUse::kStorage : RoomUse::kMeeting, 2.8});
+    for (const std::size_t room : draw_.add_strip(strip, rooms, false)) plan_.rooms[room].height_m = 2.6;
+  }
+
+  /// Offices stand before the hall's southern wall.
+  std::size_t hall_beside_offices(double width, double depth) {
+    const std::size_t hall = draw_.add_rectangle(RoomUse::kHall, {0, 0}, {width, depth});
+    const double length = cm(std::min(width, dice_(7.0, 13.0))), from = cm(dice_(0.0, width - length));
+    add_low_rooms(side({from, 0}, {1, 0}, {0, -1}, length, cm(dice_(3.4, 4.4))));
+    return hall;
+  }
+
+  /// Offices fill the hall's south-western corner.
+  std::size_t hall_around_offices(double width, double depth) {
+    const double length = cm(std::min(width - 4.0, dice_(7.0, 12.0))), x = cm(length + wall()),
+                 y = cm(dice_(3.4, 4.2) + wall());
+    const std::size_t hall =
+        draw_.add_room(RoomUse::kHall, {}, {{x, 0}, {width, 0}, {width, depth}, {0, depth}, {0, y}, {x, y}});
+    add_low_rooms(side({0, y}, {1, 0}, {0, -1}, length, cm(y - wall())));
+    return hall;
+  }
+
+  /// In the east of the first one; one wide passage joins them, or two.
+  std::size_t add_second_hall(double width, double depth) {
+    const double x = cm(width + wall()), low = cm(dice_(0.0, 0.5) * depth);
+    const std::size_t hall = draw_.add_rectangle(RoomUse::kHall, {x, low}, {cm(x + dice_(7.0, 11.0)), depth});
+    const double middle = 0.5 * (low + depth), quarter = 0.25 * (depth - low);
+    const std::vector<double> passages =
+        depth - low > 9.0 && dice_.chance(0.5) ? std::vector{middle - quarter, middle + quarter} : std::vector{middle};
+    for (const double y : passages) {
+      draw_.add_opening(OpeningKind::kPassage, {x - 0.5 * wall(), y}, 2.4);
+      plan_.openings.back().top_m = 2.8;
+    }
+    return hall;
+  }
+
+  /// One to three loading doors.
+  void add_gates(std::size_t room, std::size_t edge) {
+    const PlannedRoom& hall = plan_.rooms[room];
+    const Eigen::Vector2d a = hall.polygon[edge], b = hall.polygon[(edge + 1) % hall.polygon.size()];
+    const int most = std::clamp(static_cast<int>((b - a).norm() / (kGate_m + 1.5)), 1, 3), count = dice_.whole(1, most);
+    for (int i = 0; i < count; ++i) {
+      draw_.add_opening(OpeningKind::kLeaf, hall.frame.at(a + (i + 0.5) / count * (b - a)), kGate_m);
+      plan_.openings.back().top_m = 3.0;
+    }
+  }
+
+  /// Where no loading door is.
+  void add_high_windows(std::size_t room, std::size_t edge) {
+    const PlannedRoom& hall = plan_.rooms[room];
+    const auto has_gates = [&](const LocalOpening& o) { return o.kind == OpeningKind::kLeaf && o.wall == edge; };
+    const auto openings = openings_of(plan_, hall);
+    if (std::any_of(openings.begin(), openings.end(), has_gates)) return;
+    const std::size_t first = plan_.openings.size();
+    draw_.add_windows(hall, edge);
+    for (std::size_t i = first; i < plan_.openings.size(); ++i) {
+      plan_.openings[i].bottom_m = plan_.height_m - 1.4;
+      plan_.openings[i].top_m = plan_.height_m - 0.6;
+    }
   }
 
   BuildingPlan finished(bool is_plain) {
@@ -250,8 +322,9 @@ class Layout {
       const std::uint8_t r = channel(), g = channel(), b = channel();
       return geometry::Rgb8{r, g, b};
     };
-    const std::vector<std::string> walls{"plaster",          "plaster",        "rough_plaster", "wallpaper_stripes",
-                                         "wallpaper_leaves", "wallpaper_dots", "brick"};
+    const std::vector<std::string> walls{"plaster",          "rough_plaster",  "wallpaper_stripes",
+                                         "wallpaper_leaves", "wallpaper_dots", "brick"},
+        corridors{"plaster", "rough_plaster", "wall_tiles", "brick", "wallpaper_dots"};
     const std::vector<std::string> floors{"planks", "parquet", "carpet", "planks", "tiles"};
     const auto any = [&](const std::vector<std::string>& names) {
       return names[static_cast<std::size_t>(dice_.whole(0, static_cast<int>(names.size()) - 1))];
@@ -266,10 +339,13 @@ class Layout {
       const bool is_wet = room.use == RoomUse::kBath || room.use == RoomUse::kKitchen;
       room.wall = {is_wet ? "wall_tiles" : any(walls), tint(205, 245)};
       room.floor = {is_wet ? "tiles" : any(floors), tint(170, 240)};
-      if (room.use == RoomUse::kCorridor) room.wall.texture = "plaster";
+      if (room.use == RoomUse::kCorridor) room.wall.texture = any(corridors);
       if (room.use == RoomUse::kHall) {
         room.wall.texture = dice_.chance(0.5) ? "brick" : "concrete";
         room.floor.texture = room.ceiling.texture = "concrete";
+        const auto grey = static_cast<std::uint8_t>(dice_.whole(170, 240));
+        room.floor.color = {grey, grey, grey};
+        if (room.wall.texture == "concrete") room.wall.color = room.floor.color;
       }
     }
     for (PlannedRoom& room : plan_.rooms) {
@@ -278,6 +354,7 @@ class Layout {
       room.wall = original.wall;
       room.floor = original.floor;
       room.ceiling = original.ceiling;
+      for (SurfaceSpec* surface : {&room.wall, &room.floor, &room.ceiling}) surface->variant = *room.copy_of;
     }
   }
 

@@ -1,6 +1,7 @@
 #include "simulator/core/generator/room_furnisher.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -43,6 +44,11 @@ RoomFurnisher::Wall RoomFurnisher::wall(std::size_t index) const {
   const Eigen::Vector2d& start = polygon_[index];
   const Eigen::Vector2d span = polygon_[(index + 1) % polygon_.size()] - start, direction = span.normalized();
   return {start, direction, {-direction.y(), direction.x()}, span.norm()};
+}
+
+Eigen::Vector2d RoomFurnisher::place_of(const LocalOpening& opening) const {
+  const Wall w = wall(opening.wall);
+  return w.start + opening.along_m * w.direction;
 }
 
 std::optional<std::size_t> RoomFurnisher::at(const Article& article, const Eigen::Vector2d& middle, int yaw_deg) {
@@ -163,8 +169,27 @@ void RoomFurnisher::hang_pictures(double spacing_m, double probability) {
       picture.along_m = cm(length * (i + dice_(0.3, 0.7)) / places);
       const double width = dice_(0.4, 1.0);
       picture.size_m = {cm(width), cm(width * dice_(0.6, 1.3))};
-      picture.height_m = cm(dice_(1.4, 1.6));
+      picture.height_m = cm(dice_(1.3, 1.55));
       if (dice_.chance(probability) && has_room_for(picture)) contents_.pictures.push_back(picture);
+    }
+  }
+}
+
+void RoomFurnisher::hang_low(const char* class_name, double share) {
+  constexpr double kStepAside_m = 0.1;
+  constexpr std::array<double, 3> kWidths_m{1.4, 0.9, 0.5};
+  for (std::size_t edge = 0; edge < polygon_.size(); ++edge) {
+    for (double along = 0.0; along < wall(edge).length_m; along += kStepAside_m) {
+      for (const double width : kWidths_m) {
+        HungPicture hung{class_name, edge, cm(along), cm(dice_(1.15, 1.3)), {width, cm(dice_(0.8, 1.0))}};
+        if (!has_room_for(hung)) continue;
+        if (dice_.chance(share)) {
+          contents_.pictures.push_back(hung);
+        } else {
+          along += width;  // stays bare
+        }
+        break;
+      }
     }
   }
 }

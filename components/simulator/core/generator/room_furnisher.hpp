@@ -39,7 +39,10 @@ class RoomFurnisher {
 
   Dice& dice() { return dice_; }
   double area_m2() const { return std::abs(signed_area(polygon_)); }
+  double height_m() const { return height_m_; }
   const Polygon& polygon() const { return polygon_; }
+  const std::vector<LocalOpening>& openings() const { return openings_; }
+  Eigen::Vector2d place_of(const LocalOpening& opening) const;
 
   const Article& any(Stock stock);
   /// With its back to a wall, where the dice choose, else where there is room; nothing when it fits nowhere. @param
@@ -58,6 +61,8 @@ class RoomFurnisher {
 
   /// Pictures about `spacing_m` apart on all walls, where no door or window is and nothing high stands before them.
   void hang_pictures(double spacing_m, double probability);
+  /// Large pictures or pin boards, which a camera at 1 m sees from near, on this share of the stretches that are bare.
+  void hang_low(const char* class_name, double share);
   /// One thing on the wall above an item (a board, a mirror).
   void hang_above(std::size_t index, const char* class_name, const Eigen::Vector2d& size_m, double height_m);
 

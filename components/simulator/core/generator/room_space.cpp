@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 namespace lapis::simulator {
 namespace {
 
 constexpr double kCell_m = 0.1;
-constexpr double kRobot_m = 0.35;    // half the width that has to stay free: 0.2 m, and what planners keep besides
+constexpr double kRobot_m = 0.42;    // half the width that has to stay free: the validator wants 0.8 m
 constexpr double kGap_m = 0.03;      // between items
 constexpr double kFlat_m = 0.03;     // rugs: in nobody's way
 constexpr double kOverhead_m = 1.4;  // what hangs higher is passed under
-constexpr double kBeforeDoor_m = 0.95, kBeforeWindow_m = 0.35, kSill_m = 0.92;
-constexpr double kLeastShare = 0.4;  // of the empty room's floor that stays reachable
+constexpr double kBeforeDoor_m = 0.95, kBeforeWindow_m = 0.35;
+constexpr double kLeastShare = 0.25;  // of the empty room's floor that stays reachable
 
 }  // namespace
 
@@ -37,8 +38,12 @@ RoomSpace::RoomSpace(const Polygon& polygon, const std::vector<LocalOpening>& op
     Eigen::AlignedBox2d zone(middle - half * direction);
     zone.extend(middle + half * direction);
     zone.extend(middle + (is_window ? kBeforeWindow_m : kBeforeDoor_m) * inward);
-    (is_window ? before_windows_ : clear_).push_back(zone);
-    if (is_window || opening.kind == OpeningKind::kLeaf) continue;
+    if (is_window) {
+      before_windows_.push_back({zone, opening.bottom_m + 0.02, std::numeric_limits<double>::infinity()});
+      continue;
+    }
+    clear_.push_back(zone);
+    if (opening.kind == OpeningKind::kLeaf) continue;
     const Eigen::Vector2d cell = (middle + 0.45 * inward - bounds_.min()) / kCell_m;
     doors_.emplace_back(static_cast<int>(cell.x()), static_cast<int>(cell.y()));
   }
@@ -74,7 +79,8 @@ bool RoomSpace::meets_anything(const ItemBox& item) const {
     return zone.intersection(item.area).sizes().minCoeff() > 0.0;
   };
   if (item.bottom_m < kOverhead_m + 0.7 && std::any_of(clear_.begin(), clear_.end(), meets_area)) return true;
-  if (item.top_m > kSill_m && std::any_of(before_windows_.begin(), before_windows_.end(), meets_area)) return true;
+  const auto hides = [&](const ItemBox& window) { return item.top_m > window.bottom_m && meets_area(window.area); };
+  if (std::any_of(before_windows_.begin(), before_windows_.end(), hides)) return true;
   const Eigen::Vector2d gap(kGap_m, kGap_m);
   const Eigen::AlignedBox2d around(item.area.min() - gap, item.area.max() + gap);
   return std::any_of(items_.begin(), items_.end(), [&](const ItemBox& other) {

@@ -36,10 +36,11 @@ class RoomSpace {
   const Polygon& polygon_;
   Eigen::AlignedBox2d bounds_;
   std::vector<ItemBox> items_;
-  std::vector<Eigen::AlignedBox2d> clear_, before_windows_;
-  std::vector<Eigen::Vector2i> doors_;  ///< a cell before each
-  geometry::GrayImage blocked_;         ///< 255 where the robot's middle cannot be
-  std::size_t most_cells_ = 0;          ///< reachable while the room is empty
+  std::vector<Eigen::AlignedBox2d> clear_;
+  std::vector<ItemBox> before_windows_;  ///< from the sill upwards
+  std::vector<Eigen::Vector2i> doors_;   ///< a cell before each
+  geometry::GrayImage blocked_;          ///< 255 where the robot's middle cannot be
+  std::size_t most_cells_ = 0;           ///< reachable while the room is empty
 };
 
 }  // namespace lapis::simulator

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <optional>
+#include <stdexcept>
 
 #include "common/geometry/image.hpp"
 #include "simulator/core/generator/floor_drawing.hpp"
@@ -206,9 +207,14 @@ RoundTrip plan_round_trip(const SceneSpec& spec, const Random& random) {
     const auto found = places_in(floor, room.polygon);
     places.insert(places.end(), found.begin(), found.end());
   }
-  RoundTrip trip;
-  if (places.empty()) return trip;
+  if (places.empty()) throw std::runtime_error("building " + spec.name + ": the robot fits nowhere");
   const std::vector<Cell> order = in_driving_order(floor, places);
+  for (const RoomSpec& room : spec.rooms) {
+    const auto is_in_room = [&](Cell c) { return contains(room.polygon, floor.grid().center(c)); };
+    if (std::none_of(order.begin(), order.end(), is_in_room))
+      throw std::runtime_error("building " + spec.name + ": no waypoint of the tour is in " + room.id);
+  }
+  RoundTrip trip;
   for (const Cell c : order) trip.waypoints.push_back(point(floor, c));
   trip.waypoints.push_back(trip.waypoints.front());
   std::vector<Cell> open;

@@ -19,6 +19,7 @@ namespace lapis::simulator {
 struct SurfaceSpec {
   std::string texture;  ///< empty: the default of its use; see building/textures.hpp for the names
   geometry::Rgb8 color{255, 255, 255};
+  std::optional<std::uint64_t> variant{};  ///< equal ones are painted alike; default: the room's number
 };
 
 /// Walls stand on the edges of the polygon, which is the inside face; neighbours leave the wall's thickness between

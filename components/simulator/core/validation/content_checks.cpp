@@ -67,6 +67,24 @@ Check check_walls(const Scene& scene, const Inventory& inventory) {
   return with_details("walls", figures, std::move(offenders));
 }
 
+Check list_panes(const Scene& scene) {
+  constexpr float kSill_m = 0.3F;
+  std::vector<Eigen::AlignedBox3f> boxes(scene.instances.size());
+  for (const Triangle& t : scene.mesh.triangles) {
+    for (const std::uint32_t vertex : t.vertices) boxes[t.part].extend(scene.mesh.positions[vertex]);
+  }
+  Check check{"panes"};
+  for (std::size_t i = 0; i < boxes.size(); ++i) {
+    const std::string name = scene.labels.name(scene.instances[i].class_id);
+    if (boxes[i].isEmpty() || (name != "window" && name != "mirror")) continue;
+    if (boxes[i].min().z() > static_cast<float>(scene.floor_z_m) + kSill_m) continue;
+    check.details.push_back(scene.instances[i].name + ": " + name + " at " + at(boxes[i].center()));
+  }
+  if (!check.details.empty()) check.verdict = Verdict::kNote;
+  check.figures = std::to_string(check.details.size()) + " windows and mirrors without a sill";
+  return check;
+}
+
 Check count_classes(const Scene& scene, const Inventory& inventory) {
   std::map<std::uint16_t, ClassCount> classes;
   for (const Item& item : inventory.items) ++classes[item.class_id].items;

@@ -1,6 +1,7 @@
 #include "simulator/core/validation/drive_checks.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -118,8 +119,10 @@ Check check_rooms(const Scene& scene, const NavMap& map, double radius_m) {
     }
   }
   if (scene.rooms.empty()) return {"rooms", Verdict::kNote, "the scene knows no rooms", {}};
-  check.figures = std::to_string(scene.rooms.size()) + " rooms; least is " + decimal(100.0 * least.reachable_share, 0) +
-                  " % of the floor of " + least.room;
+  double area_m2 = 0.0;
+  for (const Room& room : scene.rooms) area_m2 += std::abs(signed_area(room.polygon));
+  check.figures = std::to_string(scene.rooms.size()) + " rooms, " + decimal(area_m2, 0) + " m2; least is " +
+                  decimal(100.0 * least.reachable_share, 0) + " % of the floor of " + least.room;
   return check;
 }
 

@@ -26,6 +26,7 @@ std::vector<Check> validate(const World& world, const ValidationConfig& config, 
   progress("space of the items");
   checks.push_back(check_overlaps(scene, inventory));
   checks.push_back(check_walls(scene, inventory));
+  checks.push_back(list_panes(scene));
   progress("classes");
   checks.push_back(count_classes(scene, inventory));
   checks.push_back(check_features(scene, measure_features(world, config.features, progress)));

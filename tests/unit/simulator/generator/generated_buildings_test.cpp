@@ -4,11 +4,13 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <map>
 #include <numbers>
 
 #include "simulator/core/building/build_scene.hpp"
 #include "simulator/core/generator/generate_building.hpp"
 #include "simulator/core/generator/layout.hpp"
+#include "simulator/core/generator/round_trip.hpp"
 #include "simulator/core/scene/polygon.hpp"
 #include "simulator/core/validation/content_checks.hpp"
 #include "simulator/core/validation/drive_checks.hpp"
@@ -171,13 +173,120 @@ TEST(GeneratedCopies, AreAlikeInAllButTheirPlace) {
   EXPECT_GE(mirrored, 15);
 }
 
+/// Boxes of what stands in a room, in the room's frame, by the item's number.
+std::map<std::string, Eigen::AlignedBox3f> boxes_in(const Scene& scene, const PlannedRoom& room) {
+  std::map<std::string, Eigen::AlignedBox3f> boxes;
+  for (const Triangle& triangle : scene.mesh.triangles) {
+    const std::string& name = scene.instances[triangle.part].name;
+    if (name.rfind(room.id + '.', 0) != 0) continue;
+    for (const std::uint32_t vertex : triangle.vertices) {
+      const Eigen::Vector3f p = scene.mesh.positions[vertex];
+      const Eigen::Vector2d local = room.frame.local(p.head<2>().cast<double>());
+      boxes[name.substr(room.id.size())].extend(
+          Eigen::Vector3f(static_cast<float>(local.x()), static_cast<float>(local.y()), p.z()));
+    }
+  }
+  return boxes;
+}
+
+Scene jittered(const SceneSpec& spec, std::uint64_t seed) {
+  BuildOptions options;
+  options.seed = seed;
+  return build_scene(spec, {}, options);
+}
+
+TEST(GeneratedCopies, StayAlikeWhenTheSeedMovesWhatIsMovable) {
+  const BuildingName name{BuildingKind::kOffice, 2};
+  const BuildingPlan plan = lay_out(name);
+  const SceneSpec spec = generate_building(name, labels());
+  const Scene scene = jittered(spec, 5), other = jittered(spec, 6);
+  EXPECT_NE(scene.mesh.positions, other.mesh.positions) << "nothing is movable, so this shows nothing";
+  int copies = 0;
+  for (const PlannedRoom& room : plan.rooms) {
+    if (!room.copy_of) continue;
+    ++copies;
+    SCOPED_TRACE(room.id);
+    const auto boxes = boxes_in(scene, room), originals = boxes_in(scene, plan.rooms[*room.copy_of]);
+    ASSERT_GE(originals.size(), 3U);
+    ASSERT_EQ(boxes.size(), originals.size());
+    for (const auto& [item, box] : boxes) {
+      EXPECT_TRUE(box.min().isApprox(originals.at(item).min(), 1e-2F) &&
+                  (box.max() - originals.at(item).max()).norm() < 0.02F)
+          << item;
+    }
+  }
+  EXPECT_GE(copies, 4);
+}
+
+/// The texture of an instance's first triangle.
+const TextureImage* texture_of(const Scene& scene, const std::string& instance) {
+  for (const Triangle& triangle : scene.mesh.triangles) {
+    if (scene.instances[triangle.part].name != instance) continue;
+    const int texture = scene.mesh.materials[triangle.material].texture;
+    return texture < 0 ? nullptr : scene.mesh.textures[static_cast<std::size_t>(texture)].get();
+  }
+  return nullptr;
+}
+
+TEST(GeneratedCopies, HaveTheFloorsAndWallsOfTheirOriginal) {
+  const BuildingName name{BuildingKind::kOffice, 2};
+  const BuildingPlan plan = lay_out(name);
+  const Scene scene = jittered(generate_building(name, labels()), 1);
+  for (const PlannedRoom& room : plan.rooms) {
+    if (!room.copy_of) continue;
+    const PlannedRoom& original = plan.rooms[*room.copy_of];
+    for (const char* part : {"/floor", "/ceiling", "/wall 0"}) {
+      const TextureImage* texture = texture_of(scene, original.id + part);
+      ASSERT_NE(texture, nullptr);
+      EXPECT_EQ(texture_of(scene, room.id + part), texture) << room.id << part;
+    }
+  }
+}
+
+TEST(GeneratedPanes, StandFreeOnlyWhenAskedFor) {
+  for (const std::string& kind : building_kinds()) {
+    BuildingName name = parse_building_name(kind + "_1").value();
+    EXPECT_EQ(list_panes(built(generate_building(name, labels()))).verdict, Verdict::kOk) << kind;
+    name.has_panes = true;
+    const Scene scene = built(generate_building(name, labels()));
+    const Check panes = list_panes(scene);
+    EXPECT_EQ(panes.verdict, Verdict::kNote) << kind;
+    EXPECT_GE(panes.details.size(), 3U) << kind;
+    const NavMap map = build_nav_map(scene);
+    const Check rooms = check_rooms(scene, map, kRadius_m), doors = check_doors(scene, map);
+    EXPECT_EQ(rooms.verdict, Verdict::kOk) << text_of(rooms);
+    EXPECT_EQ(doors.verdict, Verdict::kOk) << text_of(doors);
+  }
+}
+
+TEST(RoundTrips, RefuseARoomThatTheRobotDoesNotGetInto) {
+  SceneSpec spec = generate_building({BuildingKind::kFlat, 1}, labels());
+  const Random random(1, RandomStream::kBuilding);
+  EXPECT_NO_THROW(plan_round_trip(spec, random));
+  const RoomSpec& bath =
+      *std::find_if(spec.rooms.begin(), spec.rooms.end(), [](const RoomSpec& room) { return room.id == "bath_1"; });
+  Eigen::AlignedBox2d box;
+  for (const auto& corner : bath.polygon) box.extend(corner);
+  FurnitureSpec block;
+  block.place = AtPoint{box.center(), 0.0};
+  block.size_m = Eigen::Vector3d(box.sizes().x(), box.sizes().y(), 1.0);
+  spec.furniture.push_back(block);
+  EXPECT_THAT([&] { plan_round_trip(spec, random); }, testing::ThrowsMessage<std::runtime_error>(testing::AllOf(
+                                                          testing::HasSubstr("flat_1"), testing::HasSubstr("bath_1"))));
+}
+
 TEST(BuildingNames, AreKindAndSeed) {
   const auto name = parse_building_name("clinic_12");
   ASSERT_TRUE(name);
   EXPECT_EQ(name->kind, BuildingKind::kClinic);
   EXPECT_EQ(name->seed, 12U);
-  for (const char* text : {"clinic", "clinic_", "clinic_-1", "clinic_1x", "clinic_01", "castle_1", "_1", "",
-                           "clinic_99999999999999999999"}) {
+  EXPECT_FALSE(name->has_panes);
+  const auto with_panes = parse_building_name("flat_7_panes");
+  ASSERT_TRUE(with_panes);
+  EXPECT_TRUE(with_panes->has_panes);
+  EXPECT_EQ(to_string(*with_panes), "flat_7_panes");
+  for (const char* text : {"clinic", "clinic_", "clinic_-1", "clinic_1x", "clinic_01", "castle_1", "_1", "", "flat_7_",
+                           "flat_7_pane", "flat_07_panes", "clinic_99999999999999999999"}) {
     EXPECT_FALSE(parse_building_name(text)) << text;
   }
 }

@@ -172,7 +172,10 @@ class RgbdSlam::Implementation {
     const MotionModel::Expected expected{map_.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera,
                                          reckoned->covariance};
     const TrackOutcome aligned = surfaces_.track(map_, frame, reference_, expected);
-    contradictions_ = aligned.is_contradicted ? contradictions_ + 1 : is_contradicted() ? contradictions_ : 0;
+    const bool is_unknown = could_start && !aligned.is_tracked && should_be_known(*reckoned);
+    contradictions_ = aligned.is_contradicted || is_unknown ? contradictions_ + 1
+                      : is_contradicted()                   ? contradictions_
+                                                            : 0;
     fits_ = aligned.is_tracked ? fits_ + 1 : 0;
     const bool fits_by_chance = is_contradicted() && fits_ < config_.tracker.max_contradictions;
     if (!aligned.is_tracked || fits_by_chance) {
@@ -185,7 +188,14 @@ class RgbdSlam::Implementation {
                          begins_anew || has_moved(aligned.alignment.T_reference_camera));
   }
 
-  // The camera sees through what was mapped, for too long. Vision ends that, or surfaces that fit for as long.
+  // From so near a key-frame with so many landmarks something is seen again, whatever the camera shows.
+  bool should_be_known(const RelativeCamera& camera) const {
+    const auto& landmarks = map_.keyframe(camera.reference).landmarks;
+    const auto known = std::count_if(landmarks.begin(), landmarks.end(), [](auto id) { return id != kNoLandmark; });
+    return known >= 2 * config_.tracker.min_matches && !has_moved(camera.T_reference_camera);
+  }
+
+  // The camera does not see what was mapped, for too long. Vision ends that, or surfaces that fit for as long.
   bool is_contradicted() const { return contradictions_ >= config_.tracker.max_contradictions; }
 
   // The camera is back in a part of the map that is tied to the newest by odometry alone: a key-frame here closes the

@@ -299,6 +299,19 @@ TEST(RgbdSlam, ARobotThatIsCarriedIsLostAndItsMapUntouched) {
   }
 }
 
+TEST_F(RgbdSlamWithOdometry, AViewThatIsNoneOfItsOwnFromASpotThatItKnowsIsNotMapped) {
+  feel(0, 20);
+  for (int i = 21; i <= 60; ++i) slam_.add_odometry(room_stamp(i), test::room_path(20) * T_base_camera().inverse());
+  for (int i = 0; i <= 20; ++i) ASSERT_EQ(slam_.process(room_frame(i)).state, TrackingState::kTracking);
+  const auto keyframes = slam_.keyframe_count();
+  for (int i = 21; i < 60; ++i) {
+    const RgbdFrame frame = test::render_room(test::small_camera(), test::room_path(100 + i), room_stamp(i));
+    const bool is_late = i >= 21 + SlamConfig{}.tracker.max_contradictions - 1;
+    EXPECT_EQ(slam_.process(frame).state, is_late ? TrackingState::kLost : TrackingState::kDeadReckoning) << i;
+  }
+  EXPECT_EQ(slam_.keyframe_count(), keyframes);
+}
+
 TEST_F(RgbdSlamWithOdometry, TellsHowFarOdometryMayHaveDrifted) {
   feel(0, 41);
   for (int i = 0; i < 10; ++i) EXPECT_EQ(slam_.process(room_frame(i)).drift_m, 0.0);

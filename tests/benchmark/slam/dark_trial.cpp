@@ -1,5 +1,6 @@
 #include "tests/benchmark/slam/dark_trial.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <stdexcept>
 

@@ -1,9 +1,8 @@
 #include "tests/benchmark/slam/heading_trial.hpp"
 
-#include <cmath>
+#include <algorithm>
 #include <fstream>
 #include <limits>
-#include <numbers>
 #include <optional>
 #include <stdexcept>
 #include <vector>
@@ -53,8 +52,8 @@ std::filesystem::path write_round_tour(const simulator::World& world, const simu
     if (longest_s <= 0.0 || tour.duration_s <= longest_s) break;
   }
   std::filesystem::create_directories(folder);
-  const std::filesystem::path file = folder / ("round_" + world.scene().name + "_" + std::to_string(config.seed) + "_" +
-                                               std::to_string(round.size()) + ".yaml");
+  std::filesystem::path file = folder / ("round_" + world.scene().name + "_" + std::to_string(config.seed) + "_" +
+                                         std::to_string(round.size()) + ".yaml");
   std::ofstream out(file);
   out << "tour: [";
   for (const auto& p : round) out << (&p == &round.front() ? "" : ", ") << "[" << p.x() << ", " << p.y() << "]";

@@ -127,6 +127,7 @@ class KinematicWorld {
         T_map_base = T;
       } else {
         T_map_base.linear() = T.linear();
+        least_room_m = 0.0;
       }
     }
   }

@@ -95,7 +95,8 @@ class RoomBuilder {
                 -Vector::UnitX(),
                 Vector::UnitZ(),
                 texture_period_m(room_.wall.texture)};
-    sheet.texture_offset.x() = static_cast<float>(Random(variant_of(room_.wall), RandomStream::kTexture, index).uniform(0));
+    sheet.texture_offset.x() =
+        static_cast<float>(Random(variant_of(room_.wall), RandomStream::kTexture, index).uniform(0));
     std::vector<double> us{0.0, wall.length_m}, vs{0.0, plan_.height_m};
     std::vector<Eigen::AlignedBox2d> holes;
     for (const WallOpening& opening : wall.openings) {

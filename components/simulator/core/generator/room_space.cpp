@@ -14,7 +14,8 @@ constexpr double kGap_m = 0.03;      // between items
 constexpr double kFlat_m = 0.03;     // rugs: in nobody's way
 constexpr double kOverhead_m = 1.4;  // what hangs higher is passed under
 constexpr double kBeforeDoor_m = 0.95, kBeforeWindow_m = 0.35;
-constexpr double kLeastShare = 0.25;  // of the empty room's floor that stays reachable
+constexpr double kLeastShare = 0.25;        // of the empty room's floor that stays reachable
+constexpr std::size_t kLargestPocket = 40;  // cells that the robot would fit into but does not reach: 0.4 m2
 
 }  // namespace
 
@@ -57,8 +58,10 @@ bool RoomSpace::add(const ItemBox& item) {
     geometry::GrayImage blocked = blocked_;
     block(blocked, item.area);
     bool reaches_all = false;
-    const auto cells = static_cast<double>(reachable(blocked, reaches_all));
-    if (!reaches_all || cells < kLeastShare * static_cast<double>(most_cells_)) return false;
+    const std::size_t cells = reachable(blocked, reaches_all);
+    const auto free = static_cast<std::size_t>(std::count(blocked.pixels.begin(), blocked.pixels.end(), 0));
+    if (!reaches_all || free - cells > kLargestPocket) return false;
+    if (static_cast<double>(cells) < kLeastShare * static_cast<double>(most_cells_)) return false;
     blocked_ = std::move(blocked);
   }
   items_.push_back(item);

@@ -18,7 +18,8 @@ struct ItemBox {
 };
 
 /// What is free in one room: items neither meet each other, nor stand before doors, nor before windows when they are
-/// high, and a robot can drive from each door to all others and over most of the floor that it had without them.
+/// high, and a robot can drive from each door to all others and over a good part of the floor that it had without them,
+/// and nothing is fenced off.
 class RoomSpace {
  public:
   /// @param polygon axis-aligned, counter-clockwise, in the room's frame

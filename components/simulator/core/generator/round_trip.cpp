@@ -179,8 +179,23 @@ Eigen::Vector2d point(const FloorGrid& floor, Cell c) {
   return {cm(p.x()) + 0.0, cm(p.y()) + 0.0};
 }
 
-/// All places that can be reached from the first one: always the nearest that is left.
+/// A place from which the robot gets to more than half of all, else the one with most.
+std::size_t central_place(const FloorGrid& floor, const std::vector<Cell>& places) {
+  std::size_t best = 0, most = 0;
+  for (std::size_t i = 0; i < places.size() && 2 * most <= places.size(); ++i) {
+    const auto lengths = floor.lengths_from(places[i]);
+    const auto count = static_cast<std::size_t>(
+        std::count_if(places.begin(), places.end(), [&](Cell c) { return lengths(c.column, c.row) >= 0; }));
+    if (count <= most) continue;
+    most = count;
+    best = i;
+  }
+  return best;
+}
+
+/// All places that can be reached from a central one: always the nearest that is left.
 std::vector<Cell> in_driving_order(const FloorGrid& floor, std::vector<Cell> places) {
+  std::swap(places.front(), places[central_place(floor, places)]);
   std::vector<Cell> order{places.front()};
   places.erase(places.begin());
   while (!places.empty()) {

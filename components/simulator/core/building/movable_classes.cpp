@@ -150,7 +150,8 @@ constexpr float kPallet_m = 0.75F;  // shelves so deep carry pallets, and so do 
 
 /// A pallet with cartons in layers, each a little smaller or larger.
 void pallet(Workshop& s, const Eigen::AlignedBox3f& space) {
-  const Eigen::Vector3f low = space.min(), size = space.sizes();
+  const Eigen::Vector3f& low = space.min();
+  const Eigen::Vector3f size = space.sizes();
   const auto wood = s.plain(178, 146, 104);
   for (const float share : {0.0F, 0.43F, 0.86F})
     s.box(low.x() + share * size.x(), low.x() + (share + 0.14F) * size.x(), low.y(), low.y() + size.y(), low.z(),

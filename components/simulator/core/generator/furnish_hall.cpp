@@ -73,7 +73,8 @@ void add_pallets(RoomFurnisher& room, const Eigen::AlignedBox2d& yard) {
   const double x = room.dice()(0.0, free.x()), y = room.dice()(0.0, free.y());
   for (int i = 0; i < columns * rows; ++i) {
     if (room.dice().chance(0.15)) continue;
-    const Eigen::Vector2d place(i % columns + 0.5, i / columns + 0.5);
+    const int column = i % columns, row = i / columns;
+    const Eigen::Vector2d place(column + 0.5, row + 0.5);
     room.at(goods, yard.min() + Eigen::Vector2d(x, y) + kPallet_m * place, yaw_deg);
   }
 }

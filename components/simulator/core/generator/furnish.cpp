@@ -240,7 +240,7 @@ bool is_home(RoomUse use) {
 /// How much of its bare stretches gets large pictures, so that a camera near the wall finds something on it.
 double covered_share(const PlannedRoom& room) {
   const bool has_pattern = room.wall.texture == "brick" || room.wall.texture == "wall_tiles";
-  if (room.use == RoomUse::kHall) return has_pattern ? 0.3 : 0.5;
+  if (room.use == RoomUse::kHall) return has_pattern ? 0.4 : 0.75;
   return has_pattern ? 0.4 : is_home(room.use) ? 1.0 : 0.9;
 }
 

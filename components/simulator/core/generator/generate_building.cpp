@@ -12,7 +12,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kHallLampSpacing_m = 5.5;
+constexpr double kHallLampSpacing_m = 5.5, kLampMargin_m = 0.3;
 
 /// Whole centimetres, without negative zeros.
 Eigen::Vector2d rounded(const Eigen::Vector2d& p) { return {cm(p.x()) + 0.0, cm(p.y()) + 0.0}; }
@@ -136,7 +136,7 @@ class BuildingGenerator {
         for (int column = 0; column < columns; ++column) {
           const Eigen::Vector2d share((column + 0.5) / columns, (row + 0.5) / rows);
           const Eigen::Vector2d local = box.min() + share.cwiseProduct(box.sizes());
-          if (!contains(room.polygon, local)) continue;
+          if (!contains(room.polygon, local) || distance_to_border(room.polygon, local) < kLampMargin_m) continue;
           spec_.lamps.push_back({rounded(room.frame.at(local)), {}, room.use == RoomUse::kHall ? 3.0 : 1.0});
         }
       }

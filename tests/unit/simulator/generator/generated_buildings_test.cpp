@@ -81,7 +81,7 @@ TEST_P(GeneratedBuildings, PassTheValidator) {
 TEST_P(GeneratedBuildings, AreAsLargeAsTheirKind) {
   for (std::uint64_t seed = 1; seed <= 200; ++seed) {
     const double area_m2 = floor_area_m2(lay_out(name(seed)));
-    EXPECT_GE(area_m2, 55.0) << seed;
+    EXPECT_GE(area_m2, 60.0) << seed;
     EXPECT_LE(area_m2, GetParam() == "flat" ? 130.0 : 900.0) << seed;
   }
 }

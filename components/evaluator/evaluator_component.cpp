@@ -142,7 +142,7 @@ void EvaluatorComponent::work(const runtime::Cycle& cycle) {
   }
   has_ended_ |= cycle.is_final;
   const auto now = std::chrono::steady_clock::now();
-  if (!planner_ || timeline_.empty() || (!cycle.is_final && now - reported_ < kProgressPeriod)) return;
+  if (!planner_ || (!cycle.is_final && now - reported_ < kProgressPeriod)) return;
   reported_ = now;
   report_progress();
 }
@@ -150,12 +150,14 @@ void EvaluatorComponent::work(const runtime::Cycle& cycle) {
 /// By which explore.sh shows how far the robot is.
 void EvaluatorComponent::report_progress() {
   find_truth();
-  const TimelineRow& row = timeline_.back();
   const auto share = maps_.explored_share();
-  const std::string text = fmt::format(
-      "{:.0f} s, {:.0f} m3 explored{}, {:.1f} m driven, loops closed: {}, {}: {}", row.time_s,
+  const TimelineRow row = timeline_.empty() ? TimelineRow{} : timeline_.back();
+  const std::string how_far = fmt::format(
+      "{:.0f} s, {:.0f} m3 explored{}, {:.1f} m driven, loops closed: {}", row.time_s,
       row.explored_volume_m3.value_or(0.0), share ? fmt::format(" ({:.1f} %)", 100.0 * *share) : "",
-      row.path_length_m.value_or(0.0), loop_closures(), messages::state_name(*planner_), planner_->reason());
+      row.path_length_m.value_or(0.0), loop_closures());
+  const std::string text = fmt::format("{}, {}: {}", timeline_.empty() ? "no frame of slam yet" : how_far,
+                                       messages::state_name(*planner_), planner_->reason());
   spdlog::info("progress: {}", text);
   context_.heart().set_progress(text);
 }

@@ -112,6 +112,7 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
   context.subscribe(topics::kLandmarkState,
                     [this](const auto& m) { landmarks_.apply_state(messages::from_message(m)); });
   context.subscribe(topics::kTrackedFrame, [this](const auto& m) { note_frame(m); });
+  context.subscribe(topics::kSlamStatus, [this](const auto& m) { note_slam(m); });
   context.subscribe(topics::kSlamOdometry, [this](const auto& m) { set_pose(m); });
   context.subscribe(topics::kControllerStatus, [this](const auto& m) { note_controller(m); });
   serve();
@@ -203,6 +204,11 @@ void PlannerComponent::note_frame(const Tracked& frame) {
   drift_m_ = frame.drift_m();
   slam_reason_ = frame.reason();
   if (tracking_ == Tracking::kLost) robot_.reset();
+}
+
+/// Frames say it themselves, once there are any.
+void PlannerComponent::note_slam(const lapis_msgs::msg::SlamStatus& message) {
+  if (frames_ == 0) slam_reason_ = message.reason();
 }
 
 void PlannerComponent::set_pose(const nav_msgs::msg::Odometry& message) {
@@ -362,13 +368,16 @@ void PlannerComponent::publish_markers() {
 
 /// With each frame: the controller stops for want of it.
 void PlannerComponent::publish_status() {
-  const bool has_changed = explorer_.state() != reported_state_ || explorer_.reason() != reported_reason_;
+  const bool is_new_lack = frames_ == 0 && slam_reason_ != reported_lack_;
+  const bool has_changed =
+      is_new_lack || explorer_.state() != reported_state_ || explorer_.reason() != reported_reason_;
   const bool has_decided = decisions_ != reported_decisions_;  // each decision's time is published
   if (reported_at_ == stamp_ && !has_changed && !has_decided) return;
   if (has_changed) spdlog::info("{}", reason());
   reported_at_ = stamp_;
   reported_state_ = explorer_.state();
   reported_reason_ = explorer_.reason();
+  reported_lack_ = slam_reason_;
   reported_decisions_ = decisions_;
   lapis_msgs::msg::PlannerStatus message;
   message.header(header());

@@ -45,6 +45,7 @@ class PlannerComponent {
   void set_provisional_area(nav_msgs::msg::OccupancyGrid message);
   void begin_session(std::int64_t session);
   void note_frame(const Tracked& frame);
+  void note_slam(const lapis_msgs::msg::SlamStatus& message);
   void set_pose(const nav_msgs::msg::Odometry& message);
   void note_controller(const lapis_msgs::msg::ControllerStatus& message);
 
@@ -87,7 +88,7 @@ class PlannerComponent {
   time::Time stamp_;  // of the newest frame
   Tracking tracking_ = Tracking::kLost;
   double drift_m_ = 0.0;     // of its pose since slam tracked last
-  std::string slam_reason_;  // of the newest frame; empty while it tracks
+  std::string slam_reason_;  // of the newest frame, before the first one of slam's status; empty while it tracks
   std::optional<Pose2> robot_;
   double position_variance_m2_ = 0.0;  // of robot_, each axis, as slam says; 0: it does not
   bool is_blocked_ = false;
@@ -109,7 +110,7 @@ class PlannerComponent {
   time::Time path_stamp_;                        // of the frame with which it was published
   std::optional<time::Time> reported_at_;
   State reported_state_ = State::kIdle;
-  std::string reported_reason_;
+  std::string reported_reason_, reported_lack_;
   std::uint64_t reported_decisions_ = 0;
 };
 

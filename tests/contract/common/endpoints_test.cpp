@@ -102,7 +102,7 @@ const std::vector<Process> kProcesses = {
      {},
      {readers(topics::kMapDescription, topics::kVoxelTiles, topics::kMapState, topics::kObstacles,
               topics::kProvisionalArea, topics::kPoseGraph, topics::kLandmarks, topics::kLandmarkState,
-              topics::kTrackedFrame, topics::kSlamOdometry, topics::kControllerStatus),
+              topics::kTrackedFrame, topics::kSlamOdometry, topics::kSlamStatus, topics::kControllerStatus),
       writers(topics::kPlannerPath, topics::kCandidates, topics::kPlannerMarkers, topics::kPlannerStatus),
       server(topics::kStartExploring), server(topics::kStopExploring), server(topics::kPauseExploring),
       server(topics::kReturnHome)}},

@@ -67,7 +67,8 @@ class Peers {
         pose_graph(context.advertise(topics::kPoseGraph)), landmarks(context.advertise(topics::kLandmarks)),
         landmark_state(context.advertise(topics::kLandmarkState)), frames(context.advertise(topics::kTrackedFrame)),
         odometry(context.advertise(topics::kSlamOdometry)), controller(context.advertise(topics::kControllerStatus)),
-        provisional_area(context.advertise(topics::kProvisionalArea)) {}
+        provisional_area(context.advertise(topics::kProvisionalArea)),
+        slam_status(context.advertise(topics::kSlamStatus)) {}
 
   /// What the mapper says of the map of this epoch and session.
   void describe_map() {
@@ -195,6 +196,7 @@ class Peers {
   dds::Publisher<nav_msgs::msg::Odometry>& odometry;
   dds::Publisher<lapis_msgs::msg::ControllerStatus>& controller;
   dds::Publisher<nav_msgs::msg::OccupancyGrid>& provisional_area;
+  dds::Publisher<lapis_msgs::msg::SlamStatus>& slam_status;
 
   mapping::MapDescription description;  ///< resolution, epoch and session are filled in
   bool draws_without_description = false;

@@ -37,6 +37,19 @@ TEST_F(PlannerContract, SaysWhatSlamLacksAndLooksAroundUntilThereIsAFirstPose) {
   ASSERT_TRUE(ticks_until([this] { return has_path(); })) << reason() << planner->log();
 }
 
+TEST_F(PlannerContract, BeforeTheFirstFrameItSaysWhatSlamWaitsFor) {
+  start_free();
+  const std::string idle = "waits for slam's first pose";
+  ASSERT_TRUE(wait_until([&] { return reason() == idle; })) << reason() << planner->log();
+  lapis_msgs::msg::SlamStatus status;
+  for (const std::string lack : {"waits for the camera's images", "waits: /camera/color/camera_info does not come"}) {
+    status.reason(lack);
+    peers.slam_status.publish(status);
+    ASSERT_TRUE(wait_until([&] { return reason() == idle + "; slam: " + lack; })) << reason() << planner->log();
+  }
+  ASSERT_TRUE(frames_until([&] { return reason().find("slam: ") == std::string::npos; })) << reason();
+}
+
 TEST_F(PlannerContract, WithoutAFirstPoseItSaysWhatToDo) {
   ASSERT_TRUE(start({"lost_timeout_s=4"})) << planner->log();
   peers.reason = "no features with depth: the camera looks at a blank wall";

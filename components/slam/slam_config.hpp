@@ -79,6 +79,8 @@ void describe(Field& field, TrackerConfig& c) {
   field("ransac_iterations", c.ransac_iterations, config::in_range(10, 10000), "rounds of PnP with RANSAC");
   field("ransac_error_px", c.ransac_error_px, config::in_range(0.5, 20), "PnP inlier threshold");
   field("refine_iterations", c.refine_iterations, config::in_range(1, 50), "Levenberg-Marquardt steps per round");
+  field("min_first_features", c.min_first_features, config::in_range(6, 5000),
+        "features with depth that a map begins with where there is no odometry");
   field("max_blind_frames", c.max_blind_frames, config::in_range(1, 1000),
         "frames in a row with enough features but no pose, before the map continues where odometry says");
   field("max_contradictions", c.max_contradictions, config::in_range(1, 1000),

@@ -51,6 +51,7 @@ struct TrackerConfig {
   int ransac_iterations = 200;     ///< PnP [10, 10000]
   double ransac_error_px = 4.0;    ///< PnP inlier threshold [0.5, 20]
   int refine_iterations = 4;       ///< Levenberg-Marquardt steps per round [1, 50]
+  int min_first_features = 100;    ///< with depth, of the first view of a map, where there is no odometry [6, 5000]
   int max_blind_frames = 8;        ///< in a row with enough features, before the map continues by odometry [1, 1000]
   int max_contradictions = 5;      ///< frames in a row that see through what was mapped, before slam is lost [1, 1000]
   double max_prediction_s = 0.5;   ///< longest gap that the motion model bridges [0.01, 5]

@@ -301,17 +301,16 @@ class RgbdSlam::Implementation {
   }
 
   TrackingResult start_map(const Frame& frame) {
-    const bool has_features = frame.features_with_depth >= config_.tracker.min_matches;
-    // Without odometry a map of surfaces would be lost for ever as soon as they tell too little.
-    const bool has_surfaces = !has_features && motion_.odometry_at(frame.input->stamp) && shows_surfaces(frame);
-    if (!has_features && !has_surfaces) {
-      const char* surfaces = motion_.odometry_at(frame.input->stamp)
-                                 ? ", and too few surfaces"
-                                 : "; without odometry, surfaces are not enough to begin";
+    // Without odometry a map of few features, or of surfaces, would be lost for ever as soon as they tell too little.
+    const bool has_odometry = motion_.odometry_at(frame.input->stamp).has_value();
+    const int needed = has_odometry ? config_.tracker.min_matches : config_.tracker.min_first_features;
+    const bool has_features = frame.features_with_depth >= needed;
+    if (!has_features && !(has_odometry && shows_surfaces(frame))) {
       return without_vision(
           frame.input->stamp,
           "the view shows too little to begin (a blank wall?): " + std::to_string(frame.features_with_depth) +
-              " features with depth, " + std::to_string(config_.tracker.min_matches) + " needed" + surfaces,
+              " features with depth, " + std::to_string(needed) + " needed" +
+              (has_odometry ? ", and too few surfaces" : "; without odometry, surfaces are not enough to begin"),
           &frame);
     }
     const KeyframeId id = add_keyframe(frame, T_map_first_camera_);

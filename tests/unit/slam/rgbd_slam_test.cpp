@@ -390,7 +390,7 @@ TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {
   RgbdSlam slam({}, Pose::Identity());
   EXPECT_EQ(slam.process(black_room_frame(0)).state, TrackingState::kInitializing);
   EXPECT_EQ(slam.process(black_room_frame(0)).reason,
-            "the view shows too little to begin (a blank wall?): 0 features with depth, 30 needed; without odometry, "
+            "the view shows too little to begin (a blank wall?): 0 features with depth, 100 needed; without odometry, "
             "surfaces are not enough to begin");
   ASSERT_EQ(slam.process(room_frame(0)).state, TrackingState::kTracking);
 
@@ -414,6 +414,18 @@ TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {
   const TrackingResult result = slam.process(room_frame(2));
   ASSERT_EQ(result.state, TrackingState::kTracking) << result.reason;
   EXPECT_LT((test::room_path(0) * T_map_camera(result)).translation().x() - test::room_path(2).translation().x(), 0.01);
+}
+
+TEST(RgbdSlam, BeginsWithFewFeaturesOnlyWhereOdometryCarriesItOn) {
+  SlamConfig config;
+  config.tracker.min_first_features = 5000;
+  RgbdSlam alone(config, test::room_path(0));
+  EXPECT_EQ(alone.process(room_frame(0)).state, TrackingState::kInitializing);
+  RgbdSlam with_odometry(config, test::room_path(0));
+  for (const int i : {-1, 0}) ASSERT_TRUE(with_odometry.add_odometry(room_stamp(i), Pose::Identity()));
+  const TrackingResult begun = with_odometry.process(room_frame(0));
+  EXPECT_EQ(begun.state, TrackingState::kTracking) << begun.reason;
+  EXPECT_EQ(begun.source, PoseSource::kVision);
 }
 
 TEST(RgbdSlam, GivesTheSameBitsTwice) {

@@ -26,6 +26,9 @@ void describe(Field& field, FeatureConfig& c) {
   field("levels", c.levels, config::in_range(1, 12), "pyramid levels");
   field("scale_factor", c.scale_factor, config::in_range(1.05, 2), "size ratio of neighbouring levels");
   field("fast_threshold", c.fast_threshold, config::in_range(1, 100), "least FAST contrast, grey levels");
+  field("min_corner_share", c.min_corner_share, config::in_range(0, 1),
+        "of a corner's structure tensor the smaller eigenvalue over the larger one; less is an edge, along which it "
+        "slides");
 }
 
 template <class Field>

@@ -8,6 +8,8 @@ struct FeatureConfig {
   int levels = 4;             ///< pyramid levels [1, 12]
   double scale_factor = 1.3;  ///< size ratio of neighbouring levels [1.05, 2]
   int fast_threshold = 10;    ///< least FAST contrast, grey levels [1, 100]
+  /// The smaller eigenvalue of a corner's structure tensor, as a share of the larger one; below it is an edge [0, 1].
+  double min_corner_share = 0.2;
 };
 
 /// Standard deviations of the measurements. Depth noise of structured light and stereo grows with z^2.

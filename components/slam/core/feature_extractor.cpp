@@ -61,16 +61,37 @@ bool is_better(const Corner& a, const Corner& b) {
   return std::tuple(-a.score, a.y, a.x) < std::tuple(-b.score, b.y, b.x);
 }
 
-std::vector<Corner> detect_corners(const cv::Mat& image, int threshold) {
+// Whether the image fixes the position of a corner in both directions, by the eigenvalues of the structure tensor of
+// its neighbourhood [Harris 1988]. What noise makes a corner of on a straight edge slides along it, wherever the camera
+// goes.
+bool is_fixed(const cv::Mat& image, int x, int y, double least_share) {
+  constexpr int kRadius = 3;
+  int xx = 0, xy = 0, yy = 0;
+  for (int v = y - kRadius; v <= y + kRadius; ++v) {
+    const std::uint8_t* above = image.ptr<std::uint8_t>(v - 1);
+    const std::uint8_t* row = image.ptr<std::uint8_t>(v);
+    const std::uint8_t* below = image.ptr<std::uint8_t>(v + 1);
+    for (int u = x - kRadius; u <= x + kRadius; ++u) {
+      const int dx = row[u + 1] - row[u - 1], dy = below[u] - above[u];
+      xx += dx * dx;
+      xy += dx * dy;
+      yy += dy * dy;
+    }
+  }
+  const double mean = 0.5 * (xx + yy), apart = std::hypot(0.5 * (xx - yy), xy);
+  return mean - apart >= least_share * (mean + apart);
+}
+
+std::vector<Corner> detect_corners(const cv::Mat& image, const FeatureConfig& config) {
   if (image.cols <= 2 * kBorder || image.rows <= 2 * kBorder) return {};
   const cv::Rect inside(kBorder - 3, kBorder - 3, image.cols - 2 * kBorder + 6, image.rows - 2 * kBorder + 6);
   std::vector<cv::KeyPoint> found;
-  cv::FAST(image(inside), found, threshold, true);
+  cv::FAST(image(inside), found, config.fast_threshold, true);
   std::vector<Corner> corners;
   corners.reserve(found.size());
   for (const auto& point : found) {
-    corners.push_back(
-        {static_cast<int>(point.pt.x) + inside.x, static_cast<int>(point.pt.y) + inside.y, point.response});
+    const int x = static_cast<int>(point.pt.x) + inside.x, y = static_cast<int>(point.pt.y) + inside.y;
+    if (is_fixed(image, x, y, config.min_corner_share)) corners.push_back({x, y, point.response});
   }
   return corners;
 }
@@ -124,8 +145,8 @@ struct FeatureExtractor::Implementation {
   // Appends the features of a level.
   void extract(const Level& level, int octave, int count, std::vector<Feature>& features) const {
     std::vector<cv::KeyPoint> points;
-    for (const Corner& corner : spread_corners(detect_corners(level.image, config.fast_threshold), level.image.cols,
-                                               level.image.rows, count)) {
+    for (const Corner& corner :
+         spread_corners(detect_corners(level.image, config), level.image.cols, level.image.rows, count)) {
       points.emplace_back(static_cast<float>(corner.x), static_cast<float>(corner.y), 2.0F * kPatchRadius + 1.0F,
                           corner_angle(level.image, corner.x, corner.y), corner.score);
     }

@@ -13,9 +13,10 @@ using geometry::Pose;
 // A key-frame has up to four edges that use an observation of its (two along the path, a pair of loops), where a chain
 // has two: docs/decisions/0025.
 constexpr double kLoopShare = 0.5;
-// Squared Mahalanobis distance of a loop from what the chain of edges says: 99.9 % of six degrees of freedom, for
-// errors three times as large as the chain believes.
-constexpr double kChainGate = 9.0 * 22.46;
+// Squared Mahalanobis distance of a loop from what the graph says: 99.9 % of six degrees of freedom.
+constexpr double kGate = 22.46;
+// Errors may be so many times as large as the graph believes; but not by metres, as rooms are apart that are copies.
+constexpr double kMoreThanBelieved = 3.0, kCopies_m = 1.0;
 
 double path_m(const Map& map, KeyframeId from, KeyframeId to) {
   double length_m = 0.0;
@@ -97,8 +98,9 @@ std::optional<PoseGraphEdge> LoopDetector::verify(const Map& map, const SlamGrap
     if (largest_sigma(covariance, 3) > config_.loop.max_sigma_rad) continue;
     const Pose T_from_to = map.keyframe(edge.from).T_map_camera.inverse() * map.keyframe(id).T_map_camera;
     const geometry::Vector6d error = geometry::se3_log(T_from_to.inverse() * edge.T_from_to);
-    const Matrix6d expected = graph.chain_covariance(map, edge.from, id) + covariance;
-    if (error.dot(expected.inverse() * error) > kChainGate) continue;
+    const Matrix6d expected = graph.relative_covariance(map, edge.from, id) + covariance;
+    const double more = error.head<3>().norm() < kCopies_m ? kMoreThanBelieved : 1.0;
+    if (error.dot(expected.inverse() * error) > more * more * kGate) continue;
     return edge;
   }
   return std::nullopt;

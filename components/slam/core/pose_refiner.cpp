@@ -21,7 +21,7 @@ constexpr double kPixelGate = 5.99, kDepthGate = 6.63;  // chi-square, 95 % of 2
 
 // A round of the refinement. The first ones only have to bring the last one close: every `stride`th sample will do.
 struct Round {
-  double gate_share;  // of the widest surface gate
+  double gate_share;  // of SurfaceConfig::max_distance_m
   std::size_t stride;
   double least_step;  // [m], [rad]; smaller ones end the round
 };
@@ -101,6 +101,27 @@ class Refinement {
     }
   }
 
+  // A gate narrower than the noise would keep what confirms the pose that it starts from; one that is wider than it has
+  // to be takes samples for seen whose place something else has taken.
+  void choose_surface_gate() {
+    constexpr std::size_t kStride = 4;
+    constexpr double kSigmas = 3.0, kPerMedian = 1.4826;  // sigma of a normal distribution by its median error
+    if (problem_.depth == nullptr) return;
+    const Pose T_camera_reference = T_.inverse();
+    std::vector<double> errors;
+    for (std::size_t i = 0; i < problem_.surface.size(); i += kStride) {
+      const auto residual =
+          surface_residual(config_.noise, problem_.camera, *problem_.depth, problem_.surface[i], T_camera_reference);
+      if (!residual) continue;
+      const double error = std::abs(residual->distance_m) / residual->sigma_m;
+      if (error < kSigmas || error * residual->sigma_m < config_.surface.max_distance_m) errors.push_back(error);
+    }
+    if (errors.empty()) return;
+    const auto middle = errors.begin() + static_cast<std::ptrdiff_t>(errors.size() / 2);
+    std::nth_element(errors.begin(), middle, errors.end());
+    surface_gate_ = kSigmas * std::min(1.0, kPerMedian * *middle);
+  }
+
   // After the last round.
   Alignment summarise() const;
 
@@ -140,13 +161,15 @@ class Refinement {
 
   void add_surface(const Pose& T_camera_reference, const Round& round, Linearisation& result) const {
     Term& term = result.surface;
-    const double gate_m = round.gate_share * config_.surface.max_distance_m;
+    const double narrow_m = round.gate_share * config_.surface.max_distance_m;
     const double share = config_.surface.weight * static_cast<double>(round.stride);
     for (std::size_t i = 0; i < problem_.surface.size(); i += round.stride) {
       const SurfaceSample& sample = problem_.surface[i];
       const auto residual =
           surface_residual(config_.noise, problem_.camera, *problem_.depth, sample, T_camera_reference);
-      if (!residual || std::abs(residual->distance_m) > gate_m) continue;
+      if (!residual) continue;
+      const double gate_m = std::max(narrow_m, surface_gate_ * residual->sigma_m);
+      if (std::abs(residual->distance_m) > gate_m) continue;
       const double per_m = 1.0 / residual->sigma_m;
       const double error = std::abs(residual->distance_m) * per_m;
       const double weight = share * huber_weight(error);
@@ -163,6 +186,7 @@ class Refinement {
   Pose T_;              // of the camera in the reference
   Linearisation last_;  // at T_
   std::vector<bool> is_inlier_;
+  double surface_gate_ = 0.0;  // of a plane distance, in sigmas, where that is wider than the round's gate
 };
 
 // The a-posteriori variance of the unit weight, as in any least-squares adjustment.
@@ -246,6 +270,7 @@ std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const 
 Alignment refine_pose(const SlamConfig& config, const AlignmentProblem& problem, const Pose& T_reference_camera) {
   Refinement refinement(config, problem, T_reference_camera);
   for (const Round& round : kRounds) {
+    refinement.choose_surface_gate();
     refinement.optimise(round);
     refinement.classify();
   }

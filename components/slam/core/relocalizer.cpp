@@ -103,9 +103,9 @@ bool Relocalizer::weigh(const Situation& now, const Pose& T_map_camera, const Tr
 std::optional<MotionModel::Expected> Relocalizer::expected(const Situation& now, KeyframeId reference) const {
   const auto reckoned = now.motion.dead_reckon(now.stamp);
   if (!reckoned) return now.motion.expect(now.map, now.stamp);
-  const Matrix6d chain = now.graph.chain_covariance(now.map, reference, reckoned->reference);
+  const Matrix6d between = now.graph.relative_covariance(now.map, reference, reckoned->reference);
   return MotionModel::Expected{now.map.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera,
-                               compound_covariance(chain, reckoned->T_reference_camera, reckoned->covariance)};
+                               compound_covariance(between, reckoned->T_reference_camera, reckoned->covariance)};
 }
 
 bool Relocalizer::motion_leads_to(const Situation& now, KeyframeId reference, const Pose& T_map_camera) const {

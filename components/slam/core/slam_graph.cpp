@@ -83,6 +83,13 @@ Matrix6d SlamGraph::chain_covariance(const Map& map, KeyframeId from, KeyframeId
   return move * of_from * move.transpose() + of_to;
 }
 
+Matrix6d SlamGraph::relative_covariance(const Map& map, KeyframeId from, KeyframeId to) const {
+  const Matrix6d chain = chain_covariance(map, from, to);
+  const Matrix6d move = geometry::adjoint(map.keyframe(to).T_map_camera.inverse() * map.keyframe(from).T_map_camera);
+  const Matrix6d apart = move * covariance(from) * move.transpose() + covariance(to);
+  return largest_sigma(apart, 0) < largest_sigma(chain, 0) ? apart : chain;
+}
+
 void SlamGraph::apply(const GraphCorrection& correction, Map& map) {
   std::vector<Pose> moves;  // of each key-frame, in the map
   for (const Keyframe& keyframe : map.keyframes()) {

@@ -4,35 +4,62 @@
 #include <cmath>
 #include <optional>
 
-#include <Eigen/Geometry>
+#include <Eigen/Cholesky>
 
 #include "slam/core/noise_model.hpp"
 
 namespace lapis::slam {
 namespace {
 
-constexpr int kNormalReach_px = 2;     // distance of the pixels whose differences give the normal
 constexpr double kMinIncidence = 0.1;  // cosine between the normal and the viewing ray
+constexpr double kLeastShare = 0.6;    // of a cell's pixels with depth
+constexpr double kMostSigmas = 1.5;    // of the depth noise, by which a cell may differ from its plane (RMS)
 
-// On a plane inverse depth is linear in the pixel: the centre equals the mean of opposite neighbours.
-bool is_smooth(const NoiseConfig& noise, double a, double centre, double b) {
-  if (!is_depth(noise, a) || !is_depth(noise, b)) return false;
-  const double expected = 2.0 / (1.0 / a + 1.0 / b);
-  return std::abs(expected - centre) < 3.0 * depth_sigma(noise, centre);
-}
+// The plane through a cell of the depth image, by least squares: on a plane inverse depth is linear in the pixel, and
+// the noise of inverse depth about the same everywhere. A cell's pixels together are needed, since the difference of
+// two depths a few pixels apart is noise from some metres on, and the normal with it.
+struct CellSums {
+  double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, w = 0.0, xw = 0.0, yw = 0.0, ww = 0.0;
 
-std::optional<SurfaceSample> sample_at(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
-                                       const geometry::DepthImage& depth, int x, int y) {
-  constexpr int r = kNormalReach_px;
-  const double centre = depth(x, y);
-  if (!is_depth(noise, centre)) return std::nullopt;
-  const double left = depth(x - r, y), right = depth(x + r, y), up = depth(x, y - r), down = depth(x, y + r);
-  if (!is_smooth(noise, left, centre, right) || !is_smooth(noise, up, centre, down)) return std::nullopt;
-  const Eigen::Vector3d across = camera.unproject(x + r, y, right) - camera.unproject(x - r, y, left);
-  const Eigen::Vector3d along = camera.unproject(x, y + r, down) - camera.unproject(x, y - r, up);
+  void add(double column, double row, double inverse_depth) {
+    n += 1.0;
+    x += column;
+    y += row;
+    xx += column * column;
+    xy += column * row;
+    yy += row * row;
+    w += inverse_depth;
+    xw += column * inverse_depth;
+    yw += row * inverse_depth;
+    ww += inverse_depth * inverse_depth;
+  }
+};
+
+std::optional<SurfaceSample> sample_cell(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
+                                         const geometry::DepthImage& depth, int left, int top, int size) {
+  const double middle = 0.5 * (size - 1);
+  CellSums sums;
+  for (int row = 0; row < size; ++row) {
+    for (int column = 0; column < size; ++column) {
+      const double z = depth(left + column, top + row);
+      if (is_depth(noise, z)) sums.add(column - middle, row - middle, 1.0 / z);
+    }
+  }
+  if (sums.n < kLeastShare * size * size) return std::nullopt;
+  Eigen::Matrix3d normal_equations;
+  normal_equations << sums.xx, sums.xy, sums.x, sums.xy, sums.yy, sums.y, sums.x, sums.y, sums.n;
+  const Eigen::Vector3d right(sums.xw, sums.yw, sums.w);
+  const Eigen::Vector3d plane = normal_equations.ldlt().solve(right);  // slopes, and inverse depth in the middle
+  const double z = 1.0 / plane.z();
+  if (!is_depth(noise, z)) return std::nullopt;
+  const double variance = std::max(0.0, sums.ww - plane.dot(right)) / (sums.n - 3.0);
+  if (std::sqrt(variance) > kMostSigmas * depth_sigma(noise, z) / (z * z)) return std::nullopt;
+  const double u = left + middle, v = top + middle;
   SurfaceSample sample;
-  sample.point = camera.unproject(x, y, centre);
-  sample.normal = along.cross(across).normalized();
+  sample.point = camera.unproject(u, v, z);
+  sample.normal = -Eigen::Vector3d(plane.x() * camera.fx, plane.y() * camera.fy,
+                                   plane.z() - plane.x() * (u - camera.cx) - plane.y() * (v - camera.cy))
+                       .normalized();
   if (-sample.normal.dot(sample.point.normalized()) < kMinIncidence) return std::nullopt;
   return sample;
 }
@@ -42,10 +69,10 @@ std::optional<SurfaceSample> sample_at(const NoiseConfig& noise, const geometry:
 std::vector<SurfaceSample> sample_surface(const SurfaceConfig& config, const NoiseConfig& noise,
                                           const geometry::PinholeCamera& camera, const geometry::DepthImage& depth) {
   std::vector<SurfaceSample> samples;
-  const int first = std::max(config.grid_step_px / 2, kNormalReach_px);
-  for (int y = first; y < depth.height - kNormalReach_px; y += config.grid_step_px) {
-    for (int x = first; x < depth.width - kNormalReach_px; x += config.grid_step_px) {
-      if (const auto sample = sample_at(noise, camera, depth, x, y)) samples.push_back(*sample);
+  const int size = config.grid_step_px;
+  for (int top = 0; top + size <= depth.height; top += size) {
+    for (int left = 0; left + size <= depth.width; left += size) {
+      if (const auto sample = sample_cell(noise, camera, depth, left, top, size)) samples.push_back(*sample);
     }
   }
   return samples;

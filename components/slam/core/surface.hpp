@@ -16,7 +16,8 @@ struct SurfaceSample {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, towards the camera
 };
 
-/// Samples of a depth image on a regular grid, where the surface is smooth and not seen edge-on.
+/// The planes through the cells of a regular grid of a depth image (SurfaceConfig::grid_step_px), where the surface is
+/// plane and not seen edge-on.
 std::vector<SurfaceSample> sample_surface(const SurfaceConfig& config, const NoiseConfig& noise,
                                           const geometry::PinholeCamera& camera, const geometry::DepthImage& depth);
 

@@ -66,7 +66,7 @@ class SpentOnce : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
     config_.surface.enabled = false;  // only landmarks inform
-    config_.loop.spacing_m = 1.0;     // the whole path is 3 m: more than one pair
+    config_.loop.spacing_m = 0.5;     // the whole path is 3 m: more than one pair
     slam_ = std::make_unique<RgbdSlam>(config_, spent_turn(0));
     for (int i = 0; i < kSpentFrames; ++i)
       ASSERT_EQ(slam_->process(spent_frame(config_.noise, i)).state, TrackingState::kTracking);

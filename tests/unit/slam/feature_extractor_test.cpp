@@ -83,5 +83,56 @@ TEST(FeatureExtractor, FindsNothingWhereThereIsNothing) {
   EXPECT_TRUE(extractor.extract(geometry::GrayImage()).empty());
 }
 
+// A square that is a little brighter than the wall behind it, a little turned, with a camera's noise.
+const Eigen::Vector2d kSquareMiddle(160.0, 120.0);
+constexpr double kSquareHalf_px = 60.0, kSquareTurn_rad = 0.15;
+
+Eigen::Vector2d in_square(const Eigen::Vector2d& pixel) {
+  return Eigen::Rotation2Dd(-kSquareTurn_rad) * (pixel - kSquareMiddle);
+}
+
+geometry::GrayImage noisy_square(unsigned seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> noise(0.0, 3.0);
+  geometry::GrayImage image(320, 240);
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const double outside_px = in_square({x, y}).cwiseAbs().maxCoeff() - kSquareHalf_px;
+      const double value = 60.0 + 40.0 * std::clamp(0.5 - outside_px, 0.0, 1.0);
+      image(x, y) = static_cast<std::uint8_t>(std::lround(value + noise(random)));
+    }
+  }
+  return image;
+}
+
+struct OnSquare {
+  int corners = 0, sides = 0;
+};
+
+OnSquare features_of_squares(const FeatureConfig& config) {
+  OnSquare count;
+  for (unsigned seed = 1; seed <= 30; ++seed) {
+    for (const Feature& feature : FeatureExtractor(config).extract(noisy_square(seed))) {
+      const Eigen::Vector2d from_corner = in_square(feature.pixel).cwiseAbs().array() - kSquareHalf_px;
+      if (from_corner.norm() < 10.0) {
+        ++count.corners;
+      } else if (std::abs(from_corner.maxCoeff()) < 5.0) {
+        ++count.sides;
+      }
+    }
+  }
+  return count;
+}
+
+TEST(FeatureExtractor, LeavesOutMostOfWhatNoiseMakesOfEdges) {
+  FeatureConfig config;
+  const OnSquare fixed = features_of_squares(config);
+  config.min_corner_share = 0.0;
+  const OnSquare all = features_of_squares(config);
+  EXPECT_GT(all.sides, 100);
+  EXPECT_LT(fixed.sides, 0.3 * all.sides);
+  EXPECT_GE(fixed.corners, 0.9 * all.corners);
+}
+
 }  // namespace
 }  // namespace lapis::slam

@@ -156,6 +156,16 @@ TEST_F(SlamGraphTest, ChainCovarianceIsThatOfDisturbedChains) {
   EXPECT_TRUE(graph_.chain_covariance(map_, 2, 3).isApprox(covariance_));
 }
 
+TEST_F(SlamGraphTest, RelativeCovarianceIsTheSmallerOfWhatTheChainAndTheMapSay) {
+  EXPECT_TRUE(graph_.relative_covariance(map_, 3, 4).isApprox(graph_.chain_covariance(map_, 3, 4))) << "no loop";
+  std::vector<Matrix6d> small(5, 0.01 * covariance_);  // as loops leave it
+  const SlamGraph sure(graph_.edges(), graph_.links(), small);
+  const Pose T_4_3 = map_.keyframe(4).T_map_camera.inverse() * map_.keyframe(3).T_map_camera;
+  const Matrix6d move = geometry::adjoint(T_4_3);
+  EXPECT_TRUE(sure.relative_covariance(map_, 3, 4).isApprox(move * small[3] * move.transpose() + small[4]));
+  EXPECT_TRUE(sure.chain_covariance(map_, 3, 4).isApprox(graph_.chain_covariance(map_, 3, 4)));
+}
+
 // Without loops the covariance that grows along the chain is that of the whole graph.
 TEST_F(SlamGraphTest, CovariancesAreThoseOfTheGraph) {
   const auto all = node_covariances(graph_.snapshot(map_, 0), {0, 1, 2, 3, 4});

@@ -14,6 +14,8 @@ struct WheelCalibration {
   double turn_variance = 0.0;  ///< of turn_scale
   double noise = 1.0;          ///< factor of sigma, in [0.5, 5]
   double motions = 0.0;        ///< that told the noise
+
+  bool operator==(const WheelCalibration&) const = default;
 };
 
 /// Learns the calibration from motions that vision knows as well: Gaussian beliefs in both scales, each motion one

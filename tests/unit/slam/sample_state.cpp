@@ -65,6 +65,7 @@ SlamFile sample_file(unsigned seed, std::size_t keyframes, int features) {
   state.scale_factor = 1.3;
   state.graph_version = keyframes + 2;
   state.reference = keyframes - 1;
+  state.wheels = {1.02, 1e-4, 0.97, 4e-4, 1.5, 80.0};
   for (KeyframeId id = 0; id < keyframes; ++id) {
     // Every key-frame shows half of the landmarks of the one before.
     const auto first = static_cast<LandmarkId>(id * static_cast<std::size_t>(features) / 2);

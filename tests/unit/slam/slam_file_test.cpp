@@ -84,6 +84,19 @@ TEST(SlamFile, ReadEqualsWritten) {
   EXPECT_EQ(a.edges[1].T_from_to.matrix(), b.edges[1].T_from_to.matrix());
   ASSERT_EQ(a.links.size(), b.links.size());
   EXPECT_EQ(a.links[0].T_from_to.matrix(), b.links[0].T_from_to.matrix());
+  EXPECT_EQ(a.wheels, b.wheels);
+}
+
+TEST(SlamFile, AMapOfTheFirstVersionHasWheelsThatNobodyKnows) {
+  constexpr std::size_t kVersionAt = 8, kWheelSection = 16 + 6 * 8;
+  Bytes bytes = encode_slam_file(test::sample_file(1, 3));
+  bytes.resize(bytes.size() - kWheelSection);
+  bytes[kVersionAt] = 1;
+  std::string error;
+  const auto read = decode_slam_file(bytes, error);
+  ASSERT_TRUE(read) << error;
+  EXPECT_EQ(read->state.wheels, WheelCalibration{});
+  EXPECT_EQ(read->state.keyframes.size(), 3U);
 }
 
 TEST(SlamFile, EqualContentGivesEqualBytesAndReadingLosesNothingMore) {
@@ -182,6 +195,10 @@ TEST(SlamFile, AStateThatCannotBeIsRefusedByName) {
       {"edge 1: information", [](State& s) { s.edges[1].information(0, 5) = kNaN; }},
       {"edge 1: information is not positive definite", [](State& s) { s.edges[1].information.setZero(); }},
       {"edge 1: unknown type", [](State& s) { s.edges[1].type = static_cast<EdgeType>(9); }},
+      {"calibration of the wheels: scale", [](State& s) { s.wheels.distance_scale = 0.0; }},
+      {"calibration of the wheels: scale", [](State& s) { s.wheels.turn_variance = kNaN; }},
+      {"calibration of the wheels: noise", [](State& s) { s.wheels.noise = 0.0; }},
+      {"calibration of the wheels: number", [](State& s) { s.wheels.motions = -1.0; }},
       {"link 1: joins", [](State& s) { s.links[1].from = 8; }},
   };
   for (const auto& [name, change] : faults) {

@@ -61,7 +61,7 @@ function(lapis_unit_test name)
     target_compile_options(${name} PRIVATE ${LAPIS_TEST_OPTIMISATION})
   endif()
   add_test(NAME unit.${name} COMMAND ${name})
-  set_tests_properties(unit.${name} PROPERTIES LABELS unit TIMEOUT 300)
+  set_tests_properties(unit.${name} PROPERTIES LABELS unit TIMEOUT 600) # against hanging: sanitizers on a slow day take 300
   if(A_SHELL)
     set_property(TEST unit.${name} APPEND PROPERTY LABELS shell)
   else()

@@ -150,16 +150,18 @@ void EvaluatorComponent::work(const runtime::Cycle& cycle) {
 /// By which explore.sh shows how far the robot is.
 void EvaluatorComponent::report_progress() {
   find_truth();
-  const auto share = maps_.explored_share();
-  const TimelineRow row = timeline_.empty() ? TimelineRow{} : timeline_.back();
-  const std::string how_far =
-      fmt::format("{:.0f} s, {:.0f} m3 explored{}, {:.1f} m driven, loops closed: {}", row.time_s,
-                  row.explored_volume_m3.value_or(0.0), share ? fmt::format(" ({:.1f} %)", 100.0 * *share) : "",
-                  row.path_length_m.value_or(0.0), loop_closures());
-  const std::string text = fmt::format("{}, {}: {}", timeline_.empty() ? "no frame of slam yet" : how_far,
-                                       messages::state_name(*planner_), planner_->reason());
+  const std::string text = fmt::format("{}, {}: {}", how_far(), messages::state_name(*planner_), planner_->reason());
   spdlog::info("progress: {}", text);
   context_.heart().set_progress(text);
+}
+
+std::string EvaluatorComponent::how_far() const {
+  if (timeline_.empty()) return tracked_.empty() ? "no frame of slam yet" : "no frame of slam can be judged yet";
+  const TimelineRow& row = timeline_.back();
+  const auto share = maps_.explored_share();
+  return fmt::format("{:.0f} s, {:.0f} m3 explored{}, {:.1f} m driven, loops closed: {}", row.time_s,
+                     row.explored_volume_m3.value_or(0.0), share ? fmt::format(" ({:.1f} %)", 100.0 * *share) : "",
+                     row.path_length_m.value_or(0.0), loop_closures());
 }
 
 /// Joins and records the oldest frame that slam answered; false when its partners may still come.

@@ -64,6 +64,7 @@ class EvaluatorComponent {
   void add_to_references(const geometry::Pose& T_map_camera, const Image& depth, const Image* labels, const Info& info);
   void add_timeline_row(time::Time stamp);
   void report_progress();
+  std::string how_far() const;
   std::int64_t loop_closures() const;
   RunMetrics metrics() const;
   void write_files(const RunMetrics& metrics) const;

@@ -53,10 +53,11 @@ void describe(Field& field, MatcherConfig& c) {
 template <class Field>
 void describe(Field& field, SurfaceConfig& c) {
   field("enabled", c.enabled, config::anything(), "align surface patches of key-frames with the depth image");
-  field("grid_step_px", c.grid_step_px, config::in_range(4, 64), "spacing of the samples of a key-frame");
+  field("grid_step_px", c.grid_step_px, config::in_range(4, 64),
+        "spacing of the samples of a key-frame, and size of what each is a plane of");
   field("keyframes", c.keyframes, config::in_range(1, 5), "newest key-frames whose samples are aligned");
   field("max_distance_m", c.max_distance_m, config::in_range(0.01, 1),
-        "widest gate of a sample's plane distance in the first round");
+        "gate of a plane distance in the first round; wider where depth errs more");
   field("weight", c.weight, config::in_range(0.001, 1),
         "neighbouring samples err together: share of a sample that counts");
   field("near_keyframes", c.near_keyframes, config::in_range(1, 10),
@@ -83,7 +84,7 @@ void describe(Field& field, TrackerConfig& c) {
   field("ransac_error_px", c.ransac_error_px, config::in_range(0.5, 20), "PnP inlier threshold");
   field("refine_iterations", c.refine_iterations, config::in_range(1, 50), "Levenberg-Marquardt steps per round");
   field("min_first_features", c.min_first_features, config::in_range(6, 5000),
-        "features with depth that a map begins with where there is no odometry");
+        "features with depth that a map begins with where there is no odometry; half of max_features is always enough");
   field("max_blind_frames", c.max_blind_frames, config::in_range(1, 1000),
         "frames in a row with enough features but no pose, before the map continues where odometry says");
   field("max_contradictions", c.max_contradictions, config::in_range(1, 1000),

@@ -32,9 +32,9 @@ struct MatcherConfig {
 /// Surface patches of key-frames, aligned with the depth image (point to plane).
 struct SurfaceConfig {
   bool enabled = true;
-  int grid_step_px = 12;         ///< spacing of the samples of a key-frame [4, 64]
+  int grid_step_px = 12;         ///< spacing of the samples of a key-frame, and size of what each is a plane of [4, 64]
   int keyframes = 2;             ///< newest key-frames whose samples are aligned [1, 5]
-  double max_distance_m = 0.10;  ///< widest gate of a sample's plane distance in the first round [0.01, 1]
+  double max_distance_m = 0.10;  ///< gate of a plane distance in the first round; wider where depth errs more [0.01, 1]
   double weight = 0.2;           ///< neighbouring samples err together: share of a sample that counts [0.001, 1]
   // Where features are too few:
   int near_keyframes = 3;         ///< nearest of the newest and covisible ones whose samples are aligned [1, 10]
@@ -53,10 +53,12 @@ struct TrackerConfig {
   int ransac_iterations = 200;     ///< PnP [10, 10000]
   double ransac_error_px = 4.0;    ///< PnP inlier threshold [0.5, 20]
   int refine_iterations = 4;       ///< Levenberg-Marquardt steps per round [1, 50]
-  int min_first_features = 100;    ///< with depth, of the first view of a map, where there is no odometry [6, 5000]
-  int max_blind_frames = 8;        ///< in a row with enough features, before the map continues by odometry [1, 1000]
-  int max_contradictions = 5;      ///< frames in a row that see through what was mapped, before slam is lost [1, 1000]
-  double max_prediction_s = 0.5;   ///< longest gap that the motion model bridges [0.01, 5]
+  /// With depth, of the first view of a map, where there is no odometry; half of max_features is always enough [6,
+  /// 5000].
+  int min_first_features = 100;
+  int max_blind_frames = 8;       ///< in a row with enough features, before the map continues by odometry [1, 1000]
+  int max_contradictions = 5;     ///< frames in a row that see through what was mapped, before slam is lost [1, 1000]
+  double max_prediction_s = 0.5;  ///< longest gap that the motion model bridges [0.01, 5]
 };
 
 /// A frame becomes a key-frame when any of the reasons holds and the last one is far enough back.

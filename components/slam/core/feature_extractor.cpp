@@ -66,6 +66,7 @@ bool is_better(const Corner& a, const Corner& b) {
 // goes.
 bool is_fixed(const cv::Mat& image, int x, int y, double least_share) {
   constexpr int kRadius = 3;
+  if (least_share <= 0.0) return true;
   int xx = 0, xy = 0, yy = 0;
   for (int v = y - kRadius; v <= y + kRadius; ++v) {
     const std::uint8_t* above = image.ptr<std::uint8_t>(v - 1);

@@ -8,7 +8,8 @@ namespace lapis::slam {
 namespace {
 
 // How many of the newest key-frames get their covariance anew. A frame's reference is among them, unless a place seen
-// long ago was recognised; the covariance from before, without the newest loops, is then still an upper bound.
+// long ago was recognised; the covariance from before, without the newest loops, is then still an upper bound
+// (SlamGraph::apply sees to those that a removed loop has made too small).
 constexpr std::size_t kNewest = 100;
 
 // Optimal poses of the graph, how well they are known, and which edges are outliers.

@@ -15,8 +15,6 @@ using geometry::Pose;
 constexpr double kLoopShare = 0.5;
 // Squared Mahalanobis distance of a loop from what the graph says: 99.9 % of six degrees of freedom.
 constexpr double kGate = 22.46;
-// Errors may be so many times as large as the graph believes; but not by metres, as rooms are apart that are copies.
-constexpr double kMoreThanBelieved = 3.0, kCopies_m = 1.0;
 
 double path_m(const Map& map, KeyframeId from, KeyframeId to) {
   double length_m = 0.0;
@@ -27,6 +25,12 @@ double path_m(const Map& map, KeyframeId from, KeyframeId to) {
 }
 
 }  // namespace
+
+bool is_plausible(const geometry::Vector6d& error, const Matrix6d& covariance) {
+  constexpr double kMoreThanBelieved = 3.0, kCopies_m = 1.0;
+  const double more = std::clamp(kMoreThanBelieved * kCopies_m / error.head<3>().norm(), 1.0, kMoreThanBelieved);
+  return error.dot(covariance.inverse() * error) <= more * more * kGate;
+}
 
 std::vector<KeyframeId> LoopDetector::resembling(const Frame& frame) const {
   std::vector<KeyframeId> found;
@@ -99,8 +103,7 @@ std::optional<PoseGraphEdge> LoopDetector::verify(const Map& map, const SlamGrap
     const Pose T_from_to = map.keyframe(edge.from).T_map_camera.inverse() * map.keyframe(id).T_map_camera;
     const geometry::Vector6d error = geometry::se3_log(T_from_to.inverse() * edge.T_from_to);
     const Matrix6d expected = graph.relative_covariance(map, edge.from, id) + covariance;
-    const double more = error.head<3>().norm() < kCopies_m ? kMoreThanBelieved : 1.0;
-    if (error.dot(expected.inverse() * error) > more * more * kGate) continue;
+    if (!is_plausible(error, expected)) continue;
     return edge;
   }
   return std::nullopt;

@@ -15,6 +15,11 @@ struct Revisit {
   KeyframeId to = 0;
 };
 
+/// Whether a loop may differ so from what the graph says, with its covariance (right perturbation; translation,
+/// rotation): 99.9 % of right loops do, if errors are up to three times as large as believed. That allowance falls from
+/// 1 m on, to none at 3 m: rooms that are copies of each other are as far apart.
+bool is_plausible(const geometry::Vector6d& error, const geometry::Matrix6d& covariance);
+
 /// Recognises, at a new key-frame, places that were seen before. What the place index proposes, and what is near in the
 /// map, is verified in 3-D; a loop counts when a second key-frame soon after says the same.
 class LoopDetector {

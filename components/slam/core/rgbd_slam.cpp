@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -303,7 +304,9 @@ class RgbdSlam::Implementation {
   TrackingResult start_map(const Frame& frame) {
     // Without odometry a map of few features, or of surfaces, would be lost for ever as soon as they tell too little.
     const bool has_odometry = motion_.odometry_at(frame.input->stamp).has_value();
-    const int needed = has_odometry ? config_.tracker.min_matches : config_.tracker.min_first_features;
+    const auto& [least, alone, most] =
+        std::tuple(config_.tracker.min_matches, config_.tracker.min_first_features, config_.features.max_features);
+    const int needed = has_odometry ? least : std::max(least, std::min(alone, most / 2));
     const bool has_features = frame.features_with_depth >= needed;
     if (!has_features && !(has_odometry && shows_surfaces(frame))) {
       return without_vision(

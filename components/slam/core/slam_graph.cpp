@@ -91,15 +91,18 @@ Matrix6d SlamGraph::relative_covariance(const Map& map, KeyframeId from, Keyfram
 }
 
 void SlamGraph::apply(const GraphCorrection& correction, Map& map) {
+  // What a loop that is removed has made sure of is not known any more, also where no new covariance comes.
+  const bool has_removed = std::any_of(correction.weights.begin(), correction.weights.end(),
+                                       [](double weight) { return weight < kLeastWeight; });
   std::vector<Pose> moves;  // of each key-frame, in the map
   for (const Keyframe& keyframe : map.keyframes()) {
     const auto i = static_cast<std::size_t>(keyframe.id);
     const bool is_known = i < correction.T_map_camera.size();
     moves.push_back(is_known ? Pose(correction.T_map_camera[i] * correction.T_map_before[i].inverse())
                              : moves[static_cast<std::size_t>(parents_[i].id)]);
-    if (is_known) {
-      covariances_[i] = correction.covariances[i].value_or(covariances_[i]);
-    } else {
+    if (is_known && correction.covariances[i]) {
+      covariances_[i] = *correction.covariances[i];
+    } else if (i > 0 && (!is_known || has_removed)) {
       const Parent& parent = parents_[i];
       const Pose T_parent_keyframe = map.keyframe(parent.id).T_map_camera.inverse() * keyframe.T_map_camera;
       covariances_[i] = compound_covariance(covariance(parent.id), T_parent_keyframe, parent.covariance);

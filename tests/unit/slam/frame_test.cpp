@@ -75,21 +75,5 @@ TEST(SampleSurface, FindsPlaneAndNormal) {
   }
 }
 
-TEST(SampleSurface, LeavesOutEdgesAndHoles) {
-  const auto camera = test::small_camera();
-  geometry::DepthImage depth(320, 240, 2.0F);
-  for (int y = 0; y < 240; ++y) {
-    for (int x = 160; x < 240; ++x) depth(x, y) = 4.0F;
-    for (int x = 240; x < 320; ++x) depth(x, y) = 0.0F;
-  }
-  SurfaceConfig config;
-  config.grid_step_px = 1;
-  for (const SurfaceSample& sample : sample_surface(config, {}, camera, depth)) {
-    EXPECT_NEAR(std::abs(sample.normal.z()), 1.0, 1e-9);
-    EXPECT_LT(camera.project(sample.point).x(), 240.0);
-  }
-  EXPECT_TRUE(sample_surface(config, {}, camera, geometry::DepthImage(320, 240)).empty());
-}
-
 }  // namespace
 }  // namespace lapis::slam

@@ -418,7 +418,7 @@ TEST(RgbdSlam, SaysWhyAFrameIsOfNoUse) {
 
 TEST(RgbdSlam, BeginsWithFewFeaturesOnlyWhereOdometryCarriesItOn) {
   SlamConfig config;
-  config.tracker.min_first_features = 5000;
+  config.features.max_features = config.tracker.min_first_features = 5000;  // half of it is more than the room shows
   RgbdSlam alone(config, test::room_path(0));
   EXPECT_EQ(alone.process(room_frame(0)).state, TrackingState::kInitializing);
   RgbdSlam with_odometry(config, test::room_path(0));

@@ -127,6 +127,20 @@ TEST_F(DriftingStretchTest, ALoopThatIsRemovedCorrectsNothing) {
   EXPECT_EQ(graph_.loops_removed(), 1u);
 }
 
+TEST_F(DriftingStretchTest, WhatARemovedLoopHasMadeSureOfIsForgotten) {
+  const std::vector<Matrix6d> of_chain = graph_.covariances();
+  std::vector<Matrix6d> sure(of_chain.size(), 0.01 * covariance_);
+  sure[0].setZero();
+  graph_.add_edge(edge(4, 6, EdgeType::kLoopClosure));
+  graph_ = SlamGraph(graph_.edges(), graph_.links(), sure);
+  optimise();
+  EXPECT_TRUE(graph_.covariance(6).isApprox(sure[6])) << "the loop stays";
+  optimise(0.0);
+  for (KeyframeId id = 1; id < 7; ++id) {
+    EXPECT_TRUE(graph_.covariance(id).isApprox(of_chain[static_cast<std::size_t>(id)])) << id;
+  }
+}
+
 TEST_F(DriftingStretchTest, IsRestoredWithTheGraph) {
   const SlamGraph restored(graph_.edges(), graph_.links(), graph_.covariances());
   for (KeyframeId id = 0; id < 7; ++id) EXPECT_EQ(restored.is_drifting(id), id >= 5) << id;

@@ -21,7 +21,7 @@ struct Wall {
   Eigen::Vector3d normal;  // towards the camera
 };
 
-DepthImage look_at(const Wall& wall, unsigned seed, double moved_m = 0.0) {
+DepthImage look_at(const Wall& wall, unsigned seed, double moved_m = 0.0, double noise_share = 1.0) {
   const auto camera = test::small_camera();
   const NoiseConfig noise;
   std::mt19937 random(seed);
@@ -30,7 +30,7 @@ DepthImage look_at(const Wall& wall, unsigned seed, double moved_m = 0.0) {
   for (int v = 0; v < depth.height; ++v) {
     for (int u = 0; u < depth.width; ++u) {
       const double z = wall.normal.z() * (wall.distance_m - moved_m) / wall.normal.dot(camera.unproject(u, v, 1.0));
-      depth(u, v) = static_cast<float>(z + depth_sigma(noise, z) * normal(random));
+      depth(u, v) = static_cast<float>(z + noise_share * depth_sigma(noise, z) * normal(random));
     }
   }
   return depth;
@@ -53,35 +53,49 @@ TEST(SampleSurface, KnowsTheNormalOfAWallBeyondTheNoise) {
   EXPECT_LT(std::sqrt(away_m2 / static_cast<double>(samples.size())), 0.02);
 }
 
+DepthImage exact_look_at(const Wall& wall) { return look_at(wall, 0, 0.0, 0.0); }
+
 TEST(SampleSurface, IsExactWithoutNoise) {
-  const auto camera = test::small_camera();
-  DepthImage depth(camera.width, camera.height);
-  const Eigen::Vector3d normal = Eigen::Vector3d(-0.4, 0.1, -1.0).normalized();
-  for (int v = 0; v < depth.height; ++v) {
-    for (int u = 0; u < depth.width; ++u)
-      depth(u, v) = static_cast<float>(2.0 * normal.z() / normal.dot(camera.unproject(u, v, 1.0)));
-  }
-  for (const SurfaceSample& sample : samples_of(depth)) {
-    EXPECT_NEAR(sample.normal.dot(normal), 1.0, 1e-6);
-    EXPECT_NEAR(sample.point.dot(normal), 2.0 * normal.z(), 1e-5);
+  const Wall wall{2.0, Eigen::Vector3d(-0.4, 0.1, -1.0).normalized()};
+  const auto samples = samples_of(exact_look_at(wall));
+  ASSERT_GT(samples.size(), 300U);
+  for (const SurfaceSample& sample : samples) {
+    EXPECT_NEAR(sample.normal.dot(wall.normal), 1.0, 1e-6);
+    EXPECT_NEAR(sample.point.dot(wall.normal), wall.distance_m * wall.normal.z(), 1e-5);
   }
 }
 
-TEST(SampleSurface, LeavesOutStepsHolesAndWhatIsSeenEdgeOn) {
+// At 3 m depth errs by 2.1 cm. The plane through a step of 10 cm in the middle of a cell leaves 2.5 cm (RMS), which is
+// hard to tell from noise, but 4 cm in the lines beside it.
+TEST(SampleSurface, LeavesOutSteps) {
+  const Wall wall{3.0, {0.0, 0.0, -1.0}};
+  const int size = SurfaceConfig{}.grid_step_px;
+  DepthImage depth = look_at(wall, 4);
+  for (int v = 0; v < depth.height; ++v) {
+    for (int u = 0; u < depth.width; ++u) depth(u, v) += u % size < size / 2 ? 0.1F : 0.0F;
+  }
+  EXPECT_GT(samples_of(look_at(wall, 4)).size(), 400U);
+  EXPECT_LT(samples_of(depth).size(), 10U);
+}
+
+TEST(SampleSurface, LeavesOutHoles) {
   const auto camera = test::small_camera();
   DepthImage depth(camera.width, camera.height, 2.0F);
-  const std::size_t all = samples_of(depth).size();
-  for (int v = 0; v < depth.height; ++v) {
-    for (int u = 0; u < 6; ++u) depth(u, v) = 2.5F;  // half of the first cells
-  }
-  const std::size_t rows = static_cast<std::size_t>(depth.height / SurfaceConfig{}.grid_step_px);
-  EXPECT_EQ(samples_of(depth).size(), all - rows);
+  EXPECT_GT(samples_of(depth).size(), 400U);
   for (int v = 0; v < depth.height; ++v) {
     for (int u = 0; u < depth.width; u += 2) depth(u, v) = 0.0F;
   }
   EXPECT_TRUE(samples_of(depth).empty()) << "half of the pixels have no depth";
-  const Wall floor{0.05, Eigen::Vector3d(0.0, -1.0, -0.001).normalized()};
-  EXPECT_TRUE(samples_of(look_at(floor, 3)).empty());
+}
+
+TEST(SampleSurface, LeavesOutWhatIsSeenEdgeOn) {
+  const Wall floor{8.0, Eigen::Vector3d(0.0, -1.0, -0.05).normalized()};  // the camera is 0.4 m above it
+  const auto samples = samples_of(exact_look_at(floor));
+  ASSERT_GT(samples.size(), 50U);
+  for (const SurfaceSample& sample : samples) {
+    EXPECT_GT(-floor.normal.dot(sample.point.normalized()), 0.0999) << sample.point.transpose();
+    EXPECT_LT(sample.point.z(), 4.1);
+  }
 }
 
 // The depth of a wall at 6 m errs by 7 cm from pixel to pixel. A gate of less, around the pose that the alignment

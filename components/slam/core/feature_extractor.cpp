@@ -69,9 +69,9 @@ bool is_fixed(const cv::Mat& image, int x, int y, double least_share) {
   if (least_share <= 0.0) return true;
   int xx = 0, xy = 0, yy = 0;
   for (int v = y - kRadius; v <= y + kRadius; ++v) {
-    const std::uint8_t* above = image.ptr<std::uint8_t>(v - 1);
-    const std::uint8_t* row = image.ptr<std::uint8_t>(v);
-    const std::uint8_t* below = image.ptr<std::uint8_t>(v + 1);
+    const auto* above = image.ptr<std::uint8_t>(v - 1);
+    const auto* row = image.ptr<std::uint8_t>(v);
+    const auto* below = image.ptr<std::uint8_t>(v + 1);
     for (int u = x - kRadius; u <= x + kRadius; ++u) {
       const int dx = row[u + 1] - row[u - 1], dy = below[u] - above[u];
       xx += dx * dx;

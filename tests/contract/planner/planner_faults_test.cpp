@@ -44,8 +44,9 @@ TEST_F(PlannerContract, BeforeTheFirstFrameItSaysWhatSlamWaitsFor) {
   lapis_msgs::msg::SlamStatus status;
   for (const std::string lack : {"waits for the camera's images", "waits: /camera/color/camera_info does not come"}) {
     status.reason(lack);
+    const std::string expected = std::string(idle).append("; slam: ").append(lack);
     peers.slam_status.publish(status);
-    ASSERT_TRUE(wait_until([&] { return reason() == idle + "; slam: " + lack; })) << reason() << planner->log();
+    ASSERT_TRUE(wait_until([&] { return reason() == expected; })) << reason() << planner->log();
   }
   ASSERT_TRUE(frames_until([&] { return reason().find("slam: ") == std::string::npos; })) << reason();
 }

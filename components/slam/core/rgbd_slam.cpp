@@ -4,7 +4,6 @@
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <tuple>
 #include <utility>
 #include <vector>
 
@@ -304,9 +303,9 @@ class RgbdSlam::Implementation {
   TrackingResult start_map(const Frame& frame) {
     // Without odometry a map of few features, or of surfaces, would be lost for ever as soon as they tell too little.
     const bool has_odometry = motion_.odometry_at(frame.input->stamp).has_value();
-    const auto& [least, alone, most] =
-        std::tuple(config_.tracker.min_matches, config_.tracker.min_first_features, config_.features.max_features);
-    const int needed = has_odometry ? least : std::max(least, std::min(alone, most / 2));
+    const int alone = std::min(config_.tracker.min_first_features, config_.features.max_features / 2);
+    const int least = config_.tracker.min_matches;
+    const int needed = has_odometry ? least : std::max(least, alone);
     const bool has_features = frame.features_with_depth >= needed;
     if (!has_features && !(has_odometry && shows_surfaces(frame))) {
       return without_vision(

@@ -156,7 +156,7 @@ TEST(RefinePose, SurfacesAloneFixThePoseInARoomCorner) {
   EXPECT_LT(error(T_first_second, result.T_reference_camera).head<3>().norm(), 0.001);
   EXPECT_LT(error(T_first_second, result.T_reference_camera).tail<3>().norm(), 0.0005);
   EXPECT_GT(result.surface_matches, 200);
-  EXPECT_LT(result.surface_rms_m, 0.002);  // cells where walls meet bend by less than depth's noise
+  EXPECT_LT(result.surface_rms_m, 0.0013);  // 1.2 mm: cells where walls meet bend by less than depth's noise
 }
 
 TEST(RefinePose, AWallLeavesWhatItCannotSeeToThePoints) {

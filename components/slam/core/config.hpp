@@ -53,9 +53,7 @@ struct TrackerConfig {
   int ransac_iterations = 200;     ///< PnP [10, 10000]
   double ransac_error_px = 4.0;    ///< PnP inlier threshold [0.5, 20]
   int refine_iterations = 4;       ///< Levenberg-Marquardt steps per round [1, 50]
-  /// With depth, of the first view of a map, where there is no odometry; half of max_features is always enough [6,
-  /// 5000].
-  int min_first_features = 100;
+  int min_first_features = 100;   ///< with depth, to begin a map without odometry; max_features / 2 is enough [6, 5000]
   int max_blind_frames = 8;       ///< in a row with enough features, before the map continues by odometry [1, 1000]
   int max_contradictions = 5;     ///< frames in a row that see through what was mapped, before slam is lost [1, 1000]
   double max_prediction_s = 0.5;  ///< longest gap that the motion model bridges [0.01, 5]

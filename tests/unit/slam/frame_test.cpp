@@ -64,16 +64,5 @@ TEST(FeatureIndex, FindsWhatBruteForceFinds) {
   }
 }
 
-TEST(SampleSurface, FindsPlaneAndNormal) {
-  const auto camera = test::small_camera();
-  const Eigen::Vector3d away = Eigen::Vector3d(0.3, 0.1, 1.0).normalized();
-  const auto samples = sample_surface({}, {}, camera, plane_image(camera, away, 2.5));
-  EXPECT_GT(samples.size(), 300U);
-  for (const SurfaceSample& sample : samples) {
-    EXPECT_NEAR(away.dot(sample.point), 2.5, 1e-5);
-    EXPECT_GT(-away.dot(sample.normal), 0.9999);
-  }
-}
-
 }  // namespace
 }  // namespace lapis::slam

@@ -14,6 +14,10 @@ struct ControllerComponentConfig {
   robot::RobotDescription robot;
 };
 
+RobotLimits limits_of(const robot::RobotDescription& robot);
+/// With all that the core needs of the robot.
+ControllerComponentConfig completed(ControllerComponentConfig config);
+
 template <class Field>
 void describe(Field& field, FanConfig& c) {
   field("length_m", c.length_m, config::in_range(0.5, 5.0), "of the paths that are tried [m]");

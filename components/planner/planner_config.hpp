@@ -24,6 +24,11 @@ struct PlannerComponentConfig {
   robot::RobotDescription robot;
 };
 
+/// With all that the core needs of the robot and of names.
+PlannerComponentConfig completed(PlannerComponentConfig config);
+/// The planner's views through the robot's camera.
+ViewConfig view_config(const PlannerComponentConfig& config);
+
 template <class Field>
 void describe(Field& field, GridConfig& c) {
   field.moved("min_height_m", "robot.obstacle_min_height_m");

@@ -1,0 +1,47 @@
+#include "planner/planner_config.hpp"
+
+namespace lapis::planner {
+namespace {
+
+constexpr const char* kLapisMethod = "joint";  // docs/decisions/0031-the-method-called-lapis.md
+
+Measure measure_of(const std::string& name) {
+  if (name == "shannon") return Measure::kShannon;
+  return name == "csqmi" ? Measure::kCsqmi : Measure::kSemantic;
+}
+
+Criterion criterion_of(const std::string& name) {
+  if (name == "a") return Criterion::kA;
+  if (name == "t") return Criterion::kT;
+  return name == "e" ? Criterion::kE : Criterion::kD;
+}
+
+Sparsifier sparsifier_of(const std::string& name) {
+  if (name == "mac") return Sparsifier::kMac;
+  return name == "log_det" ? Sparsifier::kLogTrees : Sparsifier::kNone;
+}
+
+}  // namespace
+
+PlannerComponentConfig completed(PlannerComponentConfig config) {
+  config.decision.method = *method_of(config.method == "lapis" ? kLapisMethod : config.method);
+  config.surroundings.measure = measure_of(config.measure);
+  config.decision.graph.criterion = criterion_of(config.criterion);
+  config.decision.graph.sparsifier = sparsifier_of(config.sparsifier);
+  config.surroundings.grid.footprint_radius_m = config.robot.radius_m;
+  config.surroundings.grid.band = {config.robot.obstacle_min_height_m, config.robot.obstacle_max_height_m};
+  config.decision.hallucination.covisibility.max_range_m = config.robot.sensing_range_m;
+  config.explorer.path = config.decision.path;
+  return config;
+}
+
+ViewConfig view_config(const PlannerComponentConfig& config) {
+  ViewConfig view;
+  view.camera = robot::pinhole_camera(config.robot.camera);
+  view.columns = config.view_columns;
+  view.rows = config.view_rows;
+  view.range_m = config.robot.sensing_range_m;
+  return view;
+}
+
+}  // namespace lapis::planner

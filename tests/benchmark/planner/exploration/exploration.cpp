@@ -1,0 +1,245 @@
+#include "tests/benchmark/planner/exploration/exploration.hpp"
+
+#include <cmath>
+#include <ctime>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "common/mapping/integration.hpp"
+#include "common/mapping/map_description.hpp"
+#include "controller/core/controller.hpp"
+#include "planner/core/exploration/explorer.hpp"
+#include "semantic_mapper/core/floor_plan.hpp"
+#include "semantic_mapper/core/obstacle_layer.hpp"
+#include "simulator/core/robot/robot.hpp"
+#include "simulator/core/truth/voxel_truth.hpp"
+#include "simulator/set_up.hpp"
+
+namespace lapis::planner::benchmark {
+namespace {
+
+using controller::PlanarPose;
+using geometry::Pose;
+
+constexpr int kTicksPerView = 3;  // of the camera's rate
+
+double cpu_s() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
+}
+
+Pose planar(const Eigen::Vector2d& position, double yaw_rad, double z_m) {
+  return geometry::make_pose({position.x(), position.y(), z_m},
+                             Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
+}
+
+simulator::RobotState at_rest(const simulator::StartPose& start) {
+  simulator::RobotState state;
+  state.position = start.position;
+  state.yaw_rad = start.yaw_rad;
+  return state;
+}
+
+/// Voxels that can be known, and how many of them are.
+class Explorable {
+ public:
+  explicit Explorable(const mapping::VoxelMap& truth) {
+    truth.for_each_observed(
+        [&](const mapping::VoxelIndex& voxel, const mapping::VoxelCounts&) { voxels_.push_back(voxel); });
+    if (voxels_.empty()) throw std::runtime_error("nothing can be explored from the start");
+  }
+  double share_known(const mapping::VoxelMap& map) const {
+    std::size_t known = 0;
+    for (const mapping::VoxelIndex& voxel : voxels_) known += map.read(voxel).is_observed() ? 1 : 0;
+    return static_cast<double>(known) / static_cast<double>(voxels_.size());
+  }
+
+ private:
+  std::vector<mapping::VoxelIndex> voxels_;
+};
+
+Explorable explorable(const simulator::World& world, const Pose& T_world_start, const ExplorationSetting& setting) {
+  const robot::RobotDescription& robot = setting.simulated.robot;
+  simulator::TruthConfig config;
+  config.sensing_range_m = robot.sensing_range_m;
+  config.robot_radius_m = robot.radius_m;
+  config.camera = robot::pinhole_camera(robot.camera);
+  config.mount = robot::camera_mount(robot.camera);
+  return Explorable(make_voxel_truth(world.scene(), world.raycaster(), world.nav_map(), T_world_start, config).mesh);
+}
+
+controller::Grid to_grid(const semantic_mapper::OccupancyGrid& grid) {
+  return {grid.resolution_m, {grid.origin_x_m, grid.origin_y_m}, grid.width, grid.height, grid.cells};
+}
+
+ObstacleGrid to_obstacles(const semantic_mapper::OccupancyGrid& grid) {
+  return {{grid.origin_x_m, grid.origin_y_m}, grid.resolution_m, grid.width, grid.height, grid.cells};
+}
+
+/// One exploration as it goes on. The map frame is base_link at the start.
+class Course {
+ public:
+  Course(const simulator::World& world, const ExplorationSetting& setting)
+      : world_(world), setting_(setting), start_(simulator::start_pose(world, setting.simulated)),
+        T_map_world_(simulator::T_map_world(planar(start_.position, start_.yaw_rad, world.scene().floor_z_m))),
+        camera_(robot::pinhole_camera(setting.simulated.robot.camera)),
+        T_base_camera_(geometry::T_base_camera(robot::camera_mount(setting.simulated.robot.camera))),
+        robot_(world.nav_map(), simulator::simulation_config(setting.simulated).robot, at_rest(start_)),
+        explorable_(explorable(world, T_map_world_.inverse(), setting)), map_(mapping::kDefaultResolution_m),
+        reader_(model_), band_(setting.planner.surroundings.grid.band), plan_(band_),
+        obstacles_({}, band_, mapping::kDefaultResolution_m), view_(view_config(setting.planner)),
+        surroundings_(setting.planner.surroundings, model_, mapping::kDefaultResolution_m),
+        explorer_(setting.planner.explorer),
+        controller_(setting.controller.method, controller::limits_of(setting.simulated.robot)) {}
+
+  Exploration run() {
+    explorer_.start();
+    bool is_over = false;
+    while (!is_over) {
+      const auto state = explorer_.state();
+      is_over = now().seconds() >= setting_.longest_s || state == State::kDone || state == State::kFailed;
+      step();
+      if (is_over || tick_ % std::lround(setting_.simulated.robot.camera.rate_hz) == 0) note_moment();
+    }
+    exploration_.state = explorer_.state();
+    for (const Candidate& candidate : decision_.candidates) note_left(candidate);
+    return std::move(exploration_);
+  }
+
+ private:
+  time::Time now() const { return robot_.state().stamp; }
+
+  Pose2 pose() const {
+    const Pose T = T_map_world_ * T_world_base();
+    return {T.translation().head<2>(), std::atan2(T.linear()(1, 0), T.linear()(0, 0))};
+  }
+
+  Pose T_world_base() const {
+    return planar(robot_.state().position, robot_.state().yaw_rad, world_.scene().floor_z_m);
+  }
+
+  // The order in which the processes answer a frame.
+  void step() {
+    const Pose2 here = pose();
+    controller_.note_camera(now(), now());
+    controller_.set_pose(controller::planar_pose(here.p_map, here.yaw_rad), now(), now());
+    if (tick_ % kTicksPerView == 0) see();
+    plan(here);
+    follow();
+    drive();
+  }
+
+  void see() {
+    const auto seen = world_.renderer().render(camera_, T_world_base() * T_base_camera_, false);
+    std::string error;
+    const auto frame = mapping::CompactFrame::make(camera_, seen.depth, &seen.labels, {.stride = 1}, error);
+    if (!frame) throw std::runtime_error(error);
+    const Pose T_map_camera = T_map_world_ * T_world_base() * T_base_camera_;
+    const auto votes = compute_votes(*frame, T_map_camera, {}, map_.resolution_m());
+    map_.add(votes);
+    obstacles_.add(now(), votes);
+    std::vector<mapping::BlockIndex> blocks;
+    for (const mapping::BlockVotes& block : votes.blocks) blocks.push_back(block.block);
+    plan_.mark_changed(blocks);
+    changed_.insert(changed_.end(), blocks.begin(), blocks.end());
+    controller_.see({seen.depth, camera_, T_base_camera_}, now(), now());
+    controller_.set_plan(to_grid(plan_.project(map_, reader_)));
+    controller_.set_obstacles(to_grid(obstacles_.grid()), now(), now());
+  }
+
+  void plan(const Pose2& here) {
+    const Report report{now(), here, Tracking::kTracking, is_blocked_, 0.0};
+    if (due_ && tick_ >= *due_) {
+      explorer_.take(decision_, report);
+      due_.reset();
+    }
+    if (due_) return;
+    surroundings_.update_map(map_, std::exchange(changed_, {}));
+    surroundings_.update_obstacles(to_obstacles(obstacles_.grid()), now());
+    if (!explorer_.step(report, &surroundings_)) return;
+    const double before_s = cpu_s();
+    decision_ = decide({surroundings_.grid(), surroundings_.frontiers(), surroundings_.field(), view_, T_base_camera_,
+                        nullptr, nullptr, here},
+                       explorer_.memory(now()), setting_.planner.decision);
+    exploration_.decision_cpu_s += cpu_s() - before_s;
+    ++exploration_.decisions;
+    due_ = tick_ + setting_.planner.decision_latency_frames;
+  }
+
+  void follow() {
+    controller_.note_planner(now());
+    if (explorer_.path_number() == followed_) return;
+    followed_ = explorer_.path_number();
+    std::vector<PlanarPose> path;
+    for (const Pose2& p : explorer_.path()) path.push_back(controller::planar_pose(p.p_map, p.yaw_rad));
+    if (explorer_.is_turn()) throw std::runtime_error("the planner looks for a pose that it has");
+    controller_.set_path(std::move(path), "the planner's path is empty");
+  }
+
+  void drive() {
+    const controller::Decision decision = controller_.step(now());
+    is_blocked_ = decision.state == controller::State::kBlocked;
+    if (!robot_.command({decision.command.forward_m_s, decision.command.turn_rad_s}))
+      throw std::runtime_error("a command is not finite");
+    const time::Time stamp{std::llround(static_cast<double>(++tick_) * 1e9 / setting_.simulated.robot.camera.rate_hz)};
+    const simulator::Motion motion = robot_.advance(stamp);
+    exploration_.path_m += std::abs(motion.distance_m);
+    exploration_.contacts += motion.is_in_contact && !was_in_contact_ ? 1 : 0;
+    was_in_contact_ = motion.is_in_contact;
+  }
+
+  void note_moment() {
+    exploration_.moments.push_back({now().seconds(), pose(), explorable_.share_known(map_), explorer_.reason()});
+  }
+
+  void note_left(const Candidate& candidate) {
+    const auto& frontiers = surroundings_.frontiers().frontiers();
+    const auto found = frontiers.find(candidate.frontier);
+    if (found == frontiers.end() || candidate.rejection.empty()) return;
+    exploration_.left_m[candidate.rejection] += found->second.length_m;
+  }
+
+  const simulator::World& world_;
+  const ExplorationSetting& setting_;
+  const simulator::StartPose start_;
+  const Pose T_map_world_;
+  const geometry::PinholeCamera camera_;
+  const Pose T_base_camera_;
+  simulator::Robot robot_;
+  const Explorable explorable_;
+  mapping::VoxelMap map_;
+  const mapping::SensorModel model_;
+  const mapping::BeliefReader reader_;
+  const mapping::HeightBand band_;
+  semantic_mapper::FloorPlan plan_;
+  semantic_mapper::ObstacleLayer obstacles_;
+  const View view_;
+  Surroundings surroundings_;
+  Explorer explorer_;
+  controller::Controller controller_;
+  std::int64_t tick_ = 0;
+  std::vector<mapping::BlockIndex> changed_;  // since the planner looked
+  Decision decision_;
+  std::optional<std::int64_t> due_;  // tick at which the decision takes effect
+  std::optional<std::uint64_t> followed_;
+  bool is_blocked_ = false, was_in_contact_ = false;
+  Exploration exploration_;
+};
+
+}  // namespace
+
+double Exploration::time_to_s(double share) const {
+  for (const ExplorationMoment& moment : moments) {
+    if (moment.explored_share >= share) return moment.t_s;
+  }
+  return std::numeric_limits<double>::infinity();
+}
+
+Exploration explore(const simulator::World& world, const ExplorationSetting& setting) {
+  return Course(world, setting).run();
+}
+
+}  // namespace lapis::planner::benchmark

@@ -1,0 +1,115 @@
+// Explorations of any building at true poses, without images, slam and DDS, a row each.
+//   lapis_explorations --scenes 'office_1,clinic_3' --methods nearest,mi_only --duration 300 --set
+//   planner.keep_factor=1
+#include <cstdio>
+#include <exception>
+#include <string>
+#include <vector>
+
+#include <CLI/CLI.hpp>
+
+#include "common/config/yaml.hpp"
+#include "simulator/set_up.hpp"
+#include "tests/benchmark/planner/exploration/exploration.hpp"
+
+namespace lapis::planner::benchmark {
+namespace {
+
+struct Options {
+  std::vector<std::string> scenes{"apartment"};
+  std::vector<std::string> methods{"nearest"};
+  std::vector<int> seeds{1};
+  std::vector<std::string> overrides;
+  double longest_s = 300.0;
+  bool with_moments = false;
+};
+
+ExplorationSetting setting_of(const Options& options, const std::string& scene, int seed, const std::string& method) {
+  ExplorationSetting setting;
+  setting.longest_s = options.longest_s;
+  robot::RobotDescription robot;
+  robot.camera.width = 160;
+  robot.camera.height = 90;
+  config::Schema schema;
+  schema("simulator", setting.simulated);
+  schema("robot", robot);
+  schema("planner", setting.planner);
+  schema("controller", setting.controller);
+  for (const std::string& assignment : options.overrides) config::apply_override(schema, assignment);
+  config::check(schema);
+  setting.simulated.scene = scene;
+  setting.simulated.seed = seed;
+  setting.planner.method = method;
+  setting.simulated.robot = setting.planner.robot = setting.controller.robot = robot;
+  setting.planner = completed(setting.planner);
+  setting.controller = controller::completed(setting.controller);
+  return setting;
+}
+
+const char* name_of(State state) {
+  if (state == State::kDone) return "DONE";
+  return state == State::kFailed ? "FAILED" : "EXPLORING";
+}
+
+void print(const Exploration& e, const Options& options) {
+  const ExplorationMoment& end = e.moments.back();
+  std::printf(
+      "%6.1f s %-9s | explored %5.1f %% | 80 %% after %5.0f s, 90 %% %5.0f s, 95 %% %5.0f s | path %6.1f m | "
+      "contacts %d | decisions %4d, %5.1f ms | left:",
+      end.t_s, name_of(e.state), 100.0 * end.explored_share, e.time_to_s(0.8), e.time_to_s(0.9), e.time_to_s(0.95),
+      e.path_m, e.contacts, e.decisions, 1e3 * e.decision_cpu_s / std::max(e.decisions, 1));
+  for (const auto& [reason, length_m] : e.left_m) std::printf(" %.1f m %s;", length_m, reason.c_str());
+  std::printf("\n");
+  if (!options.with_moments) return;
+  for (const ExplorationMoment& m : e.moments) {
+    std::printf("    %6.1f s  %5.1f %%  %6.2f %6.2f %4.0f dg  %s\n", m.t_s, 100.0 * m.explored_share, m.robot.p_map.x(),
+                m.robot.p_map.y(), m.robot.yaw_rad * 180.0 / M_PI, m.doing.c_str());
+  }
+}
+
+int run(const Options& options) {
+  bool are_complete = true;
+  for (const std::string& scene : options.scenes) {
+    for (const int seed : options.seeds) {
+      for (const std::string& method : options.methods) {
+        std::printf("%-13s %3d %-8s | ", scene.c_str(), seed, method.c_str());
+        try {
+          const ExplorationSetting setting = setting_of(options, scene, seed, method);
+          print(explore(simulator::open_world(setting.simulated), setting), options);
+        } catch (const std::exception& error) {
+          std::printf("failed: %s\n", error.what());
+          are_complete = false;
+        }
+        std::fflush(stdout);
+      }
+    }
+  }
+  return are_complete ? 0 : 1;
+}
+
+constexpr const char* kHelp =
+    R"(Explorations of any building at true poses, with true depth and labels of 160 x 90 pixels five times a second: map,
+planner and controller are the real ones. A row per run. What is left: frontiers of the last decision by why they were
+not judged, a frontier with several viewpoints counts for each. Methods that need a pose graph decide without one.)";
+
+}  // namespace
+}  // namespace lapis::planner::benchmark
+
+int main(int argc, char** argv) {
+  using lapis::planner::benchmark::Options;
+  CLI::App app(lapis::planner::benchmark::kHelp);
+  Options options;
+  app.add_option("--scenes", options.scenes, "bundled names, generated buildings, or files")->delimiter(',');
+  app.add_option("--methods", options.methods, "of the planner")->delimiter(',');
+  app.add_option("--seeds", options.seeds, "a run each")->delimiter(',');
+  app.add_option("--duration", options.longest_s, "simulated time, at most [s]");
+  app.add_option("--set", options.overrides, "planner.KEY=VALUE, controller.KEY=VALUE, simulator.KEY=VALUE");
+  app.add_flag("--moments", options.with_moments, "also a row for each second");
+  CLI11_PARSE(app, argc, argv);
+  try {
+    return lapis::planner::benchmark::run(options);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "%s\n", error.what());
+    return 1;
+  }
+}

@@ -28,13 +28,15 @@ DecisionLog::DecisionLog(const std::string& path, const std::vector<double>& com
   file_.open(path);
   file_ << "decision,time_s,method,candidate,kind,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
            "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
-           "utility,is_chosen,is_chosen_by_mi_only,agrees_with_mi_only,";
+           "utility,ended_kind,ended_s,ended_cost_m,ended_rest_m,ended_promised_nats,ended_rest_nats,ended_gained_nats,"
+           "is_chosen,is_chosen_by_mi_only,agrees_with_mi_only,";
   for (const double prior : compared_priors) file_ << "is_chosen_with_prior_" << prior << ',';
   file_ << "rejection\n";
   if (!file_.flush()) throw std::runtime_error(path + " cannot be written");
 }
 
-bool DecisionLog::write(const Decision& decision, std::uint64_t id, const std::string& method, time::Time stamp) {
+bool DecisionLog::write(const Decision& decision, const std::optional<DrivenPath>& ended, std::uint64_t id,
+                        const std::string& method, time::Time stamp) {
   for (std::size_t i = 0; i < decision.candidates.size(); ++i) {
     const Candidate& c = decision.candidates[i];
     file_ << std::setprecision(9) << id << ',' << to_string(stamp) << ',' << method << ',' << i << ','
@@ -42,12 +44,23 @@ bool DecisionLog::write(const Decision& decision, std::uint64_t id, const std::s
           << c.goal.yaw_rad << ',' << c.value.cost_m << ',' << c.value.path_information << ','
           << c.value.goal_information << ',' << c.loops.size() << ',' << c.value.loop_gain << ','
           << c.gain.fixed_n_change << ',' << c.gain.end_sigma_without_loops_m << ',' << c.gain.end_sigma_m << ','
-          << c.value.d_optimality << ',' << c.utility << ',' << (decision.chosen == i) << ','
-          << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only() << ',';
+          << c.value.d_optimality << ',' << c.utility << ',';
+    write(i == 0 ? ended : std::nullopt);
+    file_ << (decision.chosen == i) << ',' << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only()
+          << ',';
     for (const auto& chosen : decision.by_compared_fields) file_ << (chosen == i) << ',';
     file_ << quoted(c.rejection) << '\n';
   }
   return static_cast<bool>(file_.flush());
+}
+
+void DecisionLog::write(const std::optional<DrivenPath>& ended) {
+  if (!ended) {
+    file_ << ",,,,,,,";
+    return;
+  }
+  file_ << name_of(ended->kind) << ',' << (ended->end - ended->begin).seconds() << ',' << ended->cost_m << ','
+        << ended->rest_m << ',' << ended->promised_nats << ',' << ended->rest_nats << ',' << ended->gained_nats << ',';
 }
 
 }  // namespace lapis::planner

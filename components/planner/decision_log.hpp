@@ -1,11 +1,12 @@
 #pragma once
 
 #include <fstream>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/time/time.hpp"
-#include "planner/core/decision/decision.hpp"
+#include "planner/core/exploration/path_ledger.hpp"
 
 namespace lapis::planner {
 
@@ -15,10 +16,14 @@ class DecisionLog {
   /// An older file of that name is set aside. Throws std::runtime_error when it cannot be written.
   /// @param compared_priors of the fields that decisions are compared with; a column each
   explicit DecisionLog(const std::string& path, const std::vector<double>& compared_priors = {});
+  /// @param ended the path that this decision ends; its columns stand in the decision's first row
   /// False when the disk refuses.
-  bool write(const Decision& decision, std::uint64_t id, const std::string& method, time::Time stamp);
+  bool write(const Decision& decision, const std::optional<DrivenPath>& ended, std::uint64_t id,
+             const std::string& method, time::Time stamp);
 
  private:
+  void write(const std::optional<DrivenPath>& ended);
+
   std::ofstream file_;
 };
 

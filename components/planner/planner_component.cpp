@@ -58,7 +58,7 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
       T_base_camera_(geometry::T_base_camera(robot::camera_mount(config_.robot.camera))),
       path_(context.advertise(topics::kPlannerPath)), candidates_(context.advertise(topics::kCandidates)),
       markers_(context.advertise(topics::kPlannerMarkers)), status_(context.advertise(topics::kPlannerStatus)),
-      explorer_(config_.explorer) {
+      explorer_(config_.explorer), ledger_(config_.explorer.memory.radius_m) {
   if (!config_.output_dir.empty()) {
     files::require_writable_folder(config_.output_dir, "planner.output_dir");
     log_.emplace((std::filesystem::path(config_.output_dir) / kLogFile).string(), config_.surroundings.compared_priors);
@@ -153,6 +153,7 @@ void PlannerComponent::begin_session(std::int64_t session) {
   surroundings_.reset();
   surroundings_state_.reset();
   decision_ = {};
+  ledger_ = PathLedger(config_.explorer.memory.radius_m);
   knowledge_.reset();
   known_graph_ = {};
   explorer_.forget_map();
@@ -212,7 +213,9 @@ void PlannerComponent::take_decision(bool waits) {
   if (!decision.problem.empty()) drop("pose graph", decision.problem);
   explorer_.take(decision, report());
   candidates_.publish(to_message(decision, decisions_, config_.method, header()));
-  if (log_ && !log_->write(decision, decisions_, config_.method, stamp_)) {
+  const Candidate* chosen = decision.chosen ? &decision.candidates[*decision.chosen] : nullptr;
+  const auto ended = ledger_.note(chosen, surroundings_->information_nats(), stamp_);
+  if (log_ && !log_->write(decision, ended, decisions_, config_.method, stamp_)) {
     spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, kLogFile);
     log_.reset();
   }

@@ -100,6 +100,7 @@ class PlannerComponent {
   std::shared_ptr<const GraphKnowledge> knowledge_;
   GraphVersions known_graph_;  // in knowledge_
   Explorer explorer_;
+  PathLedger ledger_;
   DecisionWorker worker_;
   std::optional<DecisionLog> log_;
   Decision decision_;  // the last one

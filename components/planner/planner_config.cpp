@@ -25,7 +25,7 @@ Sparsifier sparsifier_of(const std::string& name) {
 
 PlannerComponentConfig completed(PlannerComponentConfig config) {
   config.decision.method = *method_of(config.method == "lapis" ? kLapisMethod : config.method);
-  config.surroundings.measure = measure_of(config.measure);
+  config.surroundings.ray.measure = measure_of(config.measure);
   config.decision.graph.criterion = criterion_of(config.criterion);
   config.decision.graph.sparsifier = sparsifier_of(config.sparsifier);
   config.surroundings.grid.footprint_radius_m = config.robot.radius_m;

@@ -20,11 +20,11 @@ int observed_voxels(const mapping::VoxelBlock* block) {
 
 Surroundings::Surroundings(const SurroundingsConfig& config, const mapping::SensorModel& model, double resolution_m)
     : reader_(model), grid_(config.grid, resolution_m), frontiers_(config.frontiers),
-      field_(resolution_m, model, config.measure) {
+      field_(resolution_m, model, config.ray), information_(model) {
   for (const double prior : config.compared_priors) {
     mapping::SensorModel other = model;
     other.prior_occupied = prior;
-    compared_fields_.emplace_back(resolution_m, other, config.measure);
+    compared_fields_.emplace_back(resolution_m, other, config.ray);
   }
 }
 
@@ -37,6 +37,7 @@ void Surroundings::update_map(const mapping::VoxelMap& map, std::span<const mapp
   field_.update(map, changed);
   for (InformationField& field : compared_fields_) field.update(map, changed);
   frontiers_.update(grid_, grid_.update_map(map, reader_, changed));
+  information_.update(map, changed);
   count_observed(map, changed);
 }
 

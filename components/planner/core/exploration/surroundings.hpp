@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "planner/core/information/information_field.hpp"
+#include "planner/core/information/map_information.hpp"
 #include "planner/core/space/frontier_map.hpp"
 
 namespace lapis::planner {
@@ -14,7 +15,7 @@ namespace lapis::planner {
 struct SurroundingsConfig {
   GridConfig grid;
   FrontierConfig frontiers;
-  Measure measure = Measure::kSemantic;
+  RayModel ray;
   std::vector<double> compared_priors;  ///< P(occupied) of voxels never observed, instead of the sensor model's
 };
 
@@ -29,6 +30,8 @@ class Surroundings {
   const InformationField& field() const { return field_; }
   /// The same with each of the compared priors.
   std::span<const InformationField> compared_fields() const { return compared_fields_; }
+  /// What the map has learnt so far [nats].
+  double information_nats() const { return information_.nats(); }
   /// Of all observed voxels [m^3].
   double explored_volume_m3() const;
 
@@ -56,6 +59,7 @@ class Surroundings {
   FrontierMap frontiers_;
   std::set<Cell> provisional_;
   InformationField field_;
+  MapInformation information_;
   std::vector<InformationField> compared_fields_;
   std::unordered_map<mapping::BlockIndex, int, mapping::GridIndexHash> observed_;  ///< voxels by block, none with 0
   std::size_t observed_voxels_ = 0;

@@ -78,8 +78,8 @@ class ShareDivergence {
 
 }  // namespace
 
-CellMeasure::CellMeasure(const mapping::SensorModel& model, Measure measure)
-    : reader_(model), unclamped_reader_(without_occupancy_limit(model)), measure_(measure) {
+CellMeasure::CellMeasure(const mapping::SensorModel& model, const RayModel& ray)
+    : reader_(model), unclamped_reader_(without_occupancy_limit(model)), ray_(ray) {
   group_priors();
   for (std::uint32_t n = 0; n < kVotesInTable; ++n) by_misses_.push_back(compute({n * kOneVote, {}}));
 }
@@ -105,22 +105,25 @@ void CellMeasure::group_priors() {
 CellInformation CellMeasure::of(const VoxelCounts& counts) const {
   const bool is_in_table =
       counts.hits.empty() && counts.misses % kOneVote == 0 && counts.misses / kOneVote < kVotesInTable;
-  return is_in_table ? by_misses_[counts.misses / kOneVote] : compute(counts);
+  CellInformation cell = is_in_table ? by_misses_[counts.misses / kOneVote] : compute(counts);
+  if (ray_.unknown_occupied > 0.0 && !counts.is_observed()) cell.free = 1.0 - ray_.unknown_occupied;
+  return cell;
 }
 
 CellInformation CellMeasure::compute(const VoxelCounts& counts) const {
   const double log_odds = reader_.occupancy_log_odds(counts);
   const double p_occupied = probability(log_odds), p_free = 1.0 - p_occupied;
-  if (measure_ == Measure::kCsqmi) return {p_free, std::max(csqmi(p_occupied), 0.0)};
+  if (ray_.measure == Measure::kCsqmi) return {p_free, std::max(csqmi(p_occupied), 0.0)};
   VoxelCounts after = counts;
-  after.misses += kOneVote;
+  const auto view = static_cast<std::uint32_t>(ray_.votes) * kOneVote;
+  after.misses += view;
   const double miss = occupancy_divergence(reader_.occupancy_log_odds(after), log_odds);
   double hit = 0.0;
-  if (measure_ == Measure::kSemantic) {
+  if (ray_.measure == Measure::kSemantic) {
     hit = mean_hit_divergence(counts);
   } else {
     after = counts;
-    after.hits.push_back({0, kOneVote});
+    after.hits.push_back({0, view});
     hit = occupancy_divergence(reader_.occupancy_log_odds(after), log_odds);
   }
   return {p_free, std::max(p_free * miss + p_occupied * hit, 0.0)};  // rounding may fall below 0
@@ -143,7 +146,7 @@ double CellMeasure::mean_hit_divergence(const VoxelCounts& counts) const {
     // A hit multiplies the odds by e^phi of the other classes and e^psi of its own, or adds a vote.
     const double share = std::exp(kind.log_share) / unclamped_shares;
     const double gain = model.fusion == "log_odds" ? kind.other_gain + std::log1p(share * std::expm1(kind.own_surplus))
-                                                   : std::log1p(1.0 / occupied_votes);
+                                                   : std::log1p(ray_.votes / occupied_votes);
     // Divergences chain: that of occupancy, then that of the classes given occupied.
     const double after = clamped(log_odds + gain);
     const double divergence =
@@ -175,9 +178,10 @@ std::vector<CellMeasure::Kind> CellMeasure::kinds_of(const VoxelCounts& counts) 
 CellMeasure::Kind CellMeasure::kind_of(const PriorGroup& group, double size, double votes_of_class) const {
   const auto& model = reader_.model();
   if (model.fusion == "log_odds")
-    return {size, std::log(group.prior) + votes_of_class * group.own_surplus, group.own_surplus, group.other_gain};
+    return {size, std::log(group.prior) + votes_of_class * group.own_surplus, ray_.votes * group.own_surplus,
+            ray_.votes * group.other_gain};
   const double concentration = group.prior * model.prior_votes * model.prior_occupied + votes_of_class;
-  return {size, std::log(concentration), std::log1p(1.0 / concentration), 0.0};
+  return {size, std::log(concentration), std::log1p(ray_.votes / concentration), 0.0};
 }
 
 }  // namespace lapis::planner

@@ -27,6 +27,17 @@ enum class Measure {
   kCsqmi,
 };
 
+/// What is expected of a ray. A single vote, by the beliefs alone, is the paper's.
+struct RayModel {
+  Measure measure = Measure::kSemantic;
+  /// Whole votes that a ray stands for, all with the same outcome: a robot that passes looks many times, and what it
+  /// has seen so often has nothing more to tell; in [1, 100]. Always 1 of kCsqmi.
+  int votes = 1;
+  /// Probability that a ray ends in a voxel that was never observed, in (0, 1); 0: the sensor model's prior. Voxels are
+  /// not independent: free space lies behind free space.
+  double unknown_occupied = 0.0;
+};
+
 /// All that rays have to know about a cell.
 struct CellInformation {
   double free = 0.0;  ///< P(free): the ray continues
@@ -37,14 +48,14 @@ struct CellInformation {
 class CellMeasure {
  public:
   /// Throws std::runtime_error naming the parameter of the sensor model that is out of range.
-  CellMeasure(const mapping::SensorModel& model, Measure measure);
+  CellMeasure(const mapping::SensorModel& model, const RayModel& ray);
 
   /// O(k), k = classes that were hit + distinct prior shares; O(k^2) at worst, where shares are clamped. A look-up
   /// where nothing was hit.
   CellInformation of(const mapping::VoxelCounts& counts) const;
 
  private:
-  /// Classes of equal prior share.
+  /// Classes of equal prior share; gains of one vote.
   struct PriorGroup {
     double prior;
     double other_gain;   ///< phi_c of BeliefReader
@@ -55,7 +66,7 @@ class CellMeasure {
   struct Kind {
     double size;         ///< how many they are
     double log_share;    ///< of each, given occupied; 0 for the largest share of the voxel
-    double own_surplus;  ///< what a hit of one of them adds to its log_share
+    double own_surplus;  ///< what a ray that hits one of them adds to its log_share
     double other_gain;   ///< what it adds to the log-odds of all others
   };
 
@@ -69,7 +80,7 @@ class CellMeasure {
 
   mapping::BeliefReader reader_;
   mapping::BeliefReader unclamped_reader_;
-  Measure measure_;
+  RayModel ray_;
   std::vector<PriorGroup> groups_;
   std::vector<std::size_t> group_of_;       ///< index label - 1
   std::vector<CellInformation> by_misses_;  ///< of voxels without hits, by whole votes

@@ -12,8 +12,8 @@ using mapping::kBlockVoxels;
 
 template <class Real>
 BasicInformationField<Real>::BasicInformationField(double resolution_m, const mapping::SensorModel& model,
-                                                   Measure measure)
-    : resolution_m_(mapping::VoxelMap(resolution_m).resolution_m()), measure_(model, measure),
+                                                   const RayModel& ray)
+    : resolution_m_(mapping::VoxelMap(resolution_m).resolution_m()), measure_(model, ray),
       unknown_(share_if_uniform(make_block({}))) {}
 
 template <class Real>

@@ -24,7 +24,7 @@ class BasicInformationField {
   };
 
   /// Of an empty map with voxels of this edge. Throws std::runtime_error naming the parameter that is out of range.
-  BasicInformationField(double resolution_m, const mapping::SensorModel& model, Measure measure);
+  BasicInformationField(double resolution_m, const mapping::SensorModel& model, const RayModel& ray);
 
   double resolution_m() const { return resolution_m_; }
 

@@ -92,7 +92,7 @@ class Course {
         reader_(model_), band_(setting.planner.surroundings.grid.band), plan_(band_),
         obstacles_({}, band_, mapping::kDefaultResolution_m), view_(view_config(setting.planner)),
         surroundings_(setting.planner.surroundings, model_, mapping::kDefaultResolution_m),
-        explorer_(setting.planner.explorer),
+        explorer_(setting.planner.explorer), ledger_(setting.planner.explorer.memory.radius_m),
         controller_(setting.controller.method, controller::limits_of(setting.simulated.robot)) {}
 
   Exploration run() {
@@ -104,6 +104,7 @@ class Course {
       step();
       if (is_over || tick_ % std::lround(setting_.simulated.robot.camera.rate_hz) == 0) note_moment();
     }
+    note_choice(nullptr);
     exploration_.state = explorer_.state();
     for (const Candidate& candidate : decision_.candidates) note_left(candidate);
     return std::move(exploration_);
@@ -154,6 +155,7 @@ class Course {
     const Report report{now(), here, Tracking::kTracking, is_blocked_, 0.0};
     if (due_ && tick_ >= *due_) {
       explorer_.take(decision_, report);
+      note_choice(decision_.chosen ? &decision_.candidates[*decision_.chosen] : nullptr);
       due_.reset();
     }
     if (due_) return;
@@ -167,6 +169,11 @@ class Course {
     exploration_.decision_cpu_s += cpu_s() - before_s;
     ++exploration_.decisions;
     due_ = tick_ + setting_.planner.decision_latency_frames;
+  }
+
+  void note_choice(const Candidate* chosen) {
+    const auto ended = ledger_.note(chosen, surroundings_.information_nats(), now());
+    if (ended) exploration_.paths.push_back(*ended);
   }
 
   void follow() {
@@ -219,6 +226,7 @@ class Course {
   const View view_;
   Surroundings surroundings_;
   Explorer explorer_;
+  PathLedger ledger_;
   controller::Controller controller_;
   std::int64_t tick_ = 0;
   std::vector<mapping::BlockIndex> changed_;  // since the planner looked

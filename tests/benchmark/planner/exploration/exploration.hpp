@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "controller/controller_config.hpp"
+#include "planner/core/exploration/path_ledger.hpp"
 #include "planner/planner_config.hpp"
 #include "simulator/core/world.hpp"
 #include "simulator/simulator_config.hpp"
@@ -33,6 +34,7 @@ struct Exploration {
   int contacts = 0;
   int decisions = 0;
   double decision_cpu_s = 0.0;
+  std::vector<DrivenPath> paths;
   std::map<std::string, double> left_m;  ///< length of the frontiers of the last decision, by why they were not judged
 
   /// When this share was explored [s]; infinite: never.

@@ -21,7 +21,7 @@ struct Options {
   std::vector<int> seeds{1};
   std::vector<std::string> overrides;
   double longest_s = 300.0;
-  bool with_moments = false;
+  bool with_moments = false, with_paths = false;
 };
 
 ExplorationSetting setting_of(const Options& options, const std::string& scene, int seed, const std::string& method) {
@@ -30,6 +30,7 @@ ExplorationSetting setting_of(const Options& options, const std::string& scene, 
   robot::RobotDescription robot;
   robot.camera.width = 160;
   robot.camera.height = 90;
+  setting.controller.method.local_map.stride = 1;  // as many points as of a whole image
   config::Schema schema;
   schema("simulator", setting.simulated);
   schema("robot", robot);
@@ -51,6 +52,14 @@ const char* name_of(State state) {
   return state == State::kFailed ? "FAILED" : "EXPLORING";
 }
 
+void print_paths(const Exploration& e) {
+  for (const DrivenPath& path : e.paths) {
+    std::printf("    path %6.1f to %6.1f s  cost %5.1f m, rest %5.1f; promised %7.1f nats, rest %7.1f; gained %7.1f\n",
+                path.begin.seconds(), path.end.seconds(), path.cost_m, path.rest_m, path.promised_nats, path.rest_nats,
+                path.gained_nats);
+  }
+}
+
 void print(const Exploration& e, const Options& options) {
   const ExplorationMoment& end = e.moments.back();
   std::printf(
@@ -60,6 +69,7 @@ void print(const Exploration& e, const Options& options) {
       e.path_m, e.contacts, e.decisions, 1e3 * e.decision_cpu_s / std::max(e.decisions, 1));
   for (const auto& [reason, length_m] : e.left_m) std::printf(" %.1f m %s;", length_m, reason.c_str());
   std::printf("\n");
+  if (options.with_paths) print_paths(e);
   if (!options.with_moments) return;
   for (const ExplorationMoment& m : e.moments) {
     std::printf("    %6.1f s  %5.1f %%  %6.2f %6.2f %4.0f dg  %s\n", m.t_s, 100.0 * m.explored_share, m.robot.p_map.x(),
@@ -105,6 +115,7 @@ int main(int argc, char** argv) {
   app.add_option("--duration", options.longest_s, "simulated time, at most [s]");
   app.add_option("--set", options.overrides, "planner.KEY=VALUE, controller.KEY=VALUE, simulator.KEY=VALUE");
   app.add_flag("--moments", options.with_moments, "also a row for each second");
+  app.add_flag("--paths", options.with_paths, "also a row for each path: what it promised, and what it gave");
   CLI11_PARSE(app, argc, argv);
   try {
     return lapis::planner::benchmark::run(options);

@@ -29,7 +29,7 @@ FinishedRun load(const std::string& folder) {
   if (!slam) throw std::runtime_error(error);
   auto map = mapping::load_map(folder + "/map.lapis", error);
   if (!map) throw std::runtime_error(error);
-  FinishedRun run{{}, {}, {}, InformationField(map->map.resolution_m(), map->sensor_model, Measure::kSemantic), {}};
+  FinishedRun run{{}, {}, {}, InformationField(map->map.resolution_m(), map->sensor_model, {Measure::kSemantic}), {}};
   run.field.rebuild(map->map);
   run.camera = slam->state.keyframes.front().camera;
   for (const auto& keyframe : slam->state.keyframes) run.keyframes.push_back({keyframe.id, keyframe.T_map_camera});

@@ -25,7 +25,7 @@ constexpr std::size_t kPoses = 50;
 constexpr std::size_t kPosesPerPath = 10;
 
 InformationField field_of(const mapping::VoxelMap& map) {
-  InformationField field(map.resolution_m(), mapping::SensorModel{}, Measure::kSemantic);
+  InformationField field(map.resolution_m(), mapping::SensorModel{}, {Measure::kSemantic});
   field.rebuild(map);
   return field;
 }

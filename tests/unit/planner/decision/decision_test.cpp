@@ -29,7 +29,7 @@ const std::vector<std::string> kCorridor = {
 
 struct Explorer {
   explicit Explorer(const std::vector<std::string>& lines = kCorridor)
-      : world(lines), frontiers({}), field(0.25, mapping::SensorModel{}, Measure::kSemantic),
+      : world(lines), frontiers({}), field(0.25, mapping::SensorModel{}, {Measure::kSemantic}),
         view({.camera = test::kCamera, .columns = 16, .rows = 9, .range_m = 5.0}) {
     frontiers.update(world.grid, world.known);
     field.rebuild(world.map.map());
@@ -381,7 +381,7 @@ TEST(Decide, InformationFromAnUnsurePositionCountsLess) {
 InformationField field_with_prior(const Explorer& explorer, double prior_occupied) {
   mapping::SensorModel model;
   model.prior_occupied = prior_occupied;
-  InformationField field(0.25, model, Measure::kSemantic);
+  InformationField field(0.25, model, {Measure::kSemantic});
   field.rebuild(explorer.world.map.map());
   return field;
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -61,6 +62,17 @@ Decision decision() {
   return decision;
 }
 
+DrivenPath driven_path() {
+  return {time::Time::from_seconds(1.0),
+          time::Time::from_seconds(3.5),
+          CandidateKind::kRevisit,
+          4.25,
+          0.75,
+          100.5,
+          20.5,
+          90.5};
+}
+
 class DecisionLogTest : public ::testing::Test {
  protected:
   test::TemporaryFolder folder_;
@@ -69,7 +81,7 @@ class DecisionLogTest : public ::testing::Test {
 
 TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
   DecisionLog log(file_.string());
-  ASSERT_TRUE(log.write(decision(), 4, "joint", time::Time{1'700'000'012'066'666'666}));
+  ASSERT_TRUE(log.write(decision(), driven_path(), 4, "joint", time::Time{1'700'000'012'066'666'666}));
   const auto rows = read(file_);
   ASSERT_EQ(rows.size(), 3U);
   for (const Row& row : rows) ASSERT_EQ(row.size(), rows[0].size());
@@ -94,16 +106,25 @@ TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
                                                     {"end_sigma_m", "10.5"},
                                                     {"d_optimality", "7.5"},
                                                     {"utility", "11.5"},
+                                                    {"ended_kind", "revisit"},
+                                                    {"ended_s", "2.5"},
+                                                    {"ended_cost_m", "4.25"},
+                                                    {"ended_rest_m", "0.75"},
+                                                    {"ended_promised_nats", "100.5"},
+                                                    {"ended_rest_nats", "20.5"},
+                                                    {"ended_gained_nats", "90.5"},
                                                     {"is_chosen", "1"},
                                                     {"is_chosen_by_mi_only", "1"},
                                                     {"agrees_with_mi_only", "1"},
                                                     {"rejection", ""}};
   EXPECT_EQ(chosen, expected);
+  const auto ended = std::find(rows[0].begin(), rows[0].end(), "ended_kind") - rows[0].begin();
+  for (std::ptrdiff_t i = ended; i < ended + 7; ++i) EXPECT_EQ(rows[2][static_cast<std::size_t>(i)], "") << i;
 }
 
 TEST_F(DecisionLogTest, RejectionIsTheLastColumnAlsoWithACommaInIt) {
   DecisionLog log(file_.string());
-  ASSERT_TRUE(log.write(decision(), 1, "joint", kStamp));
+  ASSERT_TRUE(log.write(decision(), {}, 1, "joint", kStamp));
   const auto rows = read(file_);
   EXPECT_EQ(rows[2].back(), "cannot be reached, not even by a detour");
   EXPECT_EQ(rows[2][rows[2].size() - 4], "0") << "not chosen";
@@ -114,7 +135,7 @@ TEST_F(DecisionLogTest, SaysWhereMiOnlyWouldHaveGone) {
   differs.candidates[1].rejection.clear();
   differs.by_mi_only = 1;
   DecisionLog log(file_.string());
-  ASSERT_TRUE(log.write(differs, 1, "joint", kStamp));
+  ASSERT_TRUE(log.write(differs, {}, 1, "joint", kStamp));
   const auto rows = read(file_);
   EXPECT_THAT(Row(rows[1].end() - 4, rows[1].end()), ElementsAre("1", "0", "0", ""));
   EXPECT_THAT(Row(rows[2].end() - 4, rows[2].end()), ElementsAre("0", "1", "0", ""));
@@ -124,7 +145,7 @@ TEST_F(DecisionLogTest, HasAColumnForEachPriorThatIsCompared) {
   Decision compared = decision();
   compared.by_compared_fields = {0, 1, std::nullopt};
   DecisionLog log(file_.string(), {0.05, 0.1, 0.5});
-  ASSERT_TRUE(log.write(compared, 1, "joint", kStamp));
+  ASSERT_TRUE(log.write(compared, {}, 1, "joint", kStamp));
   const auto rows = read(file_);
   const auto last_of = [](const Row& row) { return Row(row.end() - 4, row.end() - 1); };
   EXPECT_THAT(last_of(rows[0]),
@@ -135,14 +156,14 @@ TEST_F(DecisionLogTest, HasAColumnForEachPriorThatIsCompared) {
 
 TEST_F(DecisionLogTest, DecisionWithoutCandidatesHasNoRow) {
   DecisionLog log(file_.string());
-  ASSERT_TRUE(log.write({}, 1, "joint", kStamp));
+  ASSERT_TRUE(log.write({}, {}, 1, "joint", kStamp));
   EXPECT_EQ(read(file_).size(), 1U);
 }
 
 TEST_F(DecisionLogTest, SetsAnOlderFileAside) {
   {
     DecisionLog log(file_.string());
-    ASSERT_TRUE(log.write(decision(), 1, "joint", kStamp));
+    ASSERT_TRUE(log.write(decision(), {}, 1, "joint", kStamp));
   }
   DecisionLog log(file_.string());
   EXPECT_EQ(read(file_).size(), 1U);

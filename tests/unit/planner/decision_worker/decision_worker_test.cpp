@@ -39,7 +39,7 @@ class DecisionWorkerTest : public ::testing::Test {
     return {1, 1, chain.keyframes, chain.edges};
   }
 
-  Surroundings surroundings_{{{}, {}, Measure::kSemantic, {0.05, 0.2}}, mapping::SensorModel{}, 0.25};
+  Surroundings surroundings_{{{}, {}, {}, {0.05, 0.2}}, mapping::SensorModel{}, 0.25};
   const View view_{{.camera = test::kCamera, .columns = 16, .rows = 9, .range_m = 5.0}};
   DecisionWorker worker_;
 };

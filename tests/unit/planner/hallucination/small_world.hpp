@@ -65,7 +65,7 @@ inline const geometry::PinholeCamera kCamera{640, 360, 320, 320, 319.5, 179.5};
 
 /// Everything is free but for some blocks of 2 m (voxels of 0.25 m).
 inline InformationField free_field(const std::vector<mapping::BlockIndex>& walls = {}) {
-  InformationField field(0.25, mapping::SensorModel{}, Measure::kSemantic);
+  InformationField field(0.25, mapping::SensorModel{}, {Measure::kSemantic});
   std::vector<CellInformation> cells(mapping::kBlockVoxels, {1.0, 0.0});
   for (int x = -8; x < 8; ++x)
     for (int y = -8; y < 8; ++y)

@@ -17,7 +17,7 @@ using mapping::VoxelMap;
 constexpr double kFieldResolution_m = 0.25;
 constexpr int kFieldClasses = 40;
 
-InformationField empty_field() { return {kFieldResolution_m, mapping::SensorModel{}, Measure::kSemantic}; }
+InformationField empty_field() { return {kFieldResolution_m, mapping::SensorModel{}, {Measure::kSemantic}}; }
 
 /// Blocks -2..1 along each axis: more than random_map fills.
 template <class Visit>
@@ -39,7 +39,7 @@ TEST(InformationField, HoldsTheMeasureOfEveryVoxel) {
   const VoxelMap map = test::random_map(random, kFieldResolution_m, kFieldClasses);
   InformationField field = empty_field();
   field.rebuild(map);
-  const CellMeasure measure(mapping::SensorModel{}, Measure::kSemantic);
+  const CellMeasure measure(mapping::SensorModel{}, {Measure::kSemantic});
   for_each_block([&](const BlockIndex& index) {
     for (int offset = 0; offset < mapping::kBlockVoxels; ++offset) {
       const mapping::VoxelIndex voxel = mapping::voxel_at(index, offset);
@@ -97,7 +97,7 @@ TEST(InformationField, BlocksOfEqualCellsShareOneCopy) {
 TEST(InformationField, RefusesAMapOfAnotherResolution) {
   InformationField field = empty_field();
   EXPECT_THROW(field.rebuild(VoxelMap(0.1)), std::invalid_argument);
-  EXPECT_THROW(InformationField(0.0, mapping::SensorModel{}, Measure::kSemantic), std::runtime_error);
+  EXPECT_THROW(InformationField(0.0, mapping::SensorModel{}, {Measure::kSemantic}), std::runtime_error);
 }
 
 }  // namespace

@@ -45,8 +45,8 @@ View ray_of_length(double range_m) {
 }
 
 template <class Real>
-BasicInformationField<Real> field_of(const VoxelMap& map, Measure measure = Measure::kSemantic) {
-  BasicInformationField<Real> field(map.resolution_m(), SensorModel{}, measure);
+BasicInformationField<Real> field_of(const VoxelMap& map, const RayModel& ray = {}) {
+  BasicInformationField<Real> field(map.resolution_m(), SensorModel{}, ray);
   field.rebuild(map);
   return field;
 }
@@ -142,10 +142,10 @@ TEST(PathInformation, OfARayIsEquation13) {
 TEST(PathInformation, OfARayHasThePapersValues) {
   const std::vector<double> unknown(4, -0.1);
   const auto cell_of = [](const std::vector<double>& chi) {
-    return CellMeasure(test::paper_model_with_prior(chi), Measure::kSemantic).of({});
+    return CellMeasure(test::paper_model_with_prior(chi), {Measure::kSemantic}).of({});
   };
   const auto ray = [&](const std::vector<CellInformation>& first_cells, std::size_t length) {
-    BasicInformationField<double> field(kResolution_m, test::paper_model_with_prior(unknown), Measure::kSemantic);
+    BasicInformationField<double> field(kResolution_m, test::paper_model_with_prior(unknown), {Measure::kSemantic});
     for (std::size_t first = 0; first < first_cells.size(); first += mapping::kBlockEdge) {
       std::vector<CellInformation> cells(mapping::kBlockVoxels, cell_of(unknown));
       for (std::size_t i = first; i < std::min<std::size_t>(first + mapping::kBlockEdge, first_cells.size()); ++i)
@@ -183,8 +183,8 @@ TEST(PathInformation, EqualsAPlainTableOfCells) {
     const VoxelMap map = test::random_map(random, kResolution_m, kClasses);
     const ViewPath path = random_path(random, 4);
     for (const Measure measure : {Measure::kSemantic, Measure::kShannon, Measure::kCsqmi}) {
-      const auto exact = field_of<double>(map, measure);
-      const auto field = field_of<float>(map, measure);
+      const auto exact = field_of<double>(map, {measure});
+      const auto field = field_of<float>(map, {measure});
       for (const Counting counting : {Counting::kOnce, Counting::kEveryRay}) {
         const double expected = test::plain_path_information(view, path, kResolution_m, counting,
                                                              [&](const VoxelIndex& v) { return exact.cell(v); });

@@ -136,7 +136,7 @@ class Course {
   void see() {
     const auto seen = world_.renderer().render(camera_, T_world_base() * T_base_camera_, false);
     std::string error;
-    const auto frame = mapping::CompactFrame::make(camera_, seen.depth, &seen.labels, {.stride = 1}, error);
+    const auto frame = mapping::CompactFrame::make(camera_, seen.depth, &seen.labels, {}, error);
     if (!frame) throw std::runtime_error(error);
     const Pose T_map_camera = T_map_world_ * T_world_base() * T_base_camera_;
     const auto votes = compute_votes(*frame, T_map_camera, {}, map_.resolution_m());

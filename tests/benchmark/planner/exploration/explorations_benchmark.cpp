@@ -28,9 +28,9 @@ ExplorationSetting setting_of(const Options& options, const std::string& scene, 
   ExplorationSetting setting;
   setting.longest_s = options.longest_s;
   robot::RobotDescription robot;
-  robot.camera.width = 160;
-  robot.camera.height = 90;
-  setting.controller.method.local_map.stride = 1;  // as many points as of a whole image
+  robot.camera.width = 320;
+  robot.camera.height = 180;
+  setting.controller.method.local_map.stride = 2;  // as many points as of a whole image
   config::Schema schema;
   schema("simulator", setting.simulated);
   schema("robot", robot);
@@ -98,7 +98,7 @@ int run(const Options& options) {
 }
 
 constexpr const char* kHelp =
-    R"(Explorations of any building at true poses, with true depth and labels of 160 x 90 pixels five times a second: map,
+    R"(Explorations of any building at true poses, with true depth and labels of 320 x 180 pixels five times a second: map,
 planner and controller are the real ones. A row per run. What is left: frontiers of the last decision by why they were
 not judged, a frontier with several viewpoints counts for each. Methods that need a pose graph decide without one.)";
 

@@ -11,6 +11,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "simulator/core/render/avx2.hpp"
 #include "simulator/core/render/texel.hpp"
 
 // Embree, version 3 or 4, is known in this file only.
@@ -21,21 +22,13 @@ constexpr int kN = SceneRaycaster::kPacket;
 constexpr unsigned int kOpaque = 0;  // geometry of triangles without holes
 constexpr unsigned int kCutOut = 1;  // geometry of those that may have some
 
-bool has_avx2() {
-#if defined(__x86_64__)
-  return __builtin_cpu_supports("avx2") != 0;
-#else
-  return false;
-#endif
-}
-
 #if RTC_VERSION_MAJOR >= 4
 void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray); }
-void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+void intersect(RTCScene scene, const int* valid, RTCRayHit8& rays) {
   RTCIntersectArguments arguments;
   rtcInitIntersectArguments(&arguments);
   arguments.flags = RTC_RAY_QUERY_FLAG_COHERENT;
-  rtcIntersect16(valid, scene, &rays, &arguments);
+  rtcIntersect8(valid, scene, &rays, &arguments);
 }
 void occlude(RTCScene scene, const int* valid, RTCRay16& rays) { rtcOccluded16(valid, scene, &rays); }
 #else
@@ -44,11 +37,11 @@ void intersect(RTCScene scene, RTCRayHit& ray) {
   rtcInitIntersectContext(&context);
   rtcIntersect1(scene, &context, &ray);
 }
-void intersect(RTCScene scene, const int* valid, RTCRayHit16& rays) {
+void intersect(RTCScene scene, const int* valid, RTCRayHit8& rays) {
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
-  rtcIntersect16(valid, scene, &context, &rays);
+  rtcIntersect8(valid, scene, &context, &rays);
 }
 void occlude(RTCScene scene, const int* valid, RTCRay16& rays) {
   RTCIntersectContext context;
@@ -162,23 +155,31 @@ void fill(Packet& packet, int i, const Ray& ray, float longest) {
 
 }  // namespace
 
-void SceneRaycaster::cast(std::span<const Ray, kPacket> rays, float longest, std::span<RayHit, kPacket> hits) const {
-  alignas(64) RTCRayHit16 query;
-  alignas(64) std::array<int, kN> valid;
+void SceneRaycaster::cast(const RayPacket& rays, float longest, HitPacket& hits) const {
+  constexpr int kSize = RayPacket::kSize;
+  alignas(32) RTCRayHit8 query;
+  alignas(32) std::array<int, kSize> valid;
   valid.fill(-1);
-  for (int i = 0; i < kN; ++i) {
-    fill(query.ray, i, rays[static_cast<std::size_t>(i)], longest);
-    query.hit.geomID[i] = RTC_INVALID_GEOMETRY_ID;
-    query.hit.instID[0][i] = RTC_INVALID_GEOMETRY_ID;
-  }
+  std::fill_n(query.ray.org_x, kSize, rays.origin.x());
+  std::fill_n(query.ray.org_y, kSize, rays.origin.y());
+  std::fill_n(query.ray.org_z, kSize, rays.origin.z());
+  std::copy(rays.x.begin(), rays.x.end(), query.ray.dir_x);
+  std::copy(rays.y.begin(), rays.y.end(), query.ray.dir_y);
+  std::copy(rays.z.begin(), rays.z.end(), query.ray.dir_z);
+  std::fill_n(query.ray.tnear, kSize, 0.0F);
+  std::fill_n(query.ray.tfar, kSize, longest);
+  std::fill_n(query.ray.time, kSize, 0.0F);
+  std::fill_n(query.ray.mask, kSize, std::numeric_limits<unsigned int>::max());
+  std::fill_n(query.hit.geomID, kSize, RTC_INVALID_GEOMETRY_ID);
+  std::fill_n(query.hit.instID[0], kSize, RTC_INVALID_GEOMETRY_ID);
   intersect(implementation_->scene, valid.data(), query);
-  for (int i = 0; i < kN; ++i) {
-    RayHit& hit = hits[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < std::size_t{kSize}; ++i) {
     const unsigned int geometry = query.hit.geomID[i];
-    hit.triangle = RayHit::kNone;
-    if (geometry == RTC_INVALID_GEOMETRY_ID) continue;
-    hit = {query.ray.tfar[i], implementation_->triangle_of[geometry][query.hit.primID[i]], query.hit.u[i],
-           query.hit.v[i]};
+    const bool is_met = geometry != RTC_INVALID_GEOMETRY_ID;
+    hits.distance[i] = is_met ? query.ray.tfar[i] : 0.0F;
+    hits.u[i] = is_met ? query.hit.u[i] : 0.0F;
+    hits.v[i] = is_met ? query.hit.v[i] : 0.0F;
+    hits.triangle[i] = is_met ? implementation_->triangle_of[geometry][query.hit.primID[i]] : RayHit::kNone;
   }
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <memory>
@@ -26,11 +27,24 @@ struct Ray {
   Eigen::Vector3f direction{0, 0, 1};  ///< not zero, of any length
 };
 
+/// Rays from one point, alike in direction, each number in an array of its own.
+struct RayPacket {
+  static constexpr int kSize = 8;
+  Eigen::Vector3f origin{0, 0, 0};                     ///< [m]
+  alignas(32) std::array<float, kSize> x{}, y{}, z{};  ///< directions, not zero, of any length
+};
+
+/// What they meet; as in RayHit.
+struct HitPacket {
+  alignas(32) std::array<float, RayPacket::kSize> distance, u, v;  ///< zero where nothing was met
+  std::array<std::uint32_t, RayPacket::kSize> triangle;
+};
+
 /// Casts rays against a mesh. Holes of cut-out textures are passed. All functions may be called from several threads;
 /// the same rays in the same packets give the same bytes on every machine that has AVX2.
 class SceneRaycaster {
  public:
-  static constexpr int kPacket = 16;
+  static constexpr int kPacket = 16;  ///< rays that occluded() takes
 
   /// The mesh must be sound (problem_of) and outlive the caster.
   explicit SceneRaycaster(const Mesh& mesh);
@@ -40,8 +54,8 @@ class SceneRaycaster {
 
   /// First hit within `longest` lengths of the direction.
   std::optional<RayHit> cast(const Ray& ray, float longest) const;
-  /// Sixteen rays at once, faster when they are alike; RayHit::kNone where nothing was met.
-  void cast(std::span<const Ray, kPacket> rays, float longest, std::span<RayHit, kPacket> hits) const;
+  /// Eight rays at once, faster when they are alike.
+  void cast(const RayPacket& rays, float longest, HitPacket& hits) const;
   /// Bit i is set when something lies on ray i nearer than longest[i]; at most kPacket rays.
   unsigned int occluded(std::span<const Ray> rays, std::span<const float> longest) const;
 

@@ -86,19 +86,23 @@ class Walker {
 /// Looks around from a place.
 void look(const SceneRaycaster& raycaster, const Eigen::Vector3d& from, const std::vector<Eigen::Vector3f>& directions,
           double range_m, const geometry::Pose& T_map_world, const VoxelBox& box, Walker& walker) {
-  constexpr std::size_t kPacket = SceneRaycaster::kPacket;
-  std::array<Ray, kPacket> rays;
-  std::array<RayHit, kPacket> hits;
-  rays.fill({from.cast<float>(), Eigen::Vector3f::UnitX()});
+  constexpr std::size_t kPacket = RayPacket::kSize;
+  RayPacket rays{from.cast<float>()};
+  rays.x.fill(1.0F);
+  HitPacket hits;
   const Eigen::Vector3d origin = box.to_box(T_map_world * from);
   const Eigen::Matrix3d to_voxels = T_map_world.linear() / box.resolution_m();
   for (std::size_t begin = 0; begin < directions.size(); begin += kPacket) {
     const std::size_t count = std::min(kPacket, directions.size() - begin);
-    for (std::size_t i = 0; i < count; ++i) rays[i].direction = directions[begin + i];
+    for (std::size_t i = 0; i < count; ++i) {
+      rays.x[i] = directions[begin + i].x();
+      rays.y[i] = directions[begin + i].y();
+      rays.z[i] = directions[begin + i].z();
+    }
     raycaster.cast(rays, std::numeric_limits<float>::infinity(), hits);
     for (std::size_t i = 0; i < count; ++i) {
-      if (hits[i].triangle == RayHit::kNone) continue;
-      const auto distance = static_cast<double>(hits[i].distance);
+      if (hits.triangle[i] == RayHit::kNone) continue;
+      const auto distance = static_cast<double>(hits.distance[i]);
       const Eigen::Vector3d end =
           origin + std::min(distance, range_m) * (to_voxels * directions[begin + i].cast<double>());
       walker.walk(origin, end);

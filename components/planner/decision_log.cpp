@@ -37,6 +37,7 @@ DecisionLog::DecisionLog(const std::string& path, const std::vector<double>& com
 
 bool DecisionLog::write(const Decision& decision, const std::optional<DrivenPath>& ended, std::uint64_t id,
                         const std::string& method, time::Time stamp) {
+  if (ended) ended_ = ended;
   for (std::size_t i = 0; i < decision.candidates.size(); ++i) {
     const Candidate& c = decision.candidates[i];
     file_ << std::setprecision(9) << id << ',' << to_string(stamp) << ',' << method << ',' << i << ','
@@ -45,7 +46,7 @@ bool DecisionLog::write(const Decision& decision, const std::optional<DrivenPath
           << c.value.goal_information << ',' << c.loops.size() << ',' << c.value.loop_gain << ','
           << c.gain.fixed_n_change << ',' << c.gain.end_sigma_without_loops_m << ',' << c.gain.end_sigma_m << ','
           << c.value.d_optimality << ',' << c.utility << ',';
-    write(i == 0 ? ended : std::nullopt);
+    write_ended();
     file_ << (decision.chosen == i) << ',' << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only()
           << ',';
     for (const auto& chosen : decision.by_compared_fields) file_ << (chosen == i) << ',';
@@ -54,13 +55,15 @@ bool DecisionLog::write(const Decision& decision, const std::optional<DrivenPath
   return static_cast<bool>(file_.flush());
 }
 
-void DecisionLog::write(const std::optional<DrivenPath>& ended) {
-  if (!ended) {
+void DecisionLog::write_ended() {
+  if (ended_) {
+    file_ << name_of(ended_->kind) << ',' << (ended_->end - ended_->begin).seconds() << ',' << ended_->cost_m << ','
+          << ended_->rest_m << ',' << ended_->promised_nats << ',' << ended_->rest_nats << ',' << ended_->gained_nats
+          << ',';
+  } else {
     file_ << ",,,,,,,";
-    return;
   }
-  file_ << name_of(ended->kind) << ',' << (ended->end - ended->begin).seconds() << ',' << ended->cost_m << ','
-        << ended->rest_m << ',' << ended->promised_nats << ',' << ended->rest_nats << ',' << ended->gained_nats << ',';
+  ended_.reset();
 }
 
 }  // namespace lapis::planner

@@ -211,9 +211,9 @@ void PlannerComponent::take_decision(bool waits) {
   context_.status().value("decisions", decisions_);
   context_.status().value("decisions_unlike_mi_only", disagreements_);
   if (!decision.problem.empty()) drop("pose graph", decision.problem);
-  explorer_.take(decision, report());
+  const bool is_taken = explorer_.take(decision, report());
   candidates_.publish(to_message(decision, decisions_, config_.method, header()));
-  const Candidate* chosen = decision.chosen ? &decision.candidates[*decision.chosen] : nullptr;
+  const Candidate* chosen = is_taken && decision.chosen ? &decision.candidates[*decision.chosen] : nullptr;
   const auto ended = ledger_.note(chosen, surroundings_->information_nats(), stamp_);
   if (log_ && !log_->write(decision, ended, decisions_, config_.method, stamp_)) {
     spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, kLogFile);
@@ -248,6 +248,7 @@ void PlannerComponent::update_map() {
     spdlog::info("map of {} m voxels: fusion {}, prior_occupied {}, {} classes", state.resolution_m, model.fusion,
                  model.prior_occupied, model.class_count);
     surroundings_.emplace(config_.surroundings, model, state.resolution_m);
+    ledger_ = PathLedger(config_.explorer.memory.radius_m);
     surroundings_model_ = model;
     map_.take_changed_blocks();
     surroundings_->update_map(*map_.map(), map_.map()->sorted_blocks());

@@ -125,7 +125,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("max_candidates", c.decision.max_candidates, config::in_range(1, 1000),
         "whose information is computed; the ones with the shortest paths");
   field("view_spacing_m", c.decision.view_spacing_m, config::in_range(0.1, 10.0), "between views along a path [m]");
-  field("view_votes", c.surroundings.ray.votes, config::in_range(1, 100),
+  field("view_votes", c.surroundings.ray.votes, config::in_range(1, 30),
         "that a voxel gets from a robot that passes; 1: a single frame, as in the paper");
   field("unknown_occupied", c.surroundings.ray.unknown_occupied, config::in_range(0.0, 0.99),
         "probability that a ray ends in a voxel never observed; 0: the sensor model's prior, as in the paper");

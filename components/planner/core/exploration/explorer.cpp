@@ -267,15 +267,19 @@ Memory Explorer::memory(time::Time now) const {
   return memory;
 }
 
-void Explorer::take(const Decision& decision, const Report& report) {
-  if (state_ != State::kExploring || (goal_ && report.is_blocked)) return;
+bool Explorer::take(const Decision& decision, const Report& report) {
+  if (state_ != State::kExploring || (goal_ && report.is_blocked)) return false;
   const time::Time now = report.now;
   decided_at_ = chosen_at_ = now;
   note_vanished(decision, now);
-  if (!decision.chosen) return end_or_look_around(decision, report);
-  empty_decisions_ = 0;
-  nothing_since_.reset();
-  follow(decision, now);
+  if (decision.chosen) {
+    empty_decisions_ = 0;
+    nothing_since_.reset();
+    follow(decision, now);
+  } else {
+    end_or_look_around(decision, report);
+  }
+  return true;
 }
 
 /// Goes elsewhere, though what it drove to is there still.

@@ -69,8 +69,8 @@ class Explorer {
   /// What decide() has to leave alone, and what is being driven to.
   Memory memory(time::Time now) const;
   /// Acts on a decision that was wanted. One that came too late changes nothing, nor does one that was made before the
-  /// path was found blocked: the goal that it did not know to have failed is judged first.
-  void take(const Decision& decision, const Report& report);
+  /// path was found blocked: the goal that it did not know to have failed is judged first. False for these.
+  bool take(const Decision& decision, const Report& report);
 
   State state() const { return state_; }
   const std::string& reason() const { return reason_; }

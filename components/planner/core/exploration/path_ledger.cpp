@@ -21,9 +21,9 @@ std::optional<DrivenPath> PathLedger::note(const Candidate* chosen, double map_n
     path_->kind = chosen->kind;
     path_->cost_m = chosen->value.cost_m;
     path_->promised_nats = chosen->value.path_information;
+    target_map_ = chosen->target_map;
     nats_at_begin_ = map_nats;
   }
-  target_map_ = chosen->target_map;
   path_->rest_m = chosen->value.cost_m;
   path_->rest_nats = chosen->value.path_information;
   return ended;

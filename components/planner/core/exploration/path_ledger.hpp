@@ -21,13 +21,13 @@ struct DrivenPath {
 };
 
 /// Compares what paths promised with what the map gained while they were driven. A path is the same as long as its
-/// target stays within a radius of where it was judged last: frontiers creep forward.
+/// target stays within a radius of where it was at first: it has no promise of what lies beyond.
 class PathLedger {
  public:
   /// @param radius_m between the targets of one path
   explicit PathLedger(double radius_m) : radius_m_(radius_m) {}
 
-  /// Takes note of a decision's choice, or that it chose nothing. What ended by that, if anything did.
+  /// Takes note of a choice that is being driven to, or that there is none. What ended by that, if anything did.
   /// @param map_nats MapInformation::nats() now
   std::optional<DrivenPath> note(const Candidate* chosen, double map_nats, time::Time now);
 

@@ -31,7 +31,7 @@ enum class Measure {
 struct RayModel {
   Measure measure = Measure::kSemantic;
   /// Whole votes that a ray stands for, all with the same outcome: a robot that passes looks many times, and what it
-  /// has seen so often has nothing more to tell; in [1, 100]. Always 1 of kCsqmi.
+  /// has seen so often has nothing more to tell; in [1, 30]. Always 1 of kCsqmi.
   int votes = 1;
   /// Probability that a ray ends in a voxel that was never observed, in (0, 1); 0: the sensor model's prior. Voxels are
   /// not independent: free space lies behind free space.

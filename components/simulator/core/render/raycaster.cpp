@@ -170,6 +170,8 @@ void SceneRaycaster::cast(const RayPacket& rays, float longest, HitPacket& hits)
   std::fill_n(query.ray.tfar, kSize, longest);
   std::fill_n(query.ray.time, kSize, 0.0F);
   std::fill_n(query.ray.mask, kSize, std::numeric_limits<unsigned int>::max());
+  std::fill_n(query.ray.id, kSize, 0U);
+  std::fill_n(query.ray.flags, kSize, 0U);
   std::fill_n(query.hit.geomID, kSize, RTC_INVALID_GEOMETRY_ID);
   std::fill_n(query.hit.instID[0], kSize, RTC_INVALID_GEOMETRY_ID);
   intersect(implementation_->scene, valid.data(), query);

@@ -154,8 +154,8 @@ class Course {
   void plan(const Pose2& here) {
     const Report report{now(), here, Tracking::kTracking, is_blocked_, 0.0};
     if (due_ && tick_ >= *due_) {
-      explorer_.take(decision_, report);
-      note_choice(decision_.chosen ? &decision_.candidates[*decision_.chosen] : nullptr);
+      const bool is_taken = explorer_.take(decision_, report);
+      note_choice(is_taken && decision_.chosen ? &decision_.candidates[*decision_.chosen] : nullptr);
       due_.reset();
     }
     if (due_) return;

@@ -1,8 +1,9 @@
 // Explorations of any building at true poses, without images, slam and DDS, a row each.
-//   lapis_explorations --scenes 'office_1,clinic_3' --methods nearest,mi_only --duration 300 --set
-//   planner.keep_factor=1
+//   lapis_explorations --scenes office_1,clinic_3 --methods nearest,mi_only --set planner.keep_factor=1
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <numbers>
 #include <string>
 #include <vector>
 
@@ -73,7 +74,7 @@ void print(const Exploration& e, const Options& options) {
   if (!options.with_moments) return;
   for (const ExplorationMoment& m : e.moments) {
     std::printf("    %6.1f s  %5.1f %%  %6.2f %6.2f %4.0f dg  %s\n", m.t_s, 100.0 * m.explored_share, m.robot.p_map.x(),
-                m.robot.p_map.y(), m.robot.yaw_rad * 180.0 / M_PI, m.doing.c_str());
+                m.robot.p_map.y(), m.robot.yaw_rad * 180.0 / std::numbers::pi, m.doing.c_str());
   }
 }
 
@@ -113,7 +114,8 @@ int main(int argc, char** argv) {
   app.add_option("--methods", options.methods, "of the planner")->delimiter(',');
   app.add_option("--seeds", options.seeds, "a run each")->delimiter(',');
   app.add_option("--duration", options.longest_s, "simulated time, at most [s]");
-  app.add_option("--set", options.overrides, "planner.KEY=VALUE, controller.KEY=VALUE, simulator.KEY=VALUE");
+  app.add_option("--set", options.overrides,
+                 "planner.KEY=VALUE, controller.KEY=VALUE, robot.KEY=VALUE, simulator.KEY=VALUE");
   app.add_flag("--moments", options.with_moments, "also a row for each second");
   app.add_flag("--paths", options.with_paths, "also a row for each path: what it promised, and what it gave");
   CLI11_PARSE(app, argc, argv);

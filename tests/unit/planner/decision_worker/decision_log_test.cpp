@@ -156,8 +156,12 @@ TEST_F(DecisionLogTest, HasAColumnForEachPriorThatIsCompared) {
 
 TEST_F(DecisionLogTest, DecisionWithoutCandidatesHasNoRow) {
   DecisionLog log(file_.string());
-  ASSERT_TRUE(log.write({}, {}, 1, "joint", kStamp));
+  ASSERT_TRUE(log.write({}, driven_path(), 1, "joint", kStamp));
   EXPECT_EQ(read(file_).size(), 1U);
+  ASSERT_TRUE(log.write(decision(), {}, 2, "joint", kStamp));
+  const auto rows = read(file_);
+  EXPECT_THAT(rows[1], ::testing::Contains("90.5")) << "what the path gained that had ended before";
+  EXPECT_THAT(rows[2], ::testing::Not(::testing::Contains("90.5")));
 }
 
 TEST_F(DecisionLogTest, SetsAnOlderFileAside) {

@@ -17,11 +17,11 @@ Candidate candidate(double x_m, double cost_m, double nats) {
 
 TEST(PathLedger, SettlesAPathWhenAnotherTargetIsChosen) {
   PathLedger ledger(0.75);
-  const Candidate first = candidate(1.0, 5.0, 40.0), later = candidate(1.5, 2.0, 10.0), last = candidate(2.0, 1.0, 4.0),
-                  other = candidate(9.0, 7.0, 70.0);
+  const Candidate first = candidate(1.0, 5.0, 40.0), later = candidate(1.3, 2.0, 10.0), last = candidate(1.7, 1.0, 4.0),
+                  other = candidate(1.8, 7.0, 70.0);
   EXPECT_EQ(ledger.note(&first, 100.0, second(1.0)), std::nullopt);
-  EXPECT_EQ(ledger.note(&later, 120.0, second(2.0)), std::nullopt) << "it has crept forward";
-  EXPECT_EQ(ledger.note(&last, 130.0, second(3.0)), std::nullopt) << "by more than the radius in all";
+  EXPECT_EQ(ledger.note(&later, 120.0, second(2.0)), std::nullopt);
+  EXPECT_EQ(ledger.note(&last, 130.0, second(3.0)), std::nullopt) << "it has crept forward";
   const DrivenPath expected{second(1.0), second(4.0), CandidateKind::kFrontier, 5.0, 1.0, 40.0, 4.0, 35.0};
   EXPECT_EQ(ledger.note(&other, 135.0, second(4.0)), expected);
 }

@@ -14,6 +14,7 @@ struct ControllerComponentConfig {
   robot::RobotDescription robot;
 };
 
+/// What the robot can do, its reaction the lag of the drives and the latency of lock-step.
 RobotLimits limits_of(const robot::RobotDescription& robot);
 /// With all that the core needs of the robot.
 ControllerComponentConfig completed(ControllerComponentConfig config);

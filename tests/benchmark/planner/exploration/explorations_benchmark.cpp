@@ -38,10 +38,10 @@ ExplorationSetting setting_of(const Options& options, const std::string& scene, 
   schema("planner", setting.planner);
   schema("controller", setting.controller);
   for (const std::string& assignment : options.overrides) config::apply_override(schema, assignment);
+  config::apply_override(schema, "planner.method=" + method);
   config::check(schema);
   setting.simulated.scene = scene;
   setting.simulated.seed = seed;
-  setting.planner.method = method;
   setting.simulated.robot = setting.planner.robot = setting.controller.robot = robot;
   setting.planner = completed(setting.planner);
   setting.controller = controller::completed(setting.controller);
@@ -113,7 +113,7 @@ int main(int argc, char** argv) {
   app.add_option("--scenes", options.scenes, "bundled names, generated buildings, or files")->delimiter(',');
   app.add_option("--methods", options.methods, "of the planner")->delimiter(',');
   app.add_option("--seeds", options.seeds, "a run each")->delimiter(',');
-  app.add_option("--duration", options.longest_s, "simulated time, at most [s]");
+  app.add_option("--duration", options.longest_s, "simulated time, at most [s]")->check(CLI::PositiveNumber);
   app.add_option("--set", options.overrides,
                  "planner.KEY=VALUE, controller.KEY=VALUE, robot.KEY=VALUE, simulator.KEY=VALUE");
   app.add_flag("--moments", options.with_moments, "also a row for each second");

@@ -120,7 +120,8 @@ class FolderRun(Run):
             return "FAILED"
         if self.metrics["exit_reason"] == "lost":
             return "lost"
-        return {"DONE": "done", "FAILED": "gave up", None: "completed"}.get(self.metrics["planner_state"], "time up")
+        names = {"DONE": "done", "GAVE_UP": "gave up", "FAILED": "planner failed", None: "completed"}
+        return names.get(self.metrics["planner_state"], "time up")
 
     def _find(self, file, pattern):
         try:

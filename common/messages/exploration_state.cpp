@@ -12,13 +12,14 @@ std::string state_name(const lapis_msgs::msg::PlannerStatus& status) {
     case STATE_RECOVERING: return "RECOVERING";
     case STATE_RETURNING: return "RETURNING";
     case STATE_DONE: return "DONE";
+    case STATE_GAVE_UP: return "GAVE_UP";
     case STATE_FAILED: return "FAILED";
     default: return "UNKNOWN";
   }
 }
 
 bool has_ended(const lapis_msgs::msg::PlannerStatus& status) {
-  return status.state() == STATE_DONE || status.state() == STATE_FAILED;
+  return status.state() == STATE_DONE || status.state() == STATE_GAVE_UP || status.state() == STATE_FAILED;
 }
 
 }  // namespace lapis::messages

@@ -305,7 +305,10 @@ RunMetrics EvaluatorComponent::metrics() const {
   if (m.wall_time_s.value_or(0.0) > 0.0) m.real_time_factor = *m.duration_s / *m.wall_time_s;
   costs_.write_to(m);
   decisions_.write_to(m);
-  if (planner_) m.planner_state = messages::state_name(*planner_);
+  if (planner_) {
+    m.planner_state = messages::state_name(*planner_);
+    m.planner_reason = planner_->reason();
+  }
   m.time_to_80_s = time_to_reach(timeline_, 0.8);
   m.time_to_90_s = time_to_reach(timeline_, 0.9);
   maps_.write_to(m, record_.T_map_world().has_value());

@@ -55,7 +55,7 @@ Marker frontier_marker(const FrontierMap& frontiers, const PlanningGrid& grid, c
 Marker candidate_marker(const Candidate& candidate, bool is_chosen, std::int32_t id,
                         const std_msgs::msg::Header& header) {
   using namespace visualization_msgs::msg::Marker_Constants;
-  const bool is_rejected = !candidate.rejection.empty();
+  const bool is_rejected = !candidate.is_open();
   Marker result = marker("candidates", is_rejected ? SPHERE : LINE_STRIP, id, header);
   result.scale().x(is_rejected ? 0.2 : (is_chosen ? 0.08 : 0.03));
   result.scale().y(0.2);
@@ -210,8 +210,8 @@ lapis_msgs::msg::CandidateSet to_message(const Decision& decision, std::uint64_t
     item.id(static_cast<std::uint32_t>(i));
     item.goal(to_message(candidate.goal));
     item.is_selected(decision.chosen == i);
-    item.is_rejected(!candidate.rejection.empty());
-    item.reason(candidate.rejection);
+    item.is_rejected(!candidate.is_open());
+    item.reason(text_of(candidate.rejection));
     item.cost_m(candidate.value.cost_m);
     item.mutual_information_nats(candidate.value.path_information);
     item.d_optimality(candidate.value.d_optimality);
@@ -230,6 +230,7 @@ std::uint8_t to_message(State state) {
     case State::kRecovering: return STATE_RECOVERING;
     case State::kReturning: return STATE_RETURNING;
     case State::kDone: return STATE_DONE;
+    case State::kGaveUp: return STATE_GAVE_UP;
     case State::kFailed: return STATE_FAILED;
   }
   return STATE_FAILED;

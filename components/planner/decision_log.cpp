@@ -8,9 +8,6 @@
 namespace lapis::planner {
 namespace {
 
-// Texts have no quotes of their own; commas would make columns.
-std::string quoted(const std::string& text) { return text.find(',') == std::string::npos ? text : '"' + text + '"'; }
-
 const char* name_of(CandidateKind kind) {
   switch (kind) {
     case CandidateKind::kFrontier: return "frontier";
@@ -50,7 +47,7 @@ bool DecisionLog::write(const Decision& decision, const std::optional<DrivenPath
     file_ << (decision.chosen == i) << ',' << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only()
           << ',';
     for (const auto& chosen : decision.by_compared_fields) file_ << (chosen == i) << ',';
-    file_ << quoted(c.rejection) << '\n';
+    file_ << text_of(c.rejection) << '\n';
   }
   return static_cast<bool>(file_.flush());
 }

@@ -178,6 +178,9 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "looks around, a full turn in all, that find nothing before exploration is over");
   field("patience_s", c.explorer.patience_s, config::in_range(0.0, 600.0),
         "for obstacles that may go away before exploration is over [s]");
+  field("max_left_share", c.explorer.max_left_share, config::in_range(0.0, 1.0),
+        "of frontiers that were tried in vain, of all that were there: with more exploration has not ended, but given "
+        "up");
   field("returns_home", c.explorer.returns_home, config::anything(), "drives to where it started when nothing is left");
   field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain",
               "the planner reads it on /semantic_mapper/map_description");

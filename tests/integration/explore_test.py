@@ -109,7 +109,7 @@ class ExploreTest(ExploreCase):
     def test_done_when_nothing_is_left(self):
         folder = self.explore("run", "--scene", self.write_flat(), "--method", "nearest", "--duration", "120")
         manifest = (folder / "manifest.yaml").read_text()
-        self.assertIn("  planner_state: DONE\n  planner_reason: \"nothing is left that can be reached\"\n", manifest)
+        self.assertIn("  planner_state: DONE\n  planner_reason: \"nothing is left that can be reached", manifest)
         metrics = chain.metrics_of(folder)
         self.assertEqual((metrics["exit_reason"], metrics["planner_state"]), ("completed", "DONE"))
         self.assertGreater(metrics["explored_share"], 0.75)

@@ -19,8 +19,8 @@ OF_LABELS = ("iou_top8_mean", "iou_mean", "iou_by_class")
 OF_GROUND_TRUTH = ("explored_share",
                    *(f"{prefix}_{key}" for prefix in ("ideal", "mesh")
                      for key in ("map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m", *OF_LABELS)))
-NOT_MEASURED = ("ate_at_80_m", "time_to_80_s", "time_to_90_s", "collisions", "planner_state", "decisions",
-                "decisions_unlike_mi_only_share", "decision_time_p50_s", "decision_time_p95_s")
+NOT_MEASURED = ("ate_at_80_m", "time_to_80_s", "time_to_90_s", "collisions", "planner_state", "planner_reason",
+                "decisions", "decisions_unlike_mi_only_share", "decision_time_p50_s", "decision_time_p95_s")
 SHORT_S = 12  # more than a metre
 
 

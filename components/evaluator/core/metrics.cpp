@@ -96,6 +96,7 @@ ordered_json to_document(const RunMetrics& m) {
   document["path_length_m"] = value_or_null(m.path_length_m);
   document["collisions"] = value_or_null(m.collisions);
   document["planner_state"] = value_or_null(m.planner_state);
+  document["planner_reason"] = value_or_null(m.planner_reason);
   document["decisions"] = value_or_null(m.decisions);
   document["decisions_unlike_mi_only_share"] = value_or_null(m.decisions_unlike_mi_only_share);
   document["decision_time_p50_s"] = value_or_null(m.decision_time_p50_s);

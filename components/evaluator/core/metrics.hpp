@@ -64,7 +64,8 @@ struct RunMetrics {
   std::optional<double> time_to_90_s;
   std::optional<double> path_length_m;
   std::optional<std::int64_t> collisions;
-  std::optional<std::string> planner_state;  ///< the last one
+  std::optional<std::string> planner_state;   ///< the last one
+  std::optional<std::string> planner_reason;  ///< for it
   std::optional<std::int64_t> decisions;
   std::optional<double> decisions_unlike_mi_only_share;
   std::optional<double> decision_time_p50_s;  ///< wall time

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "planner/core/decision/proposals.hpp"
@@ -26,7 +27,7 @@ ViewPath views_along(const Situation& s, const std::vector<Pose2>& path) {
 std::vector<Candidate*> open_ones(std::vector<Candidate>& candidates) {
   std::vector<Candidate*> open;
   for (Candidate& candidate : candidates) {
-    if (candidate.rejection.empty()) open.push_back(&candidate);
+    if (candidate.is_open()) open.push_back(&candidate);
   }
   return open;
 }
@@ -94,7 +95,7 @@ std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, Met
   std::optional<std::size_t> best;
   double most = 0.0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i].rejection.empty()) continue;
+    if (!candidates[i].is_open()) continue;
     const double bonus = is_current_goal(candidates[i], memory) ? config.keep_factor : 1.0;
     const double worth = bonus * utility(method, candidates[i].value, config.utility);
     if (best && worth <= most) continue;
@@ -125,6 +126,30 @@ std::string add_gains(const Situation& s, const DecisionConfig& config, const st
   return problem;
 }
 
+/// What a frontier is not looked at for, all paths to it taken together: what was tried, rather than geometry.
+std::map<std::uint32_t, Rejection> reasons_by_frontier(const std::vector<Candidate>& candidates) {
+  std::map<std::uint32_t, Rejection> reasons;
+  for (const Candidate& candidate : candidates) {
+    Rejection& reason = reasons.try_emplace(candidate.frontier, candidate.rejection).first->second;
+    reason = std::max(reason, candidate.rejection);
+  }
+  return reasons;
+}
+
+Leftover leftover_of(const Situation& s, const std::vector<Candidate>& candidates) {
+  Leftover leftover;
+  double to_blame_m = 0.0;
+  for (const auto& [id, reason] : reasons_by_frontier(candidates)) {
+    const auto frontier = s.frontiers.frontiers().find(id);
+    if (frontier == s.frontiers.frontiers().end()) continue;  // a revisit
+    leftover.length_m[reason] += frontier->second.length_m;
+    to_blame_m += is_geometric(reason) ? 0.0 : frontier->second.length_m;
+  }
+  const double discovered_m = static_cast<double>(s.frontiers.discovered_cells()) * s.grid.resolution_m();
+  leftover.share_to_blame = discovered_m > 0.0 ? to_blame_m / discovered_m : 0.0;
+  return leftover;
+}
+
 /// What the map and the pose graph would gain by each proposal, and the best one.
 Decision choose(const Situation& s, std::vector<Candidate> proposals, const Memory& memory,
                 const DecisionConfig& config) {
@@ -135,11 +160,22 @@ Decision choose(const Situation& s, std::vector<Candidate> proposals, const Memo
   decision.problem = add_gains(s, config, open);
   for (Candidate* candidate : open) candidate->utility = utility(config.method, candidate->value, config.utility);
   decision.chosen = best_by(decision.candidates, config.method, memory, config);
+  if (!decision.chosen) decision.leftover = leftover_of(s, decision.candidates);
   decision.by_mi_only = best_by(decision.candidates, Method::kMiOnly, memory, config);
   return decision;
 }
 
 }  // namespace
+
+std::string Leftover::text() const {
+  std::string text;
+  for (const auto& [reason, metres] : length_m) {
+    char number[32];
+    std::snprintf(number, sizeof number, "%.1f m", metres);
+    text += (text.empty() ? "" : ", ") + (number + (": " + text_of(reason)));
+  }
+  return text.empty() ? "" : "frontiers left: " + text;
+}
 
 Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config) {
   const CostTree tree = grow_cost_tree(situation.grid, config.path, {situation.grid.cell_of(situation.robot.p_map)});

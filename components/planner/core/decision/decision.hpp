@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <span>
 #include <string>
@@ -67,9 +68,6 @@ struct ExpectedLoop {
   double probability = 0.0;
 };
 
-/// Reason why a candidate was not judged, although it can be driven to.
-inline constexpr const char* kOutranked = "others come before it (planner.max_candidates)";
-
 /// A path to a place from which there is something to see.
 struct Candidate {
   CandidateKind kind = CandidateKind::kFrontier;
@@ -84,12 +82,26 @@ struct Candidate {
   std::vector<Eigen::Vector3d> nodes_map;  ///< hallucinated key-frames [m]
   std::vector<ExpectedLoop> loops;         ///< to old places that the path would see again
   double utility = 0.0;                    ///< of the method
-  std::string rejection;                   ///< why it was not considered; empty otherwise
+  Rejection rejection = Rejection::kNone;
+
+  /// It is judged.
+  bool is_open() const { return rejection == Rejection::kNone; }
+};
+
+/// Frontiers that are not going to be looked at.
+struct Leftover {
+  std::map<Rejection, double>
+      length_m;                 ///< by why; kLeftAlone also where it is the reason for a part of the paths only
+  double share_to_blame = 0.0;  ///< length of those that geometry does not excuse, of all that there have been
+
+  /// "frontiers left: 2.5 m: cannot be reached, 1.0 m: left alone for now"; empty when nothing is left.
+  std::string text() const;
 };
 
 struct Decision {
   std::vector<Candidate> candidates;      ///< at least one for each frontier
   std::optional<std::size_t> chosen;      ///< index; nothing when none can be driven to
+  Leftover leftover;                      ///< when none can
   std::optional<std::size_t> by_mi_only;  ///< what MI / Cost would have chosen
   /// What would have been chosen with each of the compared fields.
   std::vector<std::optional<std::size_t>> by_compared_fields;

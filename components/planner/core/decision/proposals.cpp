@@ -19,11 +19,11 @@ constexpr double kPass_m = 0.75;          // path past an old place, in its dire
 constexpr double kSameHeading_rad = 0.5;
 constexpr double kLikely = 0.5;  // probability of a loop closure at the place itself
 
-Candidate rejected(const Frontier& frontier, std::string reason) {
+Candidate rejected(const Frontier& frontier, Rejection reason) {
   Candidate candidate;
   candidate.frontier = frontier.id;
   candidate.goal.p_map = candidate.target_map = frontier.centroid_map;
-  candidate.rejection = std::move(reason);
+  candidate.rejection = reason;
   return candidate;
 }
 
@@ -66,13 +66,13 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
     const bool is_room = frontier.length_m >= config.closer_look_length_m;
     const Sight sight = is_last_chance && is_room ? Sight::kNotNeeded : Sight::kNeeded;
     const ViewpointResult found = sample_viewpoints(s.grid, tree, frontier, config.viewpoints, sight);
-    if (found.status != ViewpointStatus::kFound) candidates.push_back(rejected(frontier, reason_of(found.status)));
+    if (found.viewpoints.empty()) candidates.push_back(rejected(frontier, found.rejection));
     for (const Viewpoint& viewpoint : found.viewpoints) {
       Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, frontier.id, viewpoint, config));
       if (sight == Sight::kNotNeeded) candidate.kind = CandidateKind::kCloserLook;
       if (is_failed_view(memory.failed_views, candidate.target_map, candidate.goal.p_map, memory.radius_m))
-        candidate.rejection = "the view from here has failed";
-      if (is_one_of(memory.left_alone, candidate, memory)) candidate.rejection = kLeftAlone;
+        candidate.rejection = Rejection::kFailedView;
+      if (is_one_of(memory.left_alone, candidate, memory)) candidate.rejection = Rejection::kLeftAlone;
     }
   }
   return candidates;
@@ -91,7 +91,7 @@ std::vector<Candidate> propose_tour(const Situation& s, const CostTree& tree, co
   for (const TourStop& stop : tour.stops) {
     Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, stop.frontier, stop.viewpoint, config));
     candidate.value.tour_place = static_cast<int>(candidates.size());
-    if (candidate.value.tour_place > config.max_candidates) candidate.rejection = kOutranked;
+    if (candidate.value.tour_place > config.max_candidates) candidate.rejection = Rejection::kOutranked;
   }
   for (const auto& [id, reason] : tour.missed) candidates.push_back(rejected(s.frontiers.frontiers().at(id), reason));
   return candidates;
@@ -103,25 +103,26 @@ void reject_far_ones(std::vector<Candidate>& candidates, const Memory& memory, i
   std::vector<std::pair<int, double>> rank(candidates.size());  // place within the frontier, cost
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i].rejection.empty()) continue;
+    if (!candidates[i].is_open()) continue;
     order.push_back(i);
     rank[i].second = candidates[i].value.cost_m;
     for (const Candidate& other : candidates) {
-      const bool is_before = other.frontier == candidates[i].frontier && other.rejection.empty() &&
+      const bool is_before = other.frontier == candidates[i].frontier && other.is_open() &&
                              other.value.cost_m < candidates[i].value.cost_m;
       rank[i].first += is_before ? 1 : 0;
     }
     if (is_current_goal(candidates[i], memory)) rank[i] = {-1, 0.0};
   }
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return rank[a] < rank[b]; });
-  for (auto k = static_cast<std::size_t>(most); k < order.size(); ++k) candidates[order[k]].rejection = kOutranked;
+  for (auto k = static_cast<std::size_t>(most); k < order.size(); ++k)
+    candidates[order[k]].rejection = Rejection::kOutranked;
 }
 
 // As a tour: what is left when TARE has no stop any more.
 std::vector<Candidate> nearest_first(std::vector<Candidate> candidates) {
   std::vector<Candidate*> open;
   for (Candidate& candidate : candidates) {
-    if (candidate.rejection.empty()) open.push_back(&candidate);
+    if (candidate.is_open()) open.push_back(&candidate);
   }
   std::stable_sort(open.begin(), open.end(),
                    [](const Candidate* a, const Candidate* b) { return a->value.cost_m < b->value.cost_m; });
@@ -219,7 +220,7 @@ void add_alternatives(const Situation& s, const CostTree& tree, const std::vecto
                       const DecisionConfig& config, std::vector<Candidate>& candidates) {
   std::map<std::uint32_t, std::size_t> nearest;  // by frontier
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i].rejection.empty()) continue;
+    if (!candidates[i].is_open()) continue;
     const auto [known, is_new] = nearest.try_emplace(candidates[i].frontier, i);
     if (!is_new && candidates[i].value.cost_m < candidates[known->second].value.cost_m) known->second = i;
   }
@@ -237,7 +238,7 @@ void add_revisits(const Situation& s, const CostTree& tree, std::vector<OldPlace
     const Viewpoint viewpoint{place.cell, {s.grid.center_of(place.cell), place.pose.yaw_rad}, place.cell, 0.0};
     Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, 0, viewpoint, config));
     candidate.kind = CandidateKind::kRevisit;
-    if (is_one_of(memory.revisited, candidate, memory)) candidate.rejection = kLeftAlone;
+    if (is_one_of(memory.revisited, candidate, memory)) candidate.rejection = Rejection::kLeftAlone;
   }
 }
 
@@ -252,8 +253,8 @@ std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const M
   const bool is_tour = config.method == Method::kTare;
   std::vector<Candidate> candidates =
       is_tour ? propose_tour(s, tree, memory, config) : propose_frontiers(s, tree, memory, config, false);
-  const bool is_any_open = std::any_of(candidates.begin(), candidates.end(),
-                                       [](const Candidate& candidate) { return candidate.rejection.empty(); });
+  const bool is_any_open =
+      std::any_of(candidates.begin(), candidates.end(), [](const Candidate& candidate) { return candidate.is_open(); });
   if (is_tour && is_any_open) return candidates;
   if (!is_any_open) candidates = propose_frontiers(s, tree, memory, config, true);
   reject_far_ones(candidates, memory, config.max_candidates);

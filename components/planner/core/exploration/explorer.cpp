@@ -25,6 +25,8 @@ GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
   return config;
 }
 
+bool has_ended(State state) { return state == State::kDone || state == State::kGaveUp || state == State::kFailed; }
+
 std::vector<Pose2> turns_on_the_spot(bool is_to_the_left) {
   const double turn_rad = (is_to_the_left ? 2.0 : -2.0) * std::numbers::pi / kHeadings;
   std::vector<Pose2> headings;
@@ -39,7 +41,7 @@ Explorer::Explorer(const ExplorerConfig& config)
 
 void Explorer::start() {
   if (state_ != State::kExploring) drop_goal();
-  if (state_ == State::kDone || state_ == State::kFailed || state_ == State::kIdle) {
+  if (has_ended(state_) || state_ == State::kIdle) {
     memory_.clear();
     revisited_.clear();
     blocked_.clear();
@@ -67,6 +69,7 @@ bool Explorer::pause() {
 
 void Explorer::return_home() {
   drop_goal();
+  end_ = State::kDone;
   enter(State::kReturning, "asked to return");
 }
 
@@ -210,11 +213,11 @@ void Explorer::note_arrival(time::Time now) {
 void Explorer::note_vanished(const Decision& decision, time::Time now) {
   if (!goal_ || !goal_->target_map || goal_->kind == CandidateKind::kRevisit) return;
   const bool is_in_sight = std::any_of(decision.candidates.begin(), decision.candidates.end(), [](const Candidate& c) {
-    return c.kind == CandidateKind::kFrontier && c.rejection.empty();
+    return c.kind == CandidateKind::kFrontier && c.is_open();
   });
   if (goal_->kind == CandidateKind::kCloserLook && is_in_sight) return;
   const bool is_there = std::any_of(decision.candidates.begin(), decision.candidates.end(), [&](const Candidate& c) {
-    return (c.rejection.empty() || c.rejection == kOutranked) &&
+    return (c.is_open() || c.rejection == Rejection::kOutranked) &&
            (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
   });
   if (!is_there) await({*goal_->target_map, robot_.p_map}, now, config_.memory.expiry_s);
@@ -286,7 +289,7 @@ bool Explorer::take(const Decision& decision, const Report& report) {
 bool Explorer::is_detour(const Decision& decision) const {
   if (!goal_ || !goal_->target_map) return false;
   const auto is_at_goal = [&](const Candidate& c) {
-    return c.rejection.empty() && (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
+    return c.is_open() && (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
   };
   return !is_at_goal(decision.candidates[*decision.chosen]) &&
          std::any_of(decision.candidates.begin(), decision.candidates.end(), is_at_goal);
@@ -333,14 +336,23 @@ void Explorer::end_or_look_around(const Decision& decision, const Report& report
   }
   empty_decisions_ = 0;
   if (has_another_chance(decision, report)) return;
-  enter(config_.returns_home ? State::kReturning : State::kDone, "nothing is left that can be reached");
+  end(decision.leftover);
+}
+
+void Explorer::end(const Leftover& leftover) {
+  const bool has_given_up = leftover.share_to_blame > config_.max_left_share;
+  end_ = has_given_up ? State::kGaveUp : State::kDone;
+  const std::string left = leftover.text();
+  enter(config_.returns_home ? State::kReturning : end_,
+        (has_given_up ? "nothing more succeeds" : "nothing is left that can be reached") +
+            (left.empty() ? "" : "; " + left));
 }
 
 // What is left alone for a time is tried again, then, once, what waits for the map's correction: where slam tracks, it
 // may come.
 bool Explorer::has_another_chance(const Decision& decision, const Report& report) {
   const bool is_any_left_alone = std::any_of(decision.candidates.begin(), decision.candidates.end(),
-                                             [](const Candidate& c) { return c.rejection == kLeftAlone; });
+                                             [](const Candidate& c) { return c.rejection == Rejection::kLeftAlone; });
   const bool has_forgiven = is_any_left_alone && memory_.forgive(report.now);
   const bool has_unblocked = blocked_.forgive(report.now);
   if (has_forgiven || has_unblocked) return true;
@@ -414,7 +426,8 @@ void Explorer::go_home(const Report& report, Surroundings& surroundings) {
   const bool has_path = !path_.empty();
   if (has_path && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m) {
     drop_goal();
-    return enter(State::kDone, "is back where it started");
+    return enter(end_, end_ == State::kGaveUp ? "is back where it started, but not all was explored"
+                                              : "is back where it started");
   }
   if (report.is_blocked) note_failure(report, surroundings);
   const bool is_wanted = !has_path || !is_path_free(path_, *report.robot, surroundings.grid());

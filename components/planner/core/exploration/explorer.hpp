@@ -20,6 +20,7 @@ enum class State {
   kRecovering,  ///< slam has no pose, or one that has drifted far: looks around, or drives back to where it tracked
   kReturning,   ///< drives to where it started
   kDone,        ///< nothing is left that can be reached, or it has returned
+  kGaveUp,      ///< the same, but frontiers are left that geometry does not excuse; the reason says which
   kFailed,      ///< needs help; the reason says why
 };
 
@@ -35,9 +36,10 @@ struct ExplorerConfig {
   double max_drift_m = 0.5;         ///< of a pose by odometry alone, beyond which it drives back, in [0, 100]
   double lost_timeout_s = 60.0;     ///< without such a pose, exploration has failed, in [1, 3600]
   double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
-  int confirmations = 3;      ///< looks around, a full turn in all, that find nothing before it is over, in [2, 12]
-  double patience_s = 20.0;   ///< for obstacles that may go away before it is over, in [0, 600]
-  bool returns_home = false;  ///< when nothing is left
+  int confirmations = 3;         ///< looks around, a full turn in all, that find nothing before it is over, in [2, 12]
+  double patience_s = 20.0;      ///< for obstacles that may go away before it is over, in [0, 600]
+  double max_left_share = 0.02;  ///< of frontiers that were tried in vain, of all that were there, in [0, 1]
+  bool returns_home = false;     ///< when nothing is left
 };
 
 enum class Tracking { kTracking, kDeadReckoning, kLost };
@@ -105,6 +107,7 @@ class Explorer {
   bool is_detour(const Decision& decision) const;
   void set_deadline(const Candidate& chosen, bool is_detour, time::Time now);
   void end_or_look_around(const Decision& decision, const Report& report);
+  void end(const Leftover& leftover);
   bool has_another_chance(const Decision& decision, const Report& report);
   void begin_recovery(const Report& report, std::string reason);
   void recover(const Report& report, const Surroundings* surroundings);
@@ -146,7 +149,8 @@ class Explorer {
   std::optional<time::Time> blind_since_;  ///< while it was active: slam has no pose
   std::optional<time::Time> lost_at_, nothing_since_;
   int empty_decisions_ = 0;
-  bool may_change_ = false;  ///< obstacles stand where there may soon be none
+  State end_ = State::kDone;  ///< after the return
+  bool may_change_ = false;   ///< obstacles stand where there may soon be none
 };
 
 }  // namespace lapis::planner

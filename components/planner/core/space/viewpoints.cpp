@@ -27,9 +27,9 @@ std::size_t sector_of(Cell c, Cell middle, std::size_t count) {
   return std::min(count - 1, static_cast<std::size_t>(turns * static_cast<double>(count)));
 }
 
-/// Cells of the ring that can be reached, in the order of the draw; `status` says how far the best ones got.
+/// Cells of the ring that can be reached, in the order of the draw; `lack` says what the best ones lack.
 std::vector<Candidate> reachable_ring(const PlanningGrid& grid, const CostTree& paths, Cell target,
-                                      const ViewpointConfig& config, ViewpointStatus& status) {
+                                      const ViewpointConfig& config, Rejection& lack) {
   std::vector<Candidate> ring;
   const double low = config.min_distance_m / grid.resolution_m(), high = config.max_distance_m / grid.resolution_m();
   const int reach = static_cast<int>(high);
@@ -37,7 +37,7 @@ std::vector<Candidate> reachable_ring(const PlanningGrid& grid, const CostTree& 
     for (step.x = -reach; step.x <= reach; ++step.x) {
       const Cell c = target + step;
       if (distance(c, target) < low || distance(c, target) > high || !grid.is_traversable(c)) continue;
-      status = std::max(status, ViewpointStatus::kUnreachable);
+      lack = std::max(lack, Rejection::kUnreachable);
       if (paths.cost_m(c)) ring.push_back({draw(static_cast<std::uint64_t>(config.seed), c), c});
     }
   }
@@ -69,16 +69,6 @@ bool is_failed_view(std::span<const FailedView> failed_views, const Eigen::Vecto
   });
 }
 
-std::string reason_of(ViewpointStatus status) {
-  switch (status) {
-    case ViewpointStatus::kFound: return "";
-    case ViewpointStatus::kNoRoom: return "no room in front of the frontier";
-    case ViewpointStatus::kUnreachable: return "cannot be reached";
-    case ViewpointStatus::kNoLineOfSight: return "hidden from everywhere that can be reached";
-  }
-  return "";
-}
-
 bool is_in_sight(const PlanningGrid& grid, Cell from, Cell to) {
   return walk_line(from, to, [&](Cell c, double) { return grid.state(c) != mapping::kOccupied; });
 }
@@ -87,12 +77,12 @@ ViewpointResult sample_viewpoints(const PlanningGrid& grid, const CostTree& path
                                   const ViewpointConfig& config, Sight sight) {
   ViewpointResult result;
   for (const Cell& target : frontier.representatives) {
-    const std::vector<Candidate> ring = reachable_ring(grid, paths, target, config, result.status);
+    const std::vector<Candidate> ring = reachable_ring(grid, paths, target, config, result.rejection);
     if (ring.empty()) continue;
-    result.status = ViewpointStatus::kNoLineOfSight;
+    result.rejection = Rejection::kHidden;
     result.viewpoints = one_per_sector(grid, paths, target, ring, config.max_per_frontier, sight);
     if (result.viewpoints.empty()) continue;
-    result.status = ViewpointStatus::kFound;
+    result.rejection = Rejection::kNone;
     break;
   }
   return result;

@@ -2,11 +2,11 @@
 
 #include <cstdint>
 #include <span>
-#include <string>
 #include <vector>
 
 #include "planner/core/space/frontier_map.hpp"
 #include "planner/core/space/path_search.hpp"
+#include "planner/core/space/rejection.hpp"
 
 namespace lapis::planner {
 
@@ -34,17 +34,6 @@ struct FailedView {
 bool is_failed_view(std::span<const FailedView> failed_views, const Eigen::Vector2d& target_map,
                     const Eigen::Vector2d& from_map, double radius_m);
 
-/// Why a frontier has no viewpoint: what the best candidates lacked.
-enum class ViewpointStatus {
-  kFound,
-  kNoRoom,         ///< no cell of the ring is traversable
-  kUnreachable,    ///< none that is traversable can be reached within the bound of the cost tree
-  kNoLineOfSight,  ///< from all that can be reached, occupied cells hide the frontier
-};
-
-/// For people; empty when found.
-std::string reason_of(ViewpointStatus status);
-
 /// No occupied cell lies between; unknown ones may.
 bool is_in_sight(const PlanningGrid& grid, Cell from, Cell to);
 
@@ -54,8 +43,8 @@ enum class Sight {
 };
 
 struct ViewpointResult {
-  ViewpointStatus status = ViewpointStatus::kNoRoom;
-  std::vector<Viewpoint> viewpoints;  ///< empty unless found
+  Rejection rejection = Rejection::kNoRoom;  ///< kNone: there are some; else what the best places lacked
+  std::vector<Viewpoint> viewpoints;
 };
 
 /// Viewpoints in the ring around the first representative of the frontier that has any: at most one in each of

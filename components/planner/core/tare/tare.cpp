@@ -227,7 +227,7 @@ std::optional<TourStop> stop_at(const TourProblem& problem, const Frontier& fron
       continue;
     if (!best || rank(viewpoint) < rank(best->viewpoint)) best = TourStop{frontier.id, viewpoint};
   }
-  if (!best) tour.missed.emplace_back(frontier.id, found.viewpoints.empty() ? reason_of(found.status) : kLeftAlone);
+  if (!best) tour.missed.emplace_back(frontier.id, found.viewpoints.empty() ? found.rejection : Rejection::kLeftAlone);
   return best;
 }
 
@@ -256,8 +256,7 @@ std::vector<TourStop> sub_spaces(const TourProblem& problem, const TareConfig& c
   std::stable_sort(stops.begin(), stops.end(),
                    [](const TourStop& a, const TourStop& b) { return a.viewpoint.cost_m < b.viewpoint.cost_m; });
   for (std::size_t i = kMostSubSpaces; i < stops.size(); ++i)
-    tour.missed.emplace_back(stops[i].frontier,
-                             "more than " + std::to_string(kMostSubSpaces) + " sub-spaces are nearer");
+    tour.missed.emplace_back(stops[i].frontier, Rejection::kFarSpace);
   stops.resize(std::min(stops.size(), kMostSubSpaces));
   return stops;
 }
@@ -268,7 +267,7 @@ void name_the_rest(const TourProblem& problem, Tour& tour) {
   for (const TourStop& stop : tour.stops) named.insert(stop.frontier);
   for (const auto& entry : tour.missed) named.insert(entry.first);
   for (const auto& entry : problem.frontiers.frontiers()) {
-    if (!named.contains(entry.first)) tour.missed.emplace_back(entry.first, "the tour stops at others near it");
+    if (!named.contains(entry.first)) tour.missed.emplace_back(entry.first, Rejection::kBesideStop);
   }
 }
 

@@ -42,13 +42,10 @@ struct TourStop {
 };
 
 struct Tour {
-  std::vector<TourStop> stops;                                ///< in the order in which to visit them
-  std::size_t local_stops = 0;                                ///< so many of them are within the horizon
-  std::vector<std::pair<std::uint32_t, std::string>> missed;  ///< frontiers that it leaves out, and why
+  std::vector<TourStop> stops;                              ///< in the order in which to visit them
+  std::size_t local_stops = 0;                              ///< so many of them are within the horizon
+  std::vector<std::pair<std::uint32_t, Rejection>> missed;  ///< frontiers that it leaves out, and why
 };
-
-/// Reason why a frontier is left out: it could not be driven to, or views of it failed, or one is being judged.
-inline constexpr const char* kLeftAlone = "left alone for now";
 
 /// Exploration in two levels [Cao, Zhu, Choset & Zhang 2021, TARE], for a camera with a heading where TARE has a lidar
 /// that sees all around. Local: viewpoints on a lattice of cells and eight headings; a random choice (seeded) by

@@ -111,7 +111,7 @@ const World& world() {
 double views_per_candidate(const Decision& decision) {
   std::size_t open = 0, views = 0;
   for (const Candidate& candidate : decision.candidates) {
-    if (!candidate.rejection.empty()) continue;
+    if (!candidate.is_open()) continue;
     ++open;
     views += candidate.path.size();
   }
@@ -141,7 +141,7 @@ void decision(benchmark::State& state) {
   Decision made;
   for (auto _ : state) made = decide(now, {}, config);
   const auto open = static_cast<std::size_t>(
-      std::count_if(made.candidates.begin(), made.candidates.end(), [](const auto& c) { return c.rejection.empty(); }));
+      std::count_if(made.candidates.begin(), made.candidates.end(), [](const auto& c) { return c.is_open(); }));
   if (open < kCandidates || views_per_candidate(made) < kViewsPerPath) state.SkipWithError("fewer candidates or views");
   state.counters["candidates"] = static_cast<double>(open);
   state.counters["views_per_candidate"] = views_per_candidate(made);

@@ -100,7 +100,8 @@ class Course {
     bool is_over = false;
     while (!is_over) {
       const auto state = explorer_.state();
-      is_over = now().seconds() >= setting_.longest_s || state == State::kDone || state == State::kFailed;
+      is_over = now().seconds() >= setting_.longest_s || state == State::kDone || state == State::kGaveUp ||
+                state == State::kFailed;
       step();
       if (is_over || tick_ % std::lround(setting_.simulated.robot.camera.rate_hz) == 0) note_moment();
     }
@@ -205,8 +206,8 @@ class Course {
   void note_left(const Candidate& candidate) {
     const auto& frontiers = surroundings_.frontiers().frontiers();
     const auto found = frontiers.find(candidate.frontier);
-    if (found == frontiers.end() || candidate.rejection.empty()) return;
-    exploration_.left_m[candidate.rejection] += found->second.length_m;
+    if (found == frontiers.end() || candidate.is_open()) return;
+    exploration_.left_m[text_of(candidate.rejection)] += found->second.length_m;
   }
 
   const simulator::World& world_;

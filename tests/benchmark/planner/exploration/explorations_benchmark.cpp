@@ -50,6 +50,7 @@ ExplorationSetting setting_of(const Options& options, const std::string& scene, 
 
 const char* name_of(State state) {
   if (state == State::kDone) return "DONE";
+  if (state == State::kGaveUp) return "GAVE_UP";
   return state == State::kFailed ? "FAILED" : "EXPLORING";
 }
 

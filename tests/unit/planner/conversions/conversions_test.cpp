@@ -80,7 +80,7 @@ Decision decision() {
     candidate.value.d_optimality = 20.0 + k;
     candidate.utility = 30.0 + k;
   }
-  decision.candidates[2].rejection = "cannot be reached";
+  decision.candidates[2].rejection = Rejection::kUnreachable;
   decision.chosen = 1;
   return decision;
 }

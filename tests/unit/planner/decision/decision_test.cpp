@@ -106,10 +106,32 @@ TEST(Decide, LeavesAloneWhatItIsAskedTo) {
   int left_alone = 0;
   for (const Candidate& candidate : decision.candidates) {
     const bool is_near = (candidate.target_map - memory.left_alone[0]).norm() <= memory.radius_m;
-    EXPECT_EQ(candidate.rejection, is_near ? "left alone for now" : "");
+    EXPECT_EQ(candidate.rejection, is_near ? Rejection::kLeftAlone : Rejection::kNone);
     left_alone += is_near ? 1 : 0;
   }
   EXPECT_GT(left_alone, 0);
+}
+
+TEST(Decide, SaysWhatIsLeftWhenNothingIsChosen) {
+  Explorer explorer;
+  explorer.config.method = Method::kNearest;
+  EXPECT_TRUE(explorer.choose({}).leftover.length_m.empty());
+  Memory memory;
+  memory.left_alone = {explorer.chosen().target_map};
+  memory.radius_m = 1000.0;
+  const Decision decision = explorer.choose(memory);
+  ASSERT_FALSE(decision.chosen);
+  double left_m = 0.0, to_blame_m = 0.0;
+  for (const auto& [reason, length_m] : decision.leftover.length_m) {
+    left_m += length_m;
+    to_blame_m += is_geometric(reason) ? 0.0 : length_m;
+  }
+  double all_m = 0.0;
+  for (const auto& entry : explorer.frontiers.frontiers()) all_m += entry.second.length_m;
+  EXPECT_NEAR(left_m, all_m, 1e-9);
+  EXPECT_GT(to_blame_m, 0.0);
+  const double discovered_m = 0.25 * static_cast<double>(explorer.frontiers.discovered_cells());
+  EXPECT_NEAR(decision.leftover.share_to_blame, to_blame_m / discovered_m, 1e-12);
 }
 
 TEST(Decide, LooksFromElsewhereAtWhatAFailedViewShowed) {
@@ -122,7 +144,7 @@ TEST(Decide, LooksFromElsewhereAtWhatAFailedViewShowed) {
   for (const Candidate& candidate : explorer.choose(memory).candidates) {
     const bool is_the_same = (candidate.target_map - first.target_map).norm() <= memory.radius_m &&
                              (candidate.goal.p_map - first.goal.p_map).norm() <= memory.radius_m;
-    EXPECT_EQ(candidate.rejection, is_the_same ? "the view from here has failed" : "");
+    EXPECT_EQ(candidate.rejection, is_the_same ? Rejection::kFailedView : Rejection::kNone);
     rejected += is_the_same ? 1 : 0;
   }
   EXPECT_GT(rejected, 0);
@@ -162,12 +184,12 @@ TEST(Decide, NamesEveryFrontierAndWhyItIsNotDrivenTo) {
   int unreachable = 0;
   for (const Candidate& candidate : decision.candidates) {
     named.insert(candidate.frontier);
-    unreachable += candidate.rejection == "cannot be reached" ? 1 : 0;
+    unreachable += candidate.rejection == Rejection::kUnreachable ? 1 : 0;
   }
   EXPECT_EQ(named.size(), explorer.frontiers.frontiers().size());
   EXPECT_GE(unreachable, 1) << "the room behind the wall";
   ASSERT_TRUE(decision.chosen);
-  EXPECT_TRUE(decision.candidates[*decision.chosen].rejection.empty());
+  EXPECT_TRUE(decision.candidates[*decision.chosen].is_open());
 }
 
 TEST(Decide, ComputesOnlyTheNearestButOneOfEachFrontierFirst) {
@@ -177,8 +199,8 @@ TEST(Decide, ComputesOnlyTheNearestButOneOfEachFrontierFirst) {
   std::set<std::uint32_t> open;
   int too_far = 0;
   for (const Candidate& candidate : decision.candidates) {
-    if (candidate.rejection.empty()) open.insert(candidate.frontier);
-    too_far += candidate.rejection == kOutranked ? 1 : 0;
+    if (candidate.is_open()) open.insert(candidate.frontier);
+    too_far += candidate.rejection == Rejection::kOutranked ? 1 : 0;
   }
   EXPECT_EQ(open.size(), 2u);
   EXPECT_GT(too_far, 0);
@@ -237,7 +259,7 @@ TEST(Decide, WithoutAGraphThePaperComparesInformationPerMetre) {
       EXPECT_EQ(decision.problem.empty(), !has_graph);
       EXPECT_TRUE(decision.chosen && decision.agrees_with_mi_only());
       for (const Candidate& candidate : decision.candidates) {
-        if (!candidate.rejection.empty()) continue;
+        if (!candidate.is_open()) continue;
         EXPECT_DOUBLE_EQ(candidate.utility, 1.0 + candidate.value.path_information / candidate.value.cost_m);
         EXPECT_TRUE(candidate.loops.empty());
       }
@@ -313,7 +335,7 @@ TEST(Decide, EachMethodComparesItsOwnFormOfD) {
     const Decision decision = explorer.choose();
     ASSERT_EQ(decision.problem, "");
     for (const Candidate& candidate : decision.candidates) {
-      if (!candidate.rejection.empty()) continue;
+      if (!candidate.is_open()) continue;
       const double fixed_n = d_optimality(nodes, log_trees + candidate.gain.fixed_n_change);
       EXPECT_EQ(std::abs(candidate.value.d_optimality / fixed_n - 1.0) < 1e-12, method == Method::kFixedN);
       EXPECT_DOUBLE_EQ(candidate.utility, candidate.value.d_optimality *
@@ -338,7 +360,7 @@ TEST(Decide, RevisitsAnOldPlaceWhenItIsUnsure) {
   EXPECT_GT(revisit.value.cost_m, 2.0);
   Memory memory;
   memory.revisited = {revisit.target_map};
-  EXPECT_EQ(explorer.choose(memory).candidates.back().rejection, kLeftAlone);
+  EXPECT_EQ(explorer.choose(memory).candidates.back().rejection, Rejection::kLeftAlone);
   explorer.config.method = Method::kNearest;
   EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "loops are worth nothing to it";
 }
@@ -369,7 +391,7 @@ TEST(Decide, InformationFromAnUnsurePositionCountsLess) {
   ASSERT_EQ(sure.candidates.size(), unsure.candidates.size());
   for (std::size_t i = 0; i < sure.candidates.size(); ++i) {
     const Candidate &all = sure.candidates[i], &less = unsure.candidates[i];
-    if (!all.rejection.empty()) continue;
+    if (!all.is_open()) continue;
     const double share = less.value.path_information / all.value.path_information;
     EXPECT_LE(share, 0.55) << "half at the robot's sigma";
     EXPECT_GE(share, 0.2);

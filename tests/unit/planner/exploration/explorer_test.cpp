@@ -465,14 +465,14 @@ TEST(Explorer, ReturnsAlsoWhenItPlansSeldom) {
 /// An explorer on a wide floor, driven by decisions and reports of the test.
 class ExplorerByHand : public ::testing::Test {
  protected:
-  static Candidate candidate(Eigen::Vector2d goal_map, std::string rejection = "") {
+  static Candidate candidate(Eigen::Vector2d goal_map, Rejection rejection = Rejection::kNone) {
     Candidate candidate;
     candidate.frontier = 1;
     candidate.goal.p_map = candidate.target_map = goal_map;
     candidate.points = {{0.0, 0.0}, goal_map};
     candidate.path = {{{0.0, 0.0}, 0.0}, {goal_map, 0.0}};
     candidate.value.cost_m = goal_map.norm();
-    candidate.rejection = std::move(rejection);
+    candidate.rejection = rejection;
     return candidate;
   }
   static Decision towards(const Candidate& chosen) {
@@ -539,12 +539,31 @@ TEST_F(ExplorerByHand, ADecisionFromBeforeThePathWasBlockedChangesNothing) {
   EXPECT_EQ(left_alone.front(), Eigen::Vector2d(4.0, 0.0)) << "the target of the path that was blocked";
 }
 
+// Frontiers that geometry closes are the end; of those tried in vain only few may be.
+TEST_F(ExplorerByHand, GivesUpWhenTooMuchWasTriedInVain) {
+  for (const double share_to_blame : {0.019, 0.021}) {
+    explorer_.stop();
+    explorer_.start();
+    Decision none;
+    none.leftover.length_m = {{Rejection::kUnreachable, 2.5}, {Rejection::kLeftAlone, 0.75}};
+    none.leftover.share_to_blame = share_to_blame;
+    while (explorer_.state() == State::kExploring) {
+      if (step()) explorer_.take(none, report());
+      ASSERT_LT(now_.seconds(), 200.0);
+    }
+    EXPECT_EQ(explorer_.state(), share_to_blame > 0.02 ? State::kGaveUp : State::kDone);
+    EXPECT_THAT(explorer_.reason(), ::testing::HasSubstr("2.5 m: cannot be reached, 0.8 m: left alone for now"));
+  }
+  explorer_.start();
+  EXPECT_EQ(explorer_.state(), State::kExploring) << "it can be asked again";
+}
+
 TEST_F(ExplorerByHand, ATargetThatOthersComeBeforeHasNotVanished) {
   explorer_.start();
   ASSERT_TRUE(step());
   explorer_.take(towards(candidate({9.0, 0.0})), report());
   Decision nearer = towards(candidate({2.0, 0.0}));
-  nearer.candidates.push_back(candidate({9.0, 0.0}, kOutranked));
+  nearer.candidates.push_back(candidate({9.0, 0.0}, Rejection::kOutranked));
   explorer_.take(nearer, report());
   EXPECT_TRUE(explorer_.memory(now_).left_alone.empty());
   explorer_.take(towards(candidate({0.0, 5.0})), report());

@@ -40,7 +40,9 @@ class WalkWorld {
   /// Lives for so long [s], or until the explorer is at rest.
   void run(double duration_s) {
     const time::Time end = now + time::Duration::from_seconds(duration_s);
-    while (now < end && explorer.state() != State::kDone && explorer.state() != State::kFailed) tick();
+    while (now < end && explorer.state() != State::kDone && explorer.state() != State::kGaveUp &&
+           explorer.state() != State::kFailed)
+      tick();
   }
   void tick() {
     now = now + time::Duration::from_seconds(kTick_s);

@@ -39,7 +39,7 @@ TEST(Viewpoints, SeeTheFrontierFromTheRing) {
   const TextWorld world(kRoom);
   const Cell robot{2, 2};
   const ViewpointResult result = views_of(world, robot, {5, 5});
-  ASSERT_EQ(result.status, ViewpointStatus::kFound);
+  ASSERT_EQ(result.rejection, Rejection::kNone);
   EXPECT_GE(result.viewpoints.size(), 3u);
   EXPECT_LE(result.viewpoints.size(), 6u);
   std::set<int> sectors;
@@ -71,15 +71,15 @@ TEST(Viewpoints, AreReproducibleAndMoveWithTheSeed) {
 
 TEST(Viewpoints, BehindGlassIsUnreachable) {
   const TextWorld world({"##############", "#....#........", "#....#........", "#....#........", "##############"});
-  EXPECT_EQ(views_of(world, {2, 2}, {13, 2}).status, ViewpointStatus::kUnreachable);
-  EXPECT_EQ(views_of(world, {7, 2}, {13, 2}).status, ViewpointStatus::kFound);
+  EXPECT_EQ(views_of(world, {2, 2}, {13, 2}).rejection, Rejection::kUnreachable);
+  EXPECT_EQ(views_of(world, {7, 2}, {13, 2}).rejection, Rejection::kNone);
 }
 
 TEST(Viewpoints, ASlotHasNoRoom) {
   GridConfig wide;
   wide.footprint_radius_m = 0.45;
   const TextWorld world({"########", "........", "########"}, 0.25, wide);
-  EXPECT_EQ(views_of(world, {2, 1}, {0, 1}).status, ViewpointStatus::kNoRoom);
+  EXPECT_EQ(views_of(world, {2, 1}, {0, 1}).rejection, Rejection::kNoRoom);
 }
 
 TEST(Viewpoints, HiddenBehindAWall) {
@@ -89,14 +89,14 @@ TEST(Viewpoints, HiddenBehindAWall) {
   const TextWorld world({"##########", "#........#", "#........#", "#........#", "#........#", "#........#",
                          "##########", "........##", "##########"},
                         0.25, wide);
-  EXPECT_EQ(views_of(world, {4, 5}, {0, 1}, {.min_distance_m = 0.5, .max_distance_m = 2.5}).status,
-            ViewpointStatus::kNoLineOfSight);
+  EXPECT_EQ(views_of(world, {4, 5}, {0, 1}, {.min_distance_m = 0.5, .max_distance_m = 2.5}).rejection,
+            Rejection::kHidden);
 }
 
 TEST(Viewpoints, OneCellFrontierInADeadEnd) {
   const TextWorld world({"### ###", "#.....#", "#.....#", "#.....#", "#######"});
   const ViewpointResult result = views_of(world, {2, 2}, {3, 3});
-  EXPECT_EQ(result.status, ViewpointStatus::kFound);
+  EXPECT_EQ(result.rejection, Rejection::kNone);
 }
 
 }  // namespace

@@ -140,7 +140,7 @@ TEST(Tare, LeavesAloneWhatItIsAskedTo) {
   const Tour tour = planner.plan();
   EXPECT_EQ(tour.stops.size(), 1u);
   ASSERT_EQ(tour.missed.size(), 1u);
-  EXPECT_EQ(tour.missed[0].second, kLeftAlone);
+  EXPECT_EQ(tour.missed[0].second, Rejection::kLeftAlone);
 }
 
 TEST(Tare, LooksFromElsewhereAtWhatAFailedViewShowed) {

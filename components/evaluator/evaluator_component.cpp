@@ -311,6 +311,7 @@ RunMetrics EvaluatorComponent::metrics() const {
   }
   m.time_to_80_s = time_to_reach(timeline_, 0.8);
   m.time_to_90_s = time_to_reach(timeline_, 0.9);
+  m.stalled_share = stalled_share(timeline_, 0.9);
   maps_.write_to(m, record_.T_map_world().has_value());
   return m;
 }
@@ -339,6 +340,7 @@ void EvaluatorComponent::finish() {
     spdlog::warn("ground truth of the scene is left out: {}", problem);
   }
   maps_.add_shares(timeline_);
+  mark_stalls(timeline_);
   const RunMetrics m = metrics();
   write_files(m);
   std::cout << format_table(m) << std::flush;

@@ -94,11 +94,15 @@ void MapJudge::write_to(TimelineRow& row) {
 
 void MapJudge::add_shares(std::vector<TimelineRow>& rows) const {
   if (!truth_) return;
-  const auto shares = known_.shares(truth_->mesh);
-  auto next = shares.begin();
-  for (TimelineRow& row : rows) {
-    if (row.is_comparable && next != shares.end()) row.explored_share = *next++;
-  }
+  const auto fill = [&](const KnownSpace& explorable, std::optional<double> TimelineRow::*share) {
+    const auto shares = known_.shares(explorable);
+    auto next = shares.begin();
+    for (TimelineRow& row : rows) {
+      if (row.is_comparable && next != shares.end()) row.*share = *next++;
+    }
+  };
+  fill(truth_->mesh, &TimelineRow::explored_share);
+  if (truth_->with_margin) fill(*truth_->with_margin, &TimelineRow::explored_share_with_margin);
 }
 
 void MapJudge::write_to(RunMetrics& m, bool has_reference) const {
@@ -124,6 +128,7 @@ void MapJudge::write_to(RunMetrics& m, bool has_reference) const {
   m.reference_fusion_share = references_->plain_fusion.share_in(reference.occupied);
   if (!truth_) return;
   m.explored_share = coverage(truth_->mesh, estimate).explored_share;
+  if (truth_->with_margin) m.explored_share_with_margin = coverage(*truth_->with_margin, estimate).explored_share;
   m.mesh_map = map_figures(truth_->mesh.occupied, estimate.occupied, names, classes);
   if (const auto ideal = load_ideal()) m.ideal_map = map_figures(*ideal, estimate.occupied, names, classes);
 }

@@ -13,6 +13,7 @@ const char* name_of(CandidateKind kind) {
     case CandidateKind::kFrontier: return "frontier";
     case CandidateKind::kAlternative: return "alternative";
     case CandidateKind::kCloserLook: return "closer_look";
+    case CandidateKind::kGap: return "gap";
     case CandidateKind::kRevisit: return "revisit";
   }
   return "";

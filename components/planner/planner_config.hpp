@@ -67,6 +67,13 @@ void describe(Field& field, ViewpointConfig& c) {
 }
 
 template <class Field>
+void describe(Field& field, GapConfig& c) {
+  field("least_nats", c.least_nats, config::in_range(0.0, 1e6),
+        "that a view has to promise when no frontier is left; 0: no such views");
+  field("spacing_m", c.spacing_m, config::in_range(0.25, 10.0), "between places for such views [m]");
+}
+
+template <class Field>
 void describe(Field& field, TareConfig& c) {
   field("horizon_m", c.horizon_m, config::in_range(1.0, 20.0), "half the edge of the local area [m]");
   field("lattice_m", c.lattice_m, config::in_range(0.1, 2.0), "between viewpoints [m]");
@@ -129,6 +136,8 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "that a voxel gets from a robot that passes; 1: a single frame, as in the paper");
   field("unknown_occupied", c.surroundings.ray.unknown_occupied, config::in_range(0.0, 0.99),
         "probability that a ray ends in a voxel never observed; 0: the sensor model's prior, as in the paper");
+  field("surface_occupied", c.surroundings.ray.surface_occupied, config::in_range(0.0, 0.99),
+        "the same beside an occupied voxel: surfaces go on where nobody has looked; 0: no difference, as in the paper");
   field("view_columns", c.view_columns, config::in_range(1, 4096), "rays of a view, over the width of the image");
   field("view_rows", c.view_rows, config::in_range(1, 4096), "rays of a view, over its height");
   field("node_spacing_m", c.decision.node_spacing_m, config::in_range(0.2, 10.0),
@@ -155,6 +164,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("frontiers", c.surroundings.frontiers);
   field("path", c.decision.path);
   field("viewpoints", c.decision.viewpoints);
+  field("gaps", c.decision.gaps);
   field("tare", c.decision.tare);
   field("hallucination", c.decision.hallucination);
   field("memory", c.explorer.memory);
@@ -179,8 +189,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("patience_s", c.explorer.patience_s, config::in_range(0.0, 600.0),
         "for obstacles that may go away before exploration is over [s]");
   field("max_left_share", c.explorer.max_left_share, config::in_range(0.0, 1.0),
-        "of frontiers that were tried in vain, of all that were there: with more exploration has not ended, but given "
-        "up");
+        "of the frontiers left, what was tried in vain though the robot would fit through: with more it has given up");
   field("returns_home", c.explorer.returns_home, config::anything(), "drives to where it started when nothing is left");
   field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain",
               "the planner reads it on /semantic_mapper/map_description");

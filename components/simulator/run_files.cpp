@@ -92,6 +92,7 @@ void write_truth(const World& world, const StartPose& start, const SimulatorConf
   truth.resolution_m = resolution_m;
   truth.sensing_range_m = config.robot.sensing_range_m;
   truth.robot_radius_m = config.robot.radius_m;
+  truth.margin_m = config.planner_margin_m;
   truth.camera = pinhole_camera(config.robot.camera);
   truth.mount = camera_mount(config.robot.camera);
   truth.threads = config.render_threads;

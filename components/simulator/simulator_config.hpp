@@ -51,6 +51,7 @@ struct SimulatorConfig {
   int wait_for_readers = 0;
   int render_threads = 1;
   bool imu = false;
+  double planner_margin_m = 0.05;
   SceneConfig world;
   NoiseConfig noise;
   WheelConfig wheels;
@@ -122,7 +123,7 @@ void describe(Field& field, SimulatorConfig& c) {
   field("duration_s", c.duration_s, config::in_range(0.0, 1e6),
         "simulated time after which the run ends [s]; 0: never");
   field("ends_when_explored", c.ends_when_explored, config::anything(),
-        "the run ends, too, when /planner/status says DONE or FAILED");
+        "the run ends, too, when /planner/status says DONE, GAVE_UP or FAILED");
   field("tour", c.tour, config::anything(),
         "\"bundled\", or a file with waypoints, that the robot drives by itself; empty: it obeys /cmd_vel");
   field("tour_revisit_every_m", c.tour_revisit_every_m, config::in_range(0.0, 1000.0),
@@ -134,6 +135,9 @@ void describe(Field& field, SimulatorConfig& c) {
         "freerun: begin when the depth topic has this many readers");
   field("render_threads", c.render_threads, config::in_range(1, 64), "images do not depend on it");
   field("imu", c.imu, config::anything(), "publish /imu at 200 Hz");
+  field("planner_margin_m", c.planner_margin_m, config::in_range(0.0, 1.0),
+        "that a planner keeps around the robot (planner.grid.margin_m): ground truth says what can be seen then, too "
+        "[m]");
   field("world", c.world);
   field("noise", c.noise);
   field("wheels", c.wheels);

@@ -22,7 +22,7 @@ nlohmann::json read_json(const std::filesystem::path& file) {
   return nlohmann::json::parse(*bytes);
 }
 
-KnownSpace read_mesh(const std::filesystem::path& file) {
+KnownSpace read_space(const std::filesystem::path& file) {
   std::string problem;
   const auto map = mapping::load_map(file.string(), problem);
   if (!map) throw std::runtime_error(problem);
@@ -47,7 +47,9 @@ std::optional<GroundTruth> load_ground_truth(const std::filesystem::path& folder
   if (!std::filesystem::exists(folder / "mesh.lapis")) return std::nullopt;
   try {
     GroundTruth truth;
-    truth.mesh = read_mesh(folder / "mesh.lapis");
+    truth.mesh = read_space(folder / "mesh.lapis");
+    const auto with_margin = folder / "with_margin.lapis";
+    if (std::filesystem::exists(with_margin)) truth.with_margin = read_space(with_margin);
     truth.top_classes = read_json(folder / "classes.json").at("top_classes").get<std::vector<std::uint16_t>>();
     truth.T_map_world = to_pose(read_json(folder / "rooms.json").at("T_map_world").get<std::array<double, 7>>());
     return truth;

@@ -91,8 +91,10 @@ ordered_json to_document(const RunMetrics& m) {
   document["reference_fusion_share"] = value_or_null(m.reference_fusion_share);
   document["explored_volume_m3"] = value_or_null(m.explored_volume_m3);
   document["explored_share"] = value_or_null(m.explored_share);
+  document["explored_share_with_margin"] = value_or_null(m.explored_share_with_margin);
   document["time_to_80_s"] = value_or_null(m.time_to_80_s);
   document["time_to_90_s"] = value_or_null(m.time_to_90_s);
+  document["stalled_share"] = value_or_null(m.stalled_share);
   document["path_length_m"] = value_or_null(m.path_length_m);
   document["collisions"] = value_or_null(m.collisions);
   document["planner_state"] = value_or_null(m.planner_state);

@@ -60,8 +60,10 @@ struct RunMetrics {
   std::optional<double> reference_fusion_share;  ///< share of the plain fusion's voxels that the reference map has
   std::optional<double> explored_volume_m3;
   std::optional<double> explored_share;
+  std::optional<double> explored_share_with_margin;
   std::optional<double> time_to_80_s;
   std::optional<double> time_to_90_s;
+  std::optional<double> stalled_share;  ///< before 90 %
   std::optional<double> path_length_m;
   std::optional<std::int64_t> collisions;
   std::optional<std::string> planner_state;   ///< the last one

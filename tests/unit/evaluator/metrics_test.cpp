@@ -45,8 +45,10 @@ const std::vector<std::string> kKeys = {"exit_reason",
                                         "iou_by_class",
                                         "explored_volume_m3",
                                         "explored_share",
+                                        "explored_share_with_margin",
                                         "time_to_80_s",
                                         "time_to_90_s",
+                                        "stalled_share",
                                         "path_length_m",
                                         "collisions",
                                         "decision_time_p50_s",
@@ -170,12 +172,12 @@ TEST(Metrics, ARunThatLostTooManyFramesIsLost) {
 TEST(Timeline, WhatWasNotMeasuredIsEmpty) {
   TimelineRow row;
   row.time_s = 1.5;
-  EXPECT_THAT(to_csv({row}), HasSubstr("state\n1.500000,,,,,,LOST,\n"));
-  row = {2.0, 10.0, 0.25, 3.0, 0.125, 0.0625, PoseTier::kSurfaces, "EXPLORING", true};
+  EXPECT_THAT(to_csv({row}), HasSubstr("stalled\n1.500000,,,,,,,LOST,,0\n"));
+  row = {2.0, 10.0, 0.25, 0.5, 3.0, 0.125, 0.0625, PoseTier::kSurfaces, "EXPLORING", true, true};
   EXPECT_THAT(to_csv({row}),
-              HasSubstr("\n2.000000,10.000000,0.250000,3.000000,0.125000,0.062500,TRACKING,EXPLORING\n"));
+              HasSubstr("\n2.000000,10.000000,0.250000,0.500000,3.000000,0.125000,0.062500,TRACKING,EXPLORING,1\n"));
   row.tier = PoseTier::kOdometry;
-  EXPECT_THAT(to_csv({row}), HasSubstr(",DEAD_RECKONING,EXPLORING\n"));
+  EXPECT_THAT(to_csv({row}), HasSubstr(",DEAD_RECKONING,EXPLORING,1\n"));
 }
 
 TEST(Timeline, TimeToReachIsThatOfTheFirstRow) {
@@ -189,6 +191,43 @@ TEST(Timeline, TimeToReachIsThatOfTheFirstRow) {
   EXPECT_EQ(time_to_reach(rows, 0.81), 4.0);
   EXPECT_FALSE(time_to_reach(rows, 0.9));
   EXPECT_FALSE(time_to_reach({}, 0.0));
+}
+
+/// A row a second with these shares, grown by so much a second.
+std::vector<TimelineRow> grown(const std::vector<std::pair<int, double>>& seconds_and_growth) {
+  std::vector<TimelineRow> rows(1);
+  rows[0].explored_share = 0.0;
+  for (const auto& [seconds, growth] : seconds_and_growth) {
+    for (int i = 0; i < seconds; ++i) {
+      TimelineRow row;
+      row.time_s = rows.back().time_s + 1.0;
+      row.explored_share = *rows.back().explored_share + growth;
+      rows.push_back(row);
+    }
+  }
+  return rows;
+}
+
+TEST(Timeline, StallsAreWholeWindowsWithoutGrowth) {
+  auto rows = grown({{40, 0.01}, {30, 0.0}, {40, 0.01}, {15, 0.0}, {40, 0.01}});
+  mark_stalls(rows);
+  for (const TimelineRow& row : rows)
+    EXPECT_EQ(row.is_stalled, row.time_s > 40.0 && row.time_s <= 70.0) << row.time_s << " s: the second is too short";
+  EXPECT_DOUBLE_EQ(*stalled_share(rows, 2.0), 30.0 / 165.0);
+  EXPECT_DOUBLE_EQ(*stalled_share(rows, 0.5), 30.0 / 80.0) << "what comes after half was reached does not count";
+  EXPECT_DOUBLE_EQ(*stalled_share(rows, 0.3), 0.0);
+  EXPECT_FALSE(stalled_share({}, 0.9));
+}
+
+TEST(Timeline, AShareWithMarginCountsWhereItIsKnownAndRowsWithoutAreNoStalls) {
+  auto rows = grown({{60, 0.0}});
+  for (TimelineRow& row : rows) row.explored_share_with_margin = 0.001 * row.time_s;
+  mark_stalls(rows);
+  EXPECT_EQ(*stalled_share(rows, 0.9), 0.0);
+  for (TimelineRow& row : rows) row.explored_share = row.explored_share_with_margin = std::nullopt;
+  mark_stalls(rows);
+  EXPECT_TRUE(std::none_of(rows.begin(), rows.end(), [](const TimelineRow& row) { return row.is_stalled; }));
+  EXPECT_FALSE(stalled_share(rows, 0.9));
 }
 
 }  // namespace

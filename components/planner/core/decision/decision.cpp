@@ -11,16 +11,9 @@
 namespace lapis::planner {
 namespace {
 
-geometry::Pose camera_pose(const Situation& s, const Pose2& pose) {
-  geometry::Pose T_map_base = geometry::Pose::Identity();
-  T_map_base.translate(Eigen::Vector3d(pose.p_map.x(), pose.p_map.y(), 0.0));
-  T_map_base.rotate(Eigen::AngleAxisd(pose.yaw_rad, Eigen::Vector3d::UnitZ()));
-  return T_map_base * s.T_base_camera;
-}
-
 ViewPath views_along(const Situation& s, const std::vector<Pose2>& path) {
   ViewPath views;
-  for (const Pose2& pose : path) views.push_back(camera_pose(s, pose));
+  for (const Pose2& pose : path) views.push_back(camera_at(s, pose));
   return views;
 }
 
@@ -126,7 +119,7 @@ std::string add_gains(const Situation& s, const DecisionConfig& config, const st
   return problem;
 }
 
-/// What a frontier is not looked at for, all paths to it taken together: what was tried, rather than geometry.
+/// What a frontier is not looked at for, all paths to it taken together: what comes last in the enumeration.
 std::map<std::uint32_t, Rejection> reasons_by_frontier(const std::vector<Candidate>& candidates) {
   std::map<std::uint32_t, Rejection> reasons;
   for (const Candidate& candidate : candidates) {
@@ -137,16 +130,18 @@ std::map<std::uint32_t, Rejection> reasons_by_frontier(const std::vector<Candida
 }
 
 Leftover leftover_of(const Situation& s, const std::vector<Candidate>& candidates) {
+  const double robot_width_m = 2.0 * s.grid.required_clearance_m();
   Leftover leftover;
-  double to_blame_m = 0.0;
+  double left_m = 0.0, to_blame_m = 0.0;
   for (const auto& [id, reason] : reasons_by_frontier(candidates)) {
     const auto frontier = s.frontiers.frontiers().find(id);
     if (frontier == s.frontiers.frontiers().end()) continue;  // a revisit
-    leftover.length_m[reason] += frontier->second.length_m;
-    to_blame_m += is_geometric(reason) ? 0.0 : frontier->second.length_m;
+    const double length_m = frontier->second.length_m;
+    leftover.length_m[reason] += length_m;
+    left_m += length_m;
+    to_blame_m += is_geometric(reason) || length_m < robot_width_m ? 0.0 : length_m;
   }
-  const double discovered_m = static_cast<double>(s.frontiers.discovered_cells()) * s.grid.resolution_m();
-  leftover.share_to_blame = discovered_m > 0.0 ? to_blame_m / discovered_m : 0.0;
+  leftover.share_to_blame = left_m > 0.0 ? to_blame_m / left_m : 0.0;
   return leftover;
 }
 
@@ -160,7 +155,6 @@ Decision choose(const Situation& s, std::vector<Candidate> proposals, const Memo
   decision.problem = add_gains(s, config, open);
   for (Candidate* candidate : open) candidate->utility = utility(config.method, candidate->value, config.utility);
   decision.chosen = best_by(decision.candidates, config.method, memory, config);
-  if (!decision.chosen) decision.leftover = leftover_of(s, decision.candidates);
   decision.by_mi_only = best_by(decision.candidates, Method::kMiOnly, memory, config);
   return decision;
 }
@@ -177,10 +171,18 @@ std::string Leftover::text() const {
   return text.empty() ? "" : "frontiers left: " + text;
 }
 
+geometry::Pose camera_at(const Situation& s, const Pose2& robot) {
+  geometry::Pose T_map_base = geometry::Pose::Identity();
+  T_map_base.translate(Eigen::Vector3d(robot.p_map.x(), robot.p_map.y(), 0.0));
+  T_map_base.rotate(Eigen::AngleAxisd(robot.yaw_rad, Eigen::Vector3d::UnitZ()));
+  return T_map_base * s.T_base_camera;
+}
+
 Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config) {
   const CostTree tree = grow_cost_tree(situation.grid, config.path, {situation.grid.cell_of(situation.robot.p_map)});
   const std::vector<Candidate> proposals = propose(situation, tree, memory, config);
   Decision decision = choose(situation, proposals, memory, config);
+  if (!decision.chosen) decision.leftover = leftover_of(situation, decision.candidates);
   for (const InformationField& field : situation.compared_fields) {
     const Situation other{situation.grid,  situation.frontiers, field,          situation.view, situation.T_base_camera,
                           situation.graph, situation.landmarks, situation.robot};

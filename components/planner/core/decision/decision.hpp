@@ -15,11 +15,17 @@
 
 namespace lapis::planner {
 
+struct GapConfig {
+  double least_nats = 200.0;  ///< that a view promises, when no frontier is left; 0: no such views; in [0, 1e6]
+  double spacing_m = 1.0;     ///< between places, in [0.25, 10]
+};
+
 struct DecisionConfig {
   Method method = Method::kJoint;
   UtilityConfig utility;
   PathConfig path;
   ViewpointConfig viewpoints;
+  GapConfig gaps;
   TareConfig tare;
   GraphConfig graph;
   HallucinationConfig hallucination;
@@ -58,6 +64,7 @@ enum class CandidateKind {
   kFrontier,     ///< the best path to a place from which a frontier is seen
   kAlternative,  ///< another path to such a place
   kCloserLook,   ///< the best path to a place near a frontier that cannot be seen from there, as the map is
+  kGap,          ///< the best path to a view of what no frontier asks for
   kRevisit,      ///< the best path to an old key-frame
 };
 
@@ -71,7 +78,7 @@ struct ExpectedLoop {
 /// A path to a place from which there is something to see.
 struct Candidate {
   CandidateKind kind = CandidateKind::kFrontier;
-  std::uint32_t frontier = 0;  ///< 0: a revisit
+  std::uint32_t frontier = 0;  ///< 0: a gap or a revisit
   Pose2 goal;
   Eigen::Vector2d target_map{0, 0};  ///< what is looked at from there, or the place that is revisited [m]
   std::vector<Eigen::Vector2d>
@@ -90,9 +97,10 @@ struct Candidate {
 
 /// Frontiers that are not going to be looked at.
 struct Leftover {
-  std::map<Rejection, double>
-      length_m;                 ///< by why; kLeftAlone also where it is the reason for a part of the paths only
-  double share_to_blame = 0.0;  ///< length of those that geometry does not excuse, of all that there have been
+  /// By why; a frontier counts once, for the last of its paths' reasons in the order of the enumeration.
+  std::map<Rejection, double> length_m;
+  /// Of this length, what geometry does not excuse: frontiers through which the robot would fit, tried in vain.
+  double share_to_blame = 0.0;
 
   /// "frontiers left: 2.5 m: cannot be reached, 1.0 m: left alone for now"; empty when nothing is left.
   std::string text() const;
@@ -111,12 +119,16 @@ struct Decision {
 
 /// What is not to be driven to, and what is being driven to.
 struct Memory {
-  std::vector<Eigen::Vector2d> left_alone;  ///< targets [m, map]
-  std::vector<Eigen::Vector2d> revisited;   ///< old places to leave alone [m, map]
+  std::vector<LeftAlone> left_alone;  ///< frontiers near these
+  std::vector<LeftAlone> revisited;   ///< old places
   std::vector<FailedView> failed_views;
-  double radius_m = 0.75;     ///< what lies nearer to such places is meant, too
-  std::optional<Pose2> goal;  ///< current one
+  std::vector<Pose2> taken_views;  ///< of gaps: not to be taken again
+  double radius_m = 0.75;          ///< what lies nearer to such places is meant, too
+  std::optional<Pose2> goal;       ///< current one
 };
+
+/// Pose of the camera of a robot that stands there, T_map_camera.
+geometry::Pose camera_at(const Situation& situation, const Pose2& robot);
 
 /// Chooses where to go: candidates in front of every frontier, their paths, what the map and the pose graph would gain
 /// by them, and the best by the method's utility. Deterministic; ties go to the smaller frontier id.

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <string>
+#include <optional>
+#include <set>
 #include <utility>
 
+#include "planner/core/decision/gap_views.hpp"
 #include "planner/core/space/alternative_paths.hpp"
 #include "planner/core/space/line.hpp"
 #include "planner/core/space/path_planner.hpp"
@@ -51,20 +53,30 @@ Candidate candidate_at(const Situation& s, const CostTree& tree, std::uint32_t f
   return candidate;
 }
 
-bool is_one_of(const std::vector<Eigen::Vector2d>& left_alone, const Candidate& candidate, const Memory& memory) {
-  return std::any_of(left_alone.begin(), left_alone.end(), [&](const Eigen::Vector2d& place) {
-    return (place - candidate.target_map).norm() <= memory.radius_m;
-  });
+bool is_any_open(const std::vector<Candidate>& candidates) {
+  return std::any_of(candidates.begin(), candidates.end(), [](const Candidate& c) { return c.is_open(); });
 }
 
-/// @param is_last_chance a frontier that is long enough need not be in sight: closer looks
+/// Frontiers that cannot be seen from anywhere, as the map is.
+std::set<std::uint32_t> hidden_ones(const std::vector<Candidate>& candidates) {
+  std::set<std::uint32_t> hidden;
+  for (const Candidate& candidate : candidates) {
+    if (candidate.rejection == Rejection::kHidden) hidden.insert(candidate.frontier);
+  }
+  return hidden;
+}
+
+/// @param hidden when nothing else is left, a frontier that is long enough need not be in sight: closer looks. Those
+/// of a hidden one may fail, it is hidden then.
 std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tree, const Memory& memory,
-                                         const DecisionConfig& config, bool is_last_chance) {
+                                         const DecisionConfig& config,
+                                         const std::optional<std::set<std::uint32_t>>& hidden = std::nullopt) {
   std::vector<Candidate> candidates;
   for (const auto& entry : s.frontiers.frontiers()) {
     const Frontier& frontier = entry.second;
     const bool is_room = frontier.length_m >= config.closer_look_length_m;
-    const Sight sight = is_last_chance && is_room ? Sight::kNotNeeded : Sight::kNeeded;
+    const Sight sight = hidden && is_room ? Sight::kNotNeeded : Sight::kNeeded;
+    const bool is_hidden = hidden && hidden->contains(frontier.id);
     const ViewpointResult found = sample_viewpoints(s.grid, tree, frontier, config.viewpoints, sight);
     if (found.viewpoints.empty()) candidates.push_back(rejected(frontier, found.rejection));
     for (const Viewpoint& viewpoint : found.viewpoints) {
@@ -72,10 +84,19 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
       if (sight == Sight::kNotNeeded) candidate.kind = CandidateKind::kCloserLook;
       if (is_failed_view(memory.failed_views, candidate.target_map, candidate.goal.p_map, memory.radius_m))
         candidate.rejection = Rejection::kFailedView;
-      if (is_one_of(memory.left_alone, candidate, memory)) candidate.rejection = Rejection::kLeftAlone;
+      const Rejection why = why_left_alone(memory.left_alone, candidate.target_map, memory.radius_m);
+      candidate.rejection = std::max(candidate.rejection, why);
+      if (is_hidden && is_geometric(candidate.rejection)) candidate.rejection = Rejection::kHidden;
     }
   }
   return candidates;
+}
+
+void add_gap_views(const Situation& s, const CostTree& tree, const Memory& memory, const DecisionConfig& config,
+                   std::vector<Candidate>& candidates) {
+  if (config.gaps.least_nats <= 0.0) return;
+  for (const Viewpoint& view : gap_views(s, tree, memory, config.gaps))
+    candidates.emplace_back(candidate_at(s, tree, 0, view, config)).kind = CandidateKind::kGap;
 }
 
 // The stops of TARE's tour; as many of the first ones as may be looked at.
@@ -238,7 +259,7 @@ void add_revisits(const Situation& s, const CostTree& tree, std::vector<OldPlace
     const Viewpoint viewpoint{place.cell, {s.grid.center_of(place.cell), place.pose.yaw_rad}, place.cell, 0.0};
     Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, 0, viewpoint, config));
     candidate.kind = CandidateKind::kRevisit;
-    if (is_one_of(memory.revisited, candidate, memory)) candidate.rejection = Rejection::kLeftAlone;
+    candidate.rejection = why_left_alone(memory.revisited, candidate.target_map, memory.radius_m);
   }
 }
 
@@ -252,11 +273,10 @@ std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const M
                                const DecisionConfig& config) {
   const bool is_tour = config.method == Method::kTare;
   std::vector<Candidate> candidates =
-      is_tour ? propose_tour(s, tree, memory, config) : propose_frontiers(s, tree, memory, config, false);
-  const bool is_any_open =
-      std::any_of(candidates.begin(), candidates.end(), [](const Candidate& candidate) { return candidate.is_open(); });
-  if (is_tour && is_any_open) return candidates;
-  if (!is_any_open) candidates = propose_frontiers(s, tree, memory, config, true);
+      is_tour ? propose_tour(s, tree, memory, config) : propose_frontiers(s, tree, memory, config);
+  if (is_tour && is_any_open(candidates)) return candidates;
+  if (!is_any_open(candidates)) candidates = propose_frontiers(s, tree, memory, config, hidden_ones(candidates));
+  if (!is_any_open(candidates)) add_gap_views(s, tree, memory, config, candidates);
   reject_far_ones(candidates, memory, config.max_candidates);
   if (is_tour) return nearest_first(std::move(candidates));
   const bool may_revisit = config.revisit_sigma_m > 0.0 && counts_loops(config.method);

@@ -25,7 +25,17 @@ GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
   return config;
 }
 
+bool is_of_frontier(CandidateKind kind) { return kind != CandidateKind::kGap && kind != CandidateKind::kRevisit; }
+
 bool has_ended(State state) { return state == State::kDone || state == State::kGaveUp || state == State::kFailed; }
+
+std::string purpose_of(const Candidate& chosen) {
+  switch (chosen.kind) {
+    case CandidateKind::kGap: return "drives to where gaps of the map are in sight";
+    case CandidateKind::kRevisit: return "revisits an old place";
+    default: return "drives to frontier " + std::to_string(chosen.frontier);
+  }
+}
 
 std::vector<Pose2> turns_on_the_spot(bool is_to_the_left) {
   const double turn_rad = (is_to_the_left ? 2.0 : -2.0) * std::numbers::pi / kHeadings;
@@ -46,6 +56,7 @@ void Explorer::start() {
     revisited_.clear();
     blocked_.clear();
     failed_views_.forgive();
+    taken_views_.clear();
     losses_.clear();
   }
   empty_decisions_ = 0;
@@ -70,6 +81,7 @@ bool Explorer::pause() {
 void Explorer::return_home() {
   drop_goal();
   end_ = State::kDone;
+  end_reason_.clear();
   enter(State::kReturning, "asked to return");
 }
 
@@ -80,6 +92,7 @@ void Explorer::forget_map() {
   blocked_.clear();
   nothing_since_.reset();
   failed_views_.clear();
+  taken_views_.clear();
   losses_.clear();
   awaited_.clear();
   looks_again_ = false;
@@ -137,7 +150,7 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
     return false;
   }
   surroundings->mark_driven(report.robot->p_map);
-  surroundings->set_blocked(blocked_.left_alone(report.now));
+  surroundings->set_blocked(blocked_places(report.now));
   if (state_ == State::kReturning) {
     go_home(report, *surroundings);
     return false;
@@ -177,7 +190,7 @@ void Explorer::look_for_pose(time::Time now) {
 
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   for (const FailedView& view : failed_views_.judge(surroundings, report.now))
-    memory_.add_failure(view.target_map, report.now);
+    memory_.add_failure(view.target_map, Rejection::kFailedView, report.now);
   may_change_ = surroundings.grid().has_passing_obstacles();
   awaited_ = surroundings.awaited_targets();
   if (awaited_.empty()) looks_again_ = false;
@@ -204,14 +217,14 @@ bool Explorer::is_due(time::Time now) const {
 
 void Explorer::note_arrival(time::Time now) {
   if (!goal_->target_map) return;
-  if (goal_->kind == CandidateKind::kRevisit) return add_failure(now);  // not for ever
+  if (!is_of_frontier(goal_->kind)) return add_failure(now);  // not for ever
   await({*goal_->target_map, goal_->pose.p_map}, now, config_.settle_s);
 }
 
 // What is seen from nearby only, such as an obstacle on a place that the map does not know, is forgotten when the robot
 // is away: without this it would come back for ever. A closer look only waits while another frontier is in sight.
 void Explorer::note_vanished(const Decision& decision, time::Time now) {
-  if (!goal_ || !goal_->target_map || goal_->kind == CandidateKind::kRevisit) return;
+  if (!goal_ || !goal_->target_map || !is_of_frontier(goal_->kind)) return;
   const bool is_in_sight = std::any_of(decision.candidates.begin(), decision.candidates.end(), [](const Candidate& c) {
     return c.kind == CandidateKind::kFrontier && c.is_open();
   });
@@ -248,23 +261,33 @@ void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
   add_failure(report.now);
   const auto place = place_ahead(path_, *report.robot);
   if (!place) return;
-  blocked_.add_failure(*place, report.now);
-  surroundings.set_blocked(blocked_.left_alone(report.now));
+  blocked_.add_failure(*place, Rejection::kFailed, report.now);
+  surroundings.set_blocked(blocked_places(report.now));
 }
 
-/// Of the goal. An old place that cannot be had says nothing of a frontier beside it.
+/// Of the goal. An old place or a gap that cannot be had says nothing of a frontier beside it.
 void Explorer::add_failure(time::Time now) {
   if (!goal_->target_map) return;
+  if (goal_->kind == CandidateKind::kGap) return taken_views_.push_back(goal_->pose);
   GoalMemory& memory = goal_->kind == CandidateKind::kRevisit ? revisited_ : memory_;
-  memory.add_failure(*goal_->target_map, now);
+  memory.add_failure(*goal_->target_map, Rejection::kFailed, now);
+}
+
+std::vector<Eigen::Vector2d> Explorer::blocked_places(time::Time now) const {
+  std::vector<Eigen::Vector2d> places_map;
+  for (const LeftAlone& place : blocked_.left_alone(now)) places_map.push_back(place.target_map);
+  return places_map;
 }
 
 Memory Explorer::memory(time::Time now) const {
   Memory memory;
   memory.left_alone = memory_.left_alone(now);
-  if (!looks_again_) memory.left_alone.insert(memory.left_alone.end(), awaited_.begin(), awaited_.end());
+  for (const Eigen::Vector2d& target_map : awaited_) {
+    if (!looks_again_) memory.left_alone.push_back({target_map});
+  }
   memory.revisited = revisited_.left_alone(now);
   memory.failed_views = failed_views_.all();
+  memory.taken_views = taken_views_;
   memory.radius_m = config_.memory.radius_m;
   if (goal_) memory.goal = goal_->pose;
   return memory;
@@ -314,8 +337,7 @@ void Explorer::follow(const Decision& decision, time::Time now) {
   goal_->pose = chosen.goal;
   goal_->target_map = chosen.target_map;
   goal_->kind = chosen.kind;
-  const bool is_revisit = chosen.kind == CandidateKind::kRevisit;
-  reason_ = is_revisit ? "revisits an old place" : "drives to frontier " + std::to_string(chosen.frontier);
+  reason_ = purpose_of(chosen);
   set_path(poses_along(chosen.points, config_.path_spacing_m, chosen.goal.yaw_rad));
 }
 
@@ -343,9 +365,9 @@ void Explorer::end(const Leftover& leftover) {
   const bool has_given_up = leftover.share_to_blame > config_.max_left_share;
   end_ = has_given_up ? State::kGaveUp : State::kDone;
   const std::string left = leftover.text();
-  enter(config_.returns_home ? State::kReturning : end_,
-        (has_given_up ? "nothing more succeeds" : "nothing is left that can be reached") +
-            (left.empty() ? "" : "; " + left));
+  end_reason_ = (has_given_up ? "what is left was tried in vain" : "nothing is left that can be reached") +
+                (left.empty() ? "" : "; " + left);
+  enter(config_.returns_home ? State::kReturning : end_, end_reason_);
 }
 
 // What is left alone for a time is tried again, then, once, what waits for the map's correction: where slam tracks, it
@@ -414,7 +436,7 @@ void Explorer::retrace(const Report& report, const Surroundings& surroundings) {
 // Who stood in the way may have gone, or may go.
 bool Explorer::may_yet_return(const Report& report, Surroundings& surroundings) {
   if (blocked_.forgive(report.now)) {
-    surroundings.set_blocked(blocked_.left_alone(report.now));
+    surroundings.set_blocked(blocked_places(report.now));
     goal_->moved_at = report.now;
     return true;
   }
@@ -426,8 +448,7 @@ void Explorer::go_home(const Report& report, Surroundings& surroundings) {
   const bool has_path = !path_.empty();
   if (has_path && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m) {
     drop_goal();
-    return enter(end_, end_ == State::kGaveUp ? "is back where it started, but not all was explored"
-                                              : "is back where it started");
+    return enter(end_, "is back where it started" + (end_reason_.empty() ? "" : "; " + end_reason_));
   }
   if (report.is_blocked) note_failure(report, surroundings);
   const bool is_wanted = !has_path || !is_path_free(path_, *report.robot, surroundings.grid());

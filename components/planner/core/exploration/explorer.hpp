@@ -38,7 +38,7 @@ struct ExplorerConfig {
   double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
   int confirmations = 3;         ///< looks around, a full turn in all, that find nothing before it is over, in [2, 12]
   double patience_s = 20.0;      ///< for obstacles that may go away before it is over, in [0, 600]
-  double max_left_share = 0.02;  ///< of frontiers that were tried in vain, of all that were there, in [0, 1]
+  double max_left_share = 0.02;  ///< Leftover::share_to_blame with which it is over all the same, in [0, 1]
   bool returns_home = false;     ///< when nothing is left
 };
 
@@ -125,11 +125,13 @@ class Explorer {
   bool is_due(time::Time now) const;
   void note_failure(const Report& report, Surroundings& surroundings);
   void add_failure(time::Time now);
+  std::vector<Eigen::Vector2d> blocked_places(time::Time now) const;
 
   ExplorerConfig config_;
-  GoalMemory memory_;     ///< targets of frontiers
-  GoalMemory revisited_;  ///< old places
-  GoalMemory blocked_;    ///< places on the path
+  GoalMemory memory_;               ///< targets of frontiers
+  GoalMemory revisited_;            ///< old places
+  GoalMemory blocked_;              ///< places on the path
+  std::vector<Pose2> taken_views_;  ///< of gaps, or tried in vain
   State state_ = State::kIdle;
   State interrupted_ = State::kExploring;  ///< what to resume when slam tracks again
   std::string reason_ = "not started";
@@ -149,8 +151,9 @@ class Explorer {
   std::optional<time::Time> blind_since_;  ///< while it was active: slam has no pose
   std::optional<time::Time> lost_at_, nothing_since_;
   int empty_decisions_ = 0;
-  State end_ = State::kDone;  ///< after the return
-  bool may_change_ = false;   ///< obstacles stand where there may soon be none
+  State end_ = State::kDone;  ///< after the return, and why
+  std::string end_reason_;
+  bool may_change_ = false;  ///< obstacles stand where there may soon be none
 };
 
 }  // namespace lapis::planner

@@ -15,17 +15,23 @@ void GoalMemory::leave_alone(const Eigen::Vector2d& target_map, time::Time until
   place.until = std::max(place.until, until);
 }
 
-void GoalMemory::add_failure(const Eigen::Vector2d& target_map, time::Time now) {
+void GoalMemory::add_failure(const Eigen::Vector2d& target_map, Rejection why, time::Time now) {
   leave_alone(target_map, now + time::Duration::from_seconds(config_.expiry_s));
   for (Place& place : places_) {
-    if ((place.target_map - target_map).norm() <= config_.radius_m) ++place.failures;
+    if ((place.target_map - target_map).norm() > config_.radius_m) continue;
+    ++place.failures;
+    place.worst = std::max(place.worst, why);
   }
 }
 
-std::vector<Eigen::Vector2d> GoalMemory::left_alone(time::Time now) const {
-  std::vector<Eigen::Vector2d> targets;
+std::vector<LeftAlone> GoalMemory::left_alone(time::Time now) const {
+  std::vector<LeftAlone> targets;
   for (const Place& place : places_) {
-    if (is_given_up(place) || now < place.until) targets.push_back(place.target_map);
+    if (is_given_up(place)) {
+      targets.push_back({place.target_map, place.worst});
+    } else if (now < place.until) {
+      targets.push_back({place.target_map});
+    }
   }
   return targets;
 }

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include "common/time/time.hpp"
+#include "planner/core/space/viewpoints.hpp"
 
 namespace lapis::planner {
 
@@ -22,9 +23,10 @@ class GoalMemory {
 
   /// Not a failure: the target is left alone until then, however it ends.
   void leave_alone(const Eigen::Vector2d& target_map, time::Time until);
-  void add_failure(const Eigen::Vector2d& target_map, time::Time now);
-  /// Targets to leave alone for now [m, map].
-  std::vector<Eigen::Vector2d> left_alone(time::Time now) const;
+  /// @param why kFailedView or kFailed
+  void add_failure(const Eigen::Vector2d& target_map, Rejection why, time::Time now);
+  /// Targets to leave alone: for now, or for good, because all views of it, or paths to it, have failed.
+  std::vector<LeftAlone> left_alone(time::Time now) const;
   /// Lets all targets be tried again that have not failed for good; false when there are none.
   bool forgive(time::Time now);
   void clear() { places_.clear(); }
@@ -32,7 +34,8 @@ class GoalMemory {
  private:
   struct Place {
     Eigen::Vector2d target_map;
-    int failures = 0;  ///< here, and within the radius since
+    int failures = 0;                          ///< here, and within the radius since
+    Rejection worst = Rejection::kFailedView;  ///< of these
     time::Time until{};
   };
   Place& place_at(const Eigen::Vector2d& target_map);

@@ -36,6 +36,9 @@ struct RayModel {
   /// Probability that a ray ends in a voxel that was never observed, in (0, 1); 0: the sensor model's prior. Voxels are
   /// not independent: free space lies behind free space.
   double unknown_occupied = 0.0;
+  /// The same beside an occupied voxel, face to face: surfaces go on where nobody has looked, and without this, rays
+  /// leave the building through holes of its floors, walls and ceilings, and promise what is behind; 0: no difference.
+  double surface_occupied = 0.0;
 };
 
 /// All that rays have to know about a cell.
@@ -53,6 +56,9 @@ class CellMeasure {
   /// O(k), k = classes that were hit + distinct prior shares; O(k^2) at worst, where shares are clamped. A look-up
   /// where nothing was hit.
   CellInformation of(const mapping::VoxelCounts& counts) const;
+  /// Observed, and more probably occupied than not.
+  bool is_occupied(const mapping::VoxelCounts& counts) const { return reader_.is_occupied(counts); }
+  const RayModel& ray() const { return ray_; }
 
  private:
   /// Classes of equal prior share; gains of one vote.

@@ -1,6 +1,8 @@
 #include "planner/core/information/information_field.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstdint>
 #include <stdexcept>
 
 #include <tbb/parallel_for.h>
@@ -9,6 +11,13 @@ namespace lapis::planner {
 
 using mapping::BlockIndex;
 using mapping::kBlockVoxels;
+
+namespace {
+
+constexpr std::array<std::array<std::int32_t, 3>, 6> kFaceSteps{
+    {{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {0, -1, 0}, {0, 0, 1}, {0, 0, -1}}};
+
+}  // namespace
 
 template <class Real>
 BasicInformationField<Real>::BasicInformationField(double resolution_m, const mapping::SensorModel& model,
@@ -20,17 +29,39 @@ template <class Real>
 void BasicInformationField<Real>::update(const mapping::VoxelMap& map, std::span<const BlockIndex> changed) {
   if (map.resolution_m() != resolution_m_)
     throw std::invalid_argument("the map's resolution is not that of the information field");
-  std::vector<BlockPtr> blocks(changed.size());
-  tbb::parallel_for(std::size_t{0}, changed.size(), [&](std::size_t i) {
-    if (const mapping::VoxelBlock* voxels = map.find(changed[i])) blocks[i] = make_block(*voxels);
+  const std::vector<BlockIndex> touched = with_neighbours(map, changed);
+  std::vector<BlockPtr> blocks(touched.size());
+  tbb::parallel_for(std::size_t{0}, touched.size(), [&](std::size_t i) {
+    const mapping::VoxelBlock* voxels = map.find(touched[i]);
+    if (voxels == nullptr) return;
+    auto block = make_block(*voxels);
+    continue_surfaces(map, touched[i], *block);
+    blocks[i] = std::move(block);
   });
-  for (std::size_t i = 0; i < changed.size(); ++i) {
+  for (std::size_t i = 0; i < touched.size(); ++i) {
     if (blocks[i]) {
-      blocks_[changed[i]] = share_if_uniform(std::move(blocks[i]));
+      blocks_[touched[i]] = share_if_uniform(std::move(blocks[i]));
     } else {
-      blocks_.erase(changed[i]);
+      blocks_.erase(touched[i]);
     }
   }
+}
+
+/// And the blocks that the map has beside them, if it matters to them.
+template <class Real>
+std::vector<BlockIndex> BasicInformationField<Real>::with_neighbours(const mapping::VoxelMap& map,
+                                                                     std::span<const BlockIndex> changed) const {
+  std::vector<BlockIndex> blocks(changed.begin(), changed.end());
+  if (measure_.ray().surface_occupied <= 0.0) return blocks;
+  for (const BlockIndex& index : changed) {
+    for (const auto& step : kFaceSteps) {
+      const BlockIndex beside{index.x + step[0], index.y + step[1], index.z + step[2]};
+      if (map.find(beside) != nullptr) blocks.push_back(beside);
+    }
+  }
+  std::sort(blocks.begin(), blocks.end());
+  blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
+  return blocks;
 }
 
 template <class Real>
@@ -63,8 +94,33 @@ CellInformation BasicInformationField<Real>::cell(const mapping::VoxelIndex& vox
   return {found.free[offset], found.gain[offset]};
 }
 
+/// RayModel::surface_occupied for voxels never observed.
 template <class Real>
-typename BasicInformationField<Real>::BlockPtr BasicInformationField<Real>::make_block(
+void BasicInformationField<Real>::continue_surfaces(const mapping::VoxelMap& map, const BlockIndex& index,
+                                                    Block& block) const {
+  if (measure_.ray().surface_occupied <= 0.0) return;
+  const mapping::VoxelBlock& voxels = *map.find(index);
+  const auto is_occupied = [&](const mapping::VoxelIndex& voxel) {
+    const mapping::VoxelBlock* holder = map.find(block_of(voxel));
+    const int offset = offset_in_block(voxel);
+    if (holder == nullptr || !holder->has_hits(offset)) return false;
+    mapping::VoxelCounts counts;
+    holder->read(offset, counts);
+    return measure_.is_occupied(counts);
+  };
+  for (int offset = 0; offset < kBlockVoxels; ++offset) {
+    if (voxels.is_observed(offset)) continue;
+    const mapping::VoxelIndex v = voxel_at(index, offset);
+    const bool is_beside = std::any_of(kFaceSteps.begin(), kFaceSteps.end(), [&](const auto& step) {
+      return is_occupied({v.x + step[0], v.y + step[1], v.z + step[2]});
+    });
+    if (is_beside)
+      block.free[static_cast<std::size_t>(offset)] = static_cast<Real>(1.0 - measure_.ray().surface_occupied);
+  }
+}
+
+template <class Real>
+std::shared_ptr<typename BasicInformationField<Real>::Block> BasicInformationField<Real>::make_block(
     const mapping::VoxelBlock& voxels) const {
   auto block = std::make_shared<Block>();
   const bool is_uniform = voxels.is_uniform();

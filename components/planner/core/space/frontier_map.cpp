@@ -71,7 +71,6 @@ std::vector<Cell> FrontierMap::renew_cells(const PlanningGrid& grid, std::span<c
     if (is_now == (old_id != kNone)) return;
     mark.id = is_now ? kFresh : kNone;
     if (is_now) {
-      discovered_cells_ += std::exchange(mark.is_discovered, true) ? 0 : 1;
       seeds.push_back(c);
       return;
     }

@@ -41,8 +41,6 @@ class FrontierMap {
   void update(const PlanningGrid& grid, std::span<const Cell> changed);
   /// By id.
   const std::map<std::uint32_t, Frontier>& frontiers() const { return frontiers_; }
-  /// Number of cells that have been a frontier's at some time.
-  std::size_t discovered_cells() const { return discovered_cells_; }
 
  private:
   struct Member {
@@ -53,7 +51,6 @@ class FrontierMap {
   struct Mark {
     std::uint32_t id = 0;       ///< of the frontier that the cell belongs to; 0: none
     std::uint32_t renewed = 0;  ///< the last update that looked at the cell
-    bool is_discovered = false;
   };
 
   std::vector<Cell> renew_cells(const PlanningGrid& grid, std::span<const Cell> changed);
@@ -67,7 +64,6 @@ class FrontierMap {
   std::map<std::uint32_t, Frontier> frontiers_;
   std::uint32_t last_id_ = 0;
   std::uint32_t updates_ = 0;
-  std::size_t discovered_cells_ = 0;
 };
 
 }  // namespace lapis::planner

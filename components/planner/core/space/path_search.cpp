@@ -48,6 +48,7 @@ class PathSearch {
       CostTree::Node& node = tree_.nodes_[c];
       if (node.is_final) continue;
       node.is_final = true;
+      tree_.reached_.push_back(c);
       if (query_.to == c) break;
       expand(c, node.cost);
     }

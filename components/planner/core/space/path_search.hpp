@@ -35,6 +35,8 @@ class CostTree {
   std::optional<double> cost_m(Cell c) const;
   /// The cells from the root to `to`, both included; empty when `to` was not reached.
   std::vector<Cell> path_to(Cell to) const;
+  /// All cells that were reached, the cheapest first.
+  const std::vector<Cell>& reached() const { return reached_; }
 
  private:
   friend class PathSearch;
@@ -47,6 +49,7 @@ class CostTree {
   };
 
   SparseGrid<Node> nodes_;
+  std::vector<Cell> reached_;
 };
 
 /// Dijkstra's algorithm from the root, or A* with the octile distance when the query names a goal. Equal costs are

@@ -8,7 +8,8 @@ std::string text_of(Rejection rejection) {
     case Rejection::kNoRoom: return "no room in front of the frontier";
     case Rejection::kUnreachable: return "cannot be reached";
     case Rejection::kHidden: return "hidden from everywhere that can be reached";
-    case Rejection::kFailedView: return "the view from here has failed";
+    case Rejection::kFailedView: return "looked at in vain";
+    case Rejection::kFailed: return "paths to it have failed";
     case Rejection::kLeftAlone: return "left alone for now";
     case Rejection::kOutranked: return "others come before it (planner.max_candidates)";
     case Rejection::kFarSpace: return "enough sub-spaces are nearer";
@@ -17,8 +18,6 @@ std::string text_of(Rejection rejection) {
   return "";
 }
 
-bool is_geometric(Rejection rejection) {
-  return rejection == Rejection::kNoRoom || rejection == Rejection::kUnreachable || rejection == Rejection::kHidden;
-}
+bool is_geometric(Rejection rejection) { return rejection != Rejection::kNone && rejection <= Rejection::kFailedView; }
 
 }  // namespace lapis::planner

@@ -62,6 +62,14 @@ std::vector<Viewpoint> one_per_sector(const PlanningGrid& grid, const CostTree& 
 
 }  // namespace
 
+Rejection why_left_alone(std::span<const LeftAlone> left_alone, const Eigen::Vector2d& target_map, double radius_m) {
+  Rejection reason = Rejection::kNone;
+  for (const LeftAlone& place : left_alone) {
+    if ((place.target_map - target_map).norm() <= radius_m) reason = std::max(reason, place.reason);
+  }
+  return reason;
+}
+
 bool is_failed_view(std::span<const FailedView> failed_views, const Eigen::Vector2d& target_map,
                     const Eigen::Vector2d& from_map, double radius_m) {
   return std::any_of(failed_views.begin(), failed_views.end(), [&](const FailedView& view) {

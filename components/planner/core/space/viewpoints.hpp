@@ -30,6 +30,15 @@ struct FailedView {
   Eigen::Vector2d target_map, from_map;
 };
 
+/// A target that is not to be looked at [m, map].
+struct LeftAlone {
+  Eigen::Vector2d target_map;
+  Rejection reason = Rejection::kLeftAlone;
+};
+
+/// Why a target is left alone, the last of all that are near in the order of the enumeration; kNone: it is not.
+Rejection why_left_alone(std::span<const LeftAlone> left_alone, const Eigen::Vector2d& target_map, double radius_m);
+
 /// Another view from about the same place shows no more; one from elsewhere may.
 bool is_failed_view(std::span<const FailedView> failed_views, const Eigen::Vector2d& target_map,
                     const Eigen::Vector2d& from_map, double radius_m);

@@ -28,14 +28,19 @@ bool is_goal(const Pose2& pose, const std::optional<Pose2>& goal) {
 }
 
 bool is_left_alone(const TourProblem& problem, Cell c) {
-  const Eigen::Vector2d p = problem.grid.center_of(c);
-  return std::any_of(problem.left_alone.begin(), problem.left_alone.end(),
-                     [&](const Eigen::Vector2d& place) { return (place - p).norm() <= problem.radius_m; });
+  return why_left_alone(problem.left_alone, problem.grid.center_of(c), problem.radius_m) != Rejection::kNone;
 }
 
 bool has_failed_view(const TourProblem& problem, Cell from, Cell target) {
   const PlanningGrid& grid = problem.grid;
   return is_failed_view(problem.failed_views, grid.center_of(target), grid.center_of(from), problem.radius_m);
+}
+
+/// Why it is not to be viewed from there; kNone: it may be.
+Rejection why_not_viewed(const TourProblem& problem, const Viewpoint& viewpoint) {
+  const Rejection why = why_left_alone(problem.left_alone, problem.grid.center_of(viewpoint.target), problem.radius_m);
+  if (!has_failed_view(problem, viewpoint.cell, viewpoint.target)) return why;
+  return std::max(why, Rejection::kFailedView);
 }
 
 /// Cell of a frontier that is to be covered.
@@ -222,12 +227,14 @@ std::optional<TourStop> stop_at(const TourProblem& problem, const Frontier& fron
   const ViewpointResult found = sample_viewpoints(problem.grid, problem.paths, frontier, problem.viewpoints);
   std::optional<TourStop> best;
   const auto rank = [&](const Viewpoint& v) { return is_goal(v.pose, problem.goal) ? 0.0 : v.cost_m; };
+  Rejection lack = found.rejection;
   for (const Viewpoint& viewpoint : found.viewpoints) {
-    if (is_left_alone(problem, viewpoint.target) || has_failed_view(problem, viewpoint.cell, viewpoint.target))
-      continue;
+    const Rejection why = why_not_viewed(problem, viewpoint);
+    lack = std::max(lack, why);
+    if (why != Rejection::kNone) continue;
     if (!best || rank(viewpoint) < rank(best->viewpoint)) best = TourStop{frontier.id, viewpoint};
   }
-  if (!best) tour.missed.emplace_back(frontier.id, found.viewpoints.empty() ? found.rejection : Rejection::kLeftAlone);
+  if (!best) tour.missed.emplace_back(frontier.id, lack);
   return best;
 }
 

@@ -29,11 +29,11 @@ struct TourProblem {
   PathConfig path;
   ViewpointConfig viewpoints;
   double turn_cost_m_per_rad = 0.0;
-  std::span<const Eigen::Vector2d> left_alone;  ///< frontiers near these are not to be looked at [m, map]
-  std::span<const FailedView> failed_views;     ///< not to be taken again
-  double radius_m = 0.0;                        ///< what lies nearer to such places is meant, too
-  std::optional<Pose2> goal;                    ///< that is being driven to
-  double keep_factor = 1.0;                     ///< it comes first unless another tour is so much shorter
+  std::span<const LeftAlone> left_alone;     ///< frontiers near these are not to be looked at
+  std::span<const FailedView> failed_views;  ///< not to be taken again
+  double radius_m = 0.0;                     ///< what lies nearer to such places is meant, too
+  std::optional<Pose2> goal;                 ///< that is being driven to
+  double keep_factor = 1.0;                  ///< it comes first unless another tour is so much shorter
 };
 
 struct TourStop {

@@ -13,8 +13,7 @@
 namespace lapis::simulator {
 
 /// Places that stand for all that the robot's centre can get to: of each square of edge `spacing_m`, the reachable cell
-/// nearest to its middle. World frame.
-/// @throws std::runtime_error when the robot does not fit at the start.
+/// nearest to its middle. World frame. None when it does not fit at the start.
 std::vector<Eigen::Vector2d> viewpoints(const NavMap& map, const Eigen::Vector2d& start, double radius_m,
                                         double spacing_m);
 

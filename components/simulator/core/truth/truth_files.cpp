@@ -75,6 +75,7 @@ void write_scene_truth(const std::filesystem::path& folder, const Scene& scene, 
                        const geometry::Pose& T_world_base, const VoxelTruth& truth) {
   files::require_writable_folder(folder.string(), "ground truth");
   save(folder / "flood.lapis", scene, truth.flood, "mesh, what can be flooded");
+  save(folder / "with_margin.lapis", scene, truth.with_margin, "mesh, what can be seen with a planner's margin");
   files::replace_text(folder / "classes.json", classes_json(scene, truth.mesh));
   files::replace_text(folder / "rooms.json", rooms_json(scene, T_map_world(T_world_base)));
   files::replace_text(folder / "navmap.yaml", nav_map_yaml(nav_map.grid()));

@@ -10,9 +10,9 @@
 
 namespace lapis::simulator {
 
-/// Writes what is known of a scene before the run: mesh.lapis, flood.lapis (map frame), classes.json (names of the
-/// classes, and the most frequent of mesh.lapis), rooms.json (rooms in both frames, T_map_world), navmap.png and
-/// navmap.yaml (world frame, for ROS's map_server). The folder is made when its parent exists.
+/// Writes what is known of a scene before the run: mesh.lapis, flood.lapis, with_margin.lapis (map frame), classes.json
+/// (names of the classes, and the most frequent of mesh.lapis), rooms.json (rooms in both frames, T_map_world),
+/// navmap.png and navmap.yaml (world frame, for ROS's map_server). The folder is made when its parent exists.
 /// @throws std::runtime_error naming the file that cannot be written.
 void write_scene_truth(const std::filesystem::path& folder, const Scene& scene, const NavMap& nav_map,
                        const geometry::Pose& T_world_base, const VoxelTruth& truth);

@@ -1,7 +1,9 @@
 #include "simulator/core/truth/voxel_truth.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <map>
+#include <stdexcept>
 #include <utility>
 
 #include "simulator/core/truth/explorable.hpp"
@@ -32,24 +34,49 @@ mapping::VoxelMap to_map(const VoxelSet& known, const std::vector<SurfaceVoxel>&
   return map;
 }
 
+/// Of the camera, in the world: a place for each square that can be reached by a disc.
+std::vector<Eigen::Vector3d> eyes(const NavMap& nav_map, const Eigen::Vector3d& start, double radius_m,
+                                  const TruthConfig& config) {
+  std::vector<Eigen::Vector3d> places;
+  for (const auto& p : viewpoints(nav_map, start.head<2>(), radius_m, config.view_spacing_m))
+    places.emplace_back(p.x(), p.y(), start.z() + config.mount.height_m);
+  return places;
+}
+
+/// Those of `places` that are among `others`, or those that are not.
+std::vector<Eigen::Vector3d> select(const std::vector<Eigen::Vector3d>& places,
+                                    const std::vector<Eigen::Vector3d>& others, bool are_among) {
+  std::vector<Eigen::Vector3d> selected;
+  std::copy_if(places.begin(), places.end(), std::back_inserter(selected), [&](const Eigen::Vector3d& p) {
+    return (std::find(others.begin(), others.end(), p) != others.end()) == are_among;
+  });
+  return selected;
+}
+
 }  // namespace
 
 VoxelTruth make_voxel_truth(const Scene& scene, const SceneRaycaster& raycaster, const NavMap& nav_map,
                             const geometry::Pose& T_world_base, const TruthConfig& config) {
   const geometry::Pose T = T_map_world(T_world_base);
   const Eigen::Vector3d start = T_world_base.translation();
-  std::vector<Eigen::Vector3d> eyes;
-  for (const auto& p : viewpoints(nav_map, start.head<2>(), config.robot_radius_m, config.view_spacing_m)) {
-    eyes.emplace_back(p.x(), p.y(), start.z() + config.mount.height_m);
-  }
-  const VoxelBox box = voxel_box(scene, T, config.resolution_m, eyes);
+  const auto places = eyes(nav_map, start, config.robot_radius_m, config);
+  const auto roomy = eyes(nav_map, start, config.robot_radius_m + config.margin_m, config);
+  if (places.empty()) throw std::runtime_error("ground truth: the robot does not fit at its start");
+  const VoxelBox box = voxel_box(scene, T, config.resolution_m, places);
   const auto surface = surface_voxels(scene, T, box);
   VoxelSet solid(box);
   for (const auto& voxel : surface) solid.insert(voxel.cell);
   const VisibilityConfig visibility{elevation_range(config.camera, config.mount.pitch_down_rad), config.sensing_range_m,
                                     config.threads, config.cancelled};
-  const VoxelSet seen = visible_voxels(raycaster, eyes, visibility, T, box);
-  return {to_map(seen, surface, box), to_map(flooded_voxels(solid, eyes, T, box), surface, box)};
+  const auto seen_from = [&](const std::vector<Eigen::Vector3d>& from) {
+    return visible_voxels(raycaster, from, visibility, T, box);
+  };
+  // Most places serve both.
+  VoxelSet seen = seen_from(select(places, roomy, true)), seen_with_margin = seen;
+  seen.insert(seen_from(select(places, roomy, false)));
+  seen_with_margin.insert(seen_from(select(roomy, places, false)));
+  return {to_map(seen, surface, box), to_map(flooded_voxels(solid, places, T, box), surface, box),
+          to_map(seen_with_margin, surface, box)};
 }
 
 std::vector<std::uint16_t> most_frequent_classes(const mapping::VoxelMap& mesh, std::size_t count) {

@@ -19,6 +19,7 @@ struct TruthConfig {
   double resolution_m = mapping::kDefaultResolution_m;  ///< edge of a voxel; the mapper's, so that grids coincide
   double sensing_range_m = 5.0;                         ///< Euclidean
   double robot_radius_m = 0.2;                          ///< of the disc that has to fit
+  double margin_m = 0.05;                               ///< that a planner keeps around it
   double view_spacing_m = 0.5;                          ///< between the places that stand for all reachable ones
   geometry::PinholeCamera camera;                       ///< sees up and down; it turns to any heading
   geometry::CameraMount mount;
@@ -31,6 +32,8 @@ struct TruthConfig {
 struct VoxelTruth {
   mapping::VoxelMap mesh;   ///< known: what the mounted camera can see from some reachable place
   mapping::VoxelMap flood;  ///< known: what can be flooded from there, and surface next to it
+  /// Known: what the camera can see from places that are reached with the margin; empty when the start has none.
+  mapping::VoxelMap with_margin;
 };
 
 /// Map frame of a run: base_link where it starts. slam puts the origin of `map` there, and the evaluator's own fixed

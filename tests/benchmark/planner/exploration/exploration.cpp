@@ -195,13 +195,15 @@ class Course {
     const time::Time stamp{std::llround(static_cast<double>(++tick_) * 1e9 / setting_.simulated.robot.camera.rate_hz)};
     const simulator::Motion motion = robot_.advance(stamp);
     exploration_.path_m += std::abs(motion.distance_m);
-    exploration_.contacts += motion.is_in_contact && !was_in_contact_ ? 1 : 0;
+    if (motion.is_in_contact && !was_in_contact_) exploration_.contacts.push_back(moment());
     was_in_contact_ = motion.is_in_contact;
   }
 
-  void note_moment() {
-    exploration_.moments.push_back({now().seconds(), pose(), explorable_.share_known(map_), explorer_.reason()});
+  ExplorationMoment moment() const {
+    return {now().seconds(), pose(), explorable_.share_known(map_), explorer_.reason()};
   }
+
+  void note_moment() { exploration_.moments.push_back(moment()); }
 
   void note_left(const Candidate& candidate) {
     const auto& frontiers = surroundings_.frontiers().frontiers();

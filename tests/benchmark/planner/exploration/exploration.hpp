@@ -31,7 +31,7 @@ struct Exploration {
   std::vector<ExplorationMoment> moments;  ///< one a second, and the end
   State state = State::kIdle;              ///< at the end
   double path_m = 0.0;
-  int contacts = 0;
+  std::vector<ExplorationMoment> contacts;  ///< when the robot came to touch something
   int decisions = 0;
   double decision_cpu_s = 0.0;
   std::vector<DrivenPath> paths;

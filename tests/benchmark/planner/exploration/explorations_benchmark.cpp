@@ -62,21 +62,25 @@ void print_paths(const Exploration& e) {
   }
 }
 
+void print_moments(const char* what, const std::vector<ExplorationMoment>& moments) {
+  for (const ExplorationMoment& m : moments) {
+    std::printf("    %s %6.1f s  %5.1f %%  %6.2f %6.2f %4.0f dg  %s\n", what, m.t_s, 100.0 * m.explored_share,
+                m.robot.p_map.x(), m.robot.p_map.y(), m.robot.yaw_rad * 180.0 / std::numbers::pi, m.doing.c_str());
+  }
+}
+
 void print(const Exploration& e, const Options& options) {
   const ExplorationMoment& end = e.moments.back();
   std::printf(
       "%6.1f s %-9s | explored %5.1f %% | 80 %% after %5.0f s, 90 %% %5.0f s, 95 %% %5.0f s | path %6.1f m | "
-      "contacts %d | decisions %4d, %5.1f ms | left:",
+      "contacts %zu | decisions %4d, %5.1f ms | left:",
       end.t_s, name_of(e.state), 100.0 * end.explored_share, e.time_to_s(0.8), e.time_to_s(0.9), e.time_to_s(0.95),
-      e.path_m, e.contacts, e.decisions, 1e3 * e.decision_cpu_s / std::max(e.decisions, 1));
+      e.path_m, e.contacts.size(), e.decisions, 1e3 * e.decision_cpu_s / std::max(e.decisions, 1));
   for (const auto& [reason, length_m] : e.left_m) std::printf(" %.1f m %s;", length_m, reason.c_str());
   std::printf("\n");
   if (options.with_paths) print_paths(e);
-  if (!options.with_moments) return;
-  for (const ExplorationMoment& m : e.moments) {
-    std::printf("    %6.1f s  %5.1f %%  %6.2f %6.2f %4.0f dg  %s\n", m.t_s, 100.0 * m.explored_share, m.robot.p_map.x(),
-                m.robot.p_map.y(), m.robot.yaw_rad * 180.0 / std::numbers::pi, m.doing.c_str());
-  }
+  print_moments("contact", e.contacts);
+  if (options.with_moments) print_moments("       ", e.moments);
 }
 
 int run(const Options& options) {

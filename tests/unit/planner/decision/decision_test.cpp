@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "planner/core/decision/gap_views.hpp"
 #include "tests/unit/planner/hallucination/small_world.hpp"
 #include "tests/unit/planner/space/flat_map.hpp"
 
@@ -100,12 +101,12 @@ TEST(Decide, LeavesAloneWhatItIsAskedTo) {
   Explorer explorer;
   explorer.config.method = Method::kNearest;
   Memory memory;
-  memory.left_alone = {explorer.chosen().target_map};
+  memory.left_alone = {{explorer.chosen().target_map}};
   const Decision decision = explorer.choose(memory);
   ASSERT_TRUE(decision.chosen);
   int left_alone = 0;
   for (const Candidate& candidate : decision.candidates) {
-    const bool is_near = (candidate.target_map - memory.left_alone[0]).norm() <= memory.radius_m;
+    const bool is_near = (candidate.target_map - memory.left_alone[0].target_map).norm() <= memory.radius_m;
     EXPECT_EQ(candidate.rejection, is_near ? Rejection::kLeftAlone : Rejection::kNone);
     left_alone += is_near ? 1 : 0;
   }
@@ -117,7 +118,7 @@ TEST(Decide, SaysWhatIsLeftWhenNothingIsChosen) {
   explorer.config.method = Method::kNearest;
   EXPECT_TRUE(explorer.choose({}).leftover.length_m.empty());
   Memory memory;
-  memory.left_alone = {explorer.chosen().target_map};
+  memory.left_alone = {{explorer.chosen().target_map}};
   memory.radius_m = 1000.0;
   const Decision decision = explorer.choose(memory);
   ASSERT_FALSE(decision.chosen);
@@ -130,8 +131,62 @@ TEST(Decide, SaysWhatIsLeftWhenNothingIsChosen) {
   for (const auto& entry : explorer.frontiers.frontiers()) all_m += entry.second.length_m;
   EXPECT_NEAR(left_m, all_m, 1e-9);
   EXPECT_GT(to_blame_m, 0.0);
-  const double discovered_m = 0.25 * static_cast<double>(explorer.frontiers.discovered_cells());
-  EXPECT_NEAR(decision.leftover.share_to_blame, to_blame_m / discovered_m, 1e-12);
+  EXPECT_NEAR(decision.leftover.share_to_blame, to_blame_m / all_m, 1e-12);
+}
+
+// Through what is narrower than itself the robot cannot have missed a room.
+TEST(Decide, NobodyIsToBlameForNarrowFrontiers) {
+  for (const bool is_wide : {false, true}) {
+    Explorer explorer({"##################", "#................#", "#................#", "#........R.......#",
+                       "#................#", "#................#",
+                       is_wide ? "####...###########" : "####.#############"});
+    explorer.config.gaps.least_nats = 0.0;
+    Memory memory;
+    memory.left_alone = {{explorer.robot.p_map}};
+    memory.radius_m = 1000.0;
+    const Decision decision = explorer.choose(memory);
+    ASSERT_FALSE(decision.chosen);
+    ASSERT_FALSE(decision.leftover.length_m.empty());
+    EXPECT_EQ(decision.leftover.share_to_blame > 0.0, is_wide);
+  }
+}
+
+// Above and below the layer that is known, nothing is; no frontier says so.
+TEST(Decide, LooksAtGapsOfTheMapWhenNoFrontierIsLeft) {
+  const std::vector<std::string> hall = {"##################", "#................#", "#................#",
+                                         "#........R.......#", "#................#", "#................#",
+                                         "##################"};
+  for (const std::string& name : method_names()) {
+    Explorer explorer(hall);
+    explorer.config.method = *method_of(name);
+    explorer.config.gaps = {.least_nats = 5.0};
+    Memory memory;
+    int taken = 0;
+    for (;; ++taken) {
+      const Decision decision = explorer.choose(memory);
+      if (!decision.chosen) break;
+      const Candidate& gap = decision.candidates[*decision.chosen];
+      ASSERT_EQ(gap.kind, CandidateKind::kGap) << name;
+      ASSERT_FALSE(is_taken(gap.goal, memory.taken_views)) << name;
+      EXPECT_GE(path_information(explorer.field, explorer.view,
+                                 {camera_at({explorer.world.grid, explorer.frontiers, explorer.field, explorer.view,
+                                             geometry::T_base_camera({1.0, 0.0})},
+                                            gap.goal)}),
+                5.0);
+      memory.taken_views.push_back(gap.goal);
+      ASSERT_LT(taken, 1000) << name;
+    }
+    EXPECT_GT(taken, 8) << name;
+    memory.taken_views.clear();
+    explorer.config.gaps.least_nats = 0.0;
+    EXPECT_FALSE(explorer.choose(memory).chosen) << name << ": unless told not to";
+  }
+}
+
+TEST(Decide, LooksAtFrontiersBeforeGaps) {
+  Explorer explorer;
+  explorer.config.gaps = {.least_nats = 1.0};
+  for (const Candidate& candidate : explorer.choose().candidates) EXPECT_NE(candidate.kind, CandidateKind::kGap);
 }
 
 TEST(Decide, LooksFromElsewhereAtWhatAFailedViewShowed) {
@@ -359,7 +414,7 @@ TEST(Decide, RevisitsAnOldPlaceWhenItIsUnsure) {
   EXPECT_NEAR(revisit.goal.yaw_rad, 1.57, 1e-6) << "the key-frame's own heading";
   EXPECT_GT(revisit.value.cost_m, 2.0);
   Memory memory;
-  memory.revisited = {revisit.target_map};
+  memory.revisited = {{revisit.target_map}};
   EXPECT_EQ(explorer.choose(memory).candidates.back().rejection, Rejection::kLeftAlone);
   explorer.config.method = Method::kNearest;
   EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "loops are worth nothing to it";

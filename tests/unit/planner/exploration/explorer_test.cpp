@@ -536,7 +536,7 @@ TEST_F(ExplorerByHand, ADecisionFromBeforeThePathWasBlockedChangesNothing) {
   EXPECT_TRUE(step(true, 0.5));
   const auto left_alone = explorer_.memory(now_).left_alone;
   ASSERT_EQ(left_alone.size(), 1U);
-  EXPECT_EQ(left_alone.front(), Eigen::Vector2d(4.0, 0.0)) << "the target of the path that was blocked";
+  EXPECT_EQ(left_alone.front().target_map, Eigen::Vector2d(4.0, 0.0)) << "the target of the path that was blocked";
 }
 
 // Frontiers that geometry closes are the end; of those tried in vain only few may be.

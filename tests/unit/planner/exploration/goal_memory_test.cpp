@@ -12,55 +12,80 @@ using ::testing::UnorderedElementsAre;
 
 const Eigen::Vector2d kTarget{3.0, -2.0};
 
+/// Where and why.
+std::vector<std::pair<Eigen::Vector2d, Rejection>> list(const std::vector<LeftAlone>& left_alone) {
+  std::vector<std::pair<Eigen::Vector2d, Rejection>> targets;
+  for (const LeftAlone& place : left_alone) targets.emplace_back(place.target_map, place.reason);
+  return targets;
+}
+
+const auto kForNow = std::pair(kTarget, Rejection::kLeftAlone);
+const auto kForGood = std::pair(kTarget, Rejection::kFailed);
+
+std::pair<Eigen::Vector2d, Rejection> given_up(const Eigen::Vector2d& target_map) {
+  return {target_map, Rejection::kFailed};
+}
+
 time::Time after(double seconds) { return time::Time::from_seconds(seconds); }
 
 TEST(GoalMemory, LeavesAFailureAloneUntilItExpires) {
   GoalMemory memory({.expiry_s = 30.0});
-  EXPECT_THAT(memory.left_alone(after(0.0)), IsEmpty());
-  memory.add_failure(kTarget, after(10.0));
-  EXPECT_THAT(memory.left_alone(after(39.0)), ElementsAre(kTarget));
-  EXPECT_THAT(memory.left_alone(after(41.0)), IsEmpty());
+  EXPECT_THAT(list(memory.left_alone(after(0.0))), IsEmpty());
+  memory.add_failure(kTarget, Rejection::kFailed, after(10.0));
+  EXPECT_THAT(list(memory.left_alone(after(39.0))), ElementsAre(kForNow));
+  EXPECT_THAT(list(memory.left_alone(after(41.0))), IsEmpty());
 }
 
 TEST(GoalMemory, LeavesItAloneForGoodAfterThree) {
   GoalMemory memory({.max_failures = 3});
-  for (const double when : {0.0, 100.0, 200.0}) memory.add_failure(kTarget, after(when));
-  EXPECT_THAT(memory.left_alone(after(1e6)), ElementsAre(kTarget));
+  for (const double when : {0.0, 100.0, 200.0}) memory.add_failure(kTarget, Rejection::kFailed, after(when));
+  EXPECT_THAT(list(memory.left_alone(after(1e6))), ElementsAre(kForGood));
   EXPECT_FALSE(memory.forgive(after(201.0)));
   memory.clear();
-  EXPECT_THAT(memory.left_alone(after(1e6)), IsEmpty());
+  EXPECT_THAT(list(memory.left_alone(after(1e6))), IsEmpty());
+}
+
+// A frontier that was looked at is the building's; one that no path led to may be the robot's.
+TEST(GoalMemory, SaysWhetherViewsOrPathsHaveFailed) {
+  for (const bool has_failed_path : {false, true}) {
+    GoalMemory memory({.max_failures = 2});
+    memory.add_failure(kTarget, Rejection::kFailedView, after(0.0));
+    memory.add_failure(kTarget, has_failed_path ? Rejection::kFailed : Rejection::kFailedView, after(100.0));
+    const Rejection why = has_failed_path ? Rejection::kFailed : Rejection::kFailedView;
+    EXPECT_THAT(list(memory.left_alone(after(1e6))), ElementsAre(std::pair(kTarget, why)));
+  }
 }
 
 TEST(GoalMemory, ForgivesWhatHasNotFailedForGood) {
   GoalMemory memory({});
-  memory.add_failure(kTarget, after(0.0));
+  memory.add_failure(kTarget, Rejection::kFailed, after(0.0));
   EXPECT_TRUE(memory.forgive(after(1.0)));
-  EXPECT_THAT(memory.left_alone(after(1.0)), IsEmpty());
+  EXPECT_THAT(list(memory.left_alone(after(1.0))), IsEmpty());
   EXPECT_FALSE(memory.forgive(after(1.0))) << "nothing is left to forgive";
 }
 
 TEST(GoalMemory, WhatLiesNearIsOneTarget) {
   GoalMemory memory({.radius_m = 0.75, .max_failures = 2});
-  memory.add_failure(kTarget, after(0.0));
-  memory.add_failure(kTarget + Eigen::Vector2d(0.5, 0.5), after(0.0));
-  EXPECT_THAT(memory.left_alone(after(1e6)), ElementsAre(kTarget));
-  memory.add_failure(kTarget + Eigen::Vector2d(0.0, -0.8), after(0.0));
-  EXPECT_THAT(memory.left_alone(after(1e6)), ElementsAre(kTarget)) << "one failure elsewhere expires";
+  memory.add_failure(kTarget, Rejection::kFailed, after(0.0));
+  memory.add_failure(kTarget + Eigen::Vector2d(0.5, 0.5), Rejection::kFailed, after(0.0));
+  EXPECT_THAT(list(memory.left_alone(after(1e6))), ElementsAre(kForGood));
+  memory.add_failure(kTarget + Eigen::Vector2d(0.0, -0.8), Rejection::kFailed, after(0.0));
+  EXPECT_THAT(list(memory.left_alone(after(1e6))), ElementsAre(kForGood)) << "one failure elsewhere expires";
 }
 
 // Else it could fail as often again for each target beside it that has failed before.
 TEST(GoalMemory, AFailureCountsForAllTargetsThatAreNear) {
   GoalMemory memory({.radius_m = 0.75, .max_failures = 3});
-  for (const double x_m : {-0.7, 0.7, 0.0, -0.1, 0.1}) memory.add_failure({x_m, 0.0}, after(0.0));
-  EXPECT_THAT(memory.left_alone(after(1e6)),
-              UnorderedElementsAre(Eigen::Vector2d{-0.7, 0.0}, Eigen::Vector2d{0.0, 0.0}, Eigen::Vector2d{0.7, 0.0}));
+  for (const double x_m : {-0.7, 0.7, 0.0, -0.1, 0.1}) memory.add_failure({x_m, 0.0}, Rejection::kFailed, after(0.0));
+  EXPECT_THAT(list(memory.left_alone(after(1e6))),
+              UnorderedElementsAre(given_up({-0.7, 0.0}), given_up({0.0, 0.0}), given_up({0.7, 0.0})));
 }
 
 TEST(GoalMemory, LeavingAloneIsNoFailure) {
   GoalMemory memory({.expiry_s = 10.0, .max_failures = 1});
   memory.leave_alone(kTarget, after(2.0));
-  EXPECT_THAT(memory.left_alone(after(1.0)), ElementsAre(kTarget));
-  EXPECT_THAT(memory.left_alone(after(3.0)), IsEmpty());
+  EXPECT_THAT(list(memory.left_alone(after(1.0))), ElementsAre(kForNow));
+  EXPECT_THAT(list(memory.left_alone(after(3.0))), IsEmpty());
 }
 
 }  // namespace

@@ -30,6 +30,7 @@ class WalkWorld {
       : lines_(std::move(lines)), known_(kResolution_m), surroundings({}, mapping::SensorModel{}, kResolution_m),
         explorer(explorer_config), view_({.camera = kCamera, .columns = 16, .rows = 9, .range_m = 5.0}) {
     decision_config.method = Method::kMiOnly;
+    decision_config.gaps.least_nats = 0.0;  // the map has one layer
     for (int y = 0; y < height(); ++y) {
       for (int x = 0; x < width(y); ++x) {
         if (at({x, y}) == 'R') robot.p_map = center({x, y});

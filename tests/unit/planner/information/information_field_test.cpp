@@ -71,6 +71,69 @@ TEST(InformationField, UpdatesOfChangedBlocksEqualARebuild) {
   }
 }
 
+/// A third of the voxels never observed, a third seen free, a third seen occupied.
+VoxelMap map_with_holes(std::mt19937& random) {
+  VoxelMap map(kFieldResolution_m);
+  for (int i = 0; i < 8; ++i) {
+    VoxelBlock block;
+    for (int offset = 0; offset < mapping::kBlockVoxels; ++offset) {
+      const std::uint32_t kind = test::random_number(random, 0, 2);
+      if (kind == 1) block.add_miss(offset, 3 * mapping::kOneVote);
+      if (kind == 2) block.add_hit(offset, 1, 3 * mapping::kOneVote);
+    }
+    if (i % 3 != 0) map.set_block({(i & 1) - 1, (i >> 1 & 1) - 1, (i >> 2) - 1}, std::move(block));
+  }
+  return map;
+}
+
+constexpr RayModel kSurfacesGoOn{.unknown_occupied = 0.1, .surface_occupied = 0.6};
+
+TEST(InformationField, SurfacesGoOnWhereNobodyHasLooked) {
+  std::mt19937 random(4);
+  const VoxelMap map = map_with_holes(random);
+  const mapping::BeliefReader reader{mapping::SensorModel{}};
+  InformationField field(kFieldResolution_m, mapping::SensorModel{}, kSurfacesGoOn);
+  field.rebuild(map);
+  int beside = 0, away = 0;
+  for (const BlockIndex& index : map.sorted_blocks()) {
+    for (int offset = 0; offset < mapping::kBlockVoxels; ++offset) {
+      const mapping::VoxelIndex v = voxel_at(index, offset);
+      if (map.read(v).is_observed()) continue;
+      bool is_beside = false;
+      for (const int step : {-1, 1}) {
+        for (const mapping::VoxelIndex& n :
+             {mapping::VoxelIndex{v.x + step, v.y, v.z}, {v.x, v.y + step, v.z}, {v.x, v.y, v.z + step}})
+          is_beside = is_beside || reader.is_occupied(map.read(n));
+      }
+      EXPECT_FLOAT_EQ(static_cast<float>(field.cell(v).free), is_beside ? 0.4f : 0.9f);
+      ++(is_beside ? beside : away);
+    }
+  }
+  EXPECT_GT(beside, 100);
+  EXPECT_GT(away, 100);
+}
+
+TEST(InformationField, UpdatesEqualARebuildAlsoWhereSurfacesGoOnAcrossBlocks) {
+  std::mt19937 random(5);
+  VoxelMap map = map_with_holes(random);
+  InformationField field(kFieldResolution_m, mapping::SensorModel{}, kSurfacesGoOn);
+  field.rebuild(map);
+  for (int version = 0; version < 20; ++version) {
+    const VoxelMap next = map_with_holes(random);
+    const BlockIndex index = next.sorted_blocks()[test::random_number(random, 0, 3)];
+    const bool is_gone = version % 4 == 3;
+    if (is_gone) {
+      map.erase_block(index);
+    } else {
+      map.set_block(index, *next.find(index));
+    }
+    field.update(map, std::vector{index});
+    InformationField rebuilt(kFieldResolution_m, mapping::SensorModel{}, kSurfacesGoOn);
+    rebuilt.rebuild(map);
+    expect_equal(field, rebuilt);
+  }
+}
+
 TEST(InformationField, RebuildForgetsWhatTheMapDoesNotHave) {
   std::mt19937 random(3);
   InformationField field = empty_field();

@@ -95,20 +95,6 @@ TEST(FrontierMap, IdsLiveOnWhereCellsAreShared) {
   EXPECT_EQ(map.frontiers().at(2).cells.size(), 5u) << "untouched";
 }
 
-TEST(FrontierMap, CountsEachCellOnceThatWasAFrontier) {
-  TextWorld world({"     ", ".....", "#####"});
-  FrontierMap map = frontiers_of(world);
-  EXPECT_EQ(map.discovered_cells(), 5u);
-  for (const auto state : {kOccupied, kFree, kOccupied}) {
-    world.map.set({1, 1}, state);
-    map.update(world.grid, world.update());
-  }
-  EXPECT_EQ(map.discovered_cells(), 5u);
-  world.map.set({1, 2}, kFree);
-  map.update(world.grid, world.update());
-  EXPECT_EQ(map.discovered_cells(), 6u);
-}
-
 TEST(FrontierMap, TheLargerPartKeepsTheIdAndNoIdIsUsedTwice) {
   TextWorld world({"     ", ".....", "#####"});
   FrontierMap map = frontiers_of(world);

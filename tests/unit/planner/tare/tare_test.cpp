@@ -75,7 +75,7 @@ struct Planner {
   FrontierMap frontiers;
   TareConfig config;
   Pose2 robot;
-  std::vector<Eigen::Vector2d> left_alone;
+  std::vector<LeftAlone> left_alone;
   std::vector<FailedView> failed_views;
   std::optional<Pose2> goal;
 };
@@ -90,7 +90,7 @@ TEST(Tare, CoversWhatIsAroundWithFewViews) {
   const Planner planner(kHall);
   const Tour tour = planner.plan();
   EXPECT_EQ(tour.local_stops, tour.stops.size()) << "all of it is within the horizon";
-  EXPECT_THAT(tour.missed, Each(Pair(_, "the tour stops at others near it")));
+  EXPECT_THAT(tour.missed, Each(Pair(_, Rejection::kBesideStop)));
   EXPECT_EQ(tour.stops.size() + tour.missed.size(), planner.frontiers.frontiers().size()) << "each is reported once";
   EXPECT_LE(tour.stops.size(), 12u) << "a view covers more than one frontier";
   EXPECT_LT(planner.uncovered(tour), 0.1 * all_cells(planner.frontiers)) << "of " << all_cells(planner.frontiers);
@@ -136,7 +136,7 @@ TEST(Tare, KeepsItsGoalUnlessAnotherTourIsMuchShorter) {
 
 TEST(Tare, LeavesAloneWhatItIsAskedTo) {
   Planner planner(kCorridor);
-  planner.left_alone = {planner.world.grid.center_of(planner.plan().stops[0].viewpoint.target)};
+  planner.left_alone = {{planner.world.grid.center_of(planner.plan().stops[0].viewpoint.target)}};
   const Tour tour = planner.plan();
   EXPECT_EQ(tour.stops.size(), 1u);
   ASSERT_EQ(tour.missed.size(), 1u);
@@ -164,7 +164,7 @@ TEST(Tare, NamesWhatCannotBeReached) {
   const Tour tour = planner.plan();
   EXPECT_TRUE(tour.stops.empty());
   ASSERT_FALSE(tour.missed.empty());
-  EXPECT_EQ(tour.missed[0].second, "cannot be reached");
+  EXPECT_EQ(tour.missed[0].second, Rejection::kUnreachable);
 }
 
 }  // namespace

@@ -56,6 +56,9 @@ TEST_F(TruthFiles, AreWhatTheEvaluatorReads) {
   const auto expected = evaluator::to_known_space(truth.mesh, mapping::BeliefReader(mapping::SensorModel{}));
   EXPECT_EQ(read->mesh.occupied.voxels, expected.occupied.voxels);
   EXPECT_EQ(read->mesh.free, expected.free);
+  ASSERT_TRUE(read->with_margin);
+  EXPECT_EQ(read->with_margin->free,
+            evaluator::to_known_space(truth.with_margin, mapping::BeliefReader(mapping::SensorModel{})).free);
   EXPECT_EQ(read->top_classes, (std::vector<std::uint16_t>{1, 5}));
   EXPECT_TRUE(read->T_map_world.isApprox(start.inverse(), 1e-12));
   const auto flood = mapping::load_map((folder / "flood.lapis").string(), problem);
@@ -97,7 +100,8 @@ TEST_F(TruthFiles, NavigationMapIsThatOfAMapServer) {
 TEST_F(TruthFiles, AreEqualBytesEveryTime) {
   const auto again = folder.parent_path() / "again";
   write(again);
-  for (const char* name : {"mesh.lapis", "flood.lapis", "classes.json", "rooms.json", "navmap.png", "navmap.yaml"}) {
+  for (const char* name :
+       {"mesh.lapis", "flood.lapis", "with_margin.lapis", "classes.json", "rooms.json", "navmap.png", "navmap.yaml"}) {
     EXPECT_FALSE(text_of(folder / name).empty()) << name;
     EXPECT_EQ(text_of(folder / name), text_of(again / name)) << name;
   }

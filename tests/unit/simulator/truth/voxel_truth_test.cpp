@@ -122,6 +122,26 @@ TEST(VoxelTruthTest, BeyondABarrierTheRangeIsTheEnd) {
   EXPECT_NEAR(furthest(truth.flood), 14.0, 0.26);
 }
 
+// A gap through which the robot fits, but not with a margin: 0.44 m wide.
+TEST(VoxelTruthTest, WithAMarginNarrowGapsAreClosed) {
+  Scene scene = test::room({6, 3, 2.5F});
+  test::add_box(scene, {3, 0, 0}, {3.1F, 1.3F, 2.5F}, 2);
+  test::add_box(scene, {3, 1.74F, 0}, {3.1F, 3, 2.5F}, 2);
+  const auto start = test::planar_pose(1, 1.5, 0);
+  const auto volume = [&](const mapping::VoxelMap& map) { return evaluator::coverage(known(map)).explored_volume_m3; };
+  TruthConfig cautious = config();
+  cautious.margin_m = 0.1;
+  const auto truth = truth_of(scene, start, cautious);
+  EXPECT_LT(volume(truth.with_margin), 0.9 * volume(truth.mesh));
+  EXPECT_EQ(*evaluator::coverage(known(truth.with_margin), known(truth.mesh)).explored_share, 1.0);
+  cautious.margin_m = 0.0;
+  const auto bold = truth_of(scene, start, cautious);
+  EXPECT_TRUE(bold.with_margin == bold.mesh);
+  EXPECT_TRUE(bold.mesh == truth.mesh);
+  cautious.margin_m = 1.0;
+  EXPECT_EQ(truth_of(scene, test::planar_pose(2.5, 0.5, 0), cautious).with_margin.block_count(), 0U);
+}
+
 TEST(VoxelTruthTest, DoesNotDependOnTheNumberOfThreads) {
   TruthConfig two = config();
   two.threads = 2;

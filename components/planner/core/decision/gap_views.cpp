@@ -1,0 +1,88 @@
+#include "planner/core/decision/gap_views.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <numbers>
+#include <utility>
+
+namespace lapis::planner {
+namespace {
+
+constexpr int kGapHeadings = 8;
+constexpr int kCoarseColumns = 16, kCoarseRows = 9;  // rays of a coarse image
+constexpr std::size_t kMostViews = 20;               // that are looked at more closely
+constexpr double kOverhead_m = 2.0;                  // what a view costs besides its path
+constexpr double kSameView_m = 0.5, kSameView_rad = 0.4;
+
+/// The place that can be reached next to the middle of each square.
+std::vector<Cell> places(const PlanningGrid& grid, const CostTree& tree, double spacing_m) {
+  const double edge_cells = std::max(1.0, spacing_m / grid.resolution_m());
+  std::map<Cell, std::pair<double, Cell>> nearest;  // by square: distance from its middle, place
+  for (const Cell& c : tree.reached()) {
+    if (!grid.is_traversable(c)) continue;
+    const Eigen::Vector2d p = Eigen::Vector2d(c.x + 0.5, c.y + 0.5) / edge_cells;
+    const Cell square{static_cast<int>(std::floor(p.x())), static_cast<int>(std::floor(p.y()))};
+    const double off = (p - Eigen::Vector2d(square.x + 0.5, square.y + 0.5)).norm();
+    const auto [known, is_new] = nearest.try_emplace(square, off, c);
+    if (!is_new && std::pair(off, c) < known->second) known->second = {off, c};
+  }
+  std::vector<Cell> cells;
+  for (const auto& entry : nearest) cells.push_back(entry.second.second);
+  return cells;
+}
+
+std::vector<double> promises(const Situation& s, const View& view, const std::vector<Viewpoint>& viewpoints) {
+  std::vector<ViewPath> paths;
+  for (const Viewpoint& viewpoint : viewpoints) paths.push_back({camera_at(s, viewpoint.pose)});
+  return path_information(s.field, view, std::span<const ViewPath>(paths));
+}
+
+/// Those with the most information for their path; what is being driven to first.
+std::vector<Viewpoint> most_promising(const Situation& s, const std::vector<Viewpoint>& viewpoints,
+                                      const Memory& memory) {
+  ViewConfig coarse = s.view.config();
+  coarse.columns = kCoarseColumns;
+  coarse.rows = kCoarseRows;
+  const std::vector<double> nats = promises(s, View(coarse), viewpoints);
+  std::vector<std::pair<double, std::size_t>> ranked;
+  for (std::size_t i = 0; i < viewpoints.size(); ++i) {
+    const bool is_goal = memory.goal && is_taken(viewpoints[i].pose, {&*memory.goal, 1});
+    const double worth = nats[i] / (viewpoints[i].cost_m + kOverhead_m);
+    ranked.emplace_back(is_goal ? -std::numeric_limits<double>::infinity() : -worth, i);
+  }
+  std::sort(ranked.begin(), ranked.end());
+  std::vector<Viewpoint> best;
+  for (std::size_t k = 0; k < std::min(kMostViews, ranked.size()); ++k) best.push_back(viewpoints[ranked[k].second]);
+  return best;
+}
+
+}  // namespace
+
+bool is_taken(const Pose2& view, std::span<const Pose2> taken) {
+  return std::any_of(taken.begin(), taken.end(), [&](const Pose2& other) {
+    return (other.p_map - view.p_map).norm() < kSameView_m &&
+           turn_between(other.yaw_rad, view.yaw_rad) < kSameView_rad;
+  });
+}
+
+std::vector<Viewpoint> gap_views(const Situation& s, const CostTree& tree, const Memory& memory,
+                                 const GapConfig& config) {
+  std::vector<Viewpoint> all;
+  for (const Cell& c : places(s.grid, tree, config.spacing_m)) {
+    for (int i = 0; i < kGapHeadings; ++i) {
+      const Pose2 pose{s.grid.center_of(c), 2.0 * std::numbers::pi * i / kGapHeadings};
+      if (!is_taken(pose, memory.taken_views)) all.push_back({c, pose, c, *tree.cost_m(c)});
+    }
+  }
+  const std::vector<Viewpoint> best = most_promising(s, all, memory);
+  const std::vector<double> nats = promises(s, s.view, best);
+  std::vector<Viewpoint> views;
+  for (std::size_t i = 0; i < best.size(); ++i) {
+    if (nats[i] >= config.least_nats) views.push_back(best[i]);
+  }
+  return views;
+}
+
+}  // namespace lapis::planner

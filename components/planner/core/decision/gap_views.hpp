@@ -1,0 +1,22 @@
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "planner/core/decision/decision.hpp"
+#include "planner/core/space/path_search.hpp"
+
+namespace lapis::planner {
+
+/// Views for what no frontier of the floor plan asks for: ceilings, what stands behind or above something, floors that
+/// were passed at the edge of an image. Of all places that can be reached, one for each square of GapConfig::spacing_m,
+/// and kGapHeadings headings each, those that promise most for their path, by a coarse image; of these, the ones that
+/// promise GapConfig::least_nats by a whole one. The target is the place itself.
+/// @param tree from the robot's cell
+std::vector<Viewpoint> gap_views(const Situation& situation, const CostTree& tree, const Memory& memory,
+                                 const GapConfig& config);
+
+/// The view has been taken, from about the same place in about the same direction.
+bool is_taken(const Pose2& view, std::span<const Pose2> taken);
+
+}  // namespace lapis::planner

@@ -26,6 +26,8 @@ TRUTH = "trajectory_ground_truth.txt"
 DECISIONS = "decisions.csv"
 BLUE, ORANGE, GREY = "#1565c0", "#e65100", "#9e9e9e"
 TIERS = {"vision": "#66bb6a", "surfaces": "#42a5f5", "odometry": "#ffb300", "none": "#d32f2f"}  # frames.csv
+PLANNER_STATES = {"EXPLORING": "#aed581", "RECOVERING": "#ffb300", "RETURNING": "#90caf9", "PAUSED": "#ce93d8", "IDLE": "#eeeeee",
+                  "DONE": "#2e7d32", "GAVE_UP": "#e65100", "FAILED": "#d32f2f"}
 LEAST_SHOWN_M = 1e-3  # on a logarithmic axis
 HEAD_ROOM_M = 0.5  # what lies higher above the camera (ceilings) would hide the rooms
 DECISION_BARS = (("utility", "utility"), ("path_information_nats", "information\nof the path\n[nat]"),
@@ -394,15 +396,22 @@ def draw_errors(run):
     return figure
 
 
-def stretches(seconds, tiers, duration_s):
-    """(tier, begin, end) of each stretch that one tier held; as in the shares of metrics.json, the time before a frame is
-    that frame's, and before the first one and after the last one there is no pose."""
-    found = [("none", 0.0, seconds[0])] if seconds[0] > 0 else []
+def runs_of_equal(seconds, values):
+    """(value, begin, end) of each stretch of equal values; the time before a row is that row's."""
+    found = []
     begin = seconds[0]
-    for i in range(1, len(tiers)):
-        if i + 1 == len(tiers) or tiers[i + 1] != tiers[i]:
-            found.append((tiers[i], begin, seconds[i]))
+    for i in range(1, len(values)):
+        if i + 1 == len(values) or values[i + 1] != values[i]:
+            found.append((values[i], begin, seconds[i]))
             begin = seconds[i]
+    return found
+
+
+def stretches(seconds, tiers, duration_s):
+    """(tier, begin, end) of each stretch that one tier held; as in the shares of metrics.json, before the first frame and
+    after the last one there is no pose."""
+    found = [("none", 0.0, seconds[0])] if seconds[0] > 0 else []
+    found += runs_of_equal(seconds, tiers)
     if duration_s > seconds[-1]:
         found.append(("none", seconds[-1], duration_s))
     return found
@@ -456,8 +465,41 @@ def draw_sureness(axes, seconds, sigma_m, error_m):
         axes.legend(loc="upper left", framealpha=0.9)
 
 
+def draw_explored(axes, band, run):
+    """What share of the building is known, on an axis of its own, stretches without progress, and the planner's state in a
+    band; nothing of what the run does not know."""
+    path = run / "timeline.csv"
+    rows = read_table(path) if path.is_file() else []
+    band.set_yticks([])
+    if len(rows) < 2:
+        return band.set_visible(False)
+    seconds = numbers(rows, "time_s", path)
+    column = next((name for name in ("explored_share_with_margin", "explored_share")
+                   if any(row.get(name) for row in rows)), None)
+    if column:
+        right = axes.twinx()
+        right.plot(seconds, 100 * numbers(rows, column, path), color=ORANGE, linewidth=1.8)
+        right.set_ylabel("explored [%]", color=ORANGE)
+        right.set_ylim(0, 100)
+    for is_stalled, begin, end in runs_of_equal(seconds, [row.get("is_stalled") == "1" for row in rows]):
+        if is_stalled:
+            axes.axvspan(begin, end, facecolor="none", edgecolor=GREY, hatch="///", linewidth=0)
+            axes.annotate(f"no progress\n{end - begin:.0f} s", ((begin + end) / 2, 0.97), xycoords=("data", "axes fraction"),
+                          ha="center", va="top", fontsize=8)
+    states = [row.get("planner_state") or "" for row in rows]
+    shown = [state for state in PLANNER_STATES if state in states]
+    if not shown:
+        return band.set_visible(False)
+    for state, begin, end in runs_of_equal(seconds, states):
+        if state in PLANNER_STATES:
+            band.axvspan(begin, end, facecolor=PLANNER_STATES[state], edgecolor=PLANNER_STATES[state], linewidth=0.8)
+    patches = [plt.Rectangle((0, 0), 1, 1, facecolor=PLANNER_STATES[state]) for state in shown]
+    band.legend(patches, shown, loc="upper center", bbox_to_anchor=(0.5, -0.15), ncols=len(shown), frameon=False)
+    band.set_ylabel("planner", rotation=0, ha="right", va="center")
+
+
 def draw_progress(run):
-    """How far the robot has come, what held its pose, and what that cost."""
+    """How far the robot has come and what it knows, what held its pose, what it did, and what that cost."""
     path = run / "frames.csv"
     rows = read_table(path)
     if len(rows) < 2:
@@ -467,8 +509,8 @@ def draw_progress(run):
     tiers = [row.get("tier") for row in rows]
     if not np.isfinite(seconds).all() or not set(tiers) <= set(TIERS):
         raise MissingInput("frames.csv is damaged")
-    figure, (distance, band, sureness) = plt.subplots(3, 1, figsize=(11, 7), sharex=True,
-                                                      gridspec_kw={"height_ratios": [3, 0.45, 4], "hspace": 0.28})
+    figure, (distance, band, doing, sureness) = plt.subplots(
+        4, 1, figsize=(11, 8), sharex=True, gridspec_kw={"height_ratios": [4, 0.45, 0.45, 4], "hspace": 0.4})
     at, driven_m, source = distance_driven(run, seconds, path_m)
     duration_s = metric(run, "duration_s") or seconds[-1]
     draw_tiers(band, (distance, sureness), stretches(seconds, tiers, duration_s))
@@ -476,6 +518,7 @@ def draw_progress(run):
     distance.set(ylabel=f"distance driven [m]\n({source})", title=f"Progress and pose: {run.resolve().name}")
     distance.set_ylim(bottom=0)
     distance.grid(color="#dddddd", linewidth=0.6)
+    draw_explored(distance, doing, run)
     draw_sureness(sureness, seconds, sigma_m, error_m)
     sureness.set_xlabel("time since the first frame [s]")
     sureness.set_xlim(0, max(duration_s, seconds[-1]))

@@ -54,9 +54,10 @@ def write_pose_graph(path):
 
 
 def write_timeline(path):
-    rows = [f"{t},{0.5 * t},{0.005 * t if t > 5 else ''},{0.2 * t},0.01,0.02,TRACKING,EXPLORING" for t in range(190)]
-    path.write_text("time_s,explored_volume_m3,explored_share,path_length_m,position_error_m,position_sigma_m,state,"
-                    "planner_state\n" + "\n".join(rows) + "\n")
+    rows = [f"{t},{0.5 * t},{0.005 * t if t > 5 else ''},{0.005 * t if t > 5 else ''},{0.2 * t},0.01,0.02,TRACKING,"
+            f"{'EXPLORING' if t < 150 else 'GAVE_UP'},{int(60 < t <= 90)}" for t in range(190)]
+    path.write_text("time_s,explored_volume_m3,explored_share,explored_share_with_margin,path_length_m,position_error_m,"
+                    "position_sigma_m,state,planner_state,is_stalled\n" + "\n".join(rows) + "\n")
 
 
 def write_frames(path, tier=lambda i: "vision" if i < 100 else "odometry"):
@@ -159,6 +160,23 @@ class Figures(unittest.TestCase):
         texts = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
         self.assertEqual(texts, ["vision 75.4 %", "surfaces 24.6 %", "odometry 0.0 %", "no pose 0.0 %"])  # 4.9 of 19.9 s
         figures.plt.close(figure)
+
+    def test_progress_names_stretches_without_it_and_what_the_planner_did(self):
+        figures = the_module()
+        figure = figures.draw_progress(self.run_folder)
+        self.assertEqual([text.get_text() for text in figure.axes[0].texts], ["no progress\n30 s"])
+        self.assertEqual([text.get_text() for text in figure.axes[2].get_legend().get_texts()], ["EXPLORING", "GAVE_UP"])
+        self.assertEqual(figure.axes[4].get_ylabel(), "explored [%]")
+        figures.plt.close(figure)
+        for rows in (["time_s,explored_volume_m3", "0,1", "1,2"], None):  # of a recording, and none
+            if rows:
+                (self.run_folder / "timeline.csv").write_text("\n".join(rows) + "\n")
+            else:
+                (self.run_folder / "timeline.csv").unlink()
+            figure = figures.draw_progress(self.run_folder)
+            self.assertEqual(len(figure.axes), 4)
+            self.assertFalse(figure.axes[2].get_visible())
+            figures.plt.close(figure)
 
     def test_progress_of_a_run_that_never_began_and_of_one_without_truth(self):
         write_frames(self.run_folder / "frames.csv", lambda i: "none")

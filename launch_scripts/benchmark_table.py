@@ -26,8 +26,11 @@ NEVER = math.inf  # the time to reach what was not reached
 
 COLUMNS = {  # of the table: format, and what it shows of metrics.json and simulation.yaml
     "explored %": ("{:.1f}", lambda m: 100 * m["explored_share"]),
+    "explored with margin %": ("{:.1f}", lambda m: 100 * m["explored_share_with_margin"]),
     "80 % s": ("{:.0f}", lambda m: time_to(m, "time_to_80_s")),
     "90 % s": ("{:.0f}", lambda m: time_to(m, "time_to_90_s")),
+    "no progress %": ("{:.1f}", lambda m: 100 * m["stalled_share"]),
+    "failures": ("{:.0f}", lambda m: m["failures"]),
     "path m": ("{:.1f}", lambda m: m["path_length_m"]),
     "ATE raw cm": ("{:.1f}", lambda m: 100 * m["ate_raw_rmse_m"]),
     "ATE SE3 cm": ("{:.1f}", lambda m: 100 * m["ate_se3_rmse_m"]),

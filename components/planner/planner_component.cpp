@@ -353,6 +353,7 @@ void PlannerComponent::publish_status() {
   message.decision_time_s(decision_time_s_);
   message.decisions(decisions_);
   message.decisions_unlike_mi_only(disagreements_);
+  message.failures(explorer_.failures());
   status_.publish(message);
 }
 

@@ -13,7 +13,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kMinPoseShare = 0.95;
 
 template <class T>
 ordered_json value_or_null(const std::optional<T>& value) {
@@ -101,6 +100,7 @@ ordered_json to_document(const RunMetrics& m) {
   document["planner_reason"] = value_or_null(m.planner_reason);
   document["decisions"] = value_or_null(m.decisions);
   document["decisions_unlike_mi_only_share"] = value_or_null(m.decisions_unlike_mi_only_share);
+  document["failures"] = value_or_null(m.failures);
   document["decision_time_p50_s"] = value_or_null(m.decision_time_p50_s);
   document["decision_time_p95_s"] = value_or_null(m.decision_time_p95_s);
   document["real_time_factor"] = value_or_null(m.real_time_factor);
@@ -173,11 +173,6 @@ MapFigures map_figures(const LabelledVoxels& reference, const LabelledVoxels& es
     figures.iou_by_class.push_back({name != class_names.end() ? name->second : std::to_string(c.label), c});
   }
   return figures;
-}
-
-std::string judged_exit_reason(const std::string& reason, std::int64_t frames_with_pose, std::int64_t frames_total) {
-  const bool is_lost = static_cast<double>(frames_with_pose) < kMinPoseShare * static_cast<double>(frames_total);
-  return is_lost ? "lost" : reason;
 }
 
 std::string to_json(const RunMetrics& metrics) {

@@ -70,6 +70,7 @@ struct RunMetrics {
   std::optional<std::string> planner_reason;  ///< for it
   std::optional<std::int64_t> decisions;
   std::optional<double> decisions_unlike_mi_only_share;
+  std::optional<std::int64_t> failures;  ///< goals that were not reached, or looked at in vain
   std::optional<double> decision_time_p50_s;  ///< wall time
   std::optional<double> decision_time_p95_s;
   std::optional<double> real_time_factor;
@@ -90,8 +91,6 @@ std::optional<double> ate_raw_rmse_up_to(double path_m, const Trajectory& refere
 MapFigures map_figures(const LabelledVoxels& reference, const LabelledVoxels& estimate,
                        const std::map<std::uint16_t, std::string>& class_names,
                        const std::vector<std::uint16_t>& top_classes = {});
-/// `reason`, or "lost" when fewer than 95 % of the frames have a pose.
-std::string judged_exit_reason(const std::string& reason, std::int64_t frames_with_pose, std::int64_t frames_total);
 
 /// The document metrics.json: keys in a fixed order, numbers with all their digits; equal metrics give equal bytes.
 /// Numbers that are not finite are written as null.

@@ -5,6 +5,11 @@
 #include "common/time/stamp_buffer.hpp"
 
 namespace lapis::evaluator {
+namespace {
+
+constexpr double kLostAtEnd_s = 5.0;  // without a pose to the end: the run is lost
+
+}  // namespace
 
 void RunRecord::count_camera_frame(time::Time stamp) {
   const bool is_repeated = camera_stamp_ && stamp <= *camera_stamp_ && *camera_stamp_ - stamp <= time::kRestartGap;
@@ -77,8 +82,7 @@ std::optional<double> RunRecord::position_error_m() const {
 void RunRecord::write_to(RunMetrics& m, const Trajectory& keyframes, std::int64_t frames_missed, bool has_ended) const {
   m.frames_total = std::max(frames_total_ + frames_missed, frames_judged_);
   m.frames_tracked = frames_of(PoseTier::kVision) + frames_of(PoseTier::kSurfaces);
-  m.exit_reason = judged_exit_reason(has_ended ? "completed" : "stopped",
-                                     *m.frames_tracked + frames_of(PoseTier::kOdometry), *m.frames_total);
+  m.exit_reason = is_lost() ? "lost" : has_ended ? "completed" : "stopped";
   write_times(m);
   m.collisions = collisions_;
   m.correction_rmse_m = trajectory_figures(estimate_, keyframes).ate_raw_rmse_m;
@@ -91,13 +95,18 @@ void RunRecord::write_to(RunMetrics& m, const Trajectory& keyframes, std::int64_
   if (*m.path_length_m > 0.0 && m.online.ate_raw_rmse_m) m.ate_per_metre = *m.online.ate_raw_rmse_m / *m.path_length_m;
 }
 
+time::Time RunRecord::end() const { return camera_stamp_ ? std::max(*camera_stamp_, last_stamp_) : last_stamp_; }
+
+bool RunRecord::is_lost() const {
+  return estimate_.empty() || (end() - estimate_.back().stamp).seconds() > kLostAtEnd_s;
+}
+
 /// What the camera took after slam's last answer has no pose, either.
 void RunRecord::write_times(RunMetrics& m) const {
   if (!first_stamp_) return;
-  const time::Time end = camera_stamp_ ? std::max(*camera_stamp_, last_stamp_) : last_stamp_;
   const auto seconds_of = [&](PoseTier tier) { return seconds_of_tier_[static_cast<std::size_t>(tier)]; };
-  m.lost_time_s = seconds_of(PoseTier::kNone) + (end - last_stamp_).seconds();
-  m.duration_s = (end - *first_stamp_).seconds();
+  m.lost_time_s = seconds_of(PoseTier::kNone) + (end() - last_stamp_).seconds();
+  m.duration_s = (end() - *first_stamp_).seconds();
   if (*m.duration_s <= 0.0) return;
   m.tier_vision_share = seconds_of(PoseTier::kVision) / *m.duration_s;
   m.tier_surfaces_share = seconds_of(PoseTier::kSurfaces) / *m.duration_s;

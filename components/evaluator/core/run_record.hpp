@@ -59,6 +59,8 @@ class RunRecord {
   void count_time(time::Time stamp, PoseTier tier);
   void add_truth(time::Time stamp, const geometry::Pose& T_world_camera);
   void write_times(RunMetrics& metrics) const;
+  time::Time end() const;
+  bool is_lost() const;
   std::int64_t frames_of(PoseTier tier) const { return frames_of_tier_[static_cast<std::size_t>(tier)]; }
 
   std::optional<std::int64_t> session_;

@@ -51,6 +51,7 @@ const std::vector<std::string> kKeys = {"exit_reason",
                                         "stalled_share",
                                         "path_length_m",
                                         "collisions",
+                                        "failures",
                                         "decision_time_p50_s",
                                         "decision_time_p95_s",
                                         "real_time_factor",
@@ -140,12 +141,13 @@ TEST(Metrics, DecisionsAreCountedOnceWhateverIsReportedTwice) {
   record.add({});
   record.write_to(metrics);
   EXPECT_FALSE(metrics.decisions || metrics.decision_time_p50_s || metrics.decisions_unlike_mi_only_share);
-  for (const DecisionCounts& reported : {DecisionCounts{1, 0, 0.1}, {1, 0, 0.1}, {2, 1, 0.3}, {2, 1, 0.3}})
+  for (const DecisionCounts& reported : {DecisionCounts{1, 0, 0.1, 0}, {1, 0, 0.1, 0}, {2, 1, 0.3, 2}, {2, 1, 0.3, 2}})
     record.add(reported);
-  record.add({1, 1, 0.5});  // a planner that was restarted
-  record.add({2, 1, 0.7});
+  record.add({1, 1, 0.5, 0});  // a planner that was restarted
+  record.add({2, 1, 0.7, 1});
   record.write_to(metrics);
   EXPECT_EQ(metrics.decisions, 4);
+  EXPECT_EQ(metrics.failures, 3);
   EXPECT_DOUBLE_EQ(*metrics.decisions_unlike_mi_only_share, 0.5);
   EXPECT_DOUBLE_EQ(*metrics.decision_time_p50_s, 0.4);
   EXPECT_DOUBLE_EQ(*metrics.decision_time_p95_s, 0.67);
@@ -162,11 +164,6 @@ TEST(Metrics, MapFiguresNameTheClasses) {
   EXPECT_EQ(document["iou_top8_mean"], 1.0);
   EXPECT_EQ(document["map_error_mean_m"], 0.0);
   EXPECT_TRUE(document["mesh_iou_by_class"].is_null());
-}
-
-TEST(Metrics, ARunThatLostTooManyFramesIsLost) {
-  EXPECT_EQ(judged_exit_reason("finished", 95, 100), "finished");
-  EXPECT_EQ(judged_exit_reason("finished", 94, 100), "lost");
 }
 
 TEST(Timeline, WhatWasNotMeasuredIsEmpty) {

@@ -49,7 +49,23 @@ TEST(RunRecord, AFrameWithoutAPoseIsLostTime) {
   const RunMetrics metrics = metrics_of(record);
   EXPECT_EQ(metrics.frames_tracked, 2);
   EXPECT_NEAR(metrics.lost_time_s.value(), 0.5, 1e-9);
-  EXPECT_EQ(metrics.exit_reason, "lost");
+  EXPECT_EQ(metrics.exit_reason, "completed") << "it had a pose again";
+}
+
+TEST(RunRecord, LostIsWhoHasNoPoseToTheEnd) {
+  RunRecord record;
+  record.count_camera_frame(at(0.0));
+  EXPECT_EQ(metrics_of(record).exit_reason, "lost") << "never had one";
+  record.add(held_by(PoseTier::kVision, 0.0));
+  record.add(held_by(PoseTier::kNone, 1.0));
+  record.add(held_by(PoseTier::kNone, 5.0));
+  EXPECT_EQ(metrics_of(record).exit_reason, "completed");
+  record.add(held_by(PoseTier::kNone, 5.1));
+  EXPECT_EQ(metrics_of(record).exit_reason, "lost");
+  record.add(held_by(PoseTier::kOdometry, 6.0));
+  EXPECT_EQ(metrics_of(record).exit_reason, "completed");
+  record.count_camera_frame(at(11.1));
+  EXPECT_EQ(metrics_of(record).exit_reason, "lost") << "slam answers no more";
 }
 
 TEST(RunRecord, FramesOfALaterSessionAreLost) {
@@ -89,7 +105,6 @@ TEST(RunRecord, SharesOfTimeByTierWeighStampsNotFrames) {
   EXPECT_NEAR(metrics.lost_time_s.value(), 0.5, 1e-12);
   EXPECT_EQ(metrics.duration_s, 10.0);
   EXPECT_EQ(metrics.frames_tracked, 4) << "odometry alone does not track";
-  EXPECT_EQ(metrics.exit_reason, "lost") << "one frame of six has no pose";
 }
 
 TEST(RunRecord, OdometryAloneIsNotLost) {

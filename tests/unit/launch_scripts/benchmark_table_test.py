@@ -10,7 +10,8 @@ from pathlib import Path
 
 SCRIPT = Path(sys.argv.pop(1))
 METRICS = {"exit_reason": "completed", "planner_state": "DONE", "explored_share": 0.9, "time_to_80_s": 50.0,
-           "time_to_90_s": None, "path_length_m": 40.0, "collisions": 0, "keyframe_ate_se3_rmse_m": 0.0125,
+           "explored_share_with_margin": 0.925, "stalled_share": 0.04, "failures": 3, "time_to_90_s": None,
+           "path_length_m": 40.0, "collisions": 0, "keyframe_ate_se3_rmse_m": 0.0125,
            "tier_vision_share": 0.75, "tier_surfaces_share": 0.125, "tier_odometry_share": 0.1, "lost_share": 0.025}
 
 
@@ -49,6 +50,8 @@ class BenchmarkTableTest(unittest.TestCase):
         self.assertEqual([row["outcome"] for row in rows], ["done", "done", "time up", "2 done, 1 time up"])
         self.assertEqual([row["explored %"] for row in rows], ["90.0", "70.0", "95.0", "90.0"])
         self.assertEqual([row["80 % s"] for row in rows], ["50", "-", "50", "50"])
+        shown = [rows[0][name] for name in ("explored with margin %", "no progress %", "failures")]
+        self.assertEqual(shown, ["92.5", "4.0", "3"])
         shown = [rows[0][name] for name in ("key-frame ATE SE3 cm", "vision %", "surfaces %", "odometry %", "lost %")]
         self.assertEqual(shown, ["1.2", "75.0", "12.5", "10.0", "2.5"])
         self.assertEqual([row["90 % s"] for row in rows], ["-"] * 4)

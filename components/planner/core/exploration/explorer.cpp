@@ -189,8 +189,10 @@ void Explorer::look_for_pose(time::Time now) {
 }
 
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
-  for (const FailedView& view : failed_views_.judge(surroundings, report.now))
+  for (const FailedView& view : failed_views_.judge(surroundings, report.now)) {
     memory_.add_failure(view.target_map, Rejection::kFailedView, report.now);
+    ++failures_;
+  }
   may_change_ = surroundings.grid().has_passing_obstacles();
   awaited_ = surroundings.awaited_targets();
   if (awaited_.empty()) looks_again_ = false;
@@ -258,6 +260,7 @@ bool Explorer::stands_still(const Report& report) {
 
 // The target is left alone, and paths no longer lead through what stopped the robot.
 void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
+  ++failures_;
   add_failure(report.now);
   const auto place = place_ahead(path_, *report.robot);
   if (!place) return;

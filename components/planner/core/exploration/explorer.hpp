@@ -80,6 +80,8 @@ class Explorer {
   const std::vector<Pose2>& path() const { return path_; }
   /// The path is not of the map: it turns on the spot, through headings relative to the one that the robot has now.
   bool is_turn() const { return is_turn_; }
+  /// Goals so far that were not reached, or looked at in vain.
+  std::uint64_t failures() const { return failures_; }
   /// Grows with every new path.
   std::uint64_t path_number() const { return path_number_; }
 
@@ -137,7 +139,7 @@ class Explorer {
   std::string reason_ = "not started";
   std::vector<Pose2> path_;
   bool is_turn_ = false;
-  std::uint64_t path_number_ = 0;
+  std::uint64_t path_number_ = 0, failures_ = 0;
   std::optional<Goal> goal_;
   FailedViews failed_views_;
   std::vector<Eigen::Vector2d> losses_;   ///< targets on the way to which slam stopped tracking [m, map]

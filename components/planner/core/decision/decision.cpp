@@ -85,11 +85,12 @@ void discount_information(const Situation& s, double limit_m, Candidate& candida
 
 std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, Method method, const Memory& memory,
                                    const DecisionConfig& config) {
+  const double kept = has_hysteresis(method) ? config.keep_factor : 1.0;
   std::optional<std::size_t> best;
   double most = 0.0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!candidates[i].is_open()) continue;
-    const double bonus = is_current_goal(candidates[i], memory) ? config.keep_factor : 1.0;
+    const double bonus = is_current_goal(candidates[i], memory) ? kept : 1.0;
     const double worth = bonus * utility(method, candidates[i].value, config.utility);
     if (best && worth <= most) continue;
     best = i;

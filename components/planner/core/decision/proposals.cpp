@@ -84,7 +84,8 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
       if (sight == Sight::kNotNeeded) candidate.kind = CandidateKind::kCloserLook;
       if (is_failed_view(memory.failed_views, candidate.target_map, candidate.goal.p_map, memory.radius_m))
         candidate.rejection = Rejection::kFailedView;
-      const Rejection why = why_left_alone(memory.left_alone, candidate.target_map, memory.radius_m);
+      const Rejection why =
+          why_left_alone(memory.left_alone, candidate.target_map, candidate.goal.p_map, memory.radius_m);
       candidate.rejection = std::max(candidate.rejection, why);
       if (is_hidden && is_geometric(candidate.rejection)) candidate.rejection = Rejection::kHidden;
     }
@@ -259,7 +260,7 @@ void add_revisits(const Situation& s, const CostTree& tree, std::vector<OldPlace
     const Viewpoint viewpoint{place.cell, {s.grid.center_of(place.cell), place.pose.yaw_rad}, place.cell, 0.0};
     Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, 0, viewpoint, config));
     candidate.kind = CandidateKind::kRevisit;
-    candidate.rejection = why_left_alone(memory.revisited, candidate.target_map, memory.radius_m);
+    candidate.rejection = why_left_alone(memory.revisited, candidate.target_map, std::nullopt, memory.radius_m);
   }
 }
 

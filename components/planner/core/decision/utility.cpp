@@ -19,6 +19,8 @@ std::optional<Method> method_of(const std::string& name) {
   return static_cast<Method>(found - names.begin());
 }
 
+bool has_hysteresis(Method method) { return method != Method::kPaper; }
+
 bool counts_loops(Method method) {
   return method == Method::kPaper || method == Method::kFixedN || method == Method::kJoint ||
          method == Method::kDoptOnly;

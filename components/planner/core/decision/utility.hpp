@@ -23,6 +23,8 @@ const std::vector<std::string>& method_names();
 /// Nothing for another name.
 std::optional<Method> method_of(const std::string& name);
 
+/// True for methods that keep the goal that is being driven to until another one is clearly better; the paper has none.
+bool has_hysteresis(Method method);
 /// True for methods that loop closures are worth something to.
 bool counts_loops(Method method);
 

@@ -12,6 +12,7 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kBlockedRadius_m = 0.2;       // what stops the robot nearer to each other is one
+constexpr int kChange_cells = 3;               // known around a target: what failed there may succeed now
 constexpr double kLeastDecisionTime_s = 0.5;   // from one decision to the next, whatever happens
 constexpr double kBlindPatience_s = 2.0;       // without a pose, before it looks around for it
 constexpr int kBlindTurns = 2, kHeadings = 3;  // of such a look around: full turns, and poses of the path for each
@@ -47,7 +48,8 @@ std::vector<Pose2> turns_on_the_spot(bool is_to_the_left) {
 }  // namespace
 
 Explorer::Explorer(const ExplorerConfig& config)
-    : config_(config), memory_(config.memory), revisited_(config.memory), blocked_(memory_of_blocked(config.memory)) {}
+    : config_(config), memory_(config.memory), revisited_(config.memory), progress_(config.stall_m),
+      blocked_(memory_of_blocked(config.memory)) {}
 
 void Explorer::start() {
   if (state_ != State::kExploring) drop_goal();
@@ -59,6 +61,7 @@ void Explorer::start() {
     taken_views_.clear();
     losses_.clear();
   }
+  progress_.begin_anew();
   empty_decisions_ = 0;
   nothing_since_.reset();
   lost_at_.reset();
@@ -93,6 +96,7 @@ void Explorer::forget_map() {
   nothing_since_.reset();
   failed_views_.clear();
   taken_views_.clear();
+  progress_ = ProgressWatch(config_.stall_m);
   losses_.clear();
   awaited_.clear();
   looks_again_ = false;
@@ -189,10 +193,18 @@ void Explorer::look_for_pose(time::Time now) {
 }
 
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
+  is_adrift_ = report.tracking == Tracking::kDeadReckoning;
+  const auto known_cells = [&](const Eigen::Vector2d& target_map) {
+    return surroundings.known_cells(target_map, config_.memory.radius_m);
+  };
+  memory_.forget_changed(known_cells, kChange_cells);
+  if (goal_ && goal_->target_map) goal_->known_cells = known_cells(*goal_->target_map);
   for (const FailedView& view : failed_views_.judge(surroundings, report.now)) {
-    memory_.add_failure(view.target_map, Rejection::kFailedView, report.now);
+    memory_.add_failure(view.target_map,
+                        {Rejection::kFailedView, view.from_map, is_adrift_, known_cells(view.target_map)}, report.now);
     ++failures_;
   }
+  progress_.note(surroundings.explored_volume_m3(), report.robot->p_map);
   may_change_ = surroundings.grid().has_passing_obstacles();
   awaited_ = surroundings.awaited_targets();
   if (awaited_.empty()) looks_again_ = false;
@@ -203,6 +215,10 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
     drop_goal();
     return may_decide;
   }
+  if (progress_.is_stalled()) {
+    note_stall(report.now);
+    return may_decide;
+  }
   const bool is_late = goal_->deadline && report.now > *goal_->deadline;
   if (report.is_blocked || is_late || stands_still(report)) {
     note_failure(report, surroundings);
@@ -211,6 +227,15 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
     return may_decide;
   }
   return may_decide && (is_due(report.now) || !is_path_free(path_, *report.robot, surroundings.grid()));
+}
+
+// Going to and fro, or after what is never seen, has to end whatever a method promises itself of it.
+void Explorer::note_stall(time::Time now) {
+  ++failures_;
+  add_failure(now);
+  progress_.begin_anew();
+  reason_ = "nothing new was seen for long";
+  drop_goal();
 }
 
 bool Explorer::is_due(time::Time now) const {
@@ -264,7 +289,7 @@ void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
   add_failure(report.now);
   const auto place = place_ahead(path_, *report.robot);
   if (!place) return;
-  blocked_.add_failure(*place, Rejection::kFailed, report.now);
+  blocked_.add_failure(*place, {}, report.now);
   surroundings.set_blocked(blocked_places(report.now));
 }
 
@@ -273,7 +298,7 @@ void Explorer::add_failure(time::Time now) {
   if (!goal_->target_map) return;
   if (goal_->kind == CandidateKind::kGap) return taken_views_.push_back(goal_->pose);
   GoalMemory& memory = goal_->kind == CandidateKind::kRevisit ? revisited_ : memory_;
-  memory.add_failure(*goal_->target_map, Rejection::kFailed, now);
+  memory.add_failure(*goal_->target_map, {Rejection::kFailed, goal_->pose.p_map, is_adrift_, goal_->known_cells}, now);
 }
 
 std::vector<Eigen::Vector2d> Explorer::blocked_places(time::Time now) const {
@@ -284,7 +309,7 @@ std::vector<Eigen::Vector2d> Explorer::blocked_places(time::Time now) const {
 
 Memory Explorer::memory(time::Time now) const {
   Memory memory;
-  memory.left_alone = memory_.left_alone(now);
+  memory.left_alone = memory_.left_alone(now, is_adrift_);
   for (const Eigen::Vector2d& target_map : awaited_) {
     if (!looks_again_) memory.left_alone.push_back({target_map});
   }
@@ -337,6 +362,7 @@ void Explorer::follow(const Decision& decision, time::Time now) {
   const Candidate& chosen = decision.candidates[*decision.chosen];
   if (!goal_) goal_ = Goal{.moved_from = chosen.path.front(), .moved_at = now};
   set_deadline(chosen, is_detour(decision), now);
+  progress_.set_out(chosen.value.cost_m);
   goal_->pose = chosen.goal;
   goal_->target_map = chosen.target_map;
   goal_->kind = chosen.kind;
@@ -376,8 +402,9 @@ void Explorer::end(const Leftover& leftover) {
 // What is left alone for a time is tried again, then, once, what waits for the map's correction: where slam tracks, it
 // may come.
 bool Explorer::has_another_chance(const Decision& decision, const Report& report) {
-  const bool is_any_left_alone = std::any_of(decision.candidates.begin(), decision.candidates.end(),
-                                             [](const Candidate& c) { return c.rejection == Rejection::kLeftAlone; });
+  const bool is_any_left_alone = std::any_of(
+      decision.candidates.begin(), decision.candidates.end(),
+      [](const Candidate& c) { return c.rejection == Rejection::kLeftAlone || c.rejection == Rejection::kFailed; });
   const bool has_forgiven = is_any_left_alone && memory_.forgive(report.now);
   const bool has_unblocked = blocked_.forgive(report.now);
   if (has_forgiven || has_unblocked) return true;

@@ -8,6 +8,7 @@
 #include "planner/core/decision/decision.hpp"
 #include "planner/core/exploration/failed_views.hpp"
 #include "planner/core/exploration/goal_memory.hpp"
+#include "planner/core/exploration/progress_watch.hpp"
 #include "planner/core/exploration/surroundings.hpp"
 #include "planner/core/exploration/trail.hpp"
 
@@ -32,6 +33,7 @@ struct ExplorerConfig {
   double goal_tolerance_rad = 0.3;  ///< in [0.05, 0.5]
   double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
   double slowest_m_s = 0.15;        ///< a path that takes longer than at this speed has failed, in [0.01, 5]
+  double stall_m = 15.0;            ///< driven in vain, besides long paths, before a goal has failed, in [1, 1000]
   double settle_s = 1.5;            ///< after arriving, until the map shows whether the view has failed, in [0, 60]
   double max_drift_m = 0.5;         ///< of a pose by odometry alone, beyond which it drives back, in [0, 100]
   double lost_timeout_s = 60.0;     ///< without such a pose, exploration has failed, in [1, 3600]
@@ -90,6 +92,7 @@ class Explorer {
     Pose2 pose = {};
     std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< none: a look around, or the path home
     CandidateKind kind = CandidateKind::kFrontier;
+    int known_cells = 0;         ///< around the target
     time::Time set_out_at = {};  ///< from where none was left for another
     std::optional<time::Time> deadline = std::nullopt;
     std::optional<Eigen::Vector2d> deadline_of_map = std::nullopt;  ///< the target at which it was set
@@ -126,12 +129,14 @@ class Explorer {
   bool stands_still(const Report& report);
   bool is_due(time::Time now) const;
   void note_failure(const Report& report, Surroundings& surroundings);
+  void note_stall(time::Time now);
   void add_failure(time::Time now);
   std::vector<Eigen::Vector2d> blocked_places(time::Time now) const;
 
   ExplorerConfig config_;
-  GoalMemory memory_;               ///< targets of frontiers
-  GoalMemory revisited_;            ///< old places
+  GoalMemory memory_;     ///< targets of frontiers
+  GoalMemory revisited_;  ///< old places
+  ProgressWatch progress_;
   GoalMemory blocked_;              ///< places on the path
   std::vector<Pose2> taken_views_;  ///< of gaps, or tried in vain
   State state_ = State::kIdle;
@@ -155,6 +160,7 @@ class Explorer {
   int empty_decisions_ = 0;
   State end_ = State::kDone;  ///< after the return, and why
   std::string end_reason_;
+  bool is_adrift_ = false;   ///< slam reckons by odometry alone
   bool may_change_ = false;  ///< obstacles stand where there may soon be none
 };
 

@@ -15,20 +15,30 @@ void GoalMemory::leave_alone(const Eigen::Vector2d& target_map, time::Time until
   place.until = std::max(place.until, until);
 }
 
-void GoalMemory::add_failure(const Eigen::Vector2d& target_map, Rejection why, time::Time now) {
+void GoalMemory::add_failure(const Eigen::Vector2d& target_map, const Failure& failure, time::Time now) {
   leave_alone(target_map, now + time::Duration::from_seconds(config_.expiry_s));
   for (Place& place : places_) {
     if ((place.target_map - target_map).norm() > config_.radius_m) continue;
     ++place.failures;
-    place.worst = std::max(place.worst, why);
+    place.worst = std::max(place.worst, failure.why);
+    place.last = failure;
   }
 }
 
-std::vector<LeftAlone> GoalMemory::left_alone(time::Time now) const {
+void GoalMemory::forget_changed(const std::function<int(const Eigen::Vector2d&)>& known_cells, int change) {
+  std::erase_if(places_, [&](const Place& place) {
+    return place.failures > 0 && known_cells(place.target_map) >= place.last.known_cells + change;
+  });
+}
+
+std::vector<LeftAlone> GoalMemory::left_alone(time::Time now, bool is_adrift) const {
   std::vector<LeftAlone> targets;
   for (const Place& place : places_) {
+    const bool is_of_another_tier = place.failures > 0 && place.last.is_adrift && !is_adrift;
+    if (is_of_another_tier) continue;
     if (is_given_up(place)) {
-      targets.push_back({place.target_map, place.worst});
+      const bool is_from_side = place.has_last_chance && !is_hopeless(place);
+      targets.push_back({place.target_map, place.worst, is_from_side ? place.last.from_map : std::nullopt});
     } else if (now < place.until) {
       targets.push_back({place.target_map});
     }
@@ -39,7 +49,9 @@ std::vector<LeftAlone> GoalMemory::left_alone(time::Time now) const {
 bool GoalMemory::forgive(time::Time now) {
   bool has_forgiven = false;
   for (Place& place : places_) {
-    if (is_given_up(place) || place.until <= now) continue;
+    const bool may_have_another = place.worst == Rejection::kFailed && place.last.from_map && !place.has_last_chance;
+    if (is_given_up(place) ? !may_have_another : place.until <= now) continue;
+    place.has_last_chance = is_given_up(place);
     place.until = now;
     has_forgiven = true;
   }

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -15,19 +17,31 @@ struct GoalMemoryConfig {
   int max_failures = 3;    ///< after so many it is left alone for good, in [1, 100]
 };
 
-/// Targets for which the robot set out, and failed. Frontiers change their ids while they creep forward, so places are
-/// remembered.
+/// How a target failed.
+struct Failure {
+  Rejection why = Rejection::kFailed;                      ///< kFailedView or kFailed
+  std::optional<Eigen::Vector2d> from_map = std::nullopt;  ///< where it was to be looked at from [m, map]
+  bool is_adrift = false;                                  ///< slam reckoned by odometry alone
+  int known_cells = 0;                                     ///< around the target
+};
+
+/// Targets for which the robot set out, and failed: where, from which side, why, and under which circumstances.
+/// Frontiers change their ids while they creep forward, so places are remembered. What has failed is forgotten when the
+/// map around it has become another.
 class GoalMemory {
  public:
   explicit GoalMemory(const GoalMemoryConfig& config) : config_(config) {}
 
   /// Not a failure: the target is left alone until then, however it ends.
   void leave_alone(const Eigen::Vector2d& target_map, time::Time until);
-  /// @param why kFailedView or kFailed
-  void add_failure(const Eigen::Vector2d& target_map, Rejection why, time::Time now);
-  /// Targets to leave alone: for now, or for good, because all views of it, or paths to it, have failed.
-  std::vector<LeftAlone> left_alone(time::Time now) const;
-  /// Lets all targets be tried again that have not failed for good; false when there are none.
+  void add_failure(const Eigen::Vector2d& target_map, const Failure& failure, time::Time now);
+  /// Forgets targets around which this many cells more are known than when they failed last.
+  void forget_changed(const std::function<int(const Eigen::Vector2d& target_map)>& known_cells, int change);
+  /// Targets to leave alone: for now, or for good, because views of it, or paths to it, have failed. What failed adrift
+  /// counts only while the robot is.
+  std::vector<LeftAlone> left_alone(time::Time now, bool is_adrift = false) const;
+  /// Lets all targets be tried again that have not failed for good, and each of those whose paths have failed for good
+  /// once more, from another side; false when there are none.
   bool forgive(time::Time now);
   void clear() { places_.clear(); }
 
@@ -36,10 +50,14 @@ class GoalMemory {
     Eigen::Vector2d target_map;
     int failures = 0;                          ///< here, and within the radius since
     Rejection worst = Rejection::kFailedView;  ///< of these
+    Failure last = {};
+    bool has_last_chance = false;  ///< from another side than that of the last failure
     time::Time until{};
   };
   Place& place_at(const Eigen::Vector2d& target_map);
   bool is_given_up(const Place& place) const { return place.failures >= config_.max_failures; }
+  /// The last chance was taken, and failed.
+  bool is_hopeless(const Place& place) const { return place.failures > config_.max_failures; }
 
   GoalMemoryConfig config_;
   std::vector<Place> places_;

@@ -83,6 +83,16 @@ std::vector<Eigen::Vector2d> Surroundings::awaited_targets() const {
   return targets;
 }
 
+int Surroundings::known_cells(const Eigen::Vector2d& place_map, double radius_m) const {
+  const Cell middle = grid_.cell_of(place_map);
+  const int reach = static_cast<int>(radius_m / grid_.resolution_m());
+  int known = 0;
+  for (Cell step{0, -reach}; step.y <= reach; ++step.y) {
+    for (step.x = -reach; step.x <= reach; ++step.x) known += grid_.state(middle + step) != mapping::kUnknown ? 1 : 0;
+  }
+  return known;
+}
+
 void Surroundings::set_blocked(std::span<const Eigen::Vector2d> places_map) {
   std::set<Cell> cells;
   for (const Eigen::Vector2d& place : places_map) cells.insert(grid_.cell_of(place));

@@ -60,12 +60,20 @@ std::vector<Viewpoint> one_per_sector(const PlanningGrid& grid, const CostTree& 
   return viewpoints;
 }
 
+/// Seen from a middle, two places lie in about the same direction.
+bool is_same_side(const Eigen::Vector2d& middle, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
+  constexpr double kSide_cos = 0.5;  // 60 degrees
+  return (a - middle).dot(b - middle) >= kSide_cos * (a - middle).norm() * (b - middle).norm();
+}
+
 }  // namespace
 
-Rejection why_left_alone(std::span<const LeftAlone> left_alone, const Eigen::Vector2d& target_map, double radius_m) {
+Rejection why_left_alone(std::span<const LeftAlone> left_alone, const Eigen::Vector2d& target_map,
+                         const std::optional<Eigen::Vector2d>& from_map, double radius_m) {
   Rejection reason = Rejection::kNone;
   for (const LeftAlone& place : left_alone) {
-    if ((place.target_map - target_map).norm() <= radius_m) reason = std::max(reason, place.reason);
+    const bool is_meant = !place.side_map || (from_map && is_same_side(place.target_map, *place.side_map, *from_map));
+    if (is_meant && (place.target_map - target_map).norm() <= radius_m) reason = std::max(reason, place.reason);
   }
   return reason;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -34,10 +35,13 @@ struct FailedView {
 struct LeftAlone {
   Eigen::Vector2d target_map;
   Rejection reason = Rejection::kLeftAlone;
+  std::optional<Eigen::Vector2d> side_map = std::nullopt;  ///< only from the side of the target where this lies
 };
 
 /// Why a target is left alone, the last of all that are near in the order of the enumeration; kNone: it is not.
-Rejection why_left_alone(std::span<const LeftAlone> left_alone, const Eigen::Vector2d& target_map, double radius_m);
+/// @param from_map where it would be looked at from; without, only what is left alone from all sides counts
+Rejection why_left_alone(std::span<const LeftAlone> left_alone, const Eigen::Vector2d& target_map,
+                         const std::optional<Eigen::Vector2d>& from_map, double radius_m);
 
 /// Another view from about the same place shows no more; one from elsewhere may.
 bool is_failed_view(std::span<const FailedView> failed_views, const Eigen::Vector2d& target_map,

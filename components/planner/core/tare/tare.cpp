@@ -28,18 +28,15 @@ bool is_goal(const Pose2& pose, const std::optional<Pose2>& goal) {
 }
 
 bool is_left_alone(const TourProblem& problem, Cell c) {
-  return why_left_alone(problem.left_alone, problem.grid.center_of(c), problem.radius_m) != Rejection::kNone;
-}
-
-bool has_failed_view(const TourProblem& problem, Cell from, Cell target) {
-  const PlanningGrid& grid = problem.grid;
-  return is_failed_view(problem.failed_views, grid.center_of(target), grid.center_of(from), problem.radius_m);
+  const Eigen::Vector2d p = problem.grid.center_of(c);
+  return why_left_alone(problem.left_alone, p, std::nullopt, problem.radius_m) != Rejection::kNone;
 }
 
 /// Why it is not to be viewed from there; kNone: it may be.
-Rejection why_not_viewed(const TourProblem& problem, const Viewpoint& viewpoint) {
-  const Rejection why = why_left_alone(problem.left_alone, problem.grid.center_of(viewpoint.target), problem.radius_m);
-  if (!has_failed_view(problem, viewpoint.cell, viewpoint.target)) return why;
+Rejection why_not_viewed(const TourProblem& problem, Cell from, Cell target) {
+  const Eigen::Vector2d p = problem.grid.center_of(target), from_map = problem.grid.center_of(from);
+  const Rejection why = why_left_alone(problem.left_alone, p, from_map, problem.radius_m);
+  if (!is_failed_view(problem.failed_views, p, from_map, problem.radius_m)) return why;
   return std::max(why, Rejection::kFailedView);
 }
 
@@ -136,7 +133,7 @@ std::array<std::vector<std::size_t>, kHeadings> covered_from(const TourProblem& 
     const Cell to = targets[i].cell;
     const double range_m = distance(from, to) * problem.grid.resolution_m();
     if (range_m < problem.viewpoints.min_distance_m || range_m > config.range_m) continue;
-    if (!is_in_sight(problem.grid, from, to) || has_failed_view(problem, from, to)) continue;
+    if (!is_in_sight(problem.grid, from, to) || why_not_viewed(problem, from, to) != Rejection::kNone) continue;
     const double bearing = std::atan2(to.y - from.y, to.x - from.x);
     for (std::size_t k = 0; k < kHeadings; ++k) {
       const double heading = 2.0 * std::numbers::pi / kHeadings * static_cast<double>(k);
@@ -229,7 +226,7 @@ std::optional<TourStop> stop_at(const TourProblem& problem, const Frontier& fron
   const auto rank = [&](const Viewpoint& v) { return is_goal(v.pose, problem.goal) ? 0.0 : v.cost_m; };
   Rejection lack = found.rejection;
   for (const Viewpoint& viewpoint : found.viewpoints) {
-    const Rejection why = why_not_viewed(problem, viewpoint);
+    const Rejection why = why_not_viewed(problem, viewpoint.cell, viewpoint.target);
     lack = std::max(lack, why);
     if (why != Rejection::kNone) continue;
     if (!best || rank(viewpoint) < rank(best->viewpoint)) best = TourStop{frontier.id, viewpoint};

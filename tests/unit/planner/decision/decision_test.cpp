@@ -217,6 +217,9 @@ TEST(Decide, KeepsItsGoalUnlessAnotherIsClearlyBetter) {
   ASSERT_TRUE(memory.goal);
   explorer.config.keep_factor = 10.0;
   EXPECT_FALSE(explorer.is_left(explorer.chosen(memory)));
+  explorer.config.method = Method::kPaper;
+  EXPECT_EQ(explorer.choose(memory).chosen, explorer.choose().chosen) << "the paper keeps nothing";
+  explorer.config.method = Method::kNearest;
   explorer.config.max_candidates = 1;
   EXPECT_FALSE(explorer.is_left(explorer.chosen(memory))) << "however many are nearer";
   explorer.config.max_candidates = 20;

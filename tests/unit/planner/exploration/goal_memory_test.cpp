@@ -31,14 +31,14 @@ time::Time after(double seconds) { return time::Time::from_seconds(seconds); }
 TEST(GoalMemory, LeavesAFailureAloneUntilItExpires) {
   GoalMemory memory({.expiry_s = 30.0});
   EXPECT_THAT(list(memory.left_alone(after(0.0))), IsEmpty());
-  memory.add_failure(kTarget, Rejection::kFailed, after(10.0));
+  memory.add_failure(kTarget, {}, after(10.0));
   EXPECT_THAT(list(memory.left_alone(after(39.0))), ElementsAre(kForNow));
   EXPECT_THAT(list(memory.left_alone(after(41.0))), IsEmpty());
 }
 
 TEST(GoalMemory, LeavesItAloneForGoodAfterThree) {
   GoalMemory memory({.max_failures = 3});
-  for (const double when : {0.0, 100.0, 200.0}) memory.add_failure(kTarget, Rejection::kFailed, after(when));
+  for (const double when : {0.0, 100.0, 200.0}) memory.add_failure(kTarget, {}, after(when));
   EXPECT_THAT(list(memory.left_alone(after(1e6))), ElementsAre(kForGood));
   EXPECT_FALSE(memory.forgive(after(201.0)));
   memory.clear();
@@ -49,8 +49,8 @@ TEST(GoalMemory, LeavesItAloneForGoodAfterThree) {
 TEST(GoalMemory, SaysWhetherViewsOrPathsHaveFailed) {
   for (const bool has_failed_path : {false, true}) {
     GoalMemory memory({.max_failures = 2});
-    memory.add_failure(kTarget, Rejection::kFailedView, after(0.0));
-    memory.add_failure(kTarget, has_failed_path ? Rejection::kFailed : Rejection::kFailedView, after(100.0));
+    memory.add_failure(kTarget, {Rejection::kFailedView}, after(0.0));
+    memory.add_failure(kTarget, {has_failed_path ? Rejection::kFailed : Rejection::kFailedView}, after(100.0));
     const Rejection why = has_failed_path ? Rejection::kFailed : Rejection::kFailedView;
     EXPECT_THAT(list(memory.left_alone(after(1e6))), ElementsAre(std::pair(kTarget, why)));
   }
@@ -58,7 +58,7 @@ TEST(GoalMemory, SaysWhetherViewsOrPathsHaveFailed) {
 
 TEST(GoalMemory, ForgivesWhatHasNotFailedForGood) {
   GoalMemory memory({});
-  memory.add_failure(kTarget, Rejection::kFailed, after(0.0));
+  memory.add_failure(kTarget, {}, after(0.0));
   EXPECT_TRUE(memory.forgive(after(1.0)));
   EXPECT_THAT(list(memory.left_alone(after(1.0))), IsEmpty());
   EXPECT_FALSE(memory.forgive(after(1.0))) << "nothing is left to forgive";
@@ -66,19 +66,64 @@ TEST(GoalMemory, ForgivesWhatHasNotFailedForGood) {
 
 TEST(GoalMemory, WhatLiesNearIsOneTarget) {
   GoalMemory memory({.radius_m = 0.75, .max_failures = 2});
-  memory.add_failure(kTarget, Rejection::kFailed, after(0.0));
-  memory.add_failure(kTarget + Eigen::Vector2d(0.5, 0.5), Rejection::kFailed, after(0.0));
+  memory.add_failure(kTarget, {}, after(0.0));
+  memory.add_failure(kTarget + Eigen::Vector2d(0.5, 0.5), {}, after(0.0));
   EXPECT_THAT(list(memory.left_alone(after(1e6))), ElementsAre(kForGood));
-  memory.add_failure(kTarget + Eigen::Vector2d(0.0, -0.8), Rejection::kFailed, after(0.0));
+  memory.add_failure(kTarget + Eigen::Vector2d(0.0, -0.8), {}, after(0.0));
   EXPECT_THAT(list(memory.left_alone(after(1e6))), ElementsAre(kForGood)) << "one failure elsewhere expires";
 }
 
 // Else it could fail as often again for each target beside it that has failed before.
 TEST(GoalMemory, AFailureCountsForAllTargetsThatAreNear) {
   GoalMemory memory({.radius_m = 0.75, .max_failures = 3});
-  for (const double x_m : {-0.7, 0.7, 0.0, -0.1, 0.1}) memory.add_failure({x_m, 0.0}, Rejection::kFailed, after(0.0));
+  for (const double x_m : {-0.7, 0.7, 0.0, -0.1, 0.1}) memory.add_failure({x_m, 0.0}, {}, after(0.0));
   EXPECT_THAT(list(memory.left_alone(after(1e6))),
               UnorderedElementsAre(given_up({-0.7, 0.0}), given_up({0.0, 0.0}), given_up({0.7, 0.0})));
+}
+
+TEST(GoalMemory, ForgetsWhereTheMapHasBecomeAnother) {
+  GoalMemory memory({.max_failures = 1});
+  memory.add_failure(kTarget, {.known_cells = 20}, after(0.0));
+  memory.leave_alone({9.0, 9.0}, after(1e9));
+  const auto known = [](int cells) { return [cells](const Eigen::Vector2d&) { return cells; }; };
+  memory.forget_changed(known(22), 3);
+  EXPECT_EQ(memory.left_alone(after(1.0)).size(), 2U);
+  memory.forget_changed(known(23), 3);
+  ASSERT_EQ(memory.left_alone(after(1.0)).size(), 1U);
+  EXPECT_EQ(memory.left_alone(after(1.0))[0].target_map.x(), 9.0) << "it has not failed";
+}
+
+TEST(GoalMemory, WhatFailedAdriftMaySucceedWhereSlamTracks) {
+  GoalMemory memory({.max_failures = 1});
+  memory.add_failure(kTarget, {.is_adrift = true}, after(0.0));
+  EXPECT_THAT(list(memory.left_alone(after(1.0), true)), ElementsAre(kForGood));
+  EXPECT_THAT(list(memory.left_alone(after(1.0), false)), IsEmpty());
+  memory.add_failure(kTarget, {.is_adrift = false}, after(2.0));
+  EXPECT_THAT(list(memory.left_alone(after(3.0), true)), ElementsAre(kForGood)) << "then it fails in all tiers";
+}
+
+TEST(GoalMemory, TriesWhatWasGivenUpOnceMoreFromAnotherSide) {
+  GoalMemory memory({.radius_m = 0.75, .max_failures = 2});
+  const Eigen::Vector2d east = kTarget + Eigen::Vector2d(2.0, 0.0), north = kTarget + Eigen::Vector2d(0.0, 2.0);
+  const auto why = [&](const Eigen::Vector2d& from_map) {
+    return why_left_alone(memory.left_alone(after(1e3)), kTarget, from_map, 0.75);
+  };
+  for (const double when : {0.0, 100.0}) memory.add_failure(kTarget, {.from_map = east}, after(when));
+  EXPECT_EQ(why(north), Rejection::kFailed);
+  EXPECT_TRUE(memory.forgive(after(1e3)));
+  EXPECT_EQ(why(east), Rejection::kFailed);
+  EXPECT_EQ(why(north), Rejection::kNone);
+  EXPECT_FALSE(memory.forgive(after(1e3))) << "once";
+  memory.add_failure(kTarget, {.from_map = north}, after(200.0));
+  EXPECT_EQ(why(east), Rejection::kFailed);
+  EXPECT_EQ(why(north), Rejection::kFailed);
+  EXPECT_FALSE(memory.forgive(after(1e3)));
+}
+
+TEST(GoalMemory, WhatWasOnlyLookedAtInVainGetsNoOtherChance) {
+  GoalMemory memory({.max_failures = 1});
+  memory.add_failure(kTarget, {.why = Rejection::kFailedView, .from_map = Eigen::Vector2d(0.0, 0.0)}, after(0.0));
+  EXPECT_FALSE(memory.forgive(after(100.0)));
 }
 
 TEST(GoalMemory, LeavingAloneIsNoFailure) {

@@ -12,7 +12,7 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kBlockedRadius_m = 0.2;       // what stops the robot nearer to each other is one
-constexpr int kChange_cells = 3;               // known around a target: what failed there may succeed now
+constexpr int kChange_cells = 5;               // known around a target: what failed there may succeed now
 constexpr double kLeastDecisionTime_s = 0.5;   // from one decision to the next, whatever happens
 constexpr double kBlindPatience_s = 2.0;       // without a pose, before it looks around for it
 constexpr int kBlindTurns = 2, kHeadings = 3;  // of such a look around: full turns, and poses of the path for each
@@ -198,10 +198,8 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
     return surroundings.known_cells(target_map, config_.memory.radius_m);
   };
   memory_.forget_changed(known_cells, kChange_cells);
-  if (goal_ && goal_->target_map) goal_->known_cells = known_cells(*goal_->target_map);
   for (const FailedView& view : failed_views_.judge(surroundings, report.now)) {
-    memory_.add_failure(view.target_map,
-                        {Rejection::kFailedView, view.from_map, is_adrift_, known_cells(view.target_map)}, report.now);
+    memory_.add_failure(view.target_map, {Rejection::kFailedView, view.from_map, is_adrift_}, report.now);
     ++failures_;
   }
   progress_.note(surroundings.explored_volume_m3(), report.robot->p_map);
@@ -298,7 +296,7 @@ void Explorer::add_failure(time::Time now) {
   if (!goal_->target_map) return;
   if (goal_->kind == CandidateKind::kGap) return taken_views_.push_back(goal_->pose);
   GoalMemory& memory = goal_->kind == CandidateKind::kRevisit ? revisited_ : memory_;
-  memory.add_failure(*goal_->target_map, {Rejection::kFailed, goal_->pose.p_map, is_adrift_, goal_->known_cells}, now);
+  memory.add_failure(*goal_->target_map, {Rejection::kFailed, goal_->pose.p_map, is_adrift_}, now);
 }
 
 std::vector<Eigen::Vector2d> Explorer::blocked_places(time::Time now) const {

@@ -22,12 +22,16 @@ void GoalMemory::add_failure(const Eigen::Vector2d& target_map, const Failure& f
     ++place.failures;
     place.worst = std::max(place.worst, failure.why);
     place.last = failure;
+    place.known_cells.reset();
   }
 }
 
 void GoalMemory::forget_changed(const std::function<int(const Eigen::Vector2d&)>& known_cells, int change) {
-  std::erase_if(places_, [&](const Place& place) {
-    return place.failures > 0 && known_cells(place.target_map) >= place.last.known_cells + change;
+  std::erase_if(places_, [&](Place& place) {
+    if (place.failures == 0) return false;
+    const int now = known_cells(place.target_map);
+    if (!place.known_cells) place.known_cells = now;
+    return now >= *place.known_cells + change;
   });
 }
 

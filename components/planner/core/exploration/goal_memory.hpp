@@ -22,7 +22,6 @@ struct Failure {
   Rejection why = Rejection::kFailed;                      ///< kFailedView or kFailed
   std::optional<Eigen::Vector2d> from_map = std::nullopt;  ///< where it was to be looked at from [m, map]
   bool is_adrift = false;                                  ///< slam reckoned by odometry alone
-  int known_cells = 0;                                     ///< around the target
 };
 
 /// Targets for which the robot set out, and failed: where, from which side, why, and under which circumstances.
@@ -35,7 +34,7 @@ class GoalMemory {
   /// Not a failure: the target is left alone until then, however it ends.
   void leave_alone(const Eigen::Vector2d& target_map, time::Time until);
   void add_failure(const Eigen::Vector2d& target_map, const Failure& failure, time::Time now);
-  /// Forgets targets around which this many cells more are known than when they failed last.
+  /// Forgets targets around which so many more cells are known than when this was called first after their last failure.
   void forget_changed(const std::function<int(const Eigen::Vector2d& target_map)>& known_cells, int change);
   /// Targets to leave alone: for now, or for good, because views of it, or paths to it, have failed. What failed adrift
   /// counts only while the robot is.
@@ -51,6 +50,7 @@ class GoalMemory {
     int failures = 0;                          ///< here, and within the radius since
     Rejection worst = Rejection::kFailedView;  ///< of these
     Failure last = {};
+    std::optional<int> known_cells = std::nullopt;  ///< around it, after that
     bool has_last_chance = false;  ///< from another side than that of the last failure
     time::Time until{};
   };

@@ -83,9 +83,10 @@ TEST(GoalMemory, AFailureCountsForAllTargetsThatAreNear) {
 
 TEST(GoalMemory, ForgetsWhereTheMapHasBecomeAnother) {
   GoalMemory memory({.max_failures = 1});
-  memory.add_failure(kTarget, {.known_cells = 20}, after(0.0));
+  memory.add_failure(kTarget, {}, after(0.0));
   memory.leave_alone({9.0, 9.0}, after(1e9));
   const auto known = [](int cells) { return [cells](const Eigen::Vector2d&) { return cells; }; };
+  memory.forget_changed(known(20), 3);
   memory.forget_changed(known(22), 3);
   EXPECT_EQ(memory.left_alone(after(1.0)).size(), 2U);
   memory.forget_changed(known(23), 3);

@@ -66,6 +66,7 @@ const std::vector<Lines> kWorlds = {
 struct Start {
   explicit Start(unsigned seed) : lines(kWorlds[seed % kWorlds.size()]) {
     std::mt19937 random(seed);
+    has_closed_rooms = seed % kWorlds.size() == 2;
     const auto below = [&](std::size_t end) { return static_cast<int>(random() % end); };
     do cell = {below(lines.front().size()), below(lines.size())};
     while (at(cell) != '.');
@@ -87,6 +88,7 @@ struct Start {
   Cell cell{0, 0};
   double yaw_rad = 0.0;
   std::set<Cell> reachable;
+  bool has_closed_rooms = false;
 };
 
 class MovedStart : public testing::TestWithParam<std::pair<Method, unsigned>> {};
@@ -99,13 +101,14 @@ TEST_P(MovedStart, IsExploredToTheEnd) {
   world.decision_config.method = method;
   world.explorer.start();
   world.run(kLongestRun_s);
-  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  const bool may_give_up = start.has_closed_rooms && world.explorer.state() == State::kGaveUp;
+  EXPECT_TRUE(may_give_up || world.explorer.state() == State::kDone) << world.explorer.reason();
   const auto known = std::count_if(start.reachable.begin(), start.reachable.end(),
                                    [&](Cell c) { return world.surroundings.grid().state(c) == mapping::kFree; });
   EXPECT_GE(static_cast<double>(known), kLeastShare * static_cast<double>(start.reachable.size()))
       << "from " << start.cell.x << ", " << start.cell.y;
   EXPECT_LE(world.longest_idle_s, kLongestIdleAnyStart_s);
-  EXPECT_LE(world.most_failures(), 3);
+  EXPECT_LE(world.most_failures(), test::kMostFailures);
   EXPECT_LE(world.most_failed_views(), 3);
 }
 

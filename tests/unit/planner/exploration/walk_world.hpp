@@ -18,6 +18,8 @@
 
 namespace lapis::planner::test {
 
+inline constexpr int kMostFailures = 4;  ///< of a target: three, and one from another side
+
 /// A building drawn as text ('#' wall, '.' floor, 'G' a wall that is not seen, 'W' a window: seen through, not passed,
 /// 'O' an obstacle that only the obstacle layer knows, 'N' one that it knows only while the robot is near and that
 /// hides what is there from the map, 'D' a door that looks closed from farther than a metre, though there is a view of

@@ -6,20 +6,6 @@
 #include "common/files/atomic_file.hpp"
 
 namespace lapis::planner {
-namespace {
-
-const char* name_of(CandidateKind kind) {
-  switch (kind) {
-    case CandidateKind::kFrontier: return "frontier";
-    case CandidateKind::kAlternative: return "alternative";
-    case CandidateKind::kCloserLook: return "closer_look";
-    case CandidateKind::kGap: return "gap";
-    case CandidateKind::kRevisit: return "revisit";
-  }
-  return "";
-}
-
-}  // namespace
 
 DecisionLog::DecisionLog(const std::string& path, const std::vector<double>& compared_priors) {
   if (const auto problem = files::set_aside(path)) throw std::runtime_error(*problem);

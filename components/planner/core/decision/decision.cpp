@@ -162,6 +162,17 @@ Decision choose(const Situation& s, std::vector<Candidate> proposals, const Memo
 
 }  // namespace
 
+const char* name_of(CandidateKind kind) {
+  switch (kind) {
+    case CandidateKind::kFrontier: return "frontier";
+    case CandidateKind::kAlternative: return "alternative";
+    case CandidateKind::kCloserLook: return "closer_look";
+    case CandidateKind::kGap: return "gap";
+    case CandidateKind::kRevisit: return "revisit";
+  }
+  return "";
+}
+
 std::string Leftover::text() const {
   std::string text;
   for (const auto& [reason, metres] : length_m) {

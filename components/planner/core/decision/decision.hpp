@@ -68,6 +68,9 @@ enum class CandidateKind {
   kRevisit,      ///< the best path to an old key-frame
 };
 
+/// "frontier" and so on, as in decisions.csv.
+const char* name_of(CandidateKind kind);
+
 /// Loop closure that a path may bring.
 struct ExpectedLoop {
   Eigen::Vector3d node_map{0, 0, 0};      ///< hallucinated key-frame that sees most of the place [m]

@@ -24,6 +24,8 @@ using controller::PlanarPose;
 using geometry::Pose;
 
 constexpr int kTicksPerView = 3;  // of the camera's rate
+// Of a path through known space: at its end, and the time after which it is left.
+constexpr double kArrival_m = 0.4, kLongestWait_s = 10.0, kSlowest_m_s = 0.15;
 
 double cpu_s() {
   timespec t{};
@@ -108,6 +110,9 @@ class Course {
     note_choice(nullptr);
     exploration_.state = explorer_.state();
     for (const Candidate& candidate : decision_.candidates) note_left(candidate);
+    explorer_.stop();
+    follow();
+    for (int i = 0; i < setting_.known_paths; ++i) drive_through_known(static_cast<std::uint64_t>(i));
     return std::move(exploration_);
   }
 
@@ -164,9 +169,7 @@ class Course {
     surroundings_.update_obstacles(to_obstacles(obstacles_.grid()), now());
     if (!explorer_.step(report, &surroundings_)) return;
     const double before_s = cpu_s();
-    decision_ = decide({surroundings_.grid(), surroundings_.frontiers(), surroundings_.field(), view_, T_base_camera_,
-                        nullptr, nullptr, here},
-                       explorer_.memory(now()), setting_.planner.decision);
+    decision_ = decide(situation(here), explorer_.memory(now()), setting_.planner.decision);
     exploration_.decision_cpu_s += cpu_s() - before_s;
     ++exploration_.decisions;
     due_ = tick_ + setting_.planner.decision_latency_frames;
@@ -181,10 +184,57 @@ class Course {
     controller_.note_planner(now());
     if (explorer_.path_number() == followed_) return;
     followed_ = explorer_.path_number();
-    std::vector<PlanarPose> path;
-    for (const Pose2& p : explorer_.path()) path.push_back(controller::planar_pose(p.p_map, p.yaw_rad));
     if (explorer_.is_turn()) throw std::runtime_error("the planner looks for a pose that it has");
+    follow(explorer_.path());
+  }
+
+  void follow(const std::vector<Pose2>& poses) {
+    std::vector<PlanarPose> path;
+    for (const Pose2& p : poses) path.push_back(controller::planar_pose(p.p_map, p.yaw_rad));
     controller_.set_path(std::move(path), "the planner's path is empty");
+  }
+
+  void drive_through_known(std::uint64_t draw) {
+    surroundings_.update_map(map_, std::exchange(changed_, {}));
+    const Pose2 here = pose();
+    const PlanningGrid& grid = surroundings_.grid();
+    const DecisionConfig& config = setting_.planner.decision;
+    const CostTree tree = grow_cost_tree(grid, config.path, {grid.cell_of(here.p_map)});
+    const Cell goal = tree.reached()[mapping::mix_bits(draw) % tree.reached().size()];
+    std::vector<Eigen::Vector2d> points = points_of(grid, straightened(grid, config.path, tree.path_to(goal)));
+    if (points.size() < 2) return;
+    points.front() = here.p_map;
+    const Eigen::Vector2d last = points.back() - points[points.size() - 2];
+    const double yaw_rad = std::atan2(last.y(), last.x());
+    DrivenPath path;
+    path.begin = now();
+    path.cost_m = *tree.cost_m(goal);
+    path.promised_nats = promise(poses_along(points, config.view_spacing_m, yaw_rad));
+    const double before_nats = surroundings_.information_nats();
+    follow(poses_along(points, setting_.planner.explorer.path_spacing_m, yaw_rad));
+    const double longest_s = kLongestWait_s + path.cost_m / kSlowest_m_s;
+    while ((pose().p_map - points.back()).norm() > kArrival_m && (now() - path.begin).seconds() < longest_s) step();
+    path.end = now();
+    surroundings_.update_map(map_, std::exchange(changed_, {}));
+    path.gained_nats = surroundings_.information_nats() - before_nats;
+    exploration_.known_paths.push_back(path);
+  }
+
+  double promise(const std::vector<Pose2>& path) const {
+    ViewPath views;
+    for (const Pose2& p : path) views.push_back(camera_at(situation(p), p));
+    return path_information(surroundings_.field(), view_, views);
+  }
+
+  Situation situation(const Pose2& here) const {
+    return {surroundings_.grid(),
+            surroundings_.frontiers(),
+            surroundings_.field(),
+            view_,
+            T_base_camera_,
+            nullptr,
+            nullptr,
+            here};
   }
 
   void drive() {

@@ -17,6 +17,7 @@ struct ExplorationSetting {
   PlannerComponentConfig planner;
   controller::ControllerComponentConfig controller;
   double longest_s = 300.0;  ///< of simulated time
+  int known_paths = 0;       ///< driven at the end, through what is known by then, to places that are drawn
 };
 
 /// What is known at a time.
@@ -35,6 +36,7 @@ struct Exploration {
   int decisions = 0;
   double decision_cpu_s = 0.0;
   std::vector<DrivenPath> paths;
+  std::vector<DrivenPath> known_paths;
   std::map<std::string, double> left_m;  ///< length of the frontiers of the last decision, by why they were not judged
 
   /// When this share was explored [s]; infinite: never.

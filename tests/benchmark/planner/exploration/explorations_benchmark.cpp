@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <fstream>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -22,12 +24,15 @@ struct Options {
   std::vector<int> seeds{1};
   std::vector<std::string> overrides;
   double longest_s = 300.0;
-  bool with_moments = false, with_paths = false;
+  bool with_moments = false;
+  std::string paths_file;
+  int known_paths = 0;
 };
 
 ExplorationSetting setting_of(const Options& options, const std::string& scene, int seed, const std::string& method) {
   ExplorationSetting setting;
   setting.longest_s = options.longest_s;
+  setting.known_paths = options.known_paths;
   robot::RobotDescription robot;
   robot.camera.width = 320;
   robot.camera.height = 180;
@@ -54,12 +59,27 @@ const char* name_of(State state) {
   return state == State::kFailed ? "FAILED" : "EXPLORING";
 }
 
-void print_paths(const Exploration& e) {
-  for (const DrivenPath& path : e.paths) {
-    std::printf("    path %6.1f to %6.1f s  cost %5.1f m, rest %5.1f; promised %7.1f nats, rest %7.1f; gained %7.1f\n",
-                path.begin.seconds(), path.end.seconds(), path.cost_m, path.rest_m, path.promised_nats, path.rest_nats,
-                path.gained_nats);
-  }
+/// Closed without a name.
+std::ofstream begin_paths(const std::string& file) {
+  std::ofstream paths;
+  if (file.empty()) return paths;
+  paths.open(file);
+  paths << "scene,method,seed,begin_s,ended_kind,ended_s,ended_cost_m,ended_rest_m,ended_promised_nats,ended_rest_nats,"
+           "ended_gained_nats\n";
+  if (!paths) throw std::runtime_error(file + " cannot be written");
+  return paths;
+}
+
+void write_paths(const Exploration& e, const std::string& of, std::ofstream& paths) {
+  if (!paths.is_open()) return;
+  const auto write = [&](const DrivenPath& path, const std::string& kind) {
+    paths << of << ',' << path.begin.seconds() << ',' << kind << ',' << (path.end - path.begin).seconds() << ','
+          << path.cost_m << ',' << path.rest_m << ',' << path.promised_nats << ',' << path.rest_nats << ','
+          << path.gained_nats << '\n';
+  };
+  for (const DrivenPath& path : e.paths) write(path, name_of(path.kind));
+  for (const DrivenPath& path : e.known_paths) write(path, "known");
+  paths.flush();
 }
 
 void print_moments(const char* what, const std::vector<ExplorationMoment>& moments) {
@@ -78,12 +98,12 @@ void print(const Exploration& e, const Options& options) {
       e.path_m, e.contacts.size(), e.decisions, 1e3 * e.decision_cpu_s / std::max(e.decisions, 1));
   for (const auto& [reason, length_m] : e.left_m) std::printf(" %.1f m %s;", length_m, reason.c_str());
   std::printf("\n");
-  if (options.with_paths) print_paths(e);
   print_moments("contact", e.contacts);
   if (options.with_moments) print_moments("       ", e.moments);
 }
 
 int run(const Options& options) {
+  std::ofstream paths = begin_paths(options.paths_file);
   bool are_complete = true;
   for (const std::string& scene : options.scenes) {
     for (const int seed : options.seeds) {
@@ -91,7 +111,9 @@ int run(const Options& options) {
         std::printf("%-13s %3d %-8s | ", scene.c_str(), seed, method.c_str());
         try {
           const ExplorationSetting setting = setting_of(options, scene, seed, method);
-          print(explore(simulator::open_world(setting.simulated), setting), options);
+          const Exploration exploration = explore(simulator::open_world(setting.simulated), setting);
+          print(exploration, options);
+          write_paths(exploration, scene + "," + method + "," + std::to_string(seed), paths);
         } catch (const std::exception& error) {
           std::printf("failed: %s\n", error.what());
           are_complete = false;
@@ -122,7 +144,10 @@ int main(int argc, char** argv) {
   app.add_option("--set", options.overrides,
                  "planner.KEY=VALUE, controller.KEY=VALUE, robot.KEY=VALUE, simulator.KEY=VALUE");
   app.add_flag("--moments", options.with_moments, "also a row for each second");
-  app.add_flag("--paths", options.with_paths, "also a row for each path: what it promised, and what it gave");
+  app.add_option("--paths", options.paths_file,
+                 "a CSV file: what each path promised, and what it gave (launch_scripts/promise_table.py)");
+  app.add_option("--known", options.known_paths, "paths that are driven at the end, through what is known by then")
+      ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
   try {
     return lapis::planner::benchmark::run(options);

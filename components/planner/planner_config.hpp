@@ -176,8 +176,10 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "without moving a goal has failed [s]");
   field("slowest_m_s", c.explorer.slowest_m_s, config::in_range(0.01, 5.0),
         "a path that takes longer than at this speed has failed [m/s]");
-  field("stall_m", c.explorer.stall_m, config::in_range(1.0, 1000.0),
+  field("stall_m", c.explorer.stall.metres, config::in_range(1.0, 1000.0),
         "driven without seeing anything new, besides twice the longest path meanwhile, before a goal has failed [m]");
+  field("stall_s", c.explorer.stall.seconds, config::in_range(1.0, 3600.0),
+        "the same in time, besides that of twice the longest path at 0.25 m/s [s]");
   field("settle_s", c.explorer.settle_s, config::in_range(0.0, 60.0),
         "after arriving, until the map shows whether the view has failed [s]");
   field("max_drift_m", c.explorer.max_drift_m, config::in_range(0.0, 100.0),

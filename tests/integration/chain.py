@@ -53,8 +53,8 @@ FILES = ("trajectory_estimate.txt", "trajectory_ground_truth.txt", "keyframes.tx
          "figures/trajectory.png", "figures/pose_graph.png", "figures/coverage.png", "figures/errors.png",
          "figures/progress.png")
 FILES_OF_LABELS = ("figures/class_iou.png",)
-FILES_OF_TRUTH = tuple(f"ground_truth/{name}" for name in ("mesh.lapis", "flood.lapis", "ideal.lapis", "classes.json",
-                                                           "rooms.json", "navmap.png", "navmap.yaml"))
+FILES_OF_TRUTH = tuple(f"ground_truth/{name}" for name in ("mesh.lapis", "with_margin.lapis", "flood.lapis", "ideal.lapis",
+                                                           "classes.json", "rooms.json", "navmap.png", "navmap.yaml"))
 MEASURED_BY_THE_CLOCK = {"real_time_factor", "wall_time_s", "cpu_ms_per_frame", "peak_rss_mb", "decision_time_p50_s",
                          "decision_time_p95_s"}
 SKIPPED = 77  # SKIP_RETURN_CODE of ctest

@@ -13,7 +13,6 @@ namespace {
 
 using nlohmann::ordered_json;
 
-
 template <class T>
 ordered_json value_or_null(const std::optional<T>& value) {
   if (!value) return nullptr;

@@ -57,7 +57,7 @@ void mark_stalls(std::vector<TimelineRow>& rows) {
     while (from + 1 < i && rows[i].time_s - rows[from + 1].time_s >= kStallWindow_s) ++from;
     if (!share_of(rows[from]) || rows[i].time_s - rows[from].time_s < kStallWindow_s) continue;
     if (*share_of(rows[i]) - *share_of(rows[from]) >= kStallGrowth) continue;
-    for (std::size_t k = from + 1; k <= i; ++k) rows[k].is_stalled = true;
+    for (std::size_t k = from + 1; k <= i; ++k) rows[k].is_stalled = share_of(rows[k]).has_value();
   }
 }
 

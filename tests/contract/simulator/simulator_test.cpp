@@ -189,7 +189,7 @@ TEST_F(SimulatorContract, ACountedCommandActsFromTheNextFrameButOneOnAndTheWatch
 /// counted. What an earlier run's planner has said means nothing.
 TEST_F(SimulatorContract, EndsWhenThePlannerHasEnded) {
   using namespace lapis_msgs::msg::PlannerStatus_Constants;
-  for (const auto& [state, name] : {std::pair{STATE_DONE, "DONE"}, {STATE_FAILED, "FAILED"}}) {
+  for (const auto& [state, name] : {std::pair{STATE_DONE, "DONE"}, {STATE_GAVE_UP, "GAVE_UP"}, {STATE_FAILED, "FAILED"}}) {
     TopicProbe probe;
     HandMadeParticipant planner(probe, "planner");
     auto& status = probe.advertise(topics::kPlannerStatus);
@@ -529,7 +529,8 @@ TEST_F(SimulatorContract, ToolsWriteWhatTheyName) {
     EXPECT_TRUE(exists(name)) << name;
   run({"--ground-truth", (folder.path() / "truth").string()});
   for (const char* size : {"0.25", "0.10", "0.05"}) {
-    for (const char* name : {"mesh.lapis", "flood.lapis", "classes.json", "rooms.json", "navmap.png", "navmap.yaml"}) {
+    for (const char* name : {"mesh.lapis", "with_margin.lapis", "flood.lapis", "classes.json", "rooms.json",
+                             "navmap.png", "navmap.yaml"}) {
       EXPECT_TRUE(exists(std::string("truth/") + size + "/" + name)) << size << name;
     }
   }

@@ -136,7 +136,7 @@ Leftover leftover_of(const Situation& s, const std::vector<Candidate>& candidate
   double left_m = 0.0, to_blame_m = 0.0;
   for (const auto& [id, reason] : reasons_by_frontier(candidates)) {
     const auto frontier = s.frontiers.frontiers().find(id);
-    if (frontier == s.frontiers.frontiers().end()) continue;  // a revisit
+    if (frontier == s.frontiers.frontiers().end()) continue;  // a gap or a revisit
     const double length_m = frontier->second.length_m;
     leftover.length_m[reason] += length_m;
     left_m += length_m;

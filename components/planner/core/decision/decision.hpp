@@ -123,9 +123,10 @@ struct Decision {
 /// What is not to be driven to, and what is being driven to.
 struct Memory {
   std::vector<LeftAlone> left_alone;  ///< frontiers near these
-  std::vector<LeftAlone> revisited;   ///< old places
+  std::vector<LeftAlone> places;      ///< of old key-frames and for views of gaps, not to be driven to
   std::vector<FailedView> failed_views;
   std::vector<Pose2> taken_views;  ///< of gaps: not to be taken again
+  bool looks_at_gaps = false;      ///< when no frontier can be driven to
   double radius_m = 0.75;          ///< what lies nearer to such places is meant, too
   std::optional<Pose2> goal;       ///< current one
 };

@@ -12,7 +12,9 @@ namespace {
 
 constexpr int kGapHeadings = 8;
 constexpr int kCoarseColumns = 16, kCoarseRows = 9;  // rays of a coarse image
-constexpr std::size_t kMostViews = 20;               // that are looked at more closely
+constexpr std::size_t kMostViews = 20;               // that are proposed
+constexpr std::size_t kMostLooks = 200;              // that are looked at more closely
+constexpr double kAhead_m = 1.0;                     // what is looked at, for who remembers targets
 constexpr double kOverhead_m = 2.0;                  // what a view costs besides its path
 constexpr double kSameView_m = 0.5, kSameView_rad = 0.4;
 
@@ -39,48 +41,56 @@ std::vector<double> promises(const Situation& s, const View& view, const std::ve
   return path_information(s.field, view, std::span<const ViewPath>(paths));
 }
 
-/// Those with the most information for their path; what is being driven to first.
-std::vector<Viewpoint> most_promising(const Situation& s, const std::vector<Viewpoint>& viewpoints,
-                                      const Memory& memory) {
+/// The most information for the path first, but what is being driven to before all.
+std::vector<Viewpoint> ranked(const Situation& s, const std::vector<Viewpoint>& viewpoints, const Memory& memory) {
   ViewConfig coarse = s.view.config();
   coarse.columns = kCoarseColumns;
   coarse.rows = kCoarseRows;
   const std::vector<double> nats = promises(s, View(coarse), viewpoints);
-  std::vector<std::pair<double, std::size_t>> ranked;
+  std::vector<std::pair<double, std::size_t>> order;
   for (std::size_t i = 0; i < viewpoints.size(); ++i) {
     const bool is_goal = memory.goal && is_taken(viewpoints[i].pose, {&*memory.goal, 1});
     const double worth = nats[i] / (viewpoints[i].cost_m + kOverhead_m);
-    ranked.emplace_back(is_goal ? -std::numeric_limits<double>::infinity() : -worth, i);
+    order.emplace_back(is_goal ? -std::numeric_limits<double>::infinity() : -worth, i);
   }
-  std::sort(ranked.begin(), ranked.end());
-  std::vector<Viewpoint> best;
-  for (std::size_t k = 0; k < std::min(kMostViews, ranked.size()); ++k) best.push_back(viewpoints[ranked[k].second]);
-  return best;
+  std::sort(order.begin(), order.end());
+  std::vector<Viewpoint> sorted;
+  for (const auto& entry : order) sorted.push_back(viewpoints[entry.second]);
+  return sorted;
+}
+
+/// Of the places that have not failed.
+std::vector<Viewpoint> all_views(const Situation& s, const CostTree& tree, const Memory& memory, double spacing_m) {
+  std::vector<Viewpoint> views;
+  for (const Cell& c : places(s.grid, tree, spacing_m)) {
+    const Eigen::Vector2d place_map = s.grid.center_of(c);
+    if (why_left_alone(memory.places, place_map, std::nullopt, memory.radius_m) != Rejection::kNone) continue;
+    for (int i = 0; i < kGapHeadings; ++i) {
+      const double yaw_rad = 2.0 * std::numbers::pi * i / kGapHeadings;
+      const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));
+      const Viewpoint view{c, {place_map, yaw_rad}, s.grid.cell_of(place_map + kAhead_m * ahead), *tree.cost_m(c)};
+      if (!is_taken(view.pose, memory.taken_views)) views.push_back(view);
+    }
+  }
+  return views;
 }
 
 }  // namespace
 
 bool is_taken(const Pose2& view, std::span<const Pose2> taken) {
   return std::any_of(taken.begin(), taken.end(), [&](const Pose2& other) {
-    return (other.p_map - view.p_map).norm() < kSameView_m &&
-           turn_between(other.yaw_rad, view.yaw_rad) < kSameView_rad;
+    return (other.p_map - view.p_map).norm() < kSameView_m && turn_between(other.yaw_rad, view.yaw_rad) < kSameView_rad;
   });
 }
 
 std::vector<Viewpoint> gap_views(const Situation& s, const CostTree& tree, const Memory& memory,
                                  const GapConfig& config) {
-  std::vector<Viewpoint> all;
-  for (const Cell& c : places(s.grid, tree, config.spacing_m)) {
-    for (int i = 0; i < kGapHeadings; ++i) {
-      const Pose2 pose{s.grid.center_of(c), 2.0 * std::numbers::pi * i / kGapHeadings};
-      if (!is_taken(pose, memory.taken_views)) all.push_back({c, pose, c, *tree.cost_m(c)});
-    }
-  }
-  const std::vector<Viewpoint> best = most_promising(s, all, memory);
-  const std::vector<double> nats = promises(s, s.view, best);
+  std::vector<Viewpoint> candidates = ranked(s, all_views(s, tree, memory, config.spacing_m), memory);
+  candidates.resize(std::min(candidates.size(), kMostLooks));
+  const std::vector<double> nats = promises(s, s.view, candidates);
   std::vector<Viewpoint> views;
-  for (std::size_t i = 0; i < best.size(); ++i) {
-    if (nats[i] >= config.least_nats) views.push_back(best[i]);
+  for (std::size_t i = 0; i < candidates.size() && views.size() < kMostViews; ++i) {
+    if (nats[i] >= config.least_nats) views.push_back(candidates[i]);
   }
   return views;
 }

@@ -10,8 +10,8 @@ namespace lapis::planner {
 
 /// Views for what no frontier of the floor plan asks for: ceilings, what stands behind or above something, floors that
 /// were passed at the edge of an image. Of all places that can be reached, one for each square of GapConfig::spacing_m,
-/// and kGapHeadings headings each, those that promise most for their path, by a coarse image; of these, the ones that
-/// promise GapConfig::least_nats by a whole one. The target is the place itself.
+/// and eight headings each, 20 of those that promise GapConfig::least_nats: the first ones by what a coarse image
+/// promises for the path to it. The target lies a metre ahead.
 /// @param tree from the robot's cell
 std::vector<Viewpoint> gap_views(const Situation& situation, const CostTree& tree, const Memory& memory,
                                  const GapConfig& config);

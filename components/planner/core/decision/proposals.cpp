@@ -95,7 +95,7 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
 
 void add_gap_views(const Situation& s, const CostTree& tree, const Memory& memory, const DecisionConfig& config,
                    std::vector<Candidate>& candidates) {
-  if (config.gaps.least_nats <= 0.0) return;
+  if (!memory.looks_at_gaps || config.gaps.least_nats <= 0.0) return;
   for (const Viewpoint& view : gap_views(s, tree, memory, config.gaps))
     candidates.emplace_back(candidate_at(s, tree, 0, view, config)).kind = CandidateKind::kGap;
 }
@@ -242,7 +242,7 @@ void add_alternatives(const Situation& s, const CostTree& tree, const std::vecto
                       const DecisionConfig& config, std::vector<Candidate>& candidates) {
   std::map<std::uint32_t, std::size_t> nearest;  // by frontier
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i].is_open()) continue;
+    if (!candidates[i].is_open() || candidates[i].kind == CandidateKind::kGap) continue;
     const auto [known, is_new] = nearest.try_emplace(candidates[i].frontier, i);
     if (!is_new && candidates[i].value.cost_m < candidates[known->second].value.cost_m) known->second = i;
   }
@@ -260,7 +260,7 @@ void add_revisits(const Situation& s, const CostTree& tree, std::vector<OldPlace
     const Viewpoint viewpoint{place.cell, {s.grid.center_of(place.cell), place.pose.yaw_rad}, place.cell, 0.0};
     Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, 0, viewpoint, config));
     candidate.kind = CandidateKind::kRevisit;
-    candidate.rejection = why_left_alone(memory.revisited, candidate.target_map, std::nullopt, memory.radius_m);
+    candidate.rejection = why_left_alone(memory.places, candidate.target_map, std::nullopt, memory.radius_m);
   }
 }
 

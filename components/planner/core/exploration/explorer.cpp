@@ -28,6 +28,12 @@ GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
 
 bool is_of_frontier(CandidateKind kind) { return kind != CandidateKind::kGap && kind != CandidateKind::kRevisit; }
 
+bool is_any_left_alone(const Decision& decision) {
+  return std::any_of(decision.candidates.begin(), decision.candidates.end(), [](const Candidate& c) {
+    return c.rejection >= Rejection::kFailedView && c.rejection <= Rejection::kLeftAlone;
+  });
+}
+
 bool has_ended(State state) { return state == State::kDone || state == State::kGaveUp || state == State::kFailed; }
 
 std::string purpose_of(const Candidate& chosen) {
@@ -48,7 +54,7 @@ std::vector<Pose2> turns_on_the_spot(bool is_to_the_left) {
 }  // namespace
 
 Explorer::Explorer(const ExplorerConfig& config)
-    : config_(config), memory_(config.memory), revisited_(config.memory), progress_(config.stall_m),
+    : config_(config), memory_(config.memory), revisited_(config.memory), progress_(config.stall),
       blocked_(memory_of_blocked(config.memory)) {}
 
 void Explorer::start() {
@@ -62,6 +68,7 @@ void Explorer::start() {
     losses_.clear();
   }
   progress_.begin_anew();
+  looks_at_gaps_ = false;
   empty_decisions_ = 0;
   nothing_since_.reset();
   lost_at_.reset();
@@ -83,8 +90,10 @@ bool Explorer::pause() {
 
 void Explorer::return_home() {
   drop_goal();
-  end_ = State::kDone;
-  end_reason_.clear();
+  if (state_ != State::kGaveUp) {
+    end_ = State::kDone;
+    end_reason_.clear();
+  }
   enter(State::kReturning, "asked to return");
 }
 
@@ -96,7 +105,8 @@ void Explorer::forget_map() {
   nothing_since_.reset();
   failed_views_.clear();
   taken_views_.clear();
-  progress_ = ProgressWatch(config_.stall_m);
+  progress_ = ProgressWatch(config_.stall);
+  looks_at_gaps_ = false;
   losses_.clear();
   awaited_.clear();
   looks_again_ = false;
@@ -197,12 +207,13 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   const auto known_cells = [&](const Eigen::Vector2d& target_map) {
     return surroundings.known_cells(target_map, config_.memory.radius_m);
   };
-  memory_.forget_changed(known_cells, kChange_cells);
+  for (const Eigen::Vector2d& target_map : memory_.forget_changed(known_cells, kChange_cells))
+    failed_views_.forget(target_map, config_.memory.radius_m);
   for (const FailedView& view : failed_views_.judge(surroundings, report.now)) {
     memory_.add_failure(view.target_map, {Rejection::kFailedView, view.from_map, is_adrift_}, report.now);
     ++failures_;
   }
-  progress_.note(surroundings.explored_volume_m3(), report.robot->p_map);
+  progress_.note(surroundings.explored_volume_m3(), report.robot->p_map, report.now);
   may_change_ = surroundings.grid().has_passing_obstacles();
   awaited_ = surroundings.awaited_targets();
   if (awaited_.empty()) looks_again_ = false;
@@ -229,7 +240,6 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
 
 // Going to and fro, or after what is never seen, has to end whatever a method promises itself of it.
 void Explorer::note_stall(time::Time now) {
-  ++failures_;
   add_failure(now);
   progress_.begin_anew();
   reason_ = "nothing new was seen for long";
@@ -242,7 +252,9 @@ bool Explorer::is_due(time::Time now) const {
 
 void Explorer::note_arrival(time::Time now) {
   if (!goal_->target_map) return;
-  if (!is_of_frontier(goal_->kind)) return add_failure(now);  // not for ever
+  if (goal_->kind == CandidateKind::kGap) return taken_views_.push_back(goal_->pose);
+  if (goal_->kind == CandidateKind::kRevisit)  // not for ever
+    return revisited_.add_failure(*goal_->target_map, {.is_adrift = is_adrift_}, now);
   await({*goal_->target_map, goal_->pose.p_map}, now, config_.settle_s);
 }
 
@@ -255,7 +267,7 @@ void Explorer::note_vanished(const Decision& decision, time::Time now) {
   });
   if (goal_->kind == CandidateKind::kCloserLook && is_in_sight) return;
   const bool is_there = std::any_of(decision.candidates.begin(), decision.candidates.end(), [&](const Candidate& c) {
-    return (c.is_open() || c.rejection == Rejection::kOutranked) &&
+    return (c.is_open() || c.rejection == Rejection::kOutranked) && is_of_frontier(c.kind) &&
            (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
   });
   if (!is_there) await({*goal_->target_map, robot_.p_map}, now, config_.memory.expiry_s);
@@ -283,7 +295,6 @@ bool Explorer::stands_still(const Report& report) {
 
 // The target is left alone, and paths no longer lead through what stopped the robot.
 void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
-  ++failures_;
   add_failure(report.now);
   const auto place = place_ahead(path_, *report.robot);
   if (!place) return;
@@ -291,17 +302,20 @@ void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
   surroundings.set_blocked(blocked_places(report.now));
 }
 
-/// Of the goal. An old place or a gap that cannot be had says nothing of a frontier beside it.
+/// Of the goal. A place that cannot be had, of an old key-frame or for a view of gaps, says nothing of a frontier
+/// beside it.
 void Explorer::add_failure(time::Time now) {
   if (!goal_->target_map) return;
-  if (goal_->kind == CandidateKind::kGap) return taken_views_.push_back(goal_->pose);
-  GoalMemory& memory = goal_->kind == CandidateKind::kRevisit ? revisited_ : memory_;
-  memory.add_failure(*goal_->target_map, {Rejection::kFailed, goal_->pose.p_map, is_adrift_}, now);
+  ++failures_;
+  const bool is_place = !is_of_frontier(goal_->kind);
+  GoalMemory& memory = is_place ? revisited_ : memory_;
+  memory.add_failure(is_place ? goal_->pose.p_map : *goal_->target_map,
+                     {Rejection::kFailed, goal_->pose.p_map, is_adrift_}, now);
 }
 
 std::vector<Eigen::Vector2d> Explorer::blocked_places(time::Time now) const {
   std::vector<Eigen::Vector2d> places_map;
-  for (const LeftAlone& place : blocked_.left_alone(now)) places_map.push_back(place.target_map);
+  for (const LeftAlone& place : blocked_.left_alone(now, is_adrift_)) places_map.push_back(place.target_map);
   return places_map;
 }
 
@@ -311,7 +325,8 @@ Memory Explorer::memory(time::Time now) const {
   for (const Eigen::Vector2d& target_map : awaited_) {
     if (!looks_again_) memory.left_alone.push_back({target_map});
   }
-  memory.revisited = revisited_.left_alone(now);
+  memory.places = revisited_.left_alone(now, is_adrift_);
+  memory.looks_at_gaps = looks_at_gaps_;
   memory.failed_views = failed_views_.all();
   memory.taken_views = taken_views_;
   memory.radius_m = config_.memory.radius_m;
@@ -364,16 +379,20 @@ void Explorer::follow(const Decision& decision, time::Time now) {
   goal_->pose = chosen.goal;
   goal_->target_map = chosen.target_map;
   goal_->kind = chosen.kind;
+  if (is_of_frontier(chosen.kind)) looks_at_gaps_ = false;
   reason_ = purpose_of(chosen);
   set_path(poses_along(chosen.points, config_.path_spacing_m, chosen.goal.yaw_rad));
 }
 
-// A turn in all directions may show what has been missed. After it what has failed gets another chance.
+// What has failed is tried again before the map is searched for gaps; a turn in all directions may show what has been
+// missed.
 void Explorer::end_or_look_around(const Decision& decision, const Report& report) {
   const time::Time now = report.now;
   const bool turns = goal_ && !goal_->target_map && distance(robot_, goal_->pose) <= config_.goal_tolerance_m;
   if (turns) return;
   drop_goal();
+  if (is_any_left_alone(decision) && memory_.forgive(now)) return;
+  if (!std::exchange(looks_at_gaps_, true)) return;
   if (!nothing_since_) nothing_since_ = now;
   const bool is_worth_waiting = may_change_ && (now - *nothing_since_).seconds() < config_.patience_s;
   if (empty_decisions_ < config_.confirmations || is_worth_waiting) {
@@ -384,7 +403,7 @@ void Explorer::end_or_look_around(const Decision& decision, const Report& report
     return set_path({goal_->pose});
   }
   empty_decisions_ = 0;
-  if (has_another_chance(decision, report)) return;
+  if (has_another_chance(report)) return;
   end(decision.leftover);
 }
 
@@ -397,15 +416,10 @@ void Explorer::end(const Leftover& leftover) {
   enter(config_.returns_home ? State::kReturning : end_, end_reason_);
 }
 
-// What is left alone for a time is tried again, then, once, what waits for the map's correction: where slam tracks, it
-// may come.
-bool Explorer::has_another_chance(const Decision& decision, const Report& report) {
-  const bool is_any_left_alone = std::any_of(
-      decision.candidates.begin(), decision.candidates.end(),
-      [](const Candidate& c) { return c.rejection == Rejection::kLeftAlone || c.rejection == Rejection::kFailed; });
-  const bool has_forgiven = is_any_left_alone && memory_.forgive(report.now);
-  const bool has_unblocked = blocked_.forgive(report.now);
-  if (has_forgiven || has_unblocked) return true;
+// Where paths were blocked they may be free again; then, once, what waits for the map's correction: where slam tracks,
+// it may come.
+bool Explorer::has_another_chance(const Report& report) {
+  if (blocked_.forgive(report.now)) return true;
   if (awaited_.empty() || std::exchange(looks_again_, true)) return false;
   if (report.tracking == Tracking::kDeadReckoning)
     begin_recovery(report, "drives back to where slam tracked: what is left waits for the map's correction");

@@ -33,7 +33,7 @@ struct ExplorerConfig {
   double goal_tolerance_rad = 0.3;  ///< in [0.05, 0.5]
   double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
   double slowest_m_s = 0.15;        ///< a path that takes longer than at this speed has failed, in [0.01, 5]
-  double stall_m = 15.0;            ///< driven in vain, besides long paths, before a goal has failed, in [1, 1000]
+  Allowance stall = {};             ///< without seeing anything new before a goal has failed
   double settle_s = 1.5;            ///< after arriving, until the map shows whether the view has failed, in [0, 60]
   double max_drift_m = 0.5;         ///< of a pose by odometry alone, beyond which it drives back, in [0, 100]
   double lost_timeout_s = 60.0;     ///< without such a pose, exploration has failed, in [1, 3600]
@@ -112,7 +112,7 @@ class Explorer {
   void set_deadline(const Candidate& chosen, bool is_detour, time::Time now);
   void end_or_look_around(const Decision& decision, const Report& report);
   void end(const Leftover& leftover);
-  bool has_another_chance(const Decision& decision, const Report& report);
+  bool has_another_chance(const Report& report);
   void begin_recovery(const Report& report, std::string reason);
   void recover(const Report& report, const Surroundings* surroundings);
   void note_loss(time::Time now);
@@ -134,10 +134,10 @@ class Explorer {
 
   ExplorerConfig config_;
   GoalMemory memory_;     ///< targets of frontiers
-  GoalMemory revisited_;  ///< old places
+  GoalMemory revisited_;  ///< old places, and places for views of gaps
   ProgressWatch progress_;
   GoalMemory blocked_;              ///< places on the path
-  std::vector<Pose2> taken_views_;  ///< of gaps, or tried in vain
+  std::vector<Pose2> taken_views_;  ///< of gaps
   State state_ = State::kIdle;
   State interrupted_ = State::kExploring;  ///< what to resume when slam tracks again
   std::string reason_ = "not started";
@@ -148,6 +148,7 @@ class Explorer {
   FailedViews failed_views_;
   std::vector<Eigen::Vector2d> losses_;   ///< targets on the way to which slam stopped tracking [m, map]
   std::vector<Eigen::Vector2d> awaited_;  ///< targets that wait for a correction of the map [m, map]
+  bool looks_at_gaps_ = false;            ///< of the map: no frontier is left to try
   bool looks_again_ = false;              ///< at these, too: nothing else is left
   std::optional<Pose2> home_;
   Pose2 robot_;  ///< where it was known to be last

@@ -36,6 +36,10 @@ std::vector<FailedView> FailedViews::judge(const Surroundings& surroundings, tim
   return failed;
 }
 
+void FailedViews::forget(const Eigen::Vector2d& target_map, double radius_m) {
+  std::erase_if(failed_, [&](const FailedView& view) { return (view.target_map - target_map).norm() <= radius_m; });
+}
+
 void FailedViews::clear() {
   awaited_.clear();
   failed_.clear();

@@ -19,6 +19,8 @@ class FailedViews {
   /// All that have failed.
   const std::vector<FailedView>& all() const { return failed_; }
   void forgive() { failed_.clear(); }
+  /// The map around a target has become another.
+  void forget(const Eigen::Vector2d& target_map, double radius_m);
   void clear();
 
  private:

@@ -22,29 +22,35 @@ void GoalMemory::add_failure(const Eigen::Vector2d& target_map, const Failure& f
     ++place.failures;
     place.worst = std::max(place.worst, failure.why);
     place.last = failure;
+    place.is_only_adrift = place.is_only_adrift && failure.is_adrift;
     place.known_cells.reset();
   }
 }
 
-void GoalMemory::forget_changed(const std::function<int(const Eigen::Vector2d&)>& known_cells, int change) {
+std::vector<Eigen::Vector2d> GoalMemory::forget_changed(const std::function<int(const Eigen::Vector2d&)>& known_cells,
+                                                        int change) {
+  std::vector<Eigen::Vector2d> forgotten;
   std::erase_if(places_, [&](Place& place) {
     if (place.failures == 0) return false;
     const int now = known_cells(place.target_map);
     if (!place.known_cells) place.known_cells = now;
-    return now >= *place.known_cells + change;
+    if (now < *place.known_cells + change) return false;
+    forgotten.push_back(place.target_map);
+    return true;
   });
+  return forgotten;
 }
 
 std::vector<LeftAlone> GoalMemory::left_alone(time::Time now, bool is_adrift) const {
   std::vector<LeftAlone> targets;
   for (const Place& place : places_) {
-    const bool is_of_another_tier = place.failures > 0 && place.last.is_adrift && !is_adrift;
-    if (is_of_another_tier) continue;
-    if (is_given_up(place)) {
-      const bool is_from_side = place.has_last_chance && !is_hopeless(place);
-      targets.push_back({place.target_map, place.worst, is_from_side ? place.last.from_map : std::nullopt});
+    const bool may_succeed = place.failures > 0 && place.is_only_adrift && !is_adrift;
+    if (is_given_up(place) && !is_at_last_chance(place) && !may_succeed) {
+      targets.push_back({place.target_map, place.worst});
     } else if (now < place.until) {
       targets.push_back({place.target_map});
+    } else if (is_given_up(place) && !may_succeed) {
+      targets.push_back({place.target_map, place.worst, place.last.from_map});
     }
   }
   return targets;
@@ -53,7 +59,7 @@ std::vector<LeftAlone> GoalMemory::left_alone(time::Time now, bool is_adrift) co
 bool GoalMemory::forgive(time::Time now) {
   bool has_forgiven = false;
   for (Place& place : places_) {
-    const bool may_have_another = place.worst == Rejection::kFailed && place.last.from_map && !place.has_last_chance;
+    const bool may_have_another = place.last.from_map && !place.has_last_chance;
     if (is_given_up(place) ? !may_have_another : place.until <= now) continue;
     place.has_last_chance = is_given_up(place);
     place.until = now;

@@ -34,13 +34,15 @@ class GoalMemory {
   /// Not a failure: the target is left alone until then, however it ends.
   void leave_alone(const Eigen::Vector2d& target_map, time::Time until);
   void add_failure(const Eigen::Vector2d& target_map, const Failure& failure, time::Time now);
-  /// Forgets targets around which so many more cells are known than when this was called first after their last failure.
-  void forget_changed(const std::function<int(const Eigen::Vector2d& target_map)>& known_cells, int change);
-  /// Targets to leave alone: for now, or for good, because views of it, or paths to it, have failed. What failed adrift
-  /// counts only while the robot is.
-  std::vector<LeftAlone> left_alone(time::Time now, bool is_adrift = false) const;
-  /// Lets all targets be tried again that have not failed for good, and each of those whose paths have failed for good
-  /// once more, from another side; false when there are none.
+  /// Forgets targets around which so many more cells are known than when this was called first after their last
+  /// failure; returns them.
+  std::vector<Eigen::Vector2d> forget_changed(const std::function<int(const Eigen::Vector2d& target_map)>& known_cells,
+                                              int change);
+  /// Targets to leave alone: for now, or for good, because views of it, or paths to it, have failed. What failed only
+  /// adrift counts only while the robot is.
+  std::vector<LeftAlone> left_alone(time::Time now, bool is_adrift) const;
+  /// Lets all targets be tried again that have not failed for good, and each of those that have once more, from another
+  /// side; false when there are none.
   bool forgive(time::Time now);
   void clear() { places_.clear(); }
 
@@ -50,14 +52,17 @@ class GoalMemory {
     int failures = 0;                          ///< here, and within the radius since
     Rejection worst = Rejection::kFailedView;  ///< of these
     Failure last = {};
+    bool is_only_adrift = true;                     ///< all of them
     std::optional<int> known_cells = std::nullopt;  ///< around it, after that
-    bool has_last_chance = false;  ///< from another side than that of the last failure
+    bool has_last_chance = false;                   ///< from another side than that of the last failure
     time::Time until{};
   };
   Place& place_at(const Eigen::Vector2d& target_map);
   bool is_given_up(const Place& place) const { return place.failures >= config_.max_failures; }
-  /// The last chance was taken, and failed.
-  bool is_hopeless(const Place& place) const { return place.failures > config_.max_failures; }
+  /// It may be tried from another side, and has not failed so.
+  bool is_at_last_chance(const Place& place) const {
+    return place.has_last_chance && place.failures == config_.max_failures;
+  }
 
   GoalMemoryConfig config_;
   std::vector<Place> places_;

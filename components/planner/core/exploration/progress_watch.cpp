@@ -3,17 +3,35 @@
 #include <algorithm>
 
 namespace lapis::planner {
+namespace {
 
-void ProgressWatch::note(double explored_m3, const Eigen::Vector2d& robot_map) {
-  if (robot_map_) driven_m_ += (robot_map - *robot_map_).norm();
+constexpr double kLeast_m3 = 0.5, kLeastShare = 1e-3;
+constexpr double kSlow_m_s = 0.25;     // of a path that gets on
+constexpr double kLongestGap_s = 5.0;  // between calls: somebody else drove meanwhile
+
+}  // namespace
+
+void ProgressWatch::note(double explored_m3, const Eigen::Vector2d& robot_map, time::Time now) {
+  const double passed_s = robot_map_ ? (now - noted_at_).seconds() : 0.0;
+  if (robot_map_ && passed_s <= kLongestGap_s) {
+    driven_m_ += (robot_map - *robot_map_).norm();
+    passed_s_ += passed_s;
+  }
   robot_map_ = robot_map;
-  if (explored_m3 < explored_m3_ + kProgress_m3) return;
-  explored_m3_ = explored_m3;
-  begin_anew();
+  noted_at_ = now;
+  const bool has_shrunk = explored_m3 < explored_m3_;  // a correction of the map
+  const bool is_progress = explored_m3 >= explored_m3_ + std::max(kLeast_m3, kLeastShare * explored_m3_);
+  if (has_shrunk || is_progress) explored_m3_ = explored_m3;
+  if (is_progress) begin_anew();
 }
 
 void ProgressWatch::set_out(double cost_m) { longest_m_ = std::max(longest_m_, cost_m); }
 
-void ProgressWatch::begin_anew() { driven_m_ = longest_m_ = 0.0; }
+bool ProgressWatch::is_stalled() const {
+  return driven_m_ > allowance_.metres + 2.0 * longest_m_ ||
+         passed_s_ > allowance_.seconds + 2.0 * longest_m_ / kSlow_m_s;
+}
+
+void ProgressWatch::begin_anew() { driven_m_ = longest_m_ = passed_s_ = 0.0; }
 
 }  // namespace lapis::planner

@@ -88,7 +88,8 @@ int Surroundings::known_cells(const Eigen::Vector2d& place_map, double radius_m)
   const int reach = static_cast<int>(radius_m / grid_.resolution_m());
   int known = 0;
   for (Cell step{0, -reach}; step.y <= reach; ++step.y) {
-    for (step.x = -reach; step.x <= reach; ++step.x) known += grid_.state(middle + step) != mapping::kUnknown ? 1 : 0;
+    for (step.x = -reach; step.x <= reach; ++step.x)
+      known += grid_.mapped_state(middle + step) != mapping::kUnknown ? 1 : 0;
   }
   return known;
 }

@@ -46,7 +46,7 @@ class Surroundings {
   bool is_awaited(const Frontier& frontier) const;
   /// What stands for such frontiers [m, map].
   std::vector<Eigen::Vector2d> awaited_targets() const;
-  /// How many cells of the square around a place that a circle of this radius touches are not unknown.
+  /// How many cells of the square around a place that a circle of this radius touches the map knows.
   int known_cells(const Eigen::Vector2d& place_map, double radius_m) const;
   /// The robot is there [m, map]: it can pass.
   void mark_driven(const Eigen::Vector2d& robot_map) { grid_.mark_driven(robot_map); }

@@ -73,6 +73,8 @@ class PlanningGrid {
 
   /// mapping::kOccupied, kFree or kUnknown.
   std::int8_t state(Cell c) const { return state_.at(c); }
+  /// The same by the map alone.
+  std::int8_t mapped_state(Cell c) const { return mapped_.at(c); }
   /// Distance to the nearest occupied cell, at most max_clearance_m() [m].
   double clearance_m(Cell c) const;
   /// True when an obstacle stands where the map says that it is free: it may go away.

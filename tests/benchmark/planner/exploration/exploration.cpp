@@ -11,6 +11,7 @@
 #include "common/mapping/map_description.hpp"
 #include "controller/core/controller.hpp"
 #include "planner/core/exploration/explorer.hpp"
+#include "planner/core/space/path_planner.hpp"
 #include "semantic_mapper/core/floor_plan.hpp"
 #include "semantic_mapper/core/obstacle_layer.hpp"
 #include "simulator/core/robot/robot.hpp"

@@ -161,6 +161,8 @@ TEST(Decide, LooksAtGapsOfTheMapWhenNoFrontierIsLeft) {
     explorer.config.method = *method_of(name);
     explorer.config.gaps = {.least_nats = 5.0};
     Memory memory;
+    EXPECT_FALSE(explorer.choose(memory).chosen) << name << ": not before the mission says so";
+    memory.looks_at_gaps = true;
     int taken = 0;
     for (;; ++taken) {
       const Decision decision = explorer.choose(memory);
@@ -178,6 +180,10 @@ TEST(Decide, LooksAtGapsOfTheMapWhenNoFrontierIsLeft) {
     }
     EXPECT_GT(taken, 8) << name;
     memory.taken_views.clear();
+    memory.places = {{explorer.robot.p_map}};
+    memory.radius_m = 1000.0;
+    EXPECT_FALSE(explorer.choose(memory).chosen) << name << ": places that have failed";
+    memory.places.clear();
     explorer.config.gaps.least_nats = 0.0;
     EXPECT_FALSE(explorer.choose(memory).chosen) << name << ": unless told not to";
   }
@@ -186,7 +192,9 @@ TEST(Decide, LooksAtGapsOfTheMapWhenNoFrontierIsLeft) {
 TEST(Decide, LooksAtFrontiersBeforeGaps) {
   Explorer explorer;
   explorer.config.gaps = {.least_nats = 1.0};
-  for (const Candidate& candidate : explorer.choose().candidates) EXPECT_NE(candidate.kind, CandidateKind::kGap);
+  Memory memory;
+  memory.looks_at_gaps = true;
+  for (const Candidate& candidate : explorer.choose(memory).candidates) EXPECT_NE(candidate.kind, CandidateKind::kGap);
 }
 
 TEST(Decide, LooksFromElsewhereAtWhatAFailedViewShowed) {
@@ -417,7 +425,7 @@ TEST(Decide, RevisitsAnOldPlaceWhenItIsUnsure) {
   EXPECT_NEAR(revisit.goal.yaw_rad, 1.57, 1e-6) << "the key-frame's own heading";
   EXPECT_GT(revisit.value.cost_m, 2.0);
   Memory memory;
-  memory.revisited = {{revisit.target_map}};
+  memory.places = {{revisit.target_map}};
   EXPECT_EQ(explorer.choose(memory).candidates.back().rejection, Rejection::kLeftAlone);
   explorer.config.method = Method::kNearest;
   EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "loops are worth nothing to it";

@@ -140,7 +140,7 @@ TEST(Viewpoints, StandForAllReachableCells) {
     }
   }
   EXPECT_LT(points.size(), 60U);
-  EXPECT_THROW(viewpoints(map, {3.05, 1}, 0.2, 0.5), std::runtime_error);
+  EXPECT_TRUE(viewpoints(map, {3.05, 1}, 0.2, 0.5).empty()) << "it does not fit there";
 }
 
 TEST(FloodedVoxels, FillARoomAndTakeItsWalls) {

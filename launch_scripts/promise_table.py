@@ -4,8 +4,8 @@
 usage: promise_table.py [PNG_FILE] RUN_FOLDER|CSV_FILE...     folders of explore.sh; files of lapis_explorations --paths
 
 For each method: all paths and fifths of them by their promise, each with the sums, their ratio and, over all, Spearman's
-rank correlation. A path that was left for another one counts with all that it promised. Paths of kind `known` lead through
-what was known already (lapis_explorations --known): of them, the mean difference per metre.
+rank correlation. A path that was left for another one counts with what its views had promised up to there. Paths of kind
+`known` lead through what was known already (lapis_explorations --known): of them, the mean difference per metre.
 """
 
 import collections
@@ -17,7 +17,7 @@ import sys
 import usage
 
 FIFTHS = 5
-COLUMNS = ("method", "ended_kind", "ended_cost_m", "ended_promised_nats", "ended_gained_nats")
+COLUMNS = ("method", "ended_kind", "ended_cost_m", "ended_driven_nats", "ended_gained_nats")
 
 Path = collections.namedtuple("Path", "is_known cost_m promised_nats gained_nats")
 

@@ -12,7 +12,7 @@ DecisionLog::DecisionLog(const std::string& path, const std::vector<double>& com
   file_.open(path);
   file_ << "decision,time_s,method,candidate,kind,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
            "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
-           "utility,ended_kind,ended_s,ended_cost_m,ended_rest_m,ended_promised_nats,ended_rest_nats,ended_gained_nats,"
+           "utility,ended_kind,ended_s,ended_cost_m,ended_promised_nats,ended_driven_nats,ended_gained_nats,"
            "is_chosen,is_chosen_by_mi_only,agrees_with_mi_only,";
   for (const double prior : compared_priors) file_ << "is_chosen_with_prior_" << prior << ',';
   file_ << "rejection\n";
@@ -42,10 +42,9 @@ bool DecisionLog::write(const Decision& decision, const std::optional<DrivenPath
 void DecisionLog::write_ended() {
   if (ended_) {
     file_ << name_of(ended_->kind) << ',' << (ended_->end - ended_->begin).seconds() << ',' << ended_->cost_m << ','
-          << ended_->rest_m << ',' << ended_->promised_nats << ',' << ended_->rest_nats << ',' << ended_->gained_nats
-          << ',';
+          << ended_->promised_nats << ',' << ended_->driven_nats << ',' << ended_->gained_nats << ',';
   } else {
-    file_ << ",,,,,,,";
+    file_ << ",,,,,,";
   }
   ended_.reset();
 }

@@ -6,7 +6,7 @@ import unittest
 from pathlib import Path
 
 SCRIPT = Path(sys.argv.pop(1))
-HEADER = "method,ended_kind,ended_cost_m,ended_promised_nats,ended_gained_nats"
+HEADER = "method,ended_kind,ended_cost_m,ended_driven_nats,ended_gained_nats"
 
 
 class PromiseTableTest(unittest.TestCase):

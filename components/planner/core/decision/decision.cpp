@@ -11,6 +11,8 @@
 namespace lapis::planner {
 namespace {
 
+constexpr double kTurnStep_rad = 0.6;  // between views while the robot turns: half of what a camera sees
+
 ViewPath views_along(const Situation& s, const std::vector<Pose2>& path) {
   ViewPath views;
   for (const Pose2& pose : path) views.push_back(camera_at(s, pose));
@@ -25,10 +27,23 @@ std::vector<Candidate*> open_ones(std::vector<Candidate>& candidates) {
   return open;
 }
 
+/// Where the robot is when it looks, the first time in its first new heading.
+std::vector<Pose2> poses_of(const Situation& s, const Candidate& candidate) {
+  return with_turns(candidate.path, s.robot.yaw_rad, kTurnStep_rad);
+}
+
+std::vector<PromisedView> promise_along(const Situation& s, const Candidate& candidate) {
+  const std::vector<Pose2> poses = poses_of(s, candidate);
+  const std::vector<double> nats = growing_information(s.field, s.view, views_along(s, poses));
+  std::vector<PromisedView> promised;
+  for (std::size_t i = 0; i < poses.size(); ++i) promised.push_back({poses[i].p_map, nats[i]});
+  return promised;
+}
+
 void add_information(const Situation& s, const std::vector<Candidate*>& open) {
   std::vector<ViewPath> paths, goals;
   for (const Candidate* candidate : open) {
-    paths.push_back(views_along(s, candidate->path));
+    paths.push_back(views_along(s, poses_of(s, *candidate)));
     goals.push_back({paths.back().back()});
   }
   const std::vector<double> of_paths = path_information(s.field, s.view, std::span<const ViewPath>(paths));
@@ -194,7 +209,11 @@ Decision decide(const Situation& situation, const Memory& memory, const Decision
   const CostTree tree = grow_cost_tree(situation.grid, config.path, {situation.grid.cell_of(situation.robot.p_map)});
   const std::vector<Candidate> proposals = propose(situation, tree, memory, config);
   Decision decision = choose(situation, proposals, memory, config);
-  if (!decision.chosen) decision.leftover = leftover_of(situation, decision.candidates);
+  if (decision.chosen) {
+    decision.promised = promise_along(situation, decision.candidates[*decision.chosen]);
+  } else {
+    decision.leftover = leftover_of(situation, decision.candidates);
+  }
   for (const InformationField& field : situation.compared_fields) {
     const Situation other{situation.grid,  situation.frontiers, field,          situation.view, situation.T_base_camera,
                           situation.graph, situation.landmarks, situation.robot};

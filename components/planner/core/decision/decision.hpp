@@ -86,7 +86,7 @@ struct Candidate {
   Eigen::Vector2d target_map{0, 0};  ///< what is looked at from there, or the place that is revisited [m]
   std::vector<Eigen::Vector2d>
       points;               ///< corners of the path from the robot to the goal [m]; empty when there is none
-  std::vector<Pose2> path;  ///< views along it
+  std::vector<Pose2> path;  ///< views along it, but for those while it turns
   PathValue value;
   ExpectedGain gain;
   std::vector<Eigen::Vector3d> nodes_map;  ///< hallucinated key-frames [m]
@@ -109,9 +109,16 @@ struct Leftover {
   std::string text() const;
 };
 
+/// A view along the chosen path.
+struct PromisedView {
+  Eigen::Vector2d p_map;  ///< where the robot is then [m]
+  double nats = 0.0;      ///< promised by the views up to this one
+};
+
 struct Decision {
   std::vector<Candidate> candidates;      ///< at least one for each frontier
   std::optional<std::size_t> chosen;      ///< index; nothing when none can be driven to
+  std::vector<PromisedView> promised;     ///< along the chosen path
   Leftover leftover;                      ///< when none can
   std::optional<std::size_t> by_mi_only;  ///< what MI / Cost would have chosen
   /// What would have been chosen with each of the compared fields.

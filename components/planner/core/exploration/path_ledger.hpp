@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "common/time/time.hpp"
 #include "planner/core/decision/decision.hpp"
@@ -12,9 +13,8 @@ struct DrivenPath {
   time::Time begin, end;
   CandidateKind kind = CandidateKind::kFrontier;
   double cost_m = 0.0;         ///< when it was chosen first
-  double rest_m = 0.0;         ///< cost of what was left when it was judged last
   double promised_nats = 0.0;  ///< Candidate::value.path_information when it was chosen first
-  double rest_nats = 0.0;      ///< the same when it was judged last
+  double driven_nats = 0.0;    ///< of these, by the views along what was driven of it
   double gained_nats = 0.0;    ///< by the map from begin to end
 
   bool operator==(const DrivenPath&) const = default;
@@ -27,12 +27,18 @@ class PathLedger {
   /// @param radius_m between the targets of one path
   explicit PathLedger(double radius_m) : radius_m_(radius_m) {}
 
-  /// Takes note of a choice that is being driven to, or that there is none. What ended by that, if anything did.
+  /// Takes note of the choice that is being driven to, or that there is none. What ended by that, if anything did.
+  /// @param decision with a choice; null: nothing is driven to
   /// @param map_nats MapInformation::nats() now
-  std::optional<DrivenPath> note(const Candidate* chosen, double map_nats, time::Time now);
+  std::optional<DrivenPath> note(const Decision* decision, double map_nats, const Eigen::Vector2d& robot_map,
+                                 time::Time now);
 
  private:
+  void begin(const Decision& decision, double map_nats, time::Time now);
+  std::optional<DrivenPath> end(double map_nats, const Eigen::Vector2d& robot_map, time::Time now);
+
   std::optional<DrivenPath> path_;
+  std::vector<PromisedView> promised_;
   Eigen::Vector2d target_map_{0, 0};
   double nats_at_begin_ = 0.0;
   double radius_m_;

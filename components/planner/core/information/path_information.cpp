@@ -201,20 +201,39 @@ std::pair<Eigen::Vector3d, Eigen::Vector3d> box_of(const View& view, const ViewP
   return {(low / resolution_m).array() - 1.0, (high / resolution_m).array() + 1.0};
 }
 
+template <class Real>
+Window<Real>& window_around(const BasicInformationField<Real>& field, const View& view, const ViewPath& path) {
+  for (const geometry::Pose& T_map_camera : path)
+    if (!geometry::is_valid(T_map_camera)) throw std::invalid_argument("path_information: a pose is not valid");
+  thread_local Window<Real> window;
+  const auto [low, high] = box_of(view, path, field.resolution_m());
+  window.open(field, low, high);
+  return window;
+}
+
 }  // namespace
 
 template <class Real>
 double path_information(const BasicInformationField<Real>& field, const View& view, const ViewPath& path,
                         Counting counting) {
-  for (const geometry::Pose& T_map_camera : path)
-    if (!geometry::is_valid(T_map_camera)) throw std::invalid_argument("path_information: a pose is not valid");
   if (path.empty()) return 0.0;
-  thread_local Window<Real> window;
-  const auto [low, high] = box_of(view, path, field.resolution_m());
-  window.open(field, low, high);
+  Window<Real>& window = window_around(field, view, path);
   const auto look_from = counting == Counting::kOnce ? look<Counting::kOnce, Real> : look<Counting::kEveryRay, Real>;
   for (const geometry::Pose& T_map_camera : path) look_from(view, T_map_camera, field.resolution_m(), window);
   return window.information();
+}
+
+template <class Real>
+std::vector<double> growing_information(const BasicInformationField<Real>& field, const View& view,
+                                        const ViewPath& path) {
+  std::vector<double> information;
+  if (path.empty()) return information;
+  Window<Real>& window = window_around(field, view, path);
+  for (const geometry::Pose& T_map_camera : path) {
+    look<Counting::kOnce, Real>(view, T_map_camera, field.resolution_m(), window);
+    information.push_back(window.information());
+  }
+  return information;
 }
 
 template <class Real>
@@ -226,6 +245,8 @@ std::vector<double> path_information(const BasicInformationField<Real>& field, c
   return information;
 }
 
+template std::vector<double> growing_information(const BasicInformationField<float>&, const View&, const ViewPath&);
+template std::vector<double> growing_information(const BasicInformationField<double>&, const View&, const ViewPath&);
 template double path_information(const BasicInformationField<float>&, const View&, const ViewPath&, Counting);
 template double path_information(const BasicInformationField<double>&, const View&, const ViewPath&, Counting);
 template std::vector<double> path_information(const BasicInformationField<float>&, const View&,

@@ -27,6 +27,11 @@ template <class Real>
 double path_information(const BasicInformationField<Real>& field, const View& view, const ViewPath& path,
                         Counting counting = Counting::kOnce);
 
+/// Of the path's first view, its first two views, and so on, each cell once.
+template <class Real>
+std::vector<double> growing_information(const BasicInformationField<Real>& field, const View& view,
+                                        const ViewPath& path);
+
 /// Of each path, in parallel; the same bits for any number of threads.
 template <class Real>
 std::vector<double> path_information(const BasicInformationField<Real>& field, const View& view,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 #include "planner/core/space/line.hpp"
 
@@ -81,6 +82,18 @@ std::vector<Pose2> poses_along(std::span<const Eigen::Vector2d> points, double s
     begin = end;
   }
   poses.push_back({points.back(), final_yaw_rad});
+  return poses;
+}
+
+std::vector<Pose2> with_turns(std::span<const Pose2> path, double yaw_rad, double step_rad) {
+  std::vector<Pose2> poses;
+  for (const Pose2& pose : path) {
+    const double turn_rad = std::remainder(pose.yaw_rad - yaw_rad, 2.0 * std::numbers::pi);
+    const double steps = std::ceil(std::abs(turn_rad) / step_rad - 1e-9);
+    for (double i = 1.0; i < steps; i += 1.0) poses.push_back({pose.p_map, yaw_rad + turn_rad * i / steps});
+    poses.push_back(pose);
+    yaw_rad = pose.yaw_rad;
+  }
   return poses;
 }
 

@@ -41,4 +41,8 @@ std::vector<Pose2> poses_along(std::span<const Eigen::Vector2d> points, double s
 /// Centres of the corners [m, map frame].
 std::vector<Eigen::Vector2d> points_of(const PlanningGrid& grid, const Path& path);
 
+/// A path and the headings through which a robot turns that begins with another one, and at corners: the shorter way
+/// round, at most `step_rad` apart.
+std::vector<Pose2> with_turns(std::span<const Pose2> path, double yaw_rad, double step_rad);
+
 }  // namespace lapis::planner

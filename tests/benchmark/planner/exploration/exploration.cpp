@@ -24,7 +24,8 @@ namespace {
 using controller::PlanarPose;
 using geometry::Pose;
 
-constexpr int kTicksPerView = 3;  // of the camera's rate
+constexpr int kTicksPerView = 3;       // of the camera's rate
+constexpr double kTurnStep_rad = 0.6;  // as in decisions
 // Of a path through known space: at its end, and the time after which it is left.
 constexpr double kArrival_m = 0.4, kLongestWait_s = 10.0, kSlowest_m_s = 0.15;
 
@@ -162,7 +163,7 @@ class Course {
     const Report report{now(), here, Tracking::kTracking, is_blocked_, 0.0};
     if (due_ && tick_ >= *due_) {
       const bool is_taken = explorer_.take(decision_, report);
-      note_choice(is_taken && decision_.chosen ? &decision_.candidates[*decision_.chosen] : nullptr);
+      note_choice(is_taken && decision_.chosen ? &decision_ : nullptr);
       due_.reset();
     }
     if (due_) return;
@@ -176,8 +177,8 @@ class Course {
     due_ = tick_ + setting_.planner.decision_latency_frames;
   }
 
-  void note_choice(const Candidate* chosen) {
-    const auto ended = ledger_.note(chosen, surroundings_.information_nats(), now());
+  void note_choice(const Decision* driven) {
+    const auto ended = ledger_.note(driven, surroundings_.information_nats(), pose().p_map, now());
     if (ended) exploration_.paths.push_back(*ended);
   }
 
@@ -210,7 +211,8 @@ class Course {
     DrivenPath path;
     path.begin = now();
     path.cost_m = *tree.cost_m(goal);
-    path.promised_nats = promise(poses_along(points, config.view_spacing_m, yaw_rad));
+    path.promised_nats = path.driven_nats =
+        promise(with_turns(poses_along(points, config.view_spacing_m, yaw_rad), here.yaw_rad, kTurnStep_rad));
     const double before_nats = surroundings_.information_nats();
     follow(poses_along(points, setting_.planner.explorer.path_spacing_m, yaw_rad));
     const double longest_s = kLongestWait_s + path.cost_m / kSlowest_m_s;

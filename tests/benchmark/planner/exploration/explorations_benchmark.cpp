@@ -64,7 +64,7 @@ std::ofstream begin_paths(const std::string& file) {
   std::ofstream paths;
   if (file.empty()) return paths;
   paths.open(file);
-  paths << "scene,method,seed,begin_s,ended_kind,ended_s,ended_cost_m,ended_rest_m,ended_promised_nats,ended_rest_nats,"
+  paths << "scene,method,seed,begin_s,ended_kind,ended_s,ended_cost_m,ended_promised_nats,ended_driven_nats,"
            "ended_gained_nats\n";
   if (!paths) throw std::runtime_error(file + " cannot be written");
   return paths;
@@ -74,8 +74,7 @@ void write_paths(const Exploration& e, const std::string& of, std::ofstream& pat
   if (!paths.is_open()) return;
   const auto write = [&](const DrivenPath& path, const std::string& kind) {
     paths << of << ',' << path.begin.seconds() << ',' << kind << ',' << (path.end - path.begin).seconds() << ','
-          << path.cost_m << ',' << path.rest_m << ',' << path.promised_nats << ',' << path.rest_nats << ','
-          << path.gained_nats << '\n';
+          << path.cost_m << ',' << path.promised_nats << ',' << path.driven_nats << ',' << path.gained_nats << '\n';
   };
   for (const DrivenPath& path : e.paths) write(path, name_of(path.kind));
   for (const DrivenPath& path : e.known_paths) write(path, "known");

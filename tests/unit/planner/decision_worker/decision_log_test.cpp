@@ -63,14 +63,8 @@ Decision decision() {
 }
 
 DrivenPath driven_path() {
-  return {time::Time::from_seconds(1.0),
-          time::Time::from_seconds(3.5),
-          CandidateKind::kRevisit,
-          4.25,
-          0.75,
-          100.5,
-          20.5,
-          90.5};
+  return {
+      time::Time::from_seconds(1.0), time::Time::from_seconds(3.5), CandidateKind::kRevisit, 4.25, 100.5, 80.5, 90.5};
 }
 
 class DecisionLogTest : public ::testing::Test {
@@ -109,9 +103,8 @@ TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
                                                     {"ended_kind", "revisit"},
                                                     {"ended_s", "2.5"},
                                                     {"ended_cost_m", "4.25"},
-                                                    {"ended_rest_m", "0.75"},
                                                     {"ended_promised_nats", "100.5"},
-                                                    {"ended_rest_nats", "20.5"},
+                                                    {"ended_driven_nats", "80.5"},
                                                     {"ended_gained_nats", "90.5"},
                                                     {"is_chosen", "1"},
                                                     {"is_chosen_by_mi_only", "1"},
@@ -119,7 +112,7 @@ TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
                                                     {"rejection", ""}};
   EXPECT_EQ(chosen, expected);
   const auto ended = std::find(rows[0].begin(), rows[0].end(), "ended_kind") - rows[0].begin();
-  for (std::ptrdiff_t i = ended; i < ended + 7; ++i) EXPECT_EQ(rows[2][static_cast<std::size_t>(i)], "") << i;
+  for (std::ptrdiff_t i = ended; i < ended + 6; ++i) EXPECT_EQ(rows[2][static_cast<std::size_t>(i)], "") << i;
 }
 
 TEST_F(DecisionLogTest, RejectionIsTheLastColumn) {

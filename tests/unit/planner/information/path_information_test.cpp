@@ -259,6 +259,12 @@ TEST(PathInformation, ObeysItsLaws) {
       before = now;
     }
     EXPECT_GT(before, 0.0);
+    const std::vector<double> growing = growing_information(field, view, path);
+    ASSERT_EQ(growing.size(), path.size());
+    for (std::size_t i = 0; i < path.size(); ++i) {
+      const ViewPath first(path.begin(), path.begin() + static_cast<std::ptrdiff_t>(i) + 1);
+      EXPECT_NEAR(growing[i], path_information(field, view, first), 1e-6 * before);
+    }
     std::shuffle(path.begin(), path.end(), random);
     EXPECT_EQ(path_information(field, view, path), before) << "the order of poses";
     path.push_back(path.front());

@@ -62,5 +62,19 @@ TEST(PlaceAhead, IsOnThePathThatIsLeft) {
   EXPECT_EQ(place_ahead({}, {}), std::nullopt);
 }
 
+TEST(WithTurns, ShowsHeadingsOnTheShorterWayRound) {
+  const std::vector<Pose2> path{{{1.0, 2.0}, 3.0}, {{2.0, 2.0}, 3.0}, {{3.0, 2.0}, -3.0}};
+  const std::vector<Pose2> poses = with_turns(path, 1.0, 0.5);
+  ASSERT_EQ(poses.size(), 6u);
+  for (int i = 0; i < 4; ++i) {
+    EXPECT_NEAR(poses[static_cast<std::size_t>(i)].yaw_rad, 1.5 + 0.5 * i, 1e-12);
+    EXPECT_EQ(poses[static_cast<std::size_t>(i)].p_map, path[0].p_map);
+  }
+  EXPECT_EQ(poses[4].p_map, path[1].p_map);
+  EXPECT_EQ(poses[5].yaw_rad, -3.0) << "0.28 rad through pi";
+  EXPECT_EQ(with_turns(path, 3.0, 0.5).size(), 3u);
+  EXPECT_TRUE(with_turns({}, 3.0, 0.5).empty());
+}
+
 }  // namespace
 }  // namespace lapis::planner

@@ -384,14 +384,13 @@ void Explorer::follow(const Decision& decision, time::Time now) {
   set_path(poses_along(chosen.points, config_.path_spacing_m, chosen.goal.yaw_rad));
 }
 
-// What has failed is tried again before the map is searched for gaps; a turn in all directions may show what has been
-// missed.
+// First the map is searched for gaps, which is sure to bring something; then a turn in all directions may show what has
+// been missed, and what has failed gets another chance.
 void Explorer::end_or_look_around(const Decision& decision, const Report& report) {
   const time::Time now = report.now;
   const bool turns = goal_ && !goal_->target_map && distance(robot_, goal_->pose) <= config_.goal_tolerance_m;
   if (turns) return;
   drop_goal();
-  if (is_any_left_alone(decision) && memory_.forgive(now)) return;
   if (!std::exchange(looks_at_gaps_, true)) return;
   if (!nothing_since_) nothing_since_ = now;
   const bool is_worth_waiting = may_change_ && (now - *nothing_since_).seconds() < config_.patience_s;
@@ -403,7 +402,7 @@ void Explorer::end_or_look_around(const Decision& decision, const Report& report
     return set_path({goal_->pose});
   }
   empty_decisions_ = 0;
-  if (has_another_chance(report)) return;
+  if (has_another_chance(decision, report)) return;
   end(decision.leftover);
 }
 
@@ -416,10 +415,12 @@ void Explorer::end(const Leftover& leftover) {
   enter(config_.returns_home ? State::kReturning : end_, end_reason_);
 }
 
-// Where paths were blocked they may be free again; then, once, what waits for the map's correction: where slam tracks,
-// it may come.
-bool Explorer::has_another_chance(const Report& report) {
-  if (blocked_.forgive(report.now)) return true;
+// What is left alone for a time is tried again, what has failed for good once more from another side, and where paths
+// were blocked they may be free; then, once, what waits for the map's correction: where slam tracks, it may come.
+bool Explorer::has_another_chance(const Decision& decision, const Report& report) {
+  const bool has_forgiven = is_any_left_alone(decision) && memory_.forgive(report.now);
+  const bool has_unblocked = blocked_.forgive(report.now);
+  if (has_forgiven || has_unblocked) return true;
   if (awaited_.empty() || std::exchange(looks_again_, true)) return false;
   if (report.tracking == Tracking::kDeadReckoning)
     begin_recovery(report, "drives back to where slam tracked: what is left waits for the map's correction");

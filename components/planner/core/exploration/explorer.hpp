@@ -112,7 +112,7 @@ class Explorer {
   void set_deadline(const Candidate& chosen, bool is_detour, time::Time now);
   void end_or_look_around(const Decision& decision, const Report& report);
   void end(const Leftover& leftover);
-  bool has_another_chance(const Report& report);
+  bool has_another_chance(const Decision& decision, const Report& report);
   void begin_recovery(const Report& report, std::string reason);
   void recover(const Report& report, const Surroundings* surroundings);
   void note_loss(time::Time now);

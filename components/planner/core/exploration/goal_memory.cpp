@@ -30,14 +30,14 @@ void GoalMemory::add_failure(const Eigen::Vector2d& target_map, const Failure& f
 std::vector<Eigen::Vector2d> GoalMemory::forget_changed(const std::function<int(const Eigen::Vector2d&)>& known_cells,
                                                         int change) {
   std::vector<Eigen::Vector2d> forgotten;
-  std::erase_if(places_, [&](Place& place) {
-    if (place.failures == 0) return false;
+  for (Place& place : places_) {
+    if (place.failures == 0) continue;
     const int now = known_cells(place.target_map);
     if (!place.known_cells) place.known_cells = now;
-    if (now < *place.known_cells + change) return false;
+    if (now < *place.known_cells + change) continue;
     forgotten.push_back(place.target_map);
-    return true;
-  });
+    place = {.target_map = place.target_map, .until = place.until};
+  }
   return forgotten;
 }
 

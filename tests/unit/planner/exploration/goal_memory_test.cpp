@@ -122,7 +122,7 @@ TEST(GoalMemory, TriesWhatWasGivenUpOnceMoreFromAnotherSide) {
 }
 
 TEST(GoalMemory, WhoHasHadItsLastChanceWaitsWhileItIsJudged) {
-  GoalMemory memory({.max_failures = 1, .expiry_s = 30.0});
+  GoalMemory memory({.expiry_s = 30.0, .max_failures = 1});
   memory.add_failure(kTarget, {.from_map = Eigen::Vector2d(0.0, 0.0)}, after(0.0));
   EXPECT_TRUE(memory.forgive(after(100.0)));
   memory.leave_alone(kTarget, after(102.0));

@@ -34,8 +34,8 @@ class GoalMemory {
   /// Not a failure: the target is left alone until then, however it ends.
   void leave_alone(const Eigen::Vector2d& target_map, time::Time until);
   void add_failure(const Eigen::Vector2d& target_map, const Failure& failure, time::Time now);
-  /// Forgets targets around which so many more cells are known than when this was called first after their last
-  /// failure; returns them.
+  /// Forgets how targets failed around which so many more cells are known than when this was called first after their
+  /// last failure, and returns them; they are left alone for as long as they were to be.
   std::vector<Eigen::Vector2d> forget_changed(const std::function<int(const Eigen::Vector2d& target_map)>& known_cells,
                                               int change);
   /// Targets to leave alone: for now, or for good, because views of it, or paths to it, have failed. What failed only

@@ -109,7 +109,7 @@ TEST_P(MovedStart, IsExploredToTheEnd) {
       << "from " << start.cell.x << ", " << start.cell.y;
   EXPECT_LE(world.longest_idle_s, kLongestIdleAnyStart_s);
   EXPECT_LE(world.most_failures(), test::kMostFailures);
-  EXPECT_LE(world.most_failed_views(), 3);
+  EXPECT_LE(world.most_failed_views(), test::kMostFailures);
 }
 
 std::vector<std::pair<Method, unsigned>> starts(unsigned seeds) {

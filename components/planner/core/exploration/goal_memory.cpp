@@ -12,11 +12,12 @@ GoalMemory::Place& GoalMemory::place_at(const Eigen::Vector2d& target_map) {
 
 void GoalMemory::leave_alone(const Eigen::Vector2d& target_map, time::Time until) {
   Place& place = place_at(target_map);
-  place.until = std::max(place.until, until);
+  place.awaited_until = std::max(place.awaited_until, until);
 }
 
 void GoalMemory::add_failure(const Eigen::Vector2d& target_map, const Failure& failure, time::Time now) {
-  leave_alone(target_map, now + time::Duration::from_seconds(config_.expiry_s));
+  Place& here = place_at(target_map);
+  here.until = std::max(here.until, now + time::Duration::from_seconds(config_.expiry_s));
   for (Place& place : places_) {
     if ((place.target_map - target_map).norm() > config_.radius_m) continue;
     ++place.failures;
@@ -36,7 +37,7 @@ std::vector<Eigen::Vector2d> GoalMemory::forget_changed(const std::function<int(
     if (!place.known_cells) place.known_cells = now;
     if (now < *place.known_cells + change) continue;
     forgotten.push_back(place.target_map);
-    place = {.target_map = place.target_map, .until = place.until};
+    place = {.target_map = place.target_map, .until = place.until, .awaited_until = place.awaited_until};
   }
   return forgotten;
 }
@@ -45,11 +46,15 @@ std::vector<LeftAlone> GoalMemory::left_alone(time::Time now, bool is_adrift) co
   std::vector<LeftAlone> targets;
   for (const Place& place : places_) {
     const bool may_succeed = place.failures > 0 && place.is_only_adrift && !is_adrift;
-    if (is_given_up(place) && !is_at_last_chance(place) && !may_succeed) {
+    if (now < place.awaited_until) {
+      targets.push_back({place.target_map});
+    } else if (may_succeed) {
+      continue;
+    } else if (is_given_up(place) && !is_at_last_chance(place)) {
       targets.push_back({place.target_map, place.worst});
     } else if (now < place.until) {
       targets.push_back({place.target_map});
-    } else if (is_given_up(place) && !may_succeed) {
+    } else if (is_given_up(place)) {
       targets.push_back({place.target_map, place.worst, place.last.from_map});
     }
   }
@@ -60,9 +65,9 @@ bool GoalMemory::forgive(time::Time now) {
   bool has_forgiven = false;
   for (Place& place : places_) {
     const bool may_have_another = place.last.from_map && !place.has_last_chance;
-    if (is_given_up(place) ? !may_have_another : place.until <= now) continue;
+    if (is_given_up(place) ? !may_have_another : std::max(place.until, place.awaited_until) <= now) continue;
     place.has_last_chance = is_given_up(place);
-    place.until = now;
+    place.until = place.awaited_until = now;
     has_forgiven = true;
   }
   return has_forgiven;

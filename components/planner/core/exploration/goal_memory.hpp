@@ -55,7 +55,8 @@ class GoalMemory {
     bool is_only_adrift = true;                     ///< all of them
     std::optional<int> known_cells = std::nullopt;  ///< around it, after that
     bool has_last_chance = false;                   ///< from another side than that of the last failure
-    time::Time until{};
+    time::Time until{};                             ///< after a failure
+    time::Time awaited_until{};                     ///< for another reason
   };
   Place& place_at(const Eigen::Vector2d& target_map);
   bool is_given_up(const Place& place) const { return place.failures >= config_.max_failures; }

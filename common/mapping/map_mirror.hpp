@@ -22,7 +22,8 @@ struct MapState {
   std::uint32_t tiles = 0;     ///< tiles that exist in this version
   std::uint64_t checksum = 0;  ///< sum of tile_hash(index, version that last changed it), modulo 2^64
   double resolution_m = 0.0;
-  std::int64_t session = 0;  ///< of slam, in whose map frame it is
+  std::int64_t session = 0;      ///< of slam, in whose map frame it is
+  std::uint64_t frames_off = 0;  ///< in the map more than a voxel from where the newest graph has them, so far
 };
 
 enum class TileResult { kAccepted, kOutdated, kDamaged };

@@ -181,6 +181,7 @@ messages::Converted<mapping::MapState> to_core(const lapis_msgs::msg::MapState& 
   state.checksum = message.checksum();
   state.resolution_m = message.resolution_m();
   state.session = message.session();
+  state.frames_off = message.frames_off();
   if (!(state.resolution_m >= mapping::kMinResolution_m && state.resolution_m <= mapping::kMaxResolution_m))
     return messages::Converted<mapping::MapState>::refused("no map has voxels of that size");
   return state;

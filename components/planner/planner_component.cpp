@@ -282,7 +282,10 @@ void PlannerComponent::update_provisional_area() {
   provisional_area_.reset();
 }
 
-Report PlannerComponent::report() const { return {stamp_, robot_, tracking_, is_blocked_, drift_m_}; }
+Report PlannerComponent::report() const {
+  const bool is_map_behind = surroundings_state_ && surroundings_state_->frames_off > 0;
+  return {stamp_, robot_, tracking_, is_blocked_, drift_m_, is_map_behind};
+}
 
 /// Why it does what it does; without a pose, what slam lacks.
 std::string PlannerComponent::reason() const {

@@ -183,7 +183,8 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("settle_s", c.explorer.settle_s, config::in_range(0.0, 60.0),
         "after arriving, until the map shows whether the view has failed [s]");
   field("max_drift_m", c.explorer.max_drift_m, config::in_range(0.0, 100.0),
-        "sigma of the position by odometry alone beyond which the robot drives back to where slam tracked [m]");
+        "sigma of the position by odometry alone that a path may end with; beyond it the robot drives to where slam "
+        "tracked [m]");
   field.moved("dead_reckoning_s", "planner.max_drift_m", "slam says how far a pose by odometry alone has drifted");
   field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),
         "without a pose, or driving back to where slam tracked, exploration has failed [s]");

@@ -159,6 +159,15 @@ double SemanticMapper::offset_voxels(const StoredFrame& frame, const Pose& T_map
   return (moved.translation().norm() + turn_m) / config_.resolution_m;
 }
 
+bool SemanticMapper::is_far_off(std::size_t index) const {
+  return corrected_.contains(index) || offset_voxels(frames_[index], wanted_pose(frames_[index])) > 1.0;
+}
+
+std::uint64_t SemanticMapper::frames_off() const {
+  return static_cast<std::uint64_t>(
+      std::count_if(off_.begin(), off_.end(), [&](std::size_t index) { return is_far_off(index); }));
+}
+
 /// False when the frame was let go, so that it stays where it is.
 bool SemanticMapper::move_frame(std::size_t index) {
   const bool is_whole_now = corrected_.erase(index) > 0;
@@ -194,7 +203,7 @@ std::size_t SemanticMapper::re_anchor(std::size_t max_work) {
     std::pop_heap(nearest.begin(), nearest.end(), std::greater<>());
     const std::size_t index = nearest.back().second;
     nearest.pop_back();
-    if (!corrected_.contains(index) && offset_voxels(frames_[index], wanted_pose(frames_[index])) <= 1.0) {
+    if (!is_far_off(index)) {
       if (credit_ <= 0) continue;
       credit_ -= static_cast<std::int64_t>(frames_[index].work);
     }

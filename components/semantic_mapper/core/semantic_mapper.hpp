@@ -133,6 +133,8 @@ class SemanticMapper {
   std::size_t frames_integrated() const { return frames_integrated_; }
   const MapperConfig& config() const { return config_; }
   std::uint64_t graph_version() const { return graph_version_; }
+  /// That lie in the map more than a voxel from where this version has them: re_anchor() has not moved them yet.
+  std::uint64_t frames_off() const;
   /// Memory of the stored frames [bytes].
   std::size_t frame_bytes() const { return store_.memory_bytes() + frames_.size() * sizeof(StoredFrame); }
 
@@ -166,6 +168,7 @@ class SemanticMapper {
   void move_keyframe(std::uint64_t id, const geometry::Pose& T_map_keyframe);
   geometry::Pose wanted_pose(const StoredFrame& frame) const;
   double offset_voxels(const StoredFrame& frame, const geometry::Pose& T_map_camera) const;
+  bool is_far_off(std::size_t index) const;
   void mark_changed(const mapping::FrameVotes& votes);
   void mark_all_changed();
 

@@ -151,7 +151,7 @@ Leftover leftover_of(const Situation& s, const std::vector<Candidate>& candidate
   double left_m = 0.0, to_blame_m = 0.0;
   for (const auto& [id, reason] : reasons_by_frontier(candidates)) {
     const auto frontier = s.frontiers.frontiers().find(id);
-    if (frontier == s.frontiers.frontiers().end()) continue;  // a gap or a revisit
+    if (frontier == s.frontiers.frontiers().end()) continue;  // a place
     const double length_m = frontier->second.length_m;
     leftover.length_m[reason] += length_m;
     left_m += length_m;
@@ -182,6 +182,7 @@ const char* name_of(CandidateKind kind) {
     case CandidateKind::kFrontier: return "frontier";
     case CandidateKind::kAlternative: return "alternative";
     case CandidateKind::kCloserLook: return "closer_look";
+    case CandidateKind::kTracked: return "tracked";
     case CandidateKind::kGap: return "gap";
     case CandidateKind::kRevisit: return "revisit";
   }

@@ -64,6 +64,7 @@ enum class CandidateKind {
   kFrontier,     ///< the best path to a place from which a frontier is seen
   kAlternative,  ///< another path to such a place
   kCloserLook,   ///< the best path to a place near a frontier that cannot be seen from there, as the map is
+  kTracked,      ///< the best path to a place at which slam tracked, while it does not
   kGap,          ///< the best path to a view of what no frontier asks for
   kRevisit,      ///< the best path to an old key-frame
 };
@@ -81,7 +82,7 @@ struct ExpectedLoop {
 /// A path to a place from which there is something to see.
 struct Candidate {
   CandidateKind kind = CandidateKind::kFrontier;
-  std::uint32_t frontier = 0;  ///< 0: a gap or a revisit
+  std::uint32_t frontier = 0;  ///< 0: a place, not a frontier
   Pose2 goal;
   Eigen::Vector2d target_map{0, 0};  ///< what is looked at from there, or the place that is revisited [m]
   std::vector<Eigen::Vector2d>
@@ -127,6 +128,14 @@ struct Decision {
   bool agrees_with_mi_only() const { return chosen == by_mi_only; }
 };
 
+/// Slam reckons by odometry alone, and the position becomes less sure with every metre.
+struct Adrift {
+  double sigma_m = 0.0;        ///< of the position since slam tracked
+  double growth = 0.0;         ///< of sigma by cost of a path [m/m]
+  double budget_m = 0.5;       ///< of sigma at a path's end
+  std::vector<Pose2> tracked;  ///< where slam tracked, the newest first
+};
+
 /// What is not to be driven to, and what is being driven to.
 struct Memory {
   std::vector<LeftAlone> left_alone;  ///< frontiers near these
@@ -136,6 +145,7 @@ struct Memory {
   bool looks_at_gaps = false;      ///< when no frontier can be driven to
   double radius_m = 0.75;          ///< what lies nearer to such places is meant, too
   std::optional<Pose2> goal;       ///< current one
+  std::optional<Adrift> adrift;    ///< nothing while slam tracks
 };
 
 /// Pose of the camera of a robot that stands there, T_map_camera.

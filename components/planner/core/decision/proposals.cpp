@@ -17,6 +17,7 @@ namespace {
 
 constexpr double kSameGoal_m = 0.5;       // goals nearer to each other are one
 constexpr std::size_t kMostRevisits = 5;  // of a decision, the nearest
+constexpr std::size_t kMostTracked = 5;   // of a decision, the newest
 constexpr double kPass_m = 0.75;          // path past an old place, in its direction
 constexpr double kSameHeading_rad = 0.5;
 constexpr double kLikely = 0.5;  // probability of a loop closure at the place itself
@@ -91,6 +92,29 @@ std::vector<Candidate> propose_frontiers(const Situation& s, const CostTree& tre
     }
   }
   return candidates;
+}
+
+/// By odometry alone the robot goes no farther than it may drift.
+void reject_unsure_ones(const std::optional<Adrift>& adrift, std::vector<Candidate>& candidates) {
+  if (!adrift) return;
+  for (Candidate& candidate : candidates) {
+    const bool is_sure = adrift->sigma_m + adrift->growth * candidate.value.cost_m <= adrift->budget_m;  // never of NaN
+    if (candidate.is_open() && !is_sure) candidate.rejection = Rejection::kUnsure;
+  }
+}
+
+/// Where slam tracked, it may again.
+void add_tracked_places(const Situation& s, const CostTree& tree, const Memory& memory, const DecisionConfig& config,
+                        std::vector<Candidate>& candidates) {
+  if (!memory.adrift) return;
+  std::size_t added = 0;
+  for (const Pose2& pose : memory.adrift->tracked) {
+    const Cell cell = s.grid.cell_of(pose.p_map);
+    if (!s.grid.is_traversable(cell) || !tree.cost_m(cell)) continue;
+    const Viewpoint viewpoint{cell, {s.grid.center_of(cell), pose.yaw_rad}, cell, 0.0};
+    candidates.emplace_back(candidate_at(s, tree, 0, viewpoint, config)).kind = CandidateKind::kTracked;
+    if (++added == kMostTracked) return;
+  }
 }
 
 void add_gap_views(const Situation& s, const CostTree& tree, const Memory& memory, const DecisionConfig& config,
@@ -242,7 +266,7 @@ void add_alternatives(const Situation& s, const CostTree& tree, const std::vecto
                       const DecisionConfig& config, std::vector<Candidate>& candidates) {
   std::map<std::uint32_t, std::size_t> nearest;  // by frontier
   for (std::size_t i = 0; i < candidates.size(); ++i) {
-    if (!candidates[i].is_open() || candidates[i].kind == CandidateKind::kGap) continue;
+    if (!candidates[i].is_open() || candidates[i].frontier == 0) continue;
     const auto [known, is_new] = nearest.try_emplace(candidates[i].frontier, i);
     if (!is_new && candidates[i].value.cost_m < candidates[known->second].value.cost_m) known->second = i;
   }
@@ -275,9 +299,12 @@ std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const M
   const bool is_tour = config.method == Method::kTare;
   std::vector<Candidate> candidates =
       is_tour ? propose_tour(s, tree, memory, config) : propose_frontiers(s, tree, memory, config);
+  reject_unsure_ones(memory.adrift, candidates);
   if (is_tour && is_any_open(candidates)) return candidates;
   if (!is_any_open(candidates)) candidates = propose_frontiers(s, tree, memory, config, hidden_ones(candidates));
   if (!is_any_open(candidates)) add_gap_views(s, tree, memory, config, candidates);
+  reject_unsure_ones(memory.adrift, candidates);
+  if (!is_any_open(candidates)) add_tracked_places(s, tree, memory, config, candidates);
   reject_far_ones(candidates, memory, config.max_candidates);
   if (is_tour) return nearest_first(std::move(candidates));
   const bool may_revisit = config.revisit_sigma_m > 0.0 && counts_loops(config.method);

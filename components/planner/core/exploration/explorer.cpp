@@ -15,6 +15,7 @@ constexpr double kBlockedRadius_m = 0.2;       // what stops the robot nearer to
 constexpr int kChange_cells = 5;               // known around a target: what failed there may succeed now
 constexpr double kLeastDecisionTime_s = 0.5;   // from one decision to the next, whatever happens
 constexpr double kBlindPatience_s = 2.0;       // without a pose, before it looks around for it
+constexpr double kLeastGrowth = 0.02;          // of sigma by odometry alone, for each metre
 constexpr int kBlindTurns = 2, kHeadings = 3;  // of such a look around: full turns, and poses of the path for each
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
@@ -26,7 +27,7 @@ GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
   return config;
 }
 
-bool is_of_frontier(CandidateKind kind) { return kind != CandidateKind::kGap && kind != CandidateKind::kRevisit; }
+bool is_of_frontier(CandidateKind kind) { return kind < CandidateKind::kTracked; }
 
 bool is_any_left_alone(const Decision& decision) {
   return std::any_of(decision.candidates.begin(), decision.candidates.end(), [](const Candidate& c) {
@@ -38,6 +39,7 @@ bool has_ended(State state) { return state == State::kDone || state == State::kG
 
 std::string purpose_of(const Candidate& chosen) {
   switch (chosen.kind) {
+    case CandidateKind::kTracked: return "drives back to where slam tracked";
     case CandidateKind::kGap: return "drives to where gaps of the map are in sight";
     case CandidateKind::kRevisit: return "revisits an old place";
     default: return "drives to frontier " + std::to_string(chosen.frontier);
@@ -109,7 +111,7 @@ void Explorer::forget_map() {
   looks_at_gaps_ = false;
   losses_.clear();
   awaited_.clear();
-  looks_again_ = false;
+  looks_again_ = goes_back_ = false;
   blind_since_.reset();
   home_.reset();
   trail_.clear();
@@ -155,8 +157,8 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
     await_first_pose(report.now);
     return false;
   }
-  if (!is_led(report) || state_ == State::kRecovering) {
-    recover(report, surroundings);
+  if (report.tracking == Tracking::kLost || state_ == State::kRecovering) {
+    recover(report);
     return false;
   }
   if (surroundings == nullptr || !report.robot) {
@@ -174,15 +176,15 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
 
 void Explorer::note_pose(const Report& report) {
   if (!report.robot) return;
+  const bool was_adrift = std::exchange(is_adrift_, report.tracking == Tracking::kDeadReckoning);
+  const bool was_beyond_budget = was_adrift && is_beyond_budget();
+  reckoned_m_ = was_adrift && is_adrift_ ? reckoned_m_ + distance(robot_, *report.robot) : 0.0;
+  drift_m_ = report.drift_m;
   robot_ = *report.robot;
   if (!home_) home_ = robot_;
   if (report.tracking == Tracking::kTracking) trail_.add(robot_);
-}
-
-/// By a pose that is good enough to drive on with.
-bool Explorer::is_led(const Report& report) const {
-  if (report.tracking == Tracking::kDeadReckoning) return report.drift_m <= config_.max_drift_m;
-  return report.tracking == Tracking::kTracking;
+  if (is_adrift_ && !was_adrift) trail_.turn_back();
+  if (is_beyond_budget() && !was_beyond_budget) note_loss(report.now);
 }
 
 void Explorer::await_first_pose(time::Time now) {
@@ -203,7 +205,6 @@ void Explorer::look_for_pose(time::Time now) {
 }
 
 bool Explorer::explore(const Report& report, Surroundings& surroundings) {
-  is_adrift_ = report.tracking == Tracking::kDeadReckoning;
   const auto known_cells = [&](const Eigen::Vector2d& target_map) {
     return surroundings.known_cells(target_map, config_.memory.radius_m);
   };
@@ -217,6 +218,8 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   may_change_ = surroundings.grid().has_passing_obstacles();
   awaited_ = surroundings.awaited_targets();
   if (awaited_.empty()) looks_again_ = false;
+  if (!is_adrift_) goes_back_ = false;
+  if (goal_ && is_of_other_tier(*goal_)) drop_goal();
   const bool may_decide = !chosen_at_ || (report.now - *chosen_at_).seconds() >= kLeastDecisionTime_s;
   if (!goal_) return may_decide;
   if (is_at(goal_->pose, *report.robot)) {
@@ -238,10 +241,14 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   return may_decide && (is_due(report.now) || !is_path_free(path_, *report.robot, surroundings.grid()));
 }
 
+/// Slam tracks again where it drove to for that, or the budget of sigma is spent before another goal.
+bool Explorer::is_of_other_tier(const Goal& goal) const {
+  return goal.kind == CandidateKind::kTracked ? !is_adrift_ : goal.target_map && is_beyond_budget();
+}
+
 // Going to and fro, or after what is never seen, has to end whatever a method promises itself of it.
 void Explorer::note_stall(time::Time now) {
-  add_failure(now);
-  progress_.begin_anew();
+  add_failure(now, is_adrift_);
   reason_ = "nothing new was seen for long";
   drop_goal();
 }
@@ -252,6 +259,7 @@ bool Explorer::is_due(time::Time now) const {
 
 void Explorer::note_arrival(time::Time now) {
   if (!goal_->target_map) return;
+  if (goal_->kind == CandidateKind::kTracked) return trail_.drop_from(goal_->pose);
   if (goal_->kind == CandidateKind::kGap) return taken_views_.push_back(goal_->pose);
   if (goal_->kind == CandidateKind::kRevisit)  // not for ever
     return revisited_.add_failure(*goal_->target_map, {.is_adrift = is_adrift_}, now);
@@ -295,7 +303,7 @@ bool Explorer::stands_still(const Report& report) {
 
 // The target is left alone, and paths no longer lead through what stopped the robot.
 void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
-  add_failure(report.now);
+  add_failure(report.now, is_adrift_);
   const auto place = place_ahead(path_, *report.robot);
   if (!place) return;
   blocked_.add_failure(*place, {}, report.now);
@@ -304,13 +312,15 @@ void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
 
 /// Of the goal. A place that cannot be had, of an old key-frame or for a view of gaps, says nothing of a frontier
 /// beside it.
-void Explorer::add_failure(time::Time now) {
+void Explorer::add_failure(time::Time now, bool is_adrift) {
+  progress_.begin_anew();
   if (!goal_->target_map) return;
   ++failures_;
+  if (goal_->kind == CandidateKind::kTracked) return trail_.drop_from(goal_->pose);
   const bool is_place = !is_of_frontier(goal_->kind);
   GoalMemory& memory = is_place ? revisited_ : memory_;
   memory.add_failure(is_place ? goal_->pose.p_map : *goal_->target_map,
-                     {Rejection::kFailed, goal_->pose.p_map, is_adrift_}, now);
+                     {Rejection::kFailed, goal_->pose.p_map, is_adrift}, now);
 }
 
 std::vector<Eigen::Vector2d> Explorer::blocked_places(time::Time now) const {
@@ -331,7 +341,17 @@ Memory Explorer::memory(time::Time now) const {
   memory.taken_views = taken_views_;
   memory.radius_m = config_.memory.radius_m;
   if (goal_) memory.goal = goal_->pose;
+  memory.adrift = adrift();
   return memory;
+}
+
+std::optional<Adrift> Explorer::adrift() const {
+  if (!is_adrift_) return std::nullopt;
+  const double growth = std::max(kLeastGrowth, drift_m_ / std::max(1.0, reckoned_m_));
+  return Adrift{.sigma_m = drift_m_,
+                .growth = growth,
+                .budget_m = goes_back_ ? 0.0 : config_.max_drift_m,
+                .tracked = {trail_.poses().rbegin(), trail_.poses().rend()}};
 }
 
 bool Explorer::take(const Decision& decision, const Report& report) {
@@ -393,7 +413,9 @@ void Explorer::end_or_look_around(const Decision& decision, const Report& report
   drop_goal();
   if (!std::exchange(looks_at_gaps_, true)) return;
   if (!nothing_since_) nothing_since_ = now;
-  const bool is_worth_waiting = may_change_ && (now - *nothing_since_).seconds() < config_.patience_s;
+  const double passed_s = (now - *nothing_since_).seconds();
+  const bool may_change = (may_change_ || report.is_map_behind) && passed_s < config_.patience_s;
+  const bool is_worth_waiting = may_change || (is_beyond_budget() && passed_s < config_.lost_timeout_s);
   if (empty_decisions_ < config_.confirmations || is_worth_waiting) {
     ++empty_decisions_;
     goal_ = Goal{.pose = robot_, .moved_from = robot_, .moved_at = now};
@@ -422,37 +444,29 @@ bool Explorer::has_another_chance(const Decision& decision, const Report& report
   const bool has_unblocked = blocked_.forgive(report.now);
   if (has_forgiven || has_unblocked) return true;
   if (awaited_.empty() || std::exchange(looks_again_, true)) return false;
-  if (report.tracking == Tracking::kDeadReckoning)
-    begin_recovery(report, "drives back to where slam tracked: what is left waits for the map's correction");
+  goes_back_ = is_adrift_;
   return true;
 }
 
-void Explorer::begin_recovery(const Report& report, std::string reason) {
-  drop_goal();
-  interrupted_ = state_;
-  lost_at_ = report.now;
-  trail_.turn_back();
-  enter(State::kRecovering, std::move(reason));
-}
-
-void Explorer::recover(const Report& report, const Surroundings* surroundings) {
-  const bool is_lost = report.tracking == Tracking::kLost;
-  if (report.tracking == Tracking::kTracking) {
+void Explorer::recover(const Report& report) {
+  if (report.tracking != Tracking::kLost) {
     lost_at_.reset();
     drop_goal();
-    return enter(interrupted_, "slam tracks again");
+    return enter(interrupted_, is_adrift_ ? "slam reckons by odometry alone" : "slam tracks again");
   }
   if (state_ != State::kRecovering) {
     note_loss(report.now);
-    begin_recovery(report, is_lost ? "slam is lost" : "slam reckons by odometry alone, and has drifted");
+    drop_goal();
+    interrupted_ = state_;
+    lost_at_ = report.now;
+    enter(State::kRecovering, "slam is lost");
   }
   if ((report.now - *lost_at_).seconds() > config_.lost_timeout_s) {
     drop_goal();
     return enter(State::kFailed,
                  "slam has not tracked for " + std::to_string(std::lround(config_.lost_timeout_s)) + " s");
   }
-  if (is_lost) return look_for_pose(report.now);
-  if (report.robot && !trail_.is_empty() && surroundings != nullptr) retrace(report, *surroundings);
+  look_for_pose(report.now);
 }
 
 // Slam may lose itself anywhere; on the way to the same target again, it does so for what is seen there.
@@ -461,19 +475,8 @@ void Explorer::note_loss(time::Time now) {
   const bool is_again = std::any_of(losses_.begin(), losses_.end(), [&](const Eigen::Vector2d& target_map) {
     return (target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
   });
-  if (is_again) add_failure(now);
+  if (is_again) add_failure(now, false);
   losses_.push_back(*goal_->target_map);
-}
-
-// Back along the path that was tracked, as far as need be: at its end is what slam lost itself in. A place to which no
-// path leads, or none all along, is passed over.
-void Explorer::retrace(const Report& report, const Surroundings& surroundings) {
-  const bool is_there = is_at(trail_.next_back(), *report.robot);
-  const bool is_at_end = !path_.empty() && is_at(path_.back(), *report.robot);
-  const bool is_out_of_reach = path_.empty() && decided_at_ && is_due(report.now);
-  const bool continues = (is_there || is_at_end || is_out_of_reach || report.is_blocked) && trail_.step_back();
-  const bool has_path = !path_.empty() && is_path_free(path_, *report.robot, surroundings.grid());
-  if (continues || (!has_path && is_due(report.now))) drive_to(trail_.next_back(), report, surroundings);
 }
 
 // Who stood in the way may have gone, or may go.

@@ -18,7 +18,7 @@ enum class State {
   kIdle,        ///< nobody has asked for anything
   kExploring,   ///< drives to frontiers
   kPaused,      ///< stands still until it is started again
-  kRecovering,  ///< slam has no pose, or one that has drifted far: looks around, or drives back to where it tracked
+  kRecovering,  ///< slam has no pose: looks around
   kReturning,   ///< drives to where it started
   kDone,        ///< nothing is left that can be reached, or it has returned
   kGaveUp,      ///< the same, but frontiers are left that geometry does not excuse; the reason says which
@@ -35,8 +35,8 @@ struct ExplorerConfig {
   double slowest_m_s = 0.15;        ///< a path that takes longer than at this speed has failed, in [0.01, 5]
   Allowance stall = {};             ///< without seeing anything new before a goal has failed
   double settle_s = 1.5;            ///< after arriving, until the map shows whether the view has failed, in [0, 60]
-  double max_drift_m = 0.5;         ///< of a pose by odometry alone, beyond which it drives back, in [0, 100]
-  double lost_timeout_s = 60.0;     ///< without such a pose, exploration has failed, in [1, 3600]
+  double max_drift_m = 0.5;         ///< sigma of the position by odometry alone at a path's end, in [0, 100]
+  double lost_timeout_s = 60.0;     ///< without a pose, exploration has failed, in [1, 3600]
   double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
   int confirmations = 3;         ///< looks around, a full turn in all, that find nothing before it is over, in [2, 12]
   double patience_s = 20.0;      ///< for obstacles that may go away before it is over, in [0, 600]
@@ -51,8 +51,9 @@ struct Report {
   time::Time now;
   std::optional<Pose2> robot;  ///< nothing while slam has no pose
   Tracking tracking = Tracking::kLost;
-  bool is_blocked = false;  ///< the controller finds no path; only true when it speaks of the newest path
-  double drift_m = 0.0;     ///< sigma of the position since slam tracked last
+  bool is_blocked = false;     ///< the controller finds no path; only true when it speaks of the newest path
+  double drift_m = 0.0;        ///< sigma of the position since slam tracked last
+  bool is_map_behind = false;  ///< the graph has been corrected, and the map is not yet
 };
 
 /// The mission: when to decide, what to do with the decision, and when it is over.
@@ -104,7 +105,6 @@ class Explorer {
   void drop_goal();
   bool explore(const Report& report, Surroundings& surroundings);
   void note_pose(const Report& report);
-  bool is_led(const Report& report) const;
   void await_first_pose(time::Time now);
   void look_for_pose(time::Time now);
   void follow(const Decision& decision, time::Time now);
@@ -113,10 +113,11 @@ class Explorer {
   void end_or_look_around(const Decision& decision, const Report& report);
   void end(const Leftover& leftover);
   bool has_another_chance(const Decision& decision, const Report& report);
-  void begin_recovery(const Report& report, std::string reason);
-  void recover(const Report& report, const Surroundings* surroundings);
+  void recover(const Report& report);
+  std::optional<Adrift> adrift() const;
+  bool is_beyond_budget() const { return is_adrift_ && !(drift_m_ <= config_.max_drift_m); }
+  bool is_of_other_tier(const Goal& goal) const;
   void note_loss(time::Time now);
-  void retrace(const Report& report, const Surroundings& surroundings);
   void go_home(const Report& report, Surroundings& surroundings);
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
   void note_arrival(time::Time now);
@@ -129,7 +130,7 @@ class Explorer {
   bool is_due(time::Time now) const;
   void note_failure(const Report& report, Surroundings& surroundings);
   void note_stall(time::Time now);
-  void add_failure(time::Time now);
+  void add_failure(time::Time now, bool is_adrift);
   std::vector<Eigen::Vector2d> blocked_places(time::Time now) const;
 
   ExplorerConfig config_;
@@ -150,6 +151,7 @@ class Explorer {
   std::vector<Eigen::Vector2d> awaited_;  ///< targets that wait for a correction of the map [m, map]
   bool looks_at_gaps_ = false;            ///< of the map: no frontier is left to try
   bool looks_again_ = false;              ///< at these, too: nothing else is left
+  bool goes_back_ = false;                ///< to where slam tracked, or else they never come into the map
   std::optional<Pose2> home_;
   Pose2 robot_;  ///< where it was known to be last
   Trail trail_;
@@ -161,6 +163,8 @@ class Explorer {
   State end_ = State::kDone;  ///< after the return, and why
   std::string end_reason_;
   bool is_adrift_ = false;   ///< slam reckons by odometry alone
+  double drift_m_ = 0.0;     ///< sigma of the position since slam tracked
+  double reckoned_m_ = 0.0;  ///< driven since
   bool may_change_ = false;  ///< obstacles stand where there may soon be none
 };
 

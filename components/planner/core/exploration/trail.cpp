@@ -1,7 +1,9 @@
 #include "planner/core/exploration/trail.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <numbers>
 
 namespace lapis::planner {
@@ -24,10 +26,9 @@ void Trail::turn_back() {
   if (newest_) poses_.push_back(*newest_);
 }
 
-bool Trail::step_back() {
-  if (poses_.size() <= 1) return false;
-  poses_.pop_back();
-  return true;
+void Trail::drop_from(const Pose2& place) {
+  const auto newer = std::find_if(poses_.rbegin(), poses_.rend(), [&](const Pose2& p) { return !has_moved(p, place); });
+  if (newer != poses_.rend()) poses_.erase(std::prev(newer.base()), poses_.end());
 }
 
 void Trail::clear() {

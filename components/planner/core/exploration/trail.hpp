@@ -13,19 +13,16 @@ inline bool has_moved(const Pose2& from, const Pose2& to) {
   return (to.p_map - from.p_map).norm() > kMotion_m || turn_between(to.yaw_rad, from.yaw_rad) > kMotion_rad;
 }
 
-/// Poses at which slam tracked, the newest ones: the path back from where it stopped to.
+/// Poses at which slam tracked, the newest ones: where it may track again.
 class Trail {
  public:
   void add(const Pose2& tracked);
   /// Slam stopped tracking: the path back begins with the pose at which it last did.
   void turn_back();
-  bool is_empty() const { return poses_.empty(); }
-  /// Next one on the path back; there is one.
-  const Pose2& next_back() const { return poses_.back(); }
-  /// That one has been reached. False when there is none before it.
-  bool step_back();
-  /// Where slam tracked last.
-  const std::optional<Pose2>& newest() const { return newest_; }
+  /// The newest last.
+  const std::deque<Pose2>& poses() const { return poses_; }
+  /// It has been reached, or cannot be, and slam does not track: what came after it is of no use either.
+  void drop_from(const Pose2& place);
   /// Its last turn was to the left.
   bool turned_left() const { return turned_left_; }
   void clear();

@@ -10,6 +10,7 @@ std::string text_of(Rejection rejection) {
     case Rejection::kHidden: return "hidden from everywhere that can be reached";
     case Rejection::kFailedView: return "looked at in vain";
     case Rejection::kFailed: return "paths to it have failed";
+    case Rejection::kUnsure: return "the position would be too unsure there";
     case Rejection::kLeftAlone: return "left alone for now";
     case Rejection::kOutranked: return "others come before it (planner.max_candidates)";
     case Rejection::kFarSpace: return "enough sub-spaces are nearer";

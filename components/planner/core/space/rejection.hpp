@@ -12,6 +12,7 @@ enum class Rejection {
   kHidden,       ///< from all that can be reached, occupied cells hide the frontier
   kFailedView,   ///< it has been looked at, from here or from several places, and is there still
   kFailed,       ///< paths to it have failed, so often that it was given up
+  kUnsure,       ///< by odometry alone, the position would be less sure there than the budget allows
   kLeftAlone,    ///< it has failed, and has to wait, or it waits for what was seen to enter the map
   kOutranked,    ///< others come before it (DecisionConfig::max_candidates)
   kFarSpace,     ///< of a tour: enough sub-spaces are nearer

@@ -151,6 +151,45 @@ TEST(Decide, NobodyIsToBlameForNarrowFrontiers) {
   }
 }
 
+TEST(Decide, ByOdometryAloneItStaysWithinTheBudget) {
+  for (const std::string& name : method_names()) {
+    Explorer explorer;
+    explorer.config.method = *method_of(name);
+    Memory memory;
+    memory.adrift = {.sigma_m = 0.1, .growth = 0.1, .budget_m = 0.5};
+    int near = 0, far = 0;
+    for (const Candidate& candidate : explorer.choose(memory).candidates) {
+      const bool is_sure = 0.1 + 0.1 * candidate.value.cost_m <= 0.5;
+      EXPECT_EQ(candidate.rejection == Rejection::kUnsure, !is_sure) << name;
+      ++(is_sure ? near : far);
+    }
+    EXPECT_GT(near, 0) << name;
+    EXPECT_TRUE(far > 0 || *method_of(name) == Method::kTare) << name << ": whose tour has one stop here";
+  }
+}
+
+TEST(Decide, BeyondTheBudgetItDrivesToWhereSlamTracked) {
+  for (const std::string& name : method_names()) {
+    Explorer explorer;
+    explorer.config.method = *method_of(name);
+    const Pose2 behind{explorer.robot.p_map - Eigen::Vector2d(0.5, 0.0), 1.0};
+    Memory memory;
+    for (const double sigma_m : {0.6, std::numeric_limits<double>::quiet_NaN()}) {
+      memory.adrift = {.sigma_m = sigma_m, .growth = 0.1, .budget_m = 0.5, .tracked = {{{1e3, 0.0}, 0.0}, behind}};
+      const Decision decision = explorer.choose(memory);
+      ASSERT_TRUE(decision.chosen) << name;
+      const Candidate& back = decision.candidates[*decision.chosen];
+      EXPECT_EQ(back.kind, CandidateKind::kTracked) << name;
+      EXPECT_LT((back.goal.p_map - behind.p_map).norm(), explorer.world.grid.resolution_m()) << name;
+      EXPECT_EQ(back.goal.yaw_rad, 1.0) << name;
+    }
+    memory.adrift->tracked.clear();
+    const Decision nothing = explorer.choose(memory);
+    EXPECT_FALSE(nothing.chosen) << name;
+    EXPECT_GT(nothing.leftover.share_to_blame, 0.0) << name;
+  }
+}
+
 // Above and below the layer that is known, nothing is; no frontier says so.
 TEST(Decide, LooksAtGapsOfTheMapWhenNoFrontierIsLeft) {
   const std::vector<std::string> hall = {"##################", "#................#", "#................#",

@@ -1,5 +1,7 @@
 #include "planner/core/exploration/trail.hpp"
 
+#include <vector>
+
 #include <gtest/gtest.h>
 
 namespace lapis::planner {
@@ -7,29 +9,35 @@ namespace {
 
 Pose2 at(double x_m) { return {{x_m, 0.0}, 0.0}; }
 
-double next_back(const Trail& trail) { return trail.next_back().p_map.x(); }
+std::vector<double> places(const Trail& trail) {
+  std::vector<double> x_m;
+  for (const Pose2& pose : trail.poses()) x_m.push_back(pose.p_map.x());
+  return x_m;
+}
 
-TEST(Trail, LeadsBackFromTheNewestPoseOverPlacesApart) {
+TEST(Trail, KeepsPosesApartAndTheNewest) {
   Trail trail;
   for (const double x_m : {0.0, 0.2, 0.5, 0.6, 1.0, 1.1}) trail.add(at(x_m));
-  EXPECT_EQ(trail.newest()->p_map.x(), 1.1);
   trail.turn_back();
-  EXPECT_EQ(next_back(trail), 1.1);
-  for (const double x_m : {1.0, 0.5, 0.0}) {
-    ASSERT_TRUE(trail.step_back());
-    EXPECT_EQ(next_back(trail), x_m);
-  }
-  EXPECT_FALSE(trail.step_back());
-  EXPECT_EQ(next_back(trail), 0.0) << "the oldest stays the last resort";
+  EXPECT_EQ(places(trail), (std::vector{0.0, 0.5, 1.0, 1.1}));
+}
+
+TEST(Trail, DropsWhatWasReachedAndWhatCameAfterIt) {
+  Trail trail;
+  for (const double x_m : {0.0, 0.5, 1.0, 1.5}) trail.add(at(x_m));
+  trail.drop_from(at(1.1));
+  EXPECT_EQ(places(trail), (std::vector{0.0, 0.5}));
+  trail.drop_from(at(5.0));
+  EXPECT_EQ(places(trail), (std::vector{0.0, 0.5})) << "it never was there";
+  trail.drop_from({{0.5, 0.0}, 1.0});
+  EXPECT_EQ(places(trail), (std::vector{0.0, 0.5})) << "another heading is another view";
 }
 
 TEST(Trail, ForgetsTheOldest) {
   Trail trail;
   for (int i = 0; i < 1000; ++i) trail.add(at(i));
-  int steps = 0;
-  while (trail.step_back()) ++steps;
-  EXPECT_EQ(steps, 49);
-  EXPECT_EQ(next_back(trail), 950.0);
+  EXPECT_EQ(trail.poses().size(), 50u);
+  EXPECT_EQ(trail.poses().front().p_map.x(), 950.0);
 }
 
 TEST(Trail, KnowsWhereItTurnedLast) {
@@ -46,8 +54,8 @@ TEST(Trail, KnowsWhereItTurnedLast) {
 TEST(Trail, IsEmptyBeforeSlamHasTracked) {
   Trail trail;
   trail.turn_back();
-  EXPECT_TRUE(trail.is_empty());
-  EXPECT_FALSE(trail.newest());
+  EXPECT_TRUE(trail.poses().empty());
+  trail.drop_from(at(0.0));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 #include "controller/controller_component.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <numbers>
 #include <string>
@@ -33,6 +34,7 @@ config::Rules ControllerComponent::rules(const Config& config) {
   const LocalMapConfig& map = config.method.local_map;
   const FanConfig& fan = config.method.fan;
   const robot::RobotDescription& robot = config.robot;
+  const double slowest_turn_rad_s = std::min(robot.max_turn_rate_rad_s, config.method.weak_turn_rad_s);
   return {{fan.groups % 2 == 1, "controller.fan.groups has to be odd"},
           {fan.branches % 2 == 1, "controller.fan.branches has to be odd"},
           {map.min_height_m < robot.obstacle_max_height_m,
@@ -40,8 +42,9 @@ config::Rules ControllerComponent::rules(const Config& config) {
           {map.range_m >= fan.length_m + robot.radius_m + fan.margin_m,
            "controller.local_map.range_m has to be at least controller.fan.length_m, robot.radius_m and "
            "controller.fan.margin_m together"},
-          {config.method.progress_timeout_s > std::numbers::pi / robot.max_turn_rate_rad_s,
-           "controller.progress_timeout_s has to be longer than half a turn at robot.max_turn_rate_rad_s takes"}};
+          {config.method.progress_timeout_s > std::numbers::pi / slowest_turn_rad_s,
+           "controller.progress_timeout_s has to be longer than half a turn at robot.max_turn_rate_rad_s and at "
+           "controller.weak_turn_rad_s takes"}};
 }
 
 ControllerComponent::ControllerComponent(const Config& config, runtime::Context& context)
@@ -54,6 +57,7 @@ ControllerComponent::ControllerComponent(const Config& config, runtime::Context&
       info_(context, topics::kDepthInfo, "camera info", kWaitingFrames) {
   depth_.on_arrival([this](time::Time stamp) { camera_stamp_ = stamp; });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { add_mount(m); });
+  context.subscribe(topics::kTrackedFrame, [this](const auto& m) { note_frame(m); });
   context.subscribe(topics::kPlannerPath, [this](Path& m) { path_ = std::move(m); });
   context.subscribe(topics::kPlannerStatus, [this](const auto&) { has_planner_spoken_ = true; });
   context.subscribe(topics::kOccupancyGrid, [this](OccupancyGrid& m) { plan_ = std::move(m); });
@@ -155,6 +159,10 @@ void ControllerComponent::take_path(const Path& message) {
 void ControllerComponent::refuse_path(const std::string& problem) {
   drop("path", problem);
   controller_.set_path({}, "path refused: " + problem);
+}
+
+void ControllerComponent::note_frame(const lapis_msgs::msg::TrackedFrame& frame) {
+  controller_.set_weak_views(frame.source() != lapis_msgs::msg::TrackedFrame_Constants::SOURCE_VISION);
 }
 
 void ControllerComponent::add_mount(const tf2_msgs::msg::TFMessage& message) {

@@ -38,6 +38,7 @@ class ControllerComponent {
   void take_map(time::Time now);
   void take_path(const Path& message);
   void refuse_path(const std::string& problem);
+  void note_frame(const lapis_msgs::msg::TrackedFrame& frame);
   void add_mount(const tf2_msgs::msg::TFMessage& message);
   void drop(const std::string& what, const std::string& reason);
   void publish(Decision decision, time::Time now);

@@ -82,6 +82,8 @@ void describe(Field& field, ControllerComponentConfig& c) {
         "without moving 0.3 m before the robot backs up, and then reports that it is blocked [s]");
   field("look_around_rad_s", c.method.look_around_rad_s, config::in_range(0.05, 2.0),
         "of a turn on the spot that the planner asks for: slow, or images blur [rad/s]");
+  field("weak_turn_rad_s", c.method.weak_turn_rad_s, config::in_range(0.05, 10.0),
+        "of any turn, at most, while slam's pose does not come from features [rad/s]");
   field.moved("lost_turn_rate_rad_s", "controller.look_around_rad_s",
               "the planner has the robot look around for its pose (planner.lost_timeout_s)");
 }

@@ -173,9 +173,9 @@ Decision Controller::drive(const Obstacles& obstacles, double elapsed_s) const {
 /// The robot can stop before the end of the path, of the free path, and of what it drives on until it has steered.
 double Controller::speed_limit(const LocalPath& local_path, const Obstacles& obstacles) const {
   double limit = limits_.max_speed_m_s;
-  const double turn_limit = kTurnShare * limits_.max_turn_rate_rad_s;
-  if (std::abs(local_path.curvature_per_m) * limit > turn_limit)
-    limit = turn_limit / std::abs(local_path.curvature_per_m);
+  const double most_rad_s = kTurnShare * turn_limit();
+  if (std::abs(local_path.curvature_per_m) * limit > most_rad_s)
+    limit = most_rad_s / std::abs(local_path.curvature_per_m);
   limit = std::min(limit, std::max(kCreep_m_s, stopping_speed(track_->left_m(), limits_)));
   limit = std::min(limit, stopping_speed(local_path.free_length_m, limits_));
   if (last_.forward_m_s > kCreep_m_s) {
@@ -188,9 +188,13 @@ double Controller::speed_limit(const LocalPath& local_path, const Obstacles& obs
   return std::min(limit, share * limits_.max_speed_m_s);
 }
 
+double Controller::turn_limit() const {
+  return are_views_weak_ ? std::min(config_.weak_turn_rad_s, limits_.max_turn_rate_rad_s) : limits_.max_turn_rate_rad_s;
+}
+
 double Controller::turn_rate(double error_rad) const {
   const double rate = std::max(kTurnGain * std::abs(error_rad), kSlowTurn_rad_s);
-  return std::copysign(std::min(rate, limits_.max_turn_rate_rad_s), error_rad);
+  return std::copysign(std::min(rate, turn_limit()), error_rad);
 }
 
 Controller::Recovery Controller::next_phase(const Obstacles& obstacles, time::Time now) {
@@ -252,7 +256,7 @@ Decision Controller::recover(double elapsed_s) const {
 Velocity Controller::recovery_velocity() const {
   const double aside_rad = bearing(goal_ahead(config_.look_ahead_m));
   switch (recovery_) {
-    case Recovery::kTurning: return {0.0, turns_left_ ? limits_.max_turn_rate_rad_s : -limits_.max_turn_rate_rad_s};
+    case Recovery::kTurning: return {0.0, turns_left_ ? turn_limit() : -turn_limit()};
     case Recovery::kBackingUp: return {-std::min(config_.back_up_speed_m_s, stopping_speed(kRearRoom_m, limits_)), 0.0};
     case Recovery::kNoPath: return {0.0, std::abs(aside_rad) > kAside_rad ? turn_rate(aside_rad) : 0.0};
     default: return {};

@@ -27,6 +27,7 @@ struct ControllerConfig {
   double recovery_turn_rad = 1.6;      ///< in [0, 3]
   double progress_timeout_s = 6.0;     ///< in [1, 600]
   double look_around_rad_s = 0.3;      ///< rate of a turn on the spot: slow, or images blur; in [0.05, 2]
+  double weak_turn_rad_s = 0.55;       ///< any turn's, at most, while views are weak, in [0.05, 10]
 };
 
 /// Points in base_link.
@@ -60,6 +61,8 @@ class Controller {
   void note_planner(time::Time now) { watchdog_.note(Input::kPlanner, now); }
   void note_camera(time::Time stamp, time::Time now) { watchdog_.note(Input::kCamera, now, stamp); }
   void set_pose(const PlanarPose& T_map_base, time::Time stamp, time::Time now);
+  /// Features do not hold the pose now: turning slowly keeps what does in view for longer, and blurs less.
+  void set_weak_views(bool are_weak) { are_views_weak_ = are_weak; }
   /// What the camera saw at the pose that was set last.
   void see(const DepthView& view, time::Time stamp, time::Time now);
   void set_plan(Grid grid) { map_.set_plan(std::move(grid)); }
@@ -87,6 +90,7 @@ class Controller {
   bool may_back_up(const Obstacles& obstacles) const;
   bool is_stuck(time::Time now);
   bool has_tried() const;
+  double turn_limit() const;
   double turn_rate(double error_rad) const;
   /// In base_link.
   Eigen::Vector2d goal_ahead(double distance_m) const { return T_map_base_.inverse() * track_->ahead(distance_m); }
@@ -98,6 +102,7 @@ class Controller {
   LocalPlanner planner_;
   PlanarPose T_map_base_ = PlanarPose::Identity();
   std::optional<time::Time> pose_stamp_;
+  bool are_views_weak_ = false;
 
   std::optional<PathTrack> track_;
   std::optional<double> turn_rad_;  // on the spot, instead of a path

@@ -315,6 +315,22 @@ TEST(Controller, TurnsOnTheSpotSlowly) {
   EXPECT_DOUBLE_EQ(fastest, 0.2);
 }
 
+TEST(Controller, TurnsSlowlyWhileViewsAreWeak) {
+  for (const bool are_weak : {false, true}) {
+    KinematicWorld world(hall());
+    world.controller.set_weak_views(are_weak);
+    world.controller.set_path(straight({0, 0}, {-1, 0}, 0.0), "");
+    double fastest = 0.0;
+    const auto note = [&](const Decision& d) {
+      fastest = std::max(fastest, std::abs(d.command.turn_rad_s));
+      return false;
+    };
+    world.run_until(note, 20.0);
+    EXPECT_EQ(world.last.state, State::kIdle) << world.last.reason;
+    EXPECT_DOUBLE_EQ(fastest, are_weak ? ControllerConfig{}.weak_turn_rad_s : RobotLimits{}.max_turn_rate_rad_s);
+  }
+}
+
 TEST(Controller, ATurnWaitsForImagesAndForThePlanner) {
   for (bool KinematicWorld::*input : {&KinematicWorld::has_camera, &KinematicWorld::has_planner}) {
     KinematicWorld world(hall());

@@ -392,7 +392,7 @@ void SemanticMapperComponent::publish_tiles() {
   message.checksum(state.checksum);
   message.frames_integrated(frames_integrated_);
   message.frames_dropped(frames_dropped_);
-  message.frames_off(mapper_->frames_off());
+  message.frames_off(mapper_->frames_far_off());
   map_state_.publish(message);
 }
 

@@ -163,7 +163,7 @@ bool SemanticMapper::is_far_off(std::size_t index) const {
   return corrected_.contains(index) || offset_voxels(frames_[index], wanted_pose(frames_[index])) > 1.0;
 }
 
-std::uint64_t SemanticMapper::frames_off() const {
+std::uint64_t SemanticMapper::frames_far_off() const {
   return static_cast<std::uint64_t>(
       std::count_if(off_.begin(), off_.end(), [&](std::size_t index) { return is_far_off(index); }));
 }

@@ -134,7 +134,7 @@ class SemanticMapper {
   const MapperConfig& config() const { return config_; }
   std::uint64_t graph_version() const { return graph_version_; }
   /// That lie in the map more than a voxel from where this version has them: re_anchor() has not moved them yet.
-  std::uint64_t frames_off() const;
+  std::uint64_t frames_far_off() const;
   /// Memory of the stored frames [bytes].
   std::size_t frame_bytes() const { return store_.memory_bytes() + frames_.size() * sizeof(StoredFrame); }
 

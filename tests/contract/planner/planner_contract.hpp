@@ -254,7 +254,8 @@ class PlannerRun {
   }
   /// Starts it without; "key=value" each.
   void start_free(const std::vector<std::string>& settings = {}) {
-    std::vector<std::string> arguments;
+    // Peers draw a map of one layer: above and below it would be nothing but gaps.
+    std::vector<std::string> arguments{"--set", "planner.gaps.least_nats=0"};
     for (const std::string& setting : settings) arguments.insert(arguments.end(), {"--set", "planner." + setting});
     planner.emplace(kPlanner, arguments);
   }

@@ -17,6 +17,9 @@ constexpr double kLeastDamping = 1e-7, kFirstDamping = 1e-5, kLittleDamping = 3e
 constexpr int kLookIterations = 10;
 // A round of graduated non-convexity only has to follow its weights.
 constexpr int kRoundIterations = 2;
+// Of odometry's weights.
+constexpr int kSlipRounds = 20;
+constexpr double kLittleChange = 0.01;
 // Loop closures with more chi2 than this many times the median of those that do not fit wait for the others' verdict.
 constexpr double kSticksOut = 4.0;
 
@@ -83,8 +86,9 @@ class Minimizer {
   int iterations_ = 0;
 };
 
-/// Decides which loop closures count. Those that stick out wait: with all wrong ones in it from the beginning, a large
-/// graph would have dense equations. Each that does not contradict the result of the others then has its turn.
+/// Decides which loop closures count, and how much odometry counts that they contradict: wheels slip. Loop closures
+/// that stick out wait: with all wrong ones in it from the beginning, a large graph would have dense equations. Each
+/// that does not contradict the result of the others then has its turn.
 template <class Space>
 class RobustMinimizer {
  public:
@@ -92,6 +96,7 @@ class RobustMinimizer {
       : options_(options), minimizer_(minimizer), gate_(chi2_gate(Space::kDof)), weights_(graph.edges.size(), 1.0) {
     for (std::size_t i = 0; i < graph.edges.size(); ++i) {
       if (graph.edges[i].type == EdgeType::kLoopClosure) waiting_.push_back(i);
+      if (graph.edges[i].type == EdgeType::kWheelOdometry) wheels_.push_back(i);
     }
   }
 
@@ -103,7 +108,7 @@ class RobustMinimizer {
       has_converged = graduate(active);
       std::erase_if(active, [&](std::size_t i) { return weights_[i] == 0.0; });
     } while (join_consistent(active));
-    return has_converged;
+    return release_slip() && has_converged;
   }
   const std::vector<double>& weights() const { return weights_; }
 
@@ -135,6 +140,24 @@ class RobustMinimizer {
     return has_converged || minimizer_.minimize(weights_, options_.max_iterations);
   }
 
+  // Weights of odometry by dynamic covariance scaling (Agarwal, Tipaldi, Spinello, Stachniss and Burgard, ICRA 2013):
+  // a motion that is far off stays, but no longer bends what is measured well.
+  bool release_slip() {
+    bool has_converged = true;
+    for (int round = 0; round < kSlipRounds; ++round) {
+      const std::vector<double> chi2 = minimizer_.edge_chi2();
+      double change = 0.0;
+      for (const std::size_t i : wheels_) {
+        const double scale = std::min(1.0, 2.0 * gate_ / (gate_ + chi2[i]));
+        change = std::max(change, std::abs(scale * scale - weights_[i]));
+        weights_[i] = scale * scale;
+      }
+      if (change < kLittleChange) return has_converged;
+      has_converged = minimizer_.minimize(weights_, options_.max_iterations);
+    }
+    return has_converged;
+  }
+
   // Loop closures without weight join once. True when there were any.
   bool join_consistent(std::vector<std::size_t>& active) {
     const std::size_t before = active.size();
@@ -151,6 +174,7 @@ class RobustMinimizer {
   double gate_;
   std::vector<double> weights_;       // of every edge
   std::vector<std::size_t> waiting_;  // loop closures that may still join
+  std::vector<std::size_t> wheels_;   // edges of odometry
 };
 
 template <class Space>

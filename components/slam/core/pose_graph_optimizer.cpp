@@ -17,9 +17,6 @@ constexpr double kLeastDamping = 1e-7, kFirstDamping = 1e-5, kLittleDamping = 3e
 constexpr int kLookIterations = 10;
 // A round of graduated non-convexity only has to follow its weights.
 constexpr int kRoundIterations = 2;
-// Of odometry's weights.
-constexpr int kSlipRounds = 20;
-constexpr double kLittleChange = 0.01;
 // Loop closures with more chi2 than this many times the median of those that do not fit wait for the others' verdict.
 constexpr double kSticksOut = 4.0;
 
@@ -141,21 +138,15 @@ class RobustMinimizer {
   }
 
   // Weights of odometry by dynamic covariance scaling (Agarwal, Tipaldi, Spinello, Stachniss and Burgard, ICRA 2013):
-  // a motion that is far off stays, but no longer bends what is measured well.
+  // a motion that is far off stays, but no longer bends what is measured well. Once, from what least squares leaves: of
+  // two motions that are off alike, further rounds would believe one and blame the other.
   bool release_slip() {
-    bool has_converged = true;
-    for (int round = 0; round < kSlipRounds; ++round) {
-      const std::vector<double> chi2 = minimizer_.edge_chi2();
-      double change = 0.0;
-      for (const std::size_t i : wheels_) {
-        const double scale = std::min(1.0, 2.0 * gate_ / (gate_ + chi2[i]));
-        change = std::max(change, std::abs(scale * scale - weights_[i]));
-        weights_[i] = scale * scale;
-      }
-      if (change < kLittleChange) return has_converged;
-      has_converged = minimizer_.minimize(weights_, options_.max_iterations);
+    const std::vector<double> chi2 = minimizer_.edge_chi2();
+    for (const std::size_t i : wheels_) {
+      const double scale = std::min(1.0, 2.0 * Space::kDof / (Space::kDof + chi2[i]));
+      weights_[i] = scale * scale;
     }
-    return has_converged;
+    return wheels_.empty() || minimizer_.minimize(weights_, options_.max_iterations);
   }
 
   // Loop closures without weight join once. True when there were any.

@@ -167,7 +167,7 @@ class RgbdSlam::Implementation {
     const bool could_start = frame.features_with_depth >= config_.tracker.min_matches;
     blind_frames_ = could_start ? blind_frames_ + 1 : 0;
     const auto reckoned = motion_.dead_reckon(frame.input->stamp);
-    if (!reckoned) return continue_by_surfaces_alone(frame, reason);
+    if (!reckoned) return continue_blind(frame, reason, false);
     ++frames_since_keyframe_;
     const MotionModel::Expected expected{map_.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera,
                                          reckoned->covariance};
@@ -182,24 +182,6 @@ class RgbdSlam::Implementation {
       const bool is_new_view = aligned.is_new_view && !could_start && !awaits_confirmation_;
       return continue_blind(frame, reason + "; " + aligned.reason, is_new_view);
     }
-    const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames;
-    if (begins_anew) blind_frames_ = 0;
-    return continue_with(frame, aligned, PoseSource::kSurfaces,
-                         begins_anew || has_moved(aligned.alignment.T_reference_camera));
-  }
-
-  // Without odometry, constant velocity leads as far as it reaches. It does not know the acceleration meanwhile.
-  TrackingResult continue_by_surfaces_alone(const Frame& frame, const std::string& reason) {
-    constexpr double kAcceleration_m_s2 = 2.0, kAcceleration_rad_s2 = 5.0;
-    auto expected = motion_.expect(map_, frame.input->stamp);
-    if (!expected) return continue_blind(frame, reason, false);
-    ++frames_since_keyframe_;
-    const double elapsed_s = (frame.input->stamp - *motion_.last_stamp()).seconds();
-    geometry::Vector6d sigma = geometry::Vector6d::Constant(0.5 * kAcceleration_m_s2 * elapsed_s * elapsed_s);
-    sigma.tail<3>() *= kAcceleration_rad_s2 / kAcceleration_m_s2;
-    expected->covariance += Matrix6d(sigma.cwiseAbs2().asDiagonal());
-    const TrackOutcome aligned = surfaces_.track(map_, frame, reference_, *expected, SurfaceTracker::Needs::kAll);
-    if (!aligned.is_tracked) return continue_blind(frame, reason + "; " + aligned.reason, false);
     const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames;
     if (begins_anew) blind_frames_ = 0;
     return continue_with(frame, aligned, PoseSource::kSurfaces,

@@ -122,7 +122,7 @@ bool SurfaceTracker::is_contradicted(const AlignmentProblem& problem, const Pose
 }
 
 TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeId reference,
-                                   const MotionModel::Expected& expected, Needs needs) const {
+                                   const MotionModel::Expected& expected) const {
   TrackOutcome outcome;
   outcome.reason = "surfaces are not used";
   if (!config_.surface.enabled) return outcome;
@@ -158,10 +158,8 @@ TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeI
   }
   const KnownDirections known =
       known_directions(alignment.surface_information, mean_depth_m(surface), surfaces.least_cosine2);
-  const bool is_known = needs == Needs::kAll ? known.information.size() == 6 : known.information.size() > 0;
-  if (!is_known) {
-    outcome.reason = needs == Needs::kAll ? "the surfaces leave directions open, and there is no odometry"
-                                          : "the surfaces tell no direction";
+  if (known.information.size() == 0) {
+    outcome.reason = "the surfaces tell no direction";
     return outcome;
   }
   // At the optimum the pull of the prior and that of the surfaces are equal: where the surfaces alone would lead.

@@ -15,11 +15,6 @@ namespace lapis::slam {
 /// motion, and get no information.
 class SurfaceTracker {
  public:
-  /// Which directions of the pose the surfaces have to know.
-  enum class Needs {
-    kSome,  ///< any
-    kAll,   ///< all six: nothing else knows the others
-  };
   explicit SurfaceTracker(const SlamConfig& config) : config_(config) {}
 
   /// @param reference of the frame before; its neighbours, and the newest key-frames, are looked at
@@ -28,8 +23,8 @@ class SurfaceTracker {
   ///   know, and what was expected in the others; `alignment.information` is zero there. Not tracked, with the reason,
   ///   when too little of the surfaces is seen again, no direction is known, or surfaces and motion contradict each
   ///   other (SurfaceConfig::max_disagreement, or the frame sees through the surfaces)
-  TrackOutcome track(const Map& map, const Frame& frame, KeyframeId reference, const MotionModel::Expected& expected,
-                     Needs needs = Needs::kSome) const;
+  TrackOutcome track(const Map& map, const Frame& frame, KeyframeId reference,
+                     const MotionModel::Expected& expected) const;
 
  private:
   struct Candidate {

@@ -32,11 +32,10 @@ class SurfaceTrackerTest : public ::testing::Test {
     keyframe.surface = sample_surface(config_.surface, config_.noise, frame.camera, frame.depth);
     map_.add_keyframe(std::move(keyframe));
   }
-  TrackOutcome track(const RgbdFrame& input, const Pose& expected, double sigma_m, double sigma_rad,
-                     SurfaceTracker::Needs needs = SurfaceTracker::Needs::kSome) {
+  TrackOutcome track(const RgbdFrame& input, const Pose& expected, double sigma_m, double sigma_rad) {
     Frame frame;
     frame.input = &input;
-    return SurfaceTracker(config_).track(map_, frame, 0, {expected, covariance(sigma_m, sigma_rad)}, needs);
+    return SurfaceTracker(config_).track(map_, frame, 0, {expected, covariance(sigma_m, sigma_rad)});
   }
   Pose T_map_camera(const TrackOutcome& outcome) const {
     return map_.keyframe(outcome.reference).T_map_camera * outcome.alignment.T_reference_camera;
@@ -54,8 +53,7 @@ TEST_F(SurfaceTrackerTest, ARoomCornerTellsEveryDirection) {
   const Pose first = step(0.5, 0.4, 0.3, 0.3, 0.6, 0.0), second = first * step(0.03, -0.02, 0.02, 0.01, -0.015, 0.01);
   add_keyframe(test::render_room(camera_, first, {}), first);
   const RgbdFrame frame = test::render_room(camera_, second, {});
-  const Pose expected = second * step(0.02, 0.02, -0.02, 0.01, 0.01, -0.01);
-  const TrackOutcome outcome = track(frame, expected, 0.02, 0.01, SurfaceTracker::Needs::kAll);
+  const TrackOutcome outcome = track(frame, second * step(0.02, 0.02, -0.02, 0.01, 0.01, -0.01), 0.02, 0.01);
   ASSERT_TRUE(outcome.is_tracked) << outcome.reason;
   EXPECT_TRUE(outcome.inliers.empty());
   EXPECT_LT(error(second, T_map_camera(outcome)).head<3>().norm(), 0.002);
@@ -78,10 +76,6 @@ TEST_F(SurfaceTrackerTest, AWallLeavesThePathAlongItToMotion) {
   const Matrix6d& information = outcome.alignment.information;
   for (const int open : {0, 1, 5}) EXPECT_NEAR(information(open, open), 0.0, 1e-6 * information(2, 2)) << open;
   for (const int known : {2, 3, 4}) EXPECT_GT(information(known, known), 1e4) << known;
-  const TrackOutcome alone =
-      track(wall, step(0.06, 0.0, 0.01, 0.0, 0.0, 0.02), 0.01, 0.01, SurfaceTracker::Needs::kAll);
-  EXPECT_FALSE(alone.is_tracked);
-  EXPECT_EQ(alone.reason, "the surfaces leave directions open, and there is no odometry");
 }
 
 TEST_F(SurfaceTrackerTest, SurfacesThatContradictMotionAreNotBelieved) {

@@ -15,6 +15,7 @@ using geometry::Pose;
 TrackOutcome Relocalizer::search(const Map& map, const LoopDetector& places, const Tracker& tracker,
                                  const Frame& frame) const {
   constexpr double kAsGood = 0.7;
+  constexpr Reach kSame{1.0, 0.5};
   const auto pose = [&](const TrackOutcome& outcome) {
     return Pose(map.keyframe(outcome.reference).T_map_camera * outcome.alignment.T_reference_camera);
   };
@@ -44,13 +45,10 @@ bool Relocalizer::believes(const Situation& now, const TrackOutcome& outcome) {
   if (!is_believed) {
     if (!is_distinct(outcome)) return false;
     const bool has_odometry = now.motion.odometry_at(now.stamp()).has_value();
-    if (!has_odometry && !fits_surfaces(now, outcome)) return false;
+    if (!has_odometry && sees_through_walls(now, outcome)) return false;
     const bool is_contradicted = now.motion.last_stamp() && has_odometry;
-    if (!has_odometry) {
-      const bool is_again = is_found_again(now, T_map_camera, outcome);
-      is_believed = is_within_reach(now, T_map_camera) || (is_again && is_back_or_seen_twice(now, T_map_camera));
-    } else if (!is_contradicted || may_be_slip(now, T_map_camera)) {
-      is_believed = is_found_again(now, T_map_camera, outcome) || is_within_reach(now, T_map_camera);
+    if (!is_contradicted || may_be_slip(now, T_map_camera)) {
+      is_believed = is_found_again(now, T_map_camera) || is_within_reach(now, T_map_camera);
     } else {
       is_believed = is_within_reach(now, T_map_camera) || weigh(now, T_map_camera, outcome);
     }
@@ -62,39 +60,20 @@ bool Relocalizer::believes(const Situation& now, const TrackOutcome& outcome) {
   return is_believed;
 }
 
-void Relocalizer::Views::add(const TrackOutcome& outcome) {
-  std::vector<LandmarkId> shown, common, all;
-  for (const Match& match : outcome.inliers) shown.push_back(match.landmark);
-  std::sort(shown.begin(), shown.end());
-  std::set_intersection(shown.begin(), shown.end(), landmarks.begin(), landmarks.end(), std::back_inserter(common));
-  if (!common.empty()) return;
-  ++different;
-  std::set_union(shown.begin(), shown.end(), landmarks.begin(), landmarks.end(), std::back_inserter(all));
-  landmarks = std::move(all);
-}
-
-bool Relocalizer::is_found_again(const Situation& now, const Pose& T_map_camera, const TrackOutcome& outcome) {
-  const bool is_same = found_ && confirms(now, T_map_camera);
-  Found found = is_same ? *std::move(found_) : Found{};
-  found.stamp = now.stamp();
-  found.T_map_camera = T_map_camera;
-  found.again += is_same ? 1 : 0;
-  found.views.add(outcome);
-  found_ = std::move(found);
-  return found_->again >= config_.confirmations;
-}
-
-bool Relocalizer::is_back_or_seen_twice(const Situation& now, const Pose& T_map_camera) const {
-  const auto last = now.motion.last_pose(now.map);
-  return !last || is_near(last->second, T_map_camera, kSame) || found_->views.different >= 2;
+bool Relocalizer::is_found_again(const Situation& now, const Pose& T_map_camera) {
+  const int again = found_ && confirms(now, T_map_camera) ? found_->again + 1 : 0;
+  found_ = Found{now.stamp(), T_map_camera, again};
+  return again >= config_.confirmations;
 }
 
 bool Relocalizer::weigh(const Situation& now, const Pose& T_map_camera, const TrackOutcome& outcome) {
   constexpr int kMostAgainst = 3;
   constexpr double kEnoughTurned_rad = 2.0;
+  std::vector<LandmarkId> shown;
+  for (const Match& match : outcome.inliers) shown.push_back(match.landmark);
+  std::sort(shown.begin(), shown.end());
   const auto begin = [&] {
-    elsewhere_ = Elsewhere{now.stamp(), outcome.reference, outcome.alignment.T_reference_camera};
-    elsewhere_->views.add(outcome);
+    elsewhere_ = Elsewhere{now.stamp(), outcome.reference, outcome.alignment.T_reference_camera, 0.0, 0.0, shown, 1, 0};
     ++doubted_;
     return false;
   };
@@ -111,9 +90,16 @@ bool Relocalizer::weigh(const Situation& now, const Pose& T_map_camera, const Tr
   place.T_reference_camera = outcome.alignment.T_reference_camera;
   place.path_m += moved->path_m;
   place.turned_rad += moved->turned_rad;
-  place.views.add(outcome);
+  std::vector<LandmarkId> common, all;
+  std::set_intersection(shown.begin(), shown.end(), place.landmarks.begin(), place.landmarks.end(),
+                        std::back_inserter(common));
+  if (common.empty()) {
+    ++place.views;
+    std::set_union(shown.begin(), shown.end(), place.landmarks.begin(), place.landmarks.end(), std::back_inserter(all));
+    place.landmarks = std::move(all);
+  }
   const bool has_turned = now.is_odometry_refuted && place.turned_rad >= kEnoughTurned_rad;
-  return place.views.different >= config_.evidence_views && (place.path_m >= config_.evidence_m || has_turned);
+  return place.views >= config_.evidence_views && (place.path_m >= config_.evidence_m || has_turned);
 }
 
 std::optional<MotionModel::Expected> Relocalizer::expected(const Situation& now, KeyframeId reference) const {
@@ -143,11 +129,10 @@ bool Relocalizer::is_distinct(const TrackOutcome& outcome) const {
          largest_sigma(information.inverse(), 0) <= config_.max_sigma_m;
 }
 
-bool Relocalizer::fits_surfaces(const Situation& now, const TrackOutcome& outcome) const {
-  if (!compares_surfaces_) return true;
+bool Relocalizer::sees_through_walls(const Situation& now, const TrackOutcome& outcome) const {
   const Pose T_map_camera = now.map.keyframe(outcome.reference).T_map_camera * outcome.alignment.T_reference_camera;
   const Matrix6d covariance = edge_information(graph_, outcome.alignment.information).inverse();
-  return surfaces_.track(now.map, now.frame, outcome.reference, {T_map_camera, covariance}).is_tracked;
+  return surfaces_.track(now.map, now.frame, outcome.reference, {T_map_camera, covariance}).is_contradicted;
 }
 
 // The bounds are less than rooms that are copies are apart.

@@ -12,8 +12,8 @@ namespace lapis::slam {
 
 /// Decides whether a pose may be believed. One near where motion leads is. Any other, found by recognising a place, has
 /// to be distinct; what more it needs depends on odometry:
-/// - without odometry, surfaces that fit, and to be within reach of the last pose, or found again by the frames that
-///   follow: for longer than patience_s, and elsewhere than where the last pose was, in views that share no landmarks;
+/// - without odometry, not to see through walls and furniture that should be in view, and to be within reach of the
+///   last pose, or found again by the frames that follow;
 /// - with odometry that may have erred so much (slip), to be found again;
 /// - with odometry that contradicts it, evidence: buildings repeat themselves, and frames that follow show the same
 ///   furniture again. Views that share no landmarks have to agree along metres of path; where the camera has refuted
@@ -21,8 +21,7 @@ namespace lapis::slam {
 class Relocalizer {
  public:
   explicit Relocalizer(const SlamConfig& config)
-      : config_(config.relocalization), graph_(config.pose_graph), surfaces_(config),
-        compares_surfaces_(config.surface.enabled) {}
+      : config_(config.relocalization), graph_(config.pose_graph), surfaces_(config) {}
 
   /// Looks for the frame in the whole map; the best of the key-frames that resemble it. Not tracked when places apart
   /// from each other fit about as well.
@@ -42,18 +41,11 @@ class Relocalizer {
   std::size_t doubted() const { return doubted_; }
 
  private:
-  /// Landmarks that views have shown, ascending, and how many of the views shared none with those before.
-  struct Views {
-    std::vector<LandmarkId> landmarks;
-    int different = 0;
-    void add(const TrackOutcome& outcome);
-  };
   /// Found last, and so many times again.
   struct Found {
     time::Time stamp;
     geometry::Pose T_map_camera;
     int again = 0;
-    Views views = {};
   };
   /// A place that odometry contradicts, beside the pose that is reported.
   struct Elsewhere {
@@ -61,14 +53,14 @@ class Relocalizer {
     KeyframeId reference = 0;
     geometry::Pose T_reference_camera;
     double path_m = 0.0, turned_rad = 0.0;  // since it was found first
-    Views views = {};
-    int against = 0;  // other places found since
+    std::vector<LandmarkId> landmarks;      // that its views have shown, ascending
+    int views = 1;                          // no two share landmarks
+    int against = 0;                        // other places found since
   };
   /// How far apart poses may be.
   struct Reach {
-    double m, rad;
+    double m = 0.0, rad = 0.0;
   };
-  static constexpr Reach kSame{1.0, 0.5};  // place: less than copies of rooms are apart
   /// Where odometry leads, if there is any, with the covariance of the path through the graph to the pose's reference.
   std::optional<MotionModel::Expected> expected(const Situation& now, KeyframeId reference) const;
   bool motion_leads_to(const Situation& now, KeyframeId reference, const geometry::Pose& T_map_camera) const;
@@ -77,15 +69,12 @@ class Relocalizer {
   /// Whether clearly more than half of what the frame has in common with the place agrees, and gives the pose well:
   /// parts that repeat themselves, such as the floor of a corridor, do neither.
   bool is_distinct(const TrackOutcome& outcome) const;
-  /// Whether what should be in view of the place's surfaces is.
-  bool fits_surfaces(const Situation& now, const TrackOutcome& outcome) const;
+  /// Whether walls and furniture of the place that should be in view are not there.
+  bool sees_through_walls(const Situation& now, const TrackOutcome& outcome) const;
   /// Whether odometry since the last pose may have erred so much.
   bool may_be_slip(const Situation& now, const geometry::Pose& T_map_camera) const;
   /// True when the frames before have found the same.
-  bool is_found_again(const Situation& now, const geometry::Pose& T_map_camera, const TrackOutcome& outcome);
-  /// Whether it is where the last pose was, or the views that found it are different enough; before the first pose of a
-  /// saved map, any.
-  bool is_back_or_seen_twice(const Situation& now, const geometry::Pose& T_map_camera) const;
+  bool is_found_again(const Situation& now, const geometry::Pose& T_map_camera);
   /// A place that odometry contradicts: true when there is evidence enough.
   bool weigh(const Situation& now, const geometry::Pose& T_map_camera, const TrackOutcome& outcome);
   bool confirms(const Situation& now, const geometry::Pose& T_map_camera) const;
@@ -98,7 +87,6 @@ class Relocalizer {
   RelocalizationConfig config_;
   PoseGraphConfig graph_;
   SurfaceTracker surfaces_;
-  bool compares_surfaces_;
   std::optional<Found> found_;
   std::optional<Elsewhere> elsewhere_;
   std::size_t doubted_ = 0;

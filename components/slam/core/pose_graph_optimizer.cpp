@@ -83,8 +83,9 @@ class Minimizer {
   int iterations_ = 0;
 };
 
-/// Decides which loop closures count. Those that stick out wait: with all wrong ones in it from the beginning, a large
-/// graph would have dense equations. Each that does not contradict the result of the others then has its turn.
+/// Decides which loop closures count, and how much odometry counts that they contradict: wheels slip. Loop closures
+/// that stick out wait: with all wrong ones in it from the beginning, a large graph would have dense equations. Each
+/// that does not contradict the result of the others then has its turn.
 template <class Space>
 class RobustMinimizer {
  public:
@@ -92,6 +93,7 @@ class RobustMinimizer {
       : options_(options), minimizer_(minimizer), gate_(chi2_gate(Space::kDof)), weights_(graph.edges.size(), 1.0) {
     for (std::size_t i = 0; i < graph.edges.size(); ++i) {
       if (graph.edges[i].type == EdgeType::kLoopClosure) waiting_.push_back(i);
+      if (graph.edges[i].type == EdgeType::kWheelOdometry) wheels_.push_back(i);
     }
   }
 
@@ -103,7 +105,7 @@ class RobustMinimizer {
       has_converged = graduate(active);
       std::erase_if(active, [&](std::size_t i) { return weights_[i] == 0.0; });
     } while (join_consistent(active));
-    return has_converged;
+    return release_slip() && has_converged;
   }
   const std::vector<double>& weights() const { return weights_; }
 
@@ -135,6 +137,18 @@ class RobustMinimizer {
     return has_converged || minimizer_.minimize(weights_, options_.max_iterations);
   }
 
+  // Weights of odometry by dynamic covariance scaling (Agarwal, Tipaldi, Spinello, Stachniss and Burgard, ICRA 2013):
+  // a motion that is far off stays, but no longer bends what is measured well. Once, from what least squares leaves: of
+  // two motions that are off alike, further rounds would believe one and blame the other.
+  bool release_slip() {
+    const std::vector<double> chi2 = minimizer_.edge_chi2();
+    for (const std::size_t i : wheels_) {
+      const double scale = std::min(1.0, 2.0 * Space::kDof / (Space::kDof + chi2[i]));
+      weights_[i] = scale * scale;
+    }
+    return wheels_.empty() || minimizer_.minimize(weights_, options_.max_iterations);
+  }
+
   // Loop closures without weight join once. True when there were any.
   bool join_consistent(std::vector<std::size_t>& active) {
     const std::size_t before = active.size();
@@ -151,6 +165,7 @@ class RobustMinimizer {
   double gate_;
   std::vector<double> weights_;       // of every edge
   std::vector<std::size_t> waiting_;  // loop closures that may still join
+  std::vector<std::size_t> wheels_;   // edges of odometry
 };
 
 template <class Space>

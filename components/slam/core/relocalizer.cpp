@@ -44,7 +44,9 @@ bool Relocalizer::believes(const Situation& now, const TrackOutcome& outcome) {
   bool is_believed = motion_leads_to(now, outcome.reference, T_map_camera);
   if (!is_believed) {
     if (!is_distinct(outcome)) return false;
-    const bool is_contradicted = now.motion.last_stamp() && now.motion.odometry_at(now.stamp);
+    const bool has_odometry = now.motion.odometry_at(now.stamp()).has_value();
+    if (!has_odometry && sees_through_walls(now, outcome)) return false;
+    const bool is_contradicted = now.motion.last_stamp() && has_odometry;
     if (!is_contradicted || may_be_slip(now, T_map_camera)) {
       is_believed = is_found_again(now, T_map_camera) || is_within_reach(now, T_map_camera);
     } else {
@@ -60,7 +62,7 @@ bool Relocalizer::believes(const Situation& now, const TrackOutcome& outcome) {
 
 bool Relocalizer::is_found_again(const Situation& now, const Pose& T_map_camera) {
   const int again = found_ && confirms(now, T_map_camera) ? found_->again + 1 : 0;
-  found_ = Found{now.stamp, T_map_camera, again};
+  found_ = Found{now.stamp(), T_map_camera, again};
   return again >= config_.confirmations;
 }
 
@@ -71,11 +73,11 @@ bool Relocalizer::weigh(const Situation& now, const Pose& T_map_camera, const Tr
   for (const Match& match : outcome.inliers) shown.push_back(match.landmark);
   std::sort(shown.begin(), shown.end());
   const auto begin = [&] {
-    elsewhere_ = Elsewhere{now.stamp, outcome.reference, outcome.alignment.T_reference_camera, 0.0, 0.0, shown, 1, 0};
+    elsewhere_ = Elsewhere{now.stamp(), outcome.reference, outcome.alignment.T_reference_camera, 0.0, 0.0, shown, 1, 0};
     ++doubted_;
     return false;
   };
-  const auto moved = elsewhere_ ? now.motion.odometry_between(elsewhere_->stamp, now.stamp) : std::nullopt;
+  const auto moved = elsewhere_ ? now.motion.odometry_between(elsewhere_->stamp, now.stamp()) : std::nullopt;
   if (!moved) return begin();
   Elsewhere& place = *elsewhere_;
   const Pose T_map_before = now.map.keyframe(place.reference).T_map_camera * place.T_reference_camera;
@@ -83,7 +85,7 @@ bool Relocalizer::weigh(const Situation& now, const Pose& T_map_camera, const Tr
     return ++place.against >= kMostAgainst && begin();
   }
   place.against = 0;
-  place.stamp = now.stamp;
+  place.stamp = now.stamp();
   place.reference = outcome.reference;
   place.T_reference_camera = outcome.alignment.T_reference_camera;
   place.path_m += moved->path_m;
@@ -101,8 +103,8 @@ bool Relocalizer::weigh(const Situation& now, const Pose& T_map_camera, const Tr
 }
 
 std::optional<MotionModel::Expected> Relocalizer::expected(const Situation& now, KeyframeId reference) const {
-  const auto reckoned = now.motion.dead_reckon(now.stamp);
-  if (!reckoned) return now.motion.expect(now.map, now.stamp);
+  const auto reckoned = now.motion.dead_reckon(now.stamp());
+  if (!reckoned) return now.motion.expect(now.map, now.stamp());
   const Matrix6d between = now.graph.relative_covariance(now.map, reference, reckoned->reference);
   return MotionModel::Expected{now.map.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera,
                                compound_covariance(between, reckoned->T_reference_camera, reckoned->covariance)};
@@ -115,8 +117,8 @@ bool Relocalizer::motion_leads_to(const Situation& now, KeyframeId reference, co
 
 bool Relocalizer::is_within_reach(const Situation& now, const Pose& T_map_camera) const {
   const auto last = now.motion.last_pose(now.map);
-  if (!last || now.motion.expect(now.map, now.stamp)) return false;
-  const double elapsed_s = (now.stamp - last->first).seconds();
+  if (!last || now.motion.expect(now.map, now.stamp())) return false;
+  const double elapsed_s = (now.stamp() - last->first).seconds();
   return elapsed_s >= 0.0 && elapsed_s <= config_.patience_s && is_near(last->second, T_map_camera, reach(elapsed_s));
 }
 
@@ -127,12 +129,18 @@ bool Relocalizer::is_distinct(const TrackOutcome& outcome) const {
          largest_sigma(information.inverse(), 0) <= config_.max_sigma_m;
 }
 
+bool Relocalizer::sees_through_walls(const Situation& now, const TrackOutcome& outcome) const {
+  const Pose T_map_camera = now.map.keyframe(outcome.reference).T_map_camera * outcome.alignment.T_reference_camera;
+  const Matrix6d covariance = edge_information(graph_, outcome.alignment.information).inverse();
+  return surfaces_.track(now.map, now.frame, outcome.reference, {T_map_camera, covariance}).is_contradicted;
+}
+
 // The bounds are less than rooms that are copies are apart.
 bool Relocalizer::may_be_slip(const Situation& now, const Pose& T_map_camera) const {
   constexpr double kMost_m = 1.0, kMost_rad = 0.5;
   const auto last = now.motion.last_stamp();
-  const auto lead = now.motion.dead_reckon(now.stamp) ? now.motion.predict(now.map, now.stamp) : std::nullopt;
-  const auto moved = last ? now.motion.odometry_between(*last, now.stamp) : std::nullopt;
+  const auto lead = now.motion.dead_reckon(now.stamp()) ? now.motion.predict(now.map, now.stamp()) : std::nullopt;
+  const auto moved = last ? now.motion.odometry_between(*last, now.stamp()) : std::nullopt;
   if (!lead || !moved) return false;
   return is_near(*lead, T_map_camera,
                  {config_.near_m + std::min(kMost_m, config_.slip_share * moved->path_m),
@@ -140,9 +148,9 @@ bool Relocalizer::may_be_slip(const Situation& now, const Pose& T_map_camera) co
 }
 
 bool Relocalizer::confirms(const Situation& now, const Pose& T_map_camera) const {
-  const double elapsed_s = (now.stamp - found_->stamp).seconds();
+  const double elapsed_s = (now.stamp() - found_->stamp).seconds();
   if (elapsed_s < 0.0 || elapsed_s > config_.memory_s) return false;
-  const auto moved = now.motion.odometry_between(found_->stamp, now.stamp);
+  const auto moved = now.motion.odometry_between(found_->stamp, now.stamp());
   if (moved) return is_near(found_->T_map_camera * moved->T_from_to, T_map_camera, {config_.near_m, config_.near_rad});
   return is_near(found_->T_map_camera, T_map_camera, reach(elapsed_s));
 }

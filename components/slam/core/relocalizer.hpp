@@ -5,20 +5,23 @@
 
 #include "slam/core/loop_detector.hpp"
 #include "slam/core/motion_model.hpp"
+#include "slam/core/surface_tracker.hpp"
 #include "slam/core/tracker.hpp"
 
 namespace lapis::slam {
 
 /// Decides whether a pose may be believed. One near where motion leads is. Any other, found by recognising a place, has
 /// to be distinct; what more it needs depends on odometry:
-/// - without odometry, to be within reach of the last pose, or found again by the frames that follow;
+/// - without odometry, not to see through walls and furniture that should be in view, and to be within reach of the
+///   last pose, or found again by the frames that follow;
 /// - with odometry that may have erred so much (slip), to be found again;
 /// - with odometry that contradicts it, evidence: buildings repeat themselves, and frames that follow show the same
 ///   furniture again. Views that share no landmarks have to agree along metres of path; where the camera has refuted
 ///   odometry as well, a turn that shows them is enough.
 class Relocalizer {
  public:
-  explicit Relocalizer(const SlamConfig& config) : config_(config.relocalization), graph_(config.pose_graph) {}
+  explicit Relocalizer(const SlamConfig& config)
+      : config_(config.relocalization), graph_(config.pose_graph), surfaces_(config) {}
 
   /// Looks for the frame in the whole map; the best of the key-frames that resemble it. Not tracked when places apart
   /// from each other fit about as well.
@@ -28,8 +31,9 @@ class Relocalizer {
     const Map& map;
     const SlamGraph& graph;
     const MotionModel& motion;
-    time::Time stamp;
+    const Frame& frame;
     bool is_odometry_refuted = false;  ///< the camera does not see what it should where odometry says
+    time::Time stamp() const { return frame.input->stamp; }
   };
   /// Whether the outcome is to be believed now; otherwise it is remembered, and its confirmation awaited.
   bool believes(const Situation& now, const TrackOutcome& outcome);
@@ -65,6 +69,8 @@ class Relocalizer {
   /// Whether clearly more than half of what the frame has in common with the place agrees, and gives the pose well:
   /// parts that repeat themselves, such as the floor of a corridor, do neither.
   bool is_distinct(const TrackOutcome& outcome) const;
+  /// Whether walls and furniture of the place that should be in view are not there.
+  bool sees_through_walls(const Situation& now, const TrackOutcome& outcome) const;
   /// Whether odometry since the last pose may have erred so much.
   bool may_be_slip(const Situation& now, const geometry::Pose& T_map_camera) const;
   /// True when the frames before have found the same.
@@ -80,6 +86,7 @@ class Relocalizer {
 
   RelocalizationConfig config_;
   PoseGraphConfig graph_;
+  SurfaceTracker surfaces_;
   std::optional<Found> found_;
   std::optional<Elsewhere> elsewhere_;
   std::size_t doubted_ = 0;

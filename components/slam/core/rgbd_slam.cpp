@@ -236,7 +236,7 @@ class RgbdSlam::Implementation {
       if (!found.is_tracked) return outcome;
       outcome = std::move(found);
     }
-    if (relocalizer_.believes({map_, graph_, motion_, frame.input->stamp, is_contradicted()}, outcome)) return outcome;
+    if (relocalizer_.believes({map_, graph_, motion_, frame, is_contradicted()}, outcome)) return outcome;
     outcome.is_tracked = false;
     outcome.reason = "a recognised place awaits confirmation";
     awaits_confirmation_ = true;

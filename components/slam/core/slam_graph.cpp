@@ -92,8 +92,12 @@ Matrix6d SlamGraph::relative_covariance(const Map& map, KeyframeId from, Keyfram
 
 void SlamGraph::apply(const GraphCorrection& correction, Map& map) {
   // What a loop that is removed has made sure of is not known any more, also where no new covariance comes.
-  const bool has_removed = std::any_of(correction.weights.begin(), correction.weights.end(),
-                                       [](double weight) { return weight < kLeastWeight; });
+  const auto is_out = [&](std::size_t i) {
+    return i < correction.weights.size() && edges_[i].type == EdgeType::kLoopClosure &&
+           correction.weights[i] < kLeastWeight;
+  };
+  bool has_removed = false;
+  for (std::size_t i = 0; i < edges_.size(); ++i) has_removed = has_removed || is_out(i);
   std::vector<Pose> moves;  // of each key-frame, in the map
   for (const Keyframe& keyframe : map.keyframes()) {
     const auto i = static_cast<std::size_t>(keyframe.id);
@@ -112,7 +116,7 @@ void SlamGraph::apply(const GraphCorrection& correction, Map& map) {
   std::vector<PoseGraphEdge> kept;
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const bool is_known = i < correction.weights.size();
-    if (is_known && correction.weights[i] < kLeastWeight) {
+    if (is_out(i)) {
       ++loops_removed_;
       continue;
     }

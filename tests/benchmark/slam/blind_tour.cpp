@@ -50,7 +50,9 @@ BlindTour play_blind(const simulator::SimulatorConfig& config, const std::filesy
   BentOdometry odometry(stretch);
   play_tour(config, folder, [&](const TourFrame& tour_frame) {
     const RgbdFrame& frame = tour_frame.frame;
-    for (const auto& reading : tour_frame.odometry) slam.add_odometry(reading.stamp, odometry.bend(reading));
+    for (const auto& reading : tour_frame.odometry) {
+      if (config.wheels.odometry) slam.add_odometry(reading.stamp, odometry.bend(reading));
+    }
     const double t_s = frame.stamp.seconds();
     const bool is_blind = t_s >= stretch.from_s && t_s < stretch.to_s;
     slam.process(is_blind ? black_frame(frame.stamp, frame.camera) : frame, tour_frame.T_start_camera);

@@ -20,8 +20,8 @@ struct BlindTour {
   WatchedMap map;
 };
 
-/// Plays the recording of a tour (play_tour) through slam. The path that odometry reports is bent where its heading is:
-/// what follows is turned with it.
+/// Plays the recording of a tour (play_tour) through slam, without odometry where the robot has none. The path that
+/// odometry reports is bent where its heading is: what follows is turned with it.
 /// @throws std::runtime_error with one line that says what is wrong
 BlindTour play_blind(const simulator::SimulatorConfig& config, const std::filesystem::path& folder,
                      const SlamConfig& slam, const BlindStretch& stretch);

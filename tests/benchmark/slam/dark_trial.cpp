@@ -1,6 +1,7 @@
 #include "tests/benchmark/slam/dark_trial.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 #include <stdexcept>
 
@@ -33,8 +34,9 @@ BlindStretch draw_cover(double duration_s, std::uint64_t seed) {
   return {from_s, from_s + kCovered_s, 0.0};
 }
 
-DarkVerdict judge(const BlindTour& tour, const BlindStretch& cover, const std::vector<WatchedFrame>& plain) {
-  constexpr double kBackWithin_s = 2.0;
+DarkVerdict judge(const BlindTour& tour, const BlindStretch& cover, const std::vector<WatchedFrame>& plain,
+                  bool has_odometry) {
+  constexpr double kBackWithin_s = 2.0, kWrong_m = 1.0, kWrongFor_s = 2.0;
   DarkVerdict verdict;
   judge_cover(tour, cover, verdict);
   std::optional<double> could_see_s;
@@ -42,13 +44,15 @@ DarkVerdict judge(const BlindTour& tour, const BlindStretch& cover, const std::v
     const WatchedFrame& frame = tour.frames[i];
     if (frame.source != PoseSource::kNone) verdict.end = frame.error;
     if (frame.t_s < cover.to_s) continue;
+    if (is_held(frame) && frame.error.m > kWrong_m) verdict.wrong_s += frame.t_s - tour.frames[i - 1].t_s;
     if (!could_see_s && plain[i].source == PoseSource::kVision) could_see_s = frame.t_s;
     if (could_see_s && frame.source == PoseSource::kVision) {
       verdict.vision_s = std::min(verdict.vision_s, frame.t_s - *could_see_s);
     }
   }
-  verdict.is_passed = verdict.lost_s == 0.0 && verdict.vision_s <= kBackWithin_s;
-  verdict.is_wrong = tour.map.wrong_loops > 0;
+  verdict.is_passed =
+      has_odometry ? verdict.lost_s == 0.0 && verdict.vision_s <= kBackWithin_s : std::isfinite(verdict.vision_s);
+  verdict.is_wrong = tour.map.wrong_loops > 0 || verdict.wrong_s > kWrongFor_s;
   return verdict;
 }
 

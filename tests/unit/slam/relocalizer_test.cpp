@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include "slam/core/surface.hpp"
+#include "tests/unit/slam/synthetic_room.hpp"
+
 namespace lapis::slam {
 namespace {
 
@@ -32,10 +35,18 @@ class RelocalizerTest : public ::testing::Test {
     return outcome;
   }
   bool believes(double seconds, const TrackOutcome& outcome) {
-    return relocalizer_.believes({map_, graph_, motion_, stamp(seconds), is_odometry_refuted_}, outcome);
+    input_.stamp = stamp(seconds);
+    return relocalizer_.believes({map_, graph_, motion_, frame_, is_odometry_refuted_}, outcome);
+  }
+  static SlamConfig features_alone() {
+    SlamConfig config;
+    config.surface.enabled = false;
+    return config;
   }
 
-  SlamConfig config_;
+  SlamConfig config_ = features_alone();
+  RgbdFrame input_;
+  Frame frame_{&input_, {}, {}, 0};
   Map map_;
   SlamGraph graph_;
   bool is_odometry_refuted_ = false;
@@ -57,6 +68,31 @@ TEST_F(RelocalizerTest, SoonAfterwardsADistinctPlaceWithinReachIsBelievedAtOnce)
 TEST_F(RelocalizerTest, ElsewhereADistinctPlaceHasToBeFoundAgain) {
   for (int i = 0; i < config_.relocalization.confirmations; ++i) EXPECT_FALSE(believes(5.0 + 0.1 * i, found(4.0)));
   EXPECT_TRUE(believes(5.0 + 0.1 * config_.relocalization.confirmations, found(4.0)));
+}
+
+// Without odometry nothing else says that it is the place, and not one with the same poster.
+TEST_F(RelocalizerTest, APlaceWhoseSurfacesDifferIsNeverBelieved) {
+  config_.surface.enabled = true;
+  const geometry::PinholeCamera camera = test::small_camera();
+  const Pose corner = geometry::se3_exp((geometry::Vector6d() << 0.5, 0.4, 0.3, 0.3, 0.6, 0.0).finished());
+  const RgbdFrame there = test::render_room(camera, corner, {});
+  RgbdFrame elsewhere = there;
+  for (float& z_m : elsewhere.depth.pixels) z_m *= 1.5F;
+  Keyframe keyframe;
+  keyframe.camera = camera;
+  keyframe.surface = sample_surface(config_.surface, config_.noise, camera, there.depth);
+  Map map;
+  map.add_keyframe(std::move(keyframe));
+  for (const bool is_there : {true, false}) {
+    Relocalizer relocalizer(config_);
+    bool is_believed = false;
+    for (int i = 0; i < 10; ++i) {
+      RgbdFrame input = is_there ? there : elsewhere;
+      input.stamp = stamp(5.0 + 0.1 * i);
+      is_believed |= relocalizer.believes({map, graph_, motion_, Frame{&input, {}, {}, 0}}, found(0.0));
+    }
+    EXPECT_EQ(is_believed, is_there);
+  }
 }
 
 TEST_F(RelocalizerTest, APlaceThatIsNotDistinctIsNeverBelieved) {

@@ -146,7 +146,7 @@ TEST_F(PlannerContract, DoorThatCloses) {
   get_going();
   peers.draw(kClosedRoom);
   ASSERT_TRUE(ticks_until([this] { return stands(); })) << reason() << planner->log();
-  ASSERT_TRUE(ticks_until([this] { return state() == STATE_DONE; }, 20.0)) << reason() << planner->log();
+  ASSERT_TRUE(ticks_until([this] { return state() == STATE_DONE; }, 30.0)) << reason() << planner->log();
 }
 
 TEST_F(PlannerContract, GoesHomeAtTheEndWhenAskedTo) {
@@ -156,7 +156,7 @@ TEST_F(PlannerContract, GoesHomeAtTheEndWhenAskedTo) {
   ASSERT_TRUE(ticks_until([this] { return (peers.position - Eigen::Vector2d(2, 2)).norm() > 1.0; })) << reason();
   peers.draw(kClosedRoom);
   ASSERT_TRUE(ticks_until([this] { return state() == STATE_DONE; }, 30.0)) << reason() << planner->log();
-  EXPECT_EQ(reason(), "is back where it started");
+  EXPECT_THAT(reason(), testing::StartsWith("is back where it started; nothing is left that can be reached"));
   EXPECT_LT((peers.position - Eigen::Vector2d(2, 2)).norm(), 0.31);
 }
 

@@ -233,7 +233,7 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   }
   const bool is_late = goal_->deadline && report.now > *goal_->deadline;
   if (report.is_blocked || is_late || stands_still(report)) {
-    note_failure(report, surroundings);
+    if (goal_->target_map) note_failure(report, surroundings);  // nothing is in the way of a turn
     reason_ = report.is_blocked ? "the path was blocked" : is_late ? "the path took too long" : "it did not get on";
     drop_goal();
     return may_decide;

@@ -122,11 +122,12 @@ TEST(VoxelTruthTest, BeyondABarrierTheRangeIsTheEnd) {
   EXPECT_NEAR(furthest(truth.flood), 14.0, 0.26);
 }
 
-// A gap through which the robot fits, but not with a margin: 0.44 m wide.
+// A gap through which the robot fits, but not with a margin: 0.44 m wide. A screen behind it hides most of the room.
 TEST(VoxelTruthTest, WithAMarginNarrowGapsAreClosed) {
   Scene scene = test::room({6, 3, 2.5F});
   test::add_box(scene, {3, 0, 0}, {3.1F, 1.3F, 2.5F}, 2);
   test::add_box(scene, {3, 1.74F, 0}, {3.1F, 3, 2.5F}, 2);
+  test::add_box(scene, {3.7F, 0.6F, 0}, {3.8F, 2.4F, 2.5F}, 2);
   const auto start = test::planar_pose(1, 1.5, 0);
   const auto volume = [&](const mapping::VoxelMap& map) { return evaluator::coverage(known(map)).explored_volume_m3; };
   TruthConfig cautious = config();

@@ -16,11 +16,11 @@ MEASURED = ("exit_reason", "frames_total", "frames_tracked", "tier_vision_share"
             "path_length_m", "real_time_factor", "duration_s", "wall_time_s", "cpu_ms_per_frame", "peak_rss_mb",
             "run")
 OF_LABELS = ("iou_top8_mean", "iou_mean", "iou_by_class")
-OF_GROUND_TRUTH = ("explored_share", "explored_share_with_margin",
+OF_GROUND_TRUTH = ("explored_share", "explored_share_with_margin", "stalled_share",
                    *(f"{prefix}_{key}" for prefix in ("ideal", "mesh")
                      for key in ("map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m", *OF_LABELS)))
-NOT_MEASURED = ("ate_at_80_m", "time_to_80_s", "time_to_90_s", "stalled_share", "failures", "collisions", "planner_state", "planner_reason",
-                "decisions", "decisions_unlike_mi_only_share", "decision_time_p50_s", "decision_time_p95_s")
+NOT_MEASURED = ("ate_at_80_m", "time_to_80_s", "time_to_90_s", "failures", "collisions", "planner_state",
+                "planner_reason", "decisions", "decisions_unlike_mi_only_share", "decision_time_p50_s", "decision_time_p95_s")
 SHORT_S = 12  # more than a metre
 
 

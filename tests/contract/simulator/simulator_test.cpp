@@ -189,7 +189,8 @@ TEST_F(SimulatorContract, ACountedCommandActsFromTheNextFrameButOneOnAndTheWatch
 /// counted. What an earlier run's planner has said means nothing.
 TEST_F(SimulatorContract, EndsWhenThePlannerHasEnded) {
   using namespace lapis_msgs::msg::PlannerStatus_Constants;
-  for (const auto& [state, name] : {std::pair{STATE_DONE, "DONE"}, {STATE_GAVE_UP, "GAVE_UP"}, {STATE_FAILED, "FAILED"}}) {
+  for (const auto& [state, name] :
+       {std::pair{STATE_DONE, "DONE"}, {STATE_GAVE_UP, "GAVE_UP"}, {STATE_FAILED, "FAILED"}}) {
     TopicProbe probe;
     HandMadeParticipant planner(probe, "planner");
     auto& status = probe.advertise(topics::kPlannerStatus);

@@ -187,7 +187,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "tracked [m]");
   field.moved("dead_reckoning_s", "planner.max_drift_m", "slam says how far a pose by odometry alone has drifted");
   field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),
-        "without a pose, or driving back to where slam tracked, exploration has failed [s]");
+        "without a pose, exploration has failed; so long it also tries to get back to where slam tracked [s]");
   field("path_spacing_m", c.explorer.path_spacing_m, config::in_range(0.02, 1.0), "between poses of /planner/path [m]");
   field("confirmations", c.explorer.confirmations, config::in_range(2, 12),
         "looks around, a full turn in all, that find nothing before exploration is over");

@@ -117,7 +117,7 @@ Decision Controller::turn(time::Time now, double elapsed_s) {
   blindly_rad_ += commanded_rad;
   if (const auto stale = watchdog_.stale(now, {Input::kCamera, Input::kPlanner})) return stop_for(*stale);
   if (std::abs(turned_rad_) >= std::abs(*turn_rad_)) return {State::kIdle, idle_reason_, {}, 0.0, {}};
-  const Velocity wanted{0.0, std::copysign(config_.look_around_rad_s, *turn_rad_)};
+  const Velocity wanted{0.0, std::copysign(std::min(config_.look_around_rad_s, turn_limit()), *turn_rad_)};
   return {State::kFollowing, "turns on the spot", ramped(last_, wanted, elapsed_s, limits_), 0.0, {}};
 }
 

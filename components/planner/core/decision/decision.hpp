@@ -130,16 +130,17 @@ struct Decision {
 
 /// Slam reckons by odometry alone, and the position becomes less sure with every metre.
 struct Adrift {
-  double sigma_m = 0.0;        ///< of the position since slam tracked
-  double growth = 0.0;         ///< of sigma by cost of a path [m/m]
-  double budget_m = 0.5;       ///< of sigma at a path's end
-  std::vector<Pose2> tracked;  ///< where slam tracked, the newest first
+  double sigma_m = 0.0;             ///< of the position since slam tracked
+  double growth = 0.0;              ///< of sigma by cost of a path [m/m]
+  double budget_m = 0.5;            ///< of sigma at a path's end
+  std::vector<Pose2> tracked = {};  ///< where slam tracked, the newest first
 };
 
 /// What is not to be driven to, and what is being driven to.
 struct Memory {
   std::vector<LeftAlone> left_alone;  ///< frontiers near these
-  std::vector<LeftAlone> places;      ///< of old key-frames and for views of gaps, not to be driven to
+  std::vector<LeftAlone> old_places;  ///< of key-frames, not to be driven to
+  std::vector<LeftAlone> gap_places;  ///< for views of gaps, not to be driven to
   std::vector<FailedView> failed_views;
   std::vector<Pose2> taken_views;  ///< of gaps: not to be taken again
   bool looks_at_gaps = false;      ///< when no frontier can be driven to

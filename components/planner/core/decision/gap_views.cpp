@@ -64,7 +64,7 @@ std::vector<Viewpoint> all_views(const Situation& s, const CostTree& tree, const
   std::vector<Viewpoint> views;
   for (const Cell& c : places(s.grid, tree, spacing_m)) {
     const Eigen::Vector2d place_map = s.grid.center_of(c);
-    if (why_left_alone(memory.places, place_map, std::nullopt, memory.radius_m) != Rejection::kNone) continue;
+    if (why_left_alone(memory.gap_places, place_map, std::nullopt, memory.radius_m) != Rejection::kNone) continue;
     for (int i = 0; i < kGapHeadings; ++i) {
       const double yaw_rad = 2.0 * std::numbers::pi * i / kGapHeadings;
       const Eigen::Vector2d ahead(std::cos(yaw_rad), std::sin(yaw_rad));

@@ -284,7 +284,7 @@ void add_revisits(const Situation& s, const CostTree& tree, std::vector<OldPlace
     const Viewpoint viewpoint{place.cell, {s.grid.center_of(place.cell), place.pose.yaw_rad}, place.cell, 0.0};
     Candidate& candidate = candidates.emplace_back(candidate_at(s, tree, 0, viewpoint, config));
     candidate.kind = CandidateKind::kRevisit;
-    candidate.rejection = why_left_alone(memory.places, candidate.target_map, std::nullopt, memory.radius_m);
+    candidate.rejection = why_left_alone(memory.old_places, candidate.target_map, std::nullopt, memory.radius_m);
   }
 }
 
@@ -301,13 +301,19 @@ std::vector<Candidate> propose(const Situation& s, const CostTree& tree, const M
       is_tour ? propose_tour(s, tree, memory, config) : propose_frontiers(s, tree, memory, config);
   reject_unsure_ones(memory.adrift, candidates);
   if (is_tour && is_any_open(candidates)) return candidates;
-  if (!is_any_open(candidates)) candidates = propose_frontiers(s, tree, memory, config, hidden_ones(candidates));
-  if (!is_any_open(candidates)) add_gap_views(s, tree, memory, config, candidates);
-  reject_unsure_ones(memory.adrift, candidates);
+  if (!is_any_open(candidates)) {
+    candidates = propose_frontiers(s, tree, memory, config, hidden_ones(candidates));
+    reject_unsure_ones(memory.adrift, candidates);
+  }
+  if (!is_any_open(candidates)) {
+    add_gap_views(s, tree, memory, config, candidates);
+    reject_unsure_ones(memory.adrift, candidates);
+  }
   if (!is_any_open(candidates)) add_tracked_places(s, tree, memory, config, candidates);
   reject_far_ones(candidates, memory, config.max_candidates);
   if (is_tour) return nearest_first(std::move(candidates));
-  const bool may_revisit = config.revisit_sigma_m > 0.0 && counts_loops(config.method);
+  const bool is_driven_back = memory.adrift && memory.adrift->sigma_m > memory.adrift->budget_m;
+  const bool may_revisit = config.revisit_sigma_m > 0.0 && counts_loops(config.method) && !is_driven_back;
   if (config.alternatives == 0 && !may_revisit) return candidates;
   std::vector<OldPlace> places;
   if (s.graph != nullptr && s.landmarks != nullptr) places = old_places(s, tree, config.hallucination);

@@ -56,21 +56,22 @@ std::vector<Pose2> turns_on_the_spot(bool is_to_the_left) {
 }  // namespace
 
 Explorer::Explorer(const ExplorerConfig& config)
-    : config_(config), memory_(config.memory), revisited_(config.memory), progress_(config.stall),
-      blocked_(memory_of_blocked(config.memory)) {}
+    : config_(config), memory_(config.memory), revisited_(config.memory), gap_places_(config.memory),
+      progress_(config.stall), blocked_(memory_of_blocked(config.memory)) {}
 
 void Explorer::start() {
   if (state_ != State::kExploring) drop_goal();
   if (has_ended(state_) || state_ == State::kIdle) {
     memory_.clear();
     revisited_.clear();
+    gap_places_.clear();
     blocked_.clear();
     failed_views_.forgive();
     taken_views_.clear();
     losses_.clear();
   }
   progress_.begin_anew();
-  looks_at_gaps_ = false;
+  looks_at_gaps_ = looks_again_ = goes_back_ = false;
   empty_decisions_ = 0;
   nothing_since_.reset();
   lost_at_.reset();
@@ -92,7 +93,9 @@ bool Explorer::pause() {
 
 void Explorer::return_home() {
   drop_goal();
-  if (state_ != State::kGaveUp) {
+  const bool returns_already =
+      state_ == State::kReturning || (state_ == State::kRecovering && interrupted_ == State::kReturning);
+  if (state_ != State::kGaveUp && !returns_already) {
     end_ = State::kDone;
     end_reason_.clear();
   }
@@ -103,6 +106,7 @@ void Explorer::forget_map() {
   drop_goal();
   memory_.clear();
   revisited_.clear();
+  gap_places_.clear();
   blocked_.clear();
   nothing_since_.reset();
   failed_views_.clear();
@@ -210,7 +214,7 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   };
   for (const Eigen::Vector2d& target_map : memory_.forget_changed(known_cells, kChange_cells))
     failed_views_.forget(target_map, config_.memory.radius_m);
-  for (const FailedView& view : failed_views_.judge(surroundings, report.now)) {
+  for (const FailedView& view : failed_views_.judge(surroundings, looks_again_, report.now)) {
     memory_.add_failure(view.target_map, {Rejection::kFailedView, view.from_map, is_adrift_}, report.now);
     ++failures_;
   }
@@ -218,7 +222,7 @@ bool Explorer::explore(const Report& report, Surroundings& surroundings) {
   may_change_ = surroundings.grid().has_passing_obstacles();
   awaited_ = surroundings.awaited_targets();
   if (awaited_.empty()) looks_again_ = false;
-  if (!is_adrift_) goes_back_ = false;
+  if (!is_adrift_ || awaited_.empty() || trail_.poses().empty()) goes_back_ = false;
   if (goal_ && is_of_other_tier(*goal_)) drop_goal();
   const bool may_decide = !chosen_at_ || (report.now - *chosen_at_).seconds() >= kLeastDecisionTime_s;
   if (!goal_) return may_decide;
@@ -259,7 +263,7 @@ bool Explorer::is_due(time::Time now) const {
 
 void Explorer::note_arrival(time::Time now) {
   if (!goal_->target_map) return;
-  if (goal_->kind == CandidateKind::kTracked) return trail_.drop_from(goal_->pose);
+  if (goal_->kind == CandidateKind::kTracked) return trail_.drop_nearest(goal_->pose);
   if (goal_->kind == CandidateKind::kGap) return taken_views_.push_back(goal_->pose);
   if (goal_->kind == CandidateKind::kRevisit)  // not for ever
     return revisited_.add_failure(*goal_->target_map, {.is_adrift = is_adrift_}, now);
@@ -274,10 +278,13 @@ void Explorer::note_vanished(const Decision& decision, time::Time now) {
     return c.kind == CandidateKind::kFrontier && c.is_open();
   });
   if (goal_->kind == CandidateKind::kCloserLook && is_in_sight) return;
-  const bool is_there = std::any_of(decision.candidates.begin(), decision.candidates.end(), [&](const Candidate& c) {
-    return (c.is_open() || c.rejection == Rejection::kOutranked) && is_of_frontier(c.kind) &&
-           (c.target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
-  });
+  bool is_there = false, is_unsure = false;
+  for (const Candidate& c : decision.candidates) {
+    if (!is_of_frontier(c.kind) || (c.target_map - *goal_->target_map).norm() > config_.memory.radius_m) continue;
+    is_there |= !is_geometric(c.rejection);
+    is_unsure |= c.rejection == Rejection::kUnsure;
+  }
+  if (is_unsure) note_loss(now);
   if (!is_there) await({*goal_->target_map, robot_.p_map}, now, config_.memory.expiry_s);
 }
 
@@ -316,9 +323,9 @@ void Explorer::add_failure(time::Time now, bool is_adrift) {
   progress_.begin_anew();
   if (!goal_->target_map) return;
   ++failures_;
-  if (goal_->kind == CandidateKind::kTracked) return trail_.drop_from(goal_->pose);
+  if (goal_->kind == CandidateKind::kTracked) return trail_.drop_nearest(goal_->pose);
   const bool is_place = !is_of_frontier(goal_->kind);
-  GoalMemory& memory = is_place ? revisited_ : memory_;
+  GoalMemory& memory = goal_->kind == CandidateKind::kGap ? gap_places_ : is_place ? revisited_ : memory_;
   memory.add_failure(is_place ? goal_->pose.p_map : *goal_->target_map,
                      {Rejection::kFailed, goal_->pose.p_map, is_adrift}, now);
 }
@@ -335,7 +342,8 @@ Memory Explorer::memory(time::Time now) const {
   for (const Eigen::Vector2d& target_map : awaited_) {
     if (!looks_again_) memory.left_alone.push_back({target_map});
   }
-  memory.places = revisited_.left_alone(now, is_adrift_);
+  memory.old_places = revisited_.left_alone(now, is_adrift_);
+  memory.gap_places = gap_places_.left_alone(now, is_adrift_);
   memory.looks_at_gaps = looks_at_gaps_;
   memory.failed_views = failed_views_.all();
   memory.taken_views = taken_views_;
@@ -415,7 +423,7 @@ void Explorer::end_or_look_around(const Decision& decision, const Report& report
   if (!nothing_since_) nothing_since_ = now;
   const double passed_s = (now - *nothing_since_).seconds();
   const bool may_change = (may_change_ || report.is_map_behind) && passed_s < config_.patience_s;
-  const bool is_worth_waiting = may_change || (is_beyond_budget() && passed_s < config_.lost_timeout_s);
+  const bool is_worth_waiting = may_change || ((is_beyond_budget() || goes_back_) && passed_s < config_.lost_timeout_s);
   if (empty_decisions_ < config_.confirmations || is_worth_waiting) {
     ++empty_decisions_;
     goal_ = Goal{.pose = robot_, .moved_from = robot_, .moved_at = now};

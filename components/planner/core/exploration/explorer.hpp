@@ -134,8 +134,9 @@ class Explorer {
   std::vector<Eigen::Vector2d> blocked_places(time::Time now) const;
 
   ExplorerConfig config_;
-  GoalMemory memory_;     ///< targets of frontiers
-  GoalMemory revisited_;  ///< old places, and places for views of gaps
+  GoalMemory memory_;      ///< targets of frontiers
+  GoalMemory revisited_;   ///< old places
+  GoalMemory gap_places_;  ///< for views of gaps
   ProgressWatch progress_;
   GoalMemory blocked_;              ///< places on the path
   std::vector<Pose2> taken_views_;  ///< of gaps

@@ -5,12 +5,12 @@
 namespace lapis::planner {
 namespace {
 
-bool has_frontier_at(const Surroundings& surroundings, const Eigen::Vector2d& target_map) {
+bool has_frontier_at(const Surroundings& surroundings, bool counts_awaited, const Eigen::Vector2d& target_map) {
   const PlanningGrid& grid = surroundings.grid();
   const auto& frontiers = surroundings.frontiers().frontiers();
   return std::any_of(frontiers.begin(), frontiers.end(), [&](const auto& entry) {
     const auto& cells = entry.second.cells;
-    if (surroundings.is_awaited(entry.second)) return false;
+    if (!counts_awaited && surroundings.is_awaited(entry.second)) return false;
     return std::any_of(cells.begin(), cells.end(),
                        [&](Cell c) { return (grid.center_of(c) - target_map).norm() <= grid.resolution_m(); });
   });
@@ -24,12 +24,12 @@ void FailedViews::await(const FailedView& view, time::Time due) {
   awaited_.insert(later, {view, due});
 }
 
-std::vector<FailedView> FailedViews::judge(const Surroundings& surroundings, time::Time now) {
+std::vector<FailedView> FailedViews::judge(const Surroundings& surroundings, bool counts_awaited, time::Time now) {
   std::vector<FailedView> failed;
   const auto later =
       std::find_if(awaited_.begin(), awaited_.end(), [&](const Awaited& awaited) { return awaited.due > now; });
   for (auto due = awaited_.begin(); due != later; ++due) {
-    if (has_frontier_at(surroundings, due->view.target_map)) failed.push_back(due->view);
+    if (has_frontier_at(surroundings, counts_awaited, due->view.target_map)) failed.push_back(due->view);
   }
   awaited_.erase(awaited_.begin(), later);
   failed_.insert(failed_.end(), failed.begin(), failed.end());

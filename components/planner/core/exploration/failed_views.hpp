@@ -15,7 +15,8 @@ class FailedViews {
   /// The target is judged at the first call of judge() from `due` on.
   void await(const FailedView& view, time::Time due);
   /// Those now due that have failed.
-  std::vector<FailedView> judge(const Surroundings& surroundings, time::Time now);
+  /// `counts_awaited`: also of frontiers that wait for a correction of the map.
+  std::vector<FailedView> judge(const Surroundings& surroundings, bool counts_awaited, time::Time now);
   /// All that have failed.
   const std::vector<FailedView>& all() const { return failed_; }
   void forgive() { failed_.clear(); }

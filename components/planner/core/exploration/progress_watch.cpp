@@ -19,8 +19,9 @@ void ProgressWatch::note(double explored_m3, const Eigen::Vector2d& robot_map, t
   }
   robot_map_ = robot_map;
   noted_at_ = now;
-  const bool has_shrunk = explored_m3 < explored_m3_;  // a correction of the map
-  const bool is_progress = explored_m3 >= explored_m3_ + std::max(kLeast_m3, kLeastShare * explored_m3_);
+  const double least_m3 = std::max(kLeast_m3, kLeastShare * explored_m3_);
+  const bool has_shrunk = explored_m3 <= explored_m3_ - least_m3;  // a correction of the map, and not its jitter
+  const bool is_progress = explored_m3 >= explored_m3_ + least_m3;
   if (has_shrunk || is_progress) explored_m3_ = explored_m3;
   if (is_progress) begin_anew();
 }

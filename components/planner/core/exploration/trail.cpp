@@ -26,9 +26,13 @@ void Trail::turn_back() {
   if (newest_) poses_.push_back(*newest_);
 }
 
-void Trail::drop_from(const Pose2& place) {
-  const auto newer = std::find_if(poses_.rbegin(), poses_.rend(), [&](const Pose2& p) { return !has_moved(p, place); });
-  if (newer != poses_.rend()) poses_.erase(std::prev(newer.base()), poses_.end());
+void Trail::drop_nearest(const Pose2& place) {
+  const auto difference = [&](const Pose2& p) {
+    return (p.p_map - place.p_map).norm() + turn_between(p.yaw_rad, place.yaw_rad);
+  };
+  const auto nearest = std::min_element(poses_.begin(), poses_.end(),
+                                        [&](const Pose2& a, const Pose2& b) { return difference(a) < difference(b); });
+  if (nearest != poses_.end()) poses_.erase(nearest);
 }
 
 void Trail::clear() {

@@ -21,8 +21,9 @@ class Trail {
   void turn_back();
   /// The newest last.
   const std::deque<Pose2>& poses() const { return poses_; }
-  /// It has been reached, or cannot be, and slam does not track: what came after it is of no use either.
-  void drop_from(const Pose2& place);
+  /// It has been reached, or cannot be, and slam does not track: the pose that is meant, of place and heading, is of no
+  /// use.
+  void drop_nearest(const Pose2& place);
   /// Its last turn was to the left.
   bool turned_left() const { return turned_left_; }
   void clear();

@@ -210,8 +210,14 @@ TEST(Decide, LooksAtGapsOfTheMapWhenNoFrontierIsLeft) {
       ASSERT_EQ(gap.kind, CandidateKind::kGap) << name;
       ASSERT_FALSE(is_taken(gap.goal, memory.taken_views)) << name;
       EXPECT_GE(path_information(explorer.field, explorer.view,
-                                 {camera_at({explorer.world.grid, explorer.frontiers, explorer.field, explorer.view,
-                                             geometry::T_base_camera({1.0, 0.0})},
+                                 {camera_at({explorer.world.grid,
+                                             explorer.frontiers,
+                                             explorer.field,
+                                             explorer.view,
+                                             geometry::T_base_camera({1.0, 0.0}),
+                                             nullptr,
+                                             nullptr,
+                                             {}},
                                             gap.goal)}),
                 5.0);
       memory.taken_views.push_back(gap.goal);
@@ -219,10 +225,10 @@ TEST(Decide, LooksAtGapsOfTheMapWhenNoFrontierIsLeft) {
     }
     EXPECT_GT(taken, 8) << name;
     memory.taken_views.clear();
-    memory.places = {{explorer.robot.p_map}};
+    memory.gap_places = {{explorer.robot.p_map}};
     memory.radius_m = 1000.0;
     EXPECT_FALSE(explorer.choose(memory).chosen) << name << ": places that have failed";
-    memory.places.clear();
+    memory.gap_places.clear();
     explorer.config.gaps.least_nats = 0.0;
     EXPECT_FALSE(explorer.choose(memory).chosen) << name << ": unless told not to";
   }
@@ -464,7 +470,7 @@ TEST(Decide, RevisitsAnOldPlaceWhenItIsUnsure) {
   EXPECT_NEAR(revisit.goal.yaw_rad, 1.57, 1e-6) << "the key-frame's own heading";
   EXPECT_GT(revisit.value.cost_m, 2.0);
   Memory memory;
-  memory.places = {{revisit.target_map}};
+  memory.old_places = {{revisit.target_map}};
   EXPECT_EQ(explorer.choose(memory).candidates.back().rejection, Rejection::kLeftAlone);
   explorer.config.method = Method::kNearest;
   EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "loops are worth nothing to it";

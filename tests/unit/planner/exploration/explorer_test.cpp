@@ -607,15 +607,15 @@ TEST_F(ExplorerByHand, ARevisitThatFailsIsGivenUpAndNoFrontierWithIt) {
   Candidate revisit = candidate({4.0, 0.0});
   revisit.kind = CandidateKind::kRevisit;
   for (int i = 0; i < GoalMemoryConfig{}.max_failures; ++i) {
-    EXPECT_TRUE(explorer_.memory(now_).places.empty());
+    EXPECT_TRUE(explorer_.memory(now_).old_places.empty());
     step(false, 0.5);
     explorer_.take(towards(revisit), report());
     EXPECT_TRUE(step(true, 0.5));
     EXPECT_EQ(explorer_.reason(), "the path was blocked");
-    EXPECT_EQ(explorer_.memory(now_).places.size(), 1U);
+    EXPECT_EQ(explorer_.memory(now_).old_places.size(), 1U);
     now_ = now_ + time::Duration::from_seconds(GoalMemoryConfig{}.expiry_s + 1.0);
   }
-  EXPECT_EQ(explorer_.memory(now_).places.size(), 1U) << "for good";
+  EXPECT_EQ(explorer_.memory(now_).old_places.size(), 1U) << "for good";
   EXPECT_TRUE(explorer_.memory(now_).left_alone.empty());
 }
 

@@ -70,6 +70,12 @@ TEST(ProgressWatch, AfterACorrectionGrowthCountsFromWhatIsLeft) {
   }
 }
 
+TEST(ProgressWatch, JitterOfTheMapIsNoProgress) {
+  ProgressWatch watch({.metres = 5.0, .seconds = 1000.0});
+  for (int i = 0; i < 7; ++i) watch.note(i % 2 == 0 ? 30.0 : 29.6, {1.0 * i, 0.0}, noted_at(i));
+  EXPECT_TRUE(watch.is_stalled());
+}
+
 TEST(ProgressWatch, AFarPlaceMayBeDrivenToThroughWhatIsKnown) {
   ProgressWatch watch(kFor15m);
   watch.set_out(60.0);

@@ -22,15 +22,16 @@ TEST(Trail, KeepsPosesApartAndTheNewest) {
   EXPECT_EQ(places(trail), (std::vector{0.0, 0.5, 1.0, 1.1}));
 }
 
-TEST(Trail, DropsWhatWasReachedAndWhatCameAfterIt) {
+// Goals are centres of cells: up to 0.35 m off.
+TEST(Trail, DropsTheViewThatIsMeant) {
   Trail trail;
   for (const double x_m : {0.0, 0.5, 1.0, 1.5}) trail.add(at(x_m));
-  trail.drop_from(at(1.1));
-  EXPECT_EQ(places(trail), (std::vector{0.0, 0.5}));
-  trail.drop_from(at(5.0));
-  EXPECT_EQ(places(trail), (std::vector{0.0, 0.5})) << "it never was there";
-  trail.drop_from({{0.5, 0.0}, 1.0});
-  EXPECT_EQ(places(trail), (std::vector{0.0, 0.5})) << "another heading is another view";
+  trail.add({{1.5, 0.0}, 1.0});
+  trail.drop_nearest({{0.75, 0.2}, 0.0});
+  EXPECT_EQ(places(trail), (std::vector{0.0, 1.0, 1.5, 1.5}));
+  trail.drop_nearest({{1.4, 0.0}, 1.0});
+  EXPECT_EQ(places(trail), (std::vector{0.0, 1.0, 1.5}));
+  EXPECT_EQ(trail.poses().back().yaw_rad, 0.0) << "another heading is another view";
 }
 
 TEST(Trail, ForgetsTheOldest) {
@@ -55,7 +56,7 @@ TEST(Trail, IsEmptyBeforeSlamHasTracked) {
   Trail trail;
   trail.turn_back();
   EXPECT_TRUE(trail.poses().empty());
-  trail.drop_from(at(0.0));
+  trail.drop_nearest(at(0.0));
 }
 
 }  // namespace

@@ -173,6 +173,7 @@ class WalkWorld {
   }
   void count_failed_views() {
     const std::vector<FailedView> views = explorer.memory(now).failed_views;
+    judged_ = std::min(judged_, views.size());  // some are forgotten, the oldest first
     for (; judged_ < views.size(); ++judged_) count(views[judged_].target_map, 0.5 * kResolution_m, failed_views_);
   }
   ObstacleGrid obstacles() const {

@@ -502,7 +502,7 @@ TEST_F(SimulatorContract, OneSeedGivesTheSameFilesWithAnyNumberOfThreads) {
     return files;
   };
   const auto first = exported("first", "1", "5");
-  EXPECT_EQ(first.size(), 15U * 3 + 6 + 7)
+  EXPECT_EQ(first.size(), 15U * 3 + 6 + 8)
       << "rgb, depth and label of 15 frames, lists, poses, camera, classes; ground truth";
   EXPECT_EQ(first, exported("second", "2", "5"));
   EXPECT_NE(first.at("rgb/000001.png"), exported("third", "1", "6").at("rgb/000001.png"));

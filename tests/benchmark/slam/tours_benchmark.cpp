@@ -6,15 +6,20 @@
 #include <cstdio>
 #include <ctime>
 #include <exception>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
+#include <sstream>
 
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utility.hpp>
 
+#include "common/files/atomic_file.hpp"
+#include "common/trajectory/trajectory.hpp"
 #include "evaluator/core/ate.hpp"
 #include "simulator/set_up.hpp"
+#include "slam/core/pose_graph_file.hpp"
 #include "slam/core/rgbd_slam.hpp"
 #include "tests/benchmark/slam/edge_honesty.hpp"
 #include "tests/benchmark/slam/pose_error.hpp"
@@ -28,7 +33,7 @@ struct Options {
   std::vector<std::string> scenes{"apartment"};
   std::vector<int> seeds{1, 2, 3, 4, 5};
   std::vector<std::string> worlds, overrides;
-  std::string folder;
+  std::string folder, graphs;
   bool no_odometry = false;
   bool with_loops = false;
   int wrong_loop_seeds = 0;
@@ -271,6 +276,17 @@ void print_sources(const std::map<std::string, int>& frames_by_source) {
   std::printf("\n");
 }
 
+// The final graph as g2o text, and where its key-frames truly were, in the same order.
+void keep_graph(const std::filesystem::path& folder, const std::string& name, const Run& run) {
+  std::filesystem::create_directories(folder);
+  std::ostringstream g2o;
+  write_g2o(g2o, run.graph);
+  files::replace_text(folder / (name + ".g2o"), g2o.str());
+  trajectory::Trajectory truth;
+  for (const auto& node : run.graph.nodes) truth.push_back({node.stamp, run.truth.at(node.stamp.nanoseconds)});
+  trajectory::write_trajectory(folder / (name + "_truth.txt"), truth, "key-frames: camera optical frame in map, true");
+}
+
 void spoil(const Run& run, int seeds) {
   std::vector<Eigen::Vector3d> truth;
   for (const auto& node : run.graph.nodes) {
@@ -311,6 +327,10 @@ int run(const Options& options) {
         print_row(scene, seed, tour);
         const auto mount = camera_mount(simulated.robot.camera);
         print_honesty(tour, honesty_of(tour, mount, slam.method.pose_graph), pool);
+        if (!options.graphs.empty()) {
+          const std::string name = std::filesystem::path(scene).stem().string() + "_" + std::to_string(seed);
+          keep_graph(options.graphs, name, tour);
+        }
         if (options.with_loops) print_loops(tour);
         if (options.wrong_loop_seeds > 0) spoil(tour, options.wrong_loop_seeds);
       } catch (const std::exception& error) {
@@ -352,6 +372,8 @@ int main(int argc, char** argv) {
       "--recordings", options.folder,
       "keep the frames of tours here, 0.7 MB each, and read them the next time instead of rendering; they know "
       "the configuration, not the simulator: empty the folder when that changes");
+  app.add_option("--graphs", options.graphs,
+                 "folder for SCENE_SEED.g2o, the final graph, and SCENE_SEED_truth.txt, true poses of its key-frames");
   app.add_flag("--no-odometry", options.no_odometry, "slam gets no wheel odometry");
   app.add_flag("--loops", options.with_loops, "also a row for each loop");
   app.add_option("--wrong-loops", options.wrong_loop_seeds,

@@ -180,7 +180,7 @@ void PlannerComponent::set_pose(const nav_msgs::msg::Odometry& message) {
   auto pose = to_core(message.pose().pose());
   if (!pose) return drop("pose", pose.reason);
   robot_ = *pose;
-  last_robot_map_ = robot_->p_map;
+  last_robot_ = *robot_;
   position_variance_m2_ = position_variance_m2(message.pose().covariance());
 }
 
@@ -215,7 +215,7 @@ void PlannerComponent::take_decision(bool waits) {
   const bool is_taken = explorer_.take(decision, report());
   candidates_.publish(to_message(decision, decisions_, config_.method, header()));
   const Decision* driven = is_taken && decision.chosen ? &decision : nullptr;
-  const auto ended = ledger_.note(driven, surroundings_->information_nats(), last_robot_map_, stamp_);
+  const auto ended = ledger_.note(driven, surroundings_->information_nats(), last_robot_, stamp_);
   if (log_ && !log_->write(decision, ended, decisions_, config_.method, stamp_)) {
     spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, kLogFile);
     log_.reset();

@@ -127,11 +127,21 @@ Decision Controller::follow(time::Time now, double elapsed_s) {
   const double tolerance_m = config_.goal_tolerance_m * (is_arrived_ ? 2.0 : 1.0);
   is_arrived_ = track_->left_m() <= config_.look_ahead_m && to_end_m <= tolerance_m;
   if (is_arrived_) return align(elapsed_s);
+  if (const auto heading_rad = track_->next_heading(yaw_of(T_map_base_)))
+    return turn_first(wrapped(*heading_rad - yaw_of(T_map_base_)), elapsed_s);
   const Obstacles obstacles = map_.obstacles_near(T_map_base_, planner_.fan().reach_m());
   local_path_ = find_local_path(obstacles);
   const Recovery next = next_phase(obstacles, now);
   if (next != recovery_) enter(next, now);
   return recovery_ == Recovery::kNone ? drive(obstacles, elapsed_s) : recover(elapsed_s);
+}
+
+/// As the path asks for at its beginning; at one rate, through headings that lie between.
+Decision Controller::turn_first(double error_rad, double elapsed_s) {
+  local_path_.reset();
+  moved_at_.reset();
+  const Velocity wanted{0.0, std::copysign(turn_limit(), error_rad)};
+  return {State::kFollowing, "turns as the path begins", ramped(last_, wanted, elapsed_s, limits_), 0.0, {}};
 }
 
 /// Where the path ends the robot turns to the last pose's heading.

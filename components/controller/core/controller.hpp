@@ -79,6 +79,7 @@ class Controller {
   Decision stop_for(Input stale) const;
   Decision turn(time::Time now, double elapsed_s);
   Decision follow(time::Time now, double elapsed_s);
+  Decision turn_first(double error_rad, double elapsed_s);
   Decision align(double elapsed_s);
   Decision drive(const Obstacles& obstacles, double elapsed_s) const;
   Decision recover(double elapsed_s) const;

@@ -1,6 +1,7 @@
 #include "controller/core/path_track.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -8,6 +9,7 @@ namespace lapis::controller {
 namespace {
 
 constexpr double kOnTheSpot_m = 0.01;
+constexpr double kTurned_rad = 0.3;  // what is left of a first turn is turned while driving
 
 }  // namespace
 
@@ -26,6 +28,19 @@ PathTrack::PathTrack(std::vector<PlanarPose> poses) : poses_(std::move(poses)), 
   for (std::size_t i = 1; i < poses_.size(); ++i) {
     along_m_.push_back(along_m_.back() + (poses_[i].translation() - poses_[i - 1].translation()).norm());
   }
+  const auto leaves = std::find_if(poses_.begin(), poses_.end(), [&](const PlanarPose& pose) {
+    return (pose.translation() - poses_.front().translation()).norm() > kOnTheSpot_m;
+  });
+  if (leaves - poses_.begin() > 1 && leaves != poses_.end()) turns_ = static_cast<std::size_t>(leaves - poses_.begin());
+}
+
+// Who has turned on while the path was made is beyond its first headings.
+std::optional<double> PathTrack::next_heading(double yaw_rad) {
+  const auto off_rad = [&](std::size_t i) { return std::abs(wrapped(yaw_of(poses_[i]) - yaw_rad)); };
+  const auto is_beyond = [&] { return turned_ + 1 < turns_ && off_rad(turned_ + 1) < off_rad(turned_); };
+  while (turned_ < turns_ && (off_rad(turned_) <= kTurned_rad || is_beyond())) ++turned_;
+  if (turned_ == turns_) return std::nullopt;
+  return yaw_of(poses_[turned_]);
 }
 
 void PathTrack::advance(const Eigen::Vector2d& position, double window_m) {

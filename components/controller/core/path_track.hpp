@@ -14,8 +14,13 @@ std::optional<double> turn_on_the_spot(const std::vector<PlanarPose>& poses);
 /// A path in the map frame and how far the robot has come on it.
 class PathTrack {
  public:
-  /// `poses`: at least one; the last one's heading is the final one.
+  /// `poses`: at least one; the last one's heading is the final one. When the first ones are all at one place (1 cm),
+  /// and others follow, their headings are turned through, each the short way from the one before, before it is left.
   explicit PathTrack(std::vector<PlanarPose> poses);
+
+  /// The heading of the first turn that the robot has to turn to next; nothing when it has turned.
+  /// @param yaw_rad of the robot
+  std::optional<double> next_heading(double yaw_rad);
 
   /// Moves on to the point of the next `window_m` of the path that is nearest to the robot; never back.
   void advance(const Eigen::Vector2d& position, double window_m);
@@ -33,6 +38,7 @@ class PathTrack {
   std::vector<PlanarPose> poses_;
   std::vector<double> along_m_;  // of each pose
   double progress_m_ = 0.0;
+  std::size_t turned_ = 0, turns_ = 0;  // poses of the first turn: those that are done, and all
 };
 
 }  // namespace lapis::controller

@@ -91,6 +91,27 @@ TEST(Controller, TurnsOnTheSpotTowardsAPathThatBeginsBehind) {
   expect_reached(world, path.back());
 }
 
+TEST(Controller, TurnsFirstTheWayRoundThatThePathAsksFor) {
+  for (const double turn_rad : {4.0, -4.0}) {
+    KinematicWorld world(hall());
+    Path path;
+    for (const double share : {0.3, 0.6, 0.9}) path.push_back(planar_pose({0, 0}, share * turn_rad));
+    const Path away = straight({0, 0}, {2 * std::cos(turn_rad), 2 * std::sin(turn_rad)}, turn_rad);
+    path.insert(path.end(), away.begin(), away.end());
+    world.controller.set_path(path, "");
+    double turned_rad = 0.0;
+    world.run_until(
+        [&, before = world.T_map_base](const Decision& decision) mutable {
+          turned_rad += yaw_of(before.inverse() * world.T_map_base);
+          before = world.T_map_base;
+          return decision.state != State::kFollowing;
+        },
+        20.0);
+    EXPECT_NEAR(turned_rad, turn_rad, 0.15);
+    expect_reached(world, path.back());
+  }
+}
+
 TEST(Controller, GoesThroughADoorAndRoundTheCorner) {
   const std::vector<Box> walls{wall(2, -8, 2.12, -0.45), wall(2, 0.45, 2.12, 8), wall(3.4, -3, 3.52, 8)};
   KinematicWorld world(with(hall(), walls));

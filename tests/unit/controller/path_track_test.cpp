@@ -28,6 +28,20 @@ TEST(TurnOnTheSpot, IsNoneWhereThePathLeadsAwayOrThereIsNoPath) {
 
 PathTrack corner() { return PathTrack({planar_pose({0, 0}, 0), planar_pose({2, 0}, 0), planar_pose({2, 3}, 1.5)}); }
 
+TEST(PathTrack, BeginsWithTheHeadingsOfItsFirstPlace) {
+  const std::vector<PlanarPose> headings{planar_pose({0, 0}, 1.0), planar_pose({0, 0}, 2.0), planar_pose({0, 0}, 3.0)};
+  std::vector<PlanarPose> poses = headings;
+  poses.push_back(planar_pose({-1, 0}, 3.0));
+  PathTrack track(poses);
+  EXPECT_EQ(track.next_heading(0.0), 1.0);
+  EXPECT_EQ(track.next_heading(0.8), 2.0);
+  EXPECT_EQ(track.next_heading(0.5), 2.0) << "never back";
+  EXPECT_EQ(track.next_heading(2.6), 3.0) << "it is nearer to the one after";
+  EXPECT_EQ(track.next_heading(-3.1), std::nullopt);
+  EXPECT_EQ(PathTrack(headings).next_heading(0.0), std::nullopt) << "it does not lead away: the last heading counts";
+  EXPECT_EQ(corner().next_heading(3.0), std::nullopt);
+}
+
 TEST(PathTrack, FollowsTheRobotAndNeverGoesBack) {
   PathTrack track = corner();
   EXPECT_DOUBLE_EQ(track.left_m(), 5.0);

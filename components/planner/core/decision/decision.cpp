@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "planner/core/decision/first_turn.hpp"
 #include "planner/core/decision/proposals.hpp"
 #include "planner/core/space/path_planner.hpp"
 
@@ -32,11 +33,13 @@ std::vector<Pose2> poses_of(const Situation& s, const Candidate& candidate) {
   return with_turns(candidate.path, s.robot.yaw_rad, kTurnStep_rad);
 }
 
+/// Discounted as the whole path is.
 std::vector<PromisedView> promise_along(const Situation& s, const Candidate& candidate) {
   const std::vector<Pose2> poses = poses_of(s, candidate);
   const std::vector<double> nats = growing_information(s.field, s.view, views_along(s, poses));
-  std::vector<PromisedView> promised;
-  for (std::size_t i = 0; i < poses.size(); ++i) promised.push_back({poses[i].p_map, nats[i]});
+  const double counted = nats.back() > 0.0 ? candidate.value.path_information / nats.back() : 1.0;
+  std::vector<PromisedView> promised{{s.robot, 0.0}};
+  for (std::size_t i = 0; i < poses.size(); ++i) promised.push_back({poses[i], counted * nats[i]});
   return promised;
 }
 
@@ -211,7 +214,9 @@ Decision decide(const Situation& situation, const Memory& memory, const Decision
   const std::vector<Candidate> proposals = propose(situation, tree, memory, config);
   Decision decision = choose(situation, proposals, memory, config);
   if (decision.chosen) {
-    decision.promised = promise_along(situation, decision.candidates[*decision.chosen]);
+    const Candidate& chosen = decision.candidates[*decision.chosen];
+    decision.promised = promise_along(situation, chosen);
+    decision.first_turn_rad = first_turn(situation, chosen.path.front().yaw_rad, config.hallucination.covisibility);
   } else {
     decision.leftover = leftover_of(situation, decision.candidates);
   }

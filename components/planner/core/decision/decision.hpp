@@ -112,14 +112,15 @@ struct Leftover {
 
 /// A view along the chosen path.
 struct PromisedView {
-  Eigen::Vector2d p_map;  ///< where the robot is then [m]
-  double nats = 0.0;      ///< promised by the views up to this one
+  Pose2 robot;
+  double nats = 0.0;  ///< promised by the views up to this one
 };
 
 struct Decision {
   std::vector<Candidate> candidates;      ///< at least one for each frontier
   std::optional<std::size_t> chosen;      ///< index; nothing when none can be driven to
-  std::vector<PromisedView> promised;     ///< along the chosen path
+  std::vector<PromisedView> promised;     ///< along the chosen path, from where the robot is
+  std::vector<double> first_turn_rad;     ///< headings to turn through before the chosen path; empty: the short way
   Leftover leftover;                      ///< when none can
   std::optional<std::size_t> by_mi_only;  ///< what MI / Cost would have chosen
   /// What would have been chosen with each of the compared fields.

@@ -409,7 +409,11 @@ void Explorer::follow(const Decision& decision, time::Time now) {
   goal_->kind = chosen.kind;
   if (is_of_frontier(chosen.kind)) looks_at_gaps_ = false;
   reason_ = purpose_of(chosen);
-  set_path(poses_along(chosen.points, config_.path_spacing_m, chosen.goal.yaw_rad));
+  std::vector<Pose2> path;
+  for (const double heading_rad : decision.first_turn_rad) path.push_back({chosen.points.front(), heading_rad});
+  const auto along = poses_along(chosen.points, config_.path_spacing_m, chosen.goal.yaw_rad);
+  path.insert(path.end(), along.begin(), along.end());
+  set_path(std::move(path));
 }
 
 // First the map is searched for gaps, which is sure to bring something; then a turn in all directions may show what has

@@ -1,31 +1,46 @@
 #include "planner/core/exploration/path_ledger.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace lapis::planner {
 namespace {
 
-/// Of the views up to the one nearest to the robot; of several at one place, the last.
-double promised_up_to(const std::vector<PromisedView>& promised, const Eigen::Vector2d& robot_map) {
+constexpr double kMetresPerRadian = 0.5;  // of turning, where the nearest place on a path is looked for
+
+/// Place and heading after the begin of a stretch between two views [m].
+Eigen::Vector3d offset(const Pose2& from, const Pose2& to) {
+  const Eigen::Vector2d step = to.p_map - from.p_map;
+  return {step.x(), step.y(), kMetresPerRadian * std::remainder(to.yaw_rad - from.yaw_rad, 2.0 * std::numbers::pi)};
+}
+
+/// Up to where the robot is between the views, by place and heading; of several equally near places, the last.
+double promised_up_to(const std::vector<PromisedView>& views, const Pose2& robot) {
   double nats = 0.0, nearest_m = std::numeric_limits<double>::infinity();
-  for (const PromisedView& view : promised) {
-    const double off_m = (view.p_map - robot_map).norm();
+  for (std::size_t i = 1; i < views.size(); ++i) {
+    const Eigen::Vector3d stretch = offset(views[i - 1].robot, views[i].robot);
+    const Eigen::Vector3d here = offset(views[i - 1].robot, robot);
+    const double length2 = stretch.squaredNorm();
+    const double share = length2 > 0.0 ? std::clamp(here.dot(stretch) / length2, 0.0, 1.0) : 1.0;
+    const double off_m = (here - share * stretch).norm();
     if (off_m > nearest_m) continue;
     nearest_m = off_m;
-    nats = view.nats;
+    nats = std::lerp(views[i - 1].nats, views[i].nats, share);
   }
   return nats;
 }
 
 }  // namespace
 
-std::optional<DrivenPath> PathLedger::note(const Decision* decision, double map_nats, const Eigen::Vector2d& robot_map,
+std::optional<DrivenPath> PathLedger::note(const Decision* decision, double map_nats, const Pose2& robot,
                                            time::Time now) {
   const bool continues = path_ && decision != nullptr &&
                          (decision->candidates[*decision->chosen].target_map - target_map_).norm() <= radius_m_;
   if (continues) return std::nullopt;
-  const auto ended = end(map_nats, robot_map, now);
+  const auto ended = end(map_nats, robot, now);
   if (decision != nullptr) begin(*decision, map_nats, now);
   return ended;
 }
@@ -42,11 +57,11 @@ void PathLedger::begin(const Decision& decision, double map_nats, time::Time now
   nats_at_begin_ = map_nats;
 }
 
-std::optional<DrivenPath> PathLedger::end(double map_nats, const Eigen::Vector2d& robot_map, time::Time now) {
+std::optional<DrivenPath> PathLedger::end(double map_nats, const Pose2& robot, time::Time now) {
   std::optional<DrivenPath> ended = std::exchange(path_, std::nullopt);
   if (!ended) return ended;
   ended->end = now;
-  ended->driven_nats = promised_up_to(promised_, robot_map);
+  ended->driven_nats = promised_up_to(promised_, robot);
   ended->gained_nats = map_nats - nats_at_begin_;
   return ended;
 }

@@ -14,7 +14,7 @@ struct DrivenPath {
   CandidateKind kind = CandidateKind::kFrontier;
   double cost_m = 0.0;         ///< when it was chosen first
   double promised_nats = 0.0;  ///< Candidate::value.path_information when it was chosen first
-  double driven_nats = 0.0;    ///< of these, by the views along what was driven of it
+  double driven_nats = 0.0;    ///< of these, by what was driven of it
   double gained_nats = 0.0;    ///< by the map from begin to end
 
   bool operator==(const DrivenPath&) const = default;
@@ -30,12 +30,11 @@ class PathLedger {
   /// Takes note of the choice that is being driven to, or that there is none. What ended by that, if anything did.
   /// @param decision with a choice; null: nothing is driven to
   /// @param map_nats MapInformation::nats() now
-  std::optional<DrivenPath> note(const Decision* decision, double map_nats, const Eigen::Vector2d& robot_map,
-                                 time::Time now);
+  std::optional<DrivenPath> note(const Decision* decision, double map_nats, const Pose2& robot, time::Time now);
 
  private:
   void begin(const Decision& decision, double map_nats, time::Time now);
-  std::optional<DrivenPath> end(double map_nats, const Eigen::Vector2d& robot_map, time::Time now);
+  std::optional<DrivenPath> end(double map_nats, const Pose2& robot, time::Time now);
 
   std::optional<DrivenPath> path_;
   std::vector<PromisedView> promised_;

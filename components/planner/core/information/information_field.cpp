@@ -29,35 +29,33 @@ template <class Real>
 void BasicInformationField<Real>::update(const mapping::VoxelMap& map, std::span<const BlockIndex> changed) {
   if (map.resolution_m() != resolution_m_)
     throw std::invalid_argument("the map's resolution is not that of the information field");
-  const std::vector<BlockIndex> touched = with_neighbours(map, changed);
+  const std::vector<BlockIndex> touched = with_neighbours(changed);
   std::vector<BlockPtr> blocks(touched.size());
   tbb::parallel_for(std::size_t{0}, touched.size(), [&](std::size_t i) {
-    const mapping::VoxelBlock* voxels = map.find(touched[i]);
-    if (voxels == nullptr) return;
-    auto block = make_block(*voxels);
-    continue_surfaces(map, touched[i], *block);
+    static const mapping::VoxelBlock kUnobserved;
+    const mapping::VoxelBlock* found = map.find(touched[i]);
+    const mapping::VoxelBlock& voxels = found == nullptr ? kUnobserved : *found;
+    auto block = make_block(voxels);
+    continue_surfaces(map, touched[i], voxels, *block);
     blocks[i] = std::move(block);
   });
   for (std::size_t i = 0; i < touched.size(); ++i) {
-    if (blocks[i]) {
-      blocks_[touched[i]] = share_if_uniform(std::move(blocks[i]));
+    BlockPtr block = share_if_uniform(std::move(blocks[i]));
+    if (block != unknown_) {
+      blocks_[touched[i]] = std::move(block);
     } else {
       blocks_.erase(touched[i]);
     }
   }
 }
 
-/// And the blocks that the map has beside them, if it matters to them.
+/// And the blocks beside them, if it matters to them.
 template <class Real>
-std::vector<BlockIndex> BasicInformationField<Real>::with_neighbours(const mapping::VoxelMap& map,
-                                                                     std::span<const BlockIndex> changed) const {
+std::vector<BlockIndex> BasicInformationField<Real>::with_neighbours(std::span<const BlockIndex> changed) const {
   std::vector<BlockIndex> blocks(changed.begin(), changed.end());
   if (measure_.ray().surface_occupied <= 0.0) return blocks;
   for (const BlockIndex& index : changed) {
-    for (const auto& step : kFaceSteps) {
-      const BlockIndex beside{index.x + step[0], index.y + step[1], index.z + step[2]};
-      if (map.find(beside) != nullptr) blocks.push_back(beside);
-    }
+    for (const auto& step : kFaceSteps) blocks.push_back({index.x + step[0], index.y + step[1], index.z + step[2]});
   }
   std::sort(blocks.begin(), blocks.end());
   blocks.erase(std::unique(blocks.begin(), blocks.end()), blocks.end());
@@ -97,9 +95,8 @@ CellInformation BasicInformationField<Real>::cell(const mapping::VoxelIndex& vox
 /// RayModel::surface_occupied for voxels never observed.
 template <class Real>
 void BasicInformationField<Real>::continue_surfaces(const mapping::VoxelMap& map, const BlockIndex& index,
-                                                    Block& block) const {
+                                                    const mapping::VoxelBlock& voxels, Block& block) const {
   if (measure_.ray().surface_occupied <= 0.0) return;
-  const mapping::VoxelBlock& voxels = *map.find(index);
   const auto is_occupied = [&](const mapping::VoxelIndex& voxel) {
     const mapping::VoxelBlock* holder = map.find(block_of(voxel));
     const int offset = offset_in_block(voxel);

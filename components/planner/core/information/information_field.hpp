@@ -42,10 +42,10 @@ class BasicInformationField {
  private:
   using BlockPtr = std::shared_ptr<const Block>;
 
-  std::vector<mapping::BlockIndex> with_neighbours(const mapping::VoxelMap& map,
-                                                   std::span<const mapping::BlockIndex> changed) const;
+  std::vector<mapping::BlockIndex> with_neighbours(std::span<const mapping::BlockIndex> changed) const;
   std::shared_ptr<Block> make_block(const mapping::VoxelBlock& voxels) const;
-  void continue_surfaces(const mapping::VoxelMap& map, const mapping::BlockIndex& index, Block& block) const;
+  void continue_surfaces(const mapping::VoxelMap& map, const mapping::BlockIndex& index,
+                         const mapping::VoxelBlock& voxels, Block& block) const;
   /// The shared copy, when all cells of the block are equal.
   BlockPtr share_if_uniform(BlockPtr block);
 

@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <numbers>
 #include <set>
 #include <utility>
 
+#include "planner/core/decision/first_turn.hpp"
 #include "planner/core/decision/gap_views.hpp"
 #include "tests/unit/planner/hallucination/small_world.hpp"
 #include "tests/unit/planner/space/flat_map.hpp"
@@ -354,6 +356,40 @@ TEST(Decide, LoopsDrawTheJointUtilityToOldPlaces) {
   EXPECT_TRUE(explorer.is_left(explorer.chosen())) << "without loops the near end is worth more per metre";
 }
 
+// Landmarks all around but for what is behind on the right.
+TEST(Decide, TurnsTheWayRoundThatKeepsLandmarksInView) {
+  Explorer explorer;
+  const double x = explorer.robot.p_map.x(), y = explorer.robot.p_map.y();
+  std::vector<geometry::Pose> cameras;
+  for (int i = 0; i < 8; ++i) cameras.push_back(camera_at(x, y, 0.5 * i));
+  test::Chain chain(cameras);
+  const AnalysedGraph graph = chain.graph();
+  std::vector<Eigen::Vector3f> points;
+  for (double angle_rad = 0.0; angle_rad <= 3.5; angle_rad += 0.02) {
+    for (const double z : {0.8, 1.0, 1.2})
+      points.push_back(Eigen::Vector3d(x + 1.5 * std::cos(angle_rad), y + 1.5 * std::sin(angle_rad), z).cast<float>());
+  }
+  const LandmarkIndex landmarks(test::tile_of(points, {10, 11, 12, 13, 14, 15, 16, 17}), graph, 0.25);
+  explorer.graph = &graph;
+  explorer.landmarks = &landmarks;
+  explorer.config.hallucination.covisibility.min_visibility = 0.0;
+  const auto turn = [&](double heading_rad) {
+    const Situation situation{
+        explorer.world.grid, explorer.frontiers, explorer.field, explorer.view, geometry::T_base_camera({1.0, 0.0}),
+        explorer.graph,      explorer.landmarks, explorer.robot};
+    return first_turn(situation, heading_rad, explorer.config.hallucination.covisibility);
+  };
+  EXPECT_TRUE(turn(1.0).empty()) << "a short turn";
+  EXPECT_TRUE(turn(3.0).empty()) << "the shorter way is good";
+  const std::vector<double> longer = turn(-2.8);
+  ASSERT_FALSE(longer.empty());
+  EXPECT_GT(longer.front(), 0.0);
+  EXPECT_NEAR(longer.back(), 2.0 * std::numbers::pi - 2.8, 1e-9);
+  const LandmarkIndex none({}, graph, 0.25);
+  explorer.landmarks = &none;
+  EXPECT_TRUE(turn(-2.8).empty()) << "either way leads past blank views";
+}
+
 // Before slam has two key-frames, and when its graph cannot be judged.
 TEST(Decide, WithoutAGraphThePaperComparesInformationPerMetre) {
   Explorer explorer;
@@ -472,6 +508,9 @@ TEST(Decide, RevisitsAnOldPlaceWhenItIsUnsure) {
   Memory memory;
   memory.old_places = {{revisit.target_map}};
   EXPECT_EQ(explorer.choose(memory).candidates.back().rejection, Rejection::kLeftAlone);
+  memory.old_places.clear();
+  memory.adrift = {.sigma_m = 0.6, .growth = 0.1, .budget_m = 0.5};
+  EXPECT_EQ(count(explorer.choose(memory), CandidateKind::kRevisit), 0) << "it drives to where slam tracked";
   explorer.config.method = Method::kNearest;
   EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "loops are worth nothing to it";
 }

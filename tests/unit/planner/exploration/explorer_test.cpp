@@ -586,6 +586,20 @@ TEST_F(ExplorerByHand, AFrontierThatCreepsAheadIsNotLate) {
   }
 }
 
+TEST_F(ExplorerByHand, ItsPathBeginsWithTheHeadingsOfTheFirstTurn) {
+  explorer_.start();
+  step();
+  Decision decision = towards(candidate({-3.0, 0.0}));
+  decision.first_turn_rad = {2.0, 3.0};
+  explorer_.take(decision, report());
+  const std::vector<Pose2>& path = explorer_.path();
+  ASSERT_GT(path.size(), 4U);
+  for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(path[i].p_map, Eigen::Vector2d(0.0, 0.0));
+  EXPECT_EQ(path[0].yaw_rad, 2.0);
+  EXPECT_EQ(path[1].yaw_rad, 3.0);
+  EXPECT_LT(path[3].p_map.x(), 0.0);
+}
+
 TEST_F(ExplorerByHand, GoingToAndFroBetweenTwoGoalsEnds) {
   const std::array<Candidate, 2> goals{candidate({3.0, 0.0}), candidate({-3.0, 0.0})};
   explorer_.start();

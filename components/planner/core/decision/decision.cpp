@@ -33,13 +33,15 @@ std::vector<Pose2> poses_of(const Situation& s, const Candidate& candidate) {
   return with_turns(candidate.path, s.robot.yaw_rad, kTurnStep_rad);
 }
 
-/// Discounted as the whole path is.
+/// From what is in view already, which has more to tell to who goes on looking, and never discounted: it is what the
+/// map would gain.
 std::vector<PromisedView> promise_along(const Situation& s, const Candidate& candidate) {
-  const std::vector<Pose2> poses = poses_of(s, candidate);
+  std::vector<Pose2> poses{s.robot};
+  const std::vector<Pose2> later = poses_of(s, candidate);
+  poses.insert(poses.end(), later.begin(), later.end());
   const std::vector<double> nats = growing_information(s.field, s.view, views_along(s, poses));
-  const double counted = nats.back() > 0.0 ? candidate.value.path_information / nats.back() : 1.0;
-  std::vector<PromisedView> promised{{s.robot, 0.0}};
-  for (std::size_t i = 0; i < poses.size(); ++i) promised.push_back({poses[i], counted * nats[i]});
+  std::vector<PromisedView> promised;
+  for (std::size_t i = 0; i < poses.size(); ++i) promised.push_back({poses[i], nats[i]});
   return promised;
 }
 

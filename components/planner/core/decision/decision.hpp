@@ -113,7 +113,7 @@ struct Leftover {
 /// A view along the chosen path.
 struct PromisedView {
   Pose2 robot;
-  double nats = 0.0;  ///< promised by the views up to this one
+  double nats = 0.0;  ///< promised by the views up to this one, the one at the beginning included
 };
 
 struct Decision {

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kMetresPerRadian = 0.5;  // of turning, where the nearest place on a path is looked for
 
+constexpr double kSameView_rad = 0.6;  // between the headings of two views that show about the same
+
 /// Place and heading after the begin of a stretch between two views [m].
 Eigen::Vector3d offset(const Pose2& from, const Pose2& to) {
   const Eigen::Vector2d step = to.p_map - from.p_map;
@@ -19,7 +21,7 @@ Eigen::Vector3d offset(const Pose2& from, const Pose2& to) {
 
 /// Up to where the robot is between the views, by place and heading; of several equally near places, the last.
 double promised_up_to(const std::vector<PromisedView>& views, const Pose2& robot) {
-  double nats = 0.0, nearest_m = std::numeric_limits<double>::infinity();
+  double nats = views.empty() ? 0.0 : views.front().nats, nearest_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < views.size(); ++i) {
     const Eigen::Vector3d stretch = offset(views[i - 1].robot, views[i].robot);
     const Eigen::Vector3d here = offset(views[i - 1].robot, robot);
@@ -37,12 +39,15 @@ double promised_up_to(const std::vector<PromisedView>& views, const Pose2& robot
 
 std::optional<DrivenPath> PathLedger::note(const Decision* decision, double map_nats, const Pose2& robot,
                                            time::Time now) {
-  const bool continues = path_ && decision != nullptr &&
-                         (decision->candidates[*decision->chosen].target_map - target_map_).norm() <= radius_m_;
+  const bool continues = path_ && decision != nullptr && is_same(decision->candidates[*decision->chosen].goal);
   if (continues) return std::nullopt;
   const auto ended = end(map_nats, robot, now);
   if (decision != nullptr) begin(*decision, map_nats, now);
   return ended;
+}
+
+bool PathLedger::is_same(const Pose2& goal) const {
+  return (goal.p_map - goal_.p_map).norm() <= radius_m_ && turn_between(goal.yaw_rad, goal_.yaw_rad) <= kSameView_rad;
 }
 
 void PathLedger::begin(const Decision& decision, double map_nats, time::Time now) {
@@ -51,9 +56,9 @@ void PathLedger::begin(const Decision& decision, double map_nats, time::Time now
   path_->begin = now;
   path_->kind = chosen.kind;
   path_->cost_m = chosen.value.cost_m;
-  path_->promised_nats = chosen.value.path_information;
   promised_ = decision.promised;
-  target_map_ = chosen.target_map;
+  path_->promised_nats = promised_.empty() ? 0.0 : promised_.back().nats;
+  goal_ = chosen.goal;
   nats_at_begin_ = map_nats;
 }
 

@@ -8,12 +8,12 @@
 
 namespace lapis::planner {
 
-/// A path from its choice until there was none or another target was chosen.
+/// A path from its choice until there was none or another one was chosen.
 struct DrivenPath {
   time::Time begin, end;
   CandidateKind kind = CandidateKind::kFrontier;
   double cost_m = 0.0;         ///< when it was chosen first
-  double promised_nats = 0.0;  ///< Candidate::value.path_information when it was chosen first
+  double promised_nats = 0.0;  ///< by Decision::promised when it was chosen first
   double driven_nats = 0.0;    ///< of these, by what was driven of it
   double gained_nats = 0.0;    ///< by the map from begin to end
 
@@ -21,10 +21,10 @@ struct DrivenPath {
 };
 
 /// Compares what paths promised with what the map gained while they were driven. A path is the same as long as its
-/// target stays within a radius of where it was at first: it has no promise of what lies beyond.
+/// goal stays near to what it was at first: it has no promise of what lies beyond.
 class PathLedger {
  public:
-  /// @param radius_m between the targets of one path
+  /// @param radius_m between the goals of one path
   explicit PathLedger(double radius_m) : radius_m_(radius_m) {}
 
   /// Takes note of the choice that is being driven to, or that there is none. What ended by that, if anything did.
@@ -33,12 +33,13 @@ class PathLedger {
   std::optional<DrivenPath> note(const Decision* decision, double map_nats, const Pose2& robot, time::Time now);
 
  private:
+  bool is_same(const Pose2& goal) const;
   void begin(const Decision& decision, double map_nats, time::Time now);
   std::optional<DrivenPath> end(double map_nats, const Pose2& robot, time::Time now);
 
   std::optional<DrivenPath> path_;
   std::vector<PromisedView> promised_;
-  Eigen::Vector2d target_map_{0, 0};
+  Pose2 goal_;
   double nats_at_begin_ = 0.0;
   double radius_m_;
 };

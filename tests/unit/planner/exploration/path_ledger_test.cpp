@@ -10,10 +10,10 @@ time::Time second(double seconds) { return time::Time::from_seconds(seconds); }
 Pose2 at(double x_m, double y_m, double yaw_rad = 0.0) { return {{x_m, y_m}, yaw_rad}; }
 
 /// From 2 rad aside the robot turns to the x axis, which promises a fifth, and drives four metres of a fifth each.
-Decision decision(double target_x_m, double cost_m, double nats) {
+Decision decision(double goal_x_m, double cost_m, double nats) {
   Decision made;
   Candidate& chosen = made.candidates.emplace_back();
-  chosen.target_map = {target_x_m, 0.0};
+  chosen.goal = at(goal_x_m, 0.0);
   chosen.value.cost_m = cost_m;
   chosen.value.path_information = nats;
   made.promised.push_back({at(0.0, 0.0, 2.0), 0.0});
@@ -22,7 +22,7 @@ Decision decision(double target_x_m, double cost_m, double nats) {
   return made;
 }
 
-TEST(PathLedger, SettlesAPathWhenAnotherTargetIsChosen) {
+TEST(PathLedger, SettlesAPathWhenAnotherGoalIsChosen) {
   PathLedger ledger(0.75);
   const Decision first = decision(1.0, 5.0, 40.0), later = decision(1.3, 2.0, 10.0), last = decision(1.7, 1.0, 4.0),
                  other = decision(1.8, 7.0, 70.0);

@@ -5,7 +5,8 @@ usage: promise_table.py [PNG_FILE] RUN_FOLDER|CSV_FILE...     folders of explore
 
 For each method: all paths and fifths of them by their promise, each with the sums, their ratio and, over all, Spearman's
 rank correlation. A path that was left for another one counts with what its views had promised up to there. Paths of kind
-`known` lead through what was known already (lapis_explorations --known): of them, the mean difference per metre.
+`known` lead through what was known already (lapis_explorations --known), and of kind `driven` where they had led before:
+of them, the mean difference per metre.
 """
 
 import collections
@@ -19,7 +20,8 @@ import usage
 FIFTHS = 5
 COLUMNS = ("method", "ended_kind", "ended_cost_m", "ended_driven_nats", "ended_gained_nats")
 
-Path = collections.namedtuple("Path", "is_known cost_m promised_nats gained_nats")
+KNOWN = {"known": "known space", "driven": "driven before"}
+Path = collections.namedtuple("Path", "kind cost_m promised_nats gained_nats")
 
 
 def paths_of(source):
@@ -33,7 +35,7 @@ def paths_of(source):
             sys.exit(f"{file}: the column {min(missing)} is not there; an older program wrote it")
         for row in table:
             if row["ended_kind"]:
-                yield row["method"], Path(row["ended_kind"] == "known", *(float(row[name]) for name in COLUMNS[2:]))
+                yield row["method"], Path(row["ended_kind"], *(float(row[name]) for name in COLUMNS[2:]))
 
 
 def ranks(values):
@@ -72,16 +74,17 @@ def cells(paths):
 
 
 def print_method(method, paths):
-    new = [path for path in paths if not path.is_known]
-    known = [path for path in paths if path.is_known]
+    new = [path for path in paths if path.kind not in KNOWN]
     correlation = spearman(new)
     print(f"| {method} | all | {cells(new)} | {'-' if correlation is None else f'{correlation:.2f}'} |")
     for group in filter(None, fifths(new)):
         print(f"| {method} | {group[0].promised_nats:.0f} to {group[-1].promised_nats:.0f} | {cells(group)} | |")
-    if known:
-        metres = sum(path.cost_m for path in known)
-        difference = sum(abs(path.promised_nats - path.gained_nats) for path in known) / metres
-        print(f"| {method} | known space, {metres:.0f} m | {cells(known)} | {difference:.2f} nats per m apart |")
+    for kind, name in KNOWN.items():
+        known = [path for path in paths if path.kind == kind]
+        if known:
+            metres = sum(path.cost_m for path in known)
+            difference = sum(abs(path.promised_nats - path.gained_nats) for path in known) / metres
+            print(f"| {method} | {name}, {metres:.0f} m | {cells(known)} | {difference:.2f} nats per m apart |")
 
 
 def draw(picture, methods):
@@ -90,7 +93,7 @@ def draw(picture, methods):
     import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
     figure, panels = plt.subplots(1, len(methods), figsize=(5.5 * len(methods), 5.5), squeeze=False)
     for axes, (method, paths) in zip(panels[0], methods.items()):
-        new = [path for path in paths if not path.is_known]
+        new = [path for path in paths if path.kind not in KNOWN]
         axes.plot([path.promised_nats for path in new], [path.gained_nats for path in new], ".", color="#90caf9",
                   label="paths")
         groups = [group for group in fifths(new) if group]

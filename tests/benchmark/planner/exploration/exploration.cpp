@@ -114,7 +114,7 @@ class Course {
     for (const Candidate& candidate : decision_.candidates) note_left(candidate);
     explorer_.stop();
     follow();
-    for (int i = 0; i < setting_.known_paths; ++i) drive_through_known(static_cast<std::uint64_t>(i));
+    for (int i = 0; i < setting_.known_places; ++i) drive_through_known(static_cast<std::uint64_t>(i));
     return std::move(exploration_);
   }
 
@@ -196,23 +196,44 @@ class Course {
     controller_.set_path(std::move(path), "the planner's path is empty");
   }
 
+  /// To a place that is drawn and back, twice.
   void drive_through_known(std::uint64_t draw) {
+    const PlanningGrid& grid = surroundings_.grid();
+    const Cell start = grid.cell_of(pose().p_map);
+    const CostTree tree = cost_tree();
+    const Cell place = tree.reached()[mapping::mix_bits(draw) % tree.reached().size()];
+    for (auto* paths : {&exploration_.known_paths, &exploration_.driven_paths}) {
+      for (const Cell goal : {place, start}) {
+        const auto path = drive_to(goal);
+        if (path) paths->push_back(*path);
+      }
+    }
+  }
+
+  CostTree cost_tree() {
     surroundings_.update_map(map_, std::exchange(changed_, {}));
+    const PlanningGrid& grid = surroundings_.grid();
+    return grow_cost_tree(grid, setting_.planner.decision.path, {grid.cell_of(pose().p_map)});
+  }
+
+  /// Nothing when the robot is there, or no path leads there any more.
+  std::optional<DrivenPath> drive_to(Cell goal) {
+    const CostTree tree = cost_tree();
     const Pose2 here = pose();
     const PlanningGrid& grid = surroundings_.grid();
     const DecisionConfig& config = setting_.planner.decision;
-    const CostTree tree = grow_cost_tree(grid, config.path, {grid.cell_of(here.p_map)});
-    const Cell goal = tree.reached()[mapping::mix_bits(draw) % tree.reached().size()];
     std::vector<Eigen::Vector2d> points = points_of(grid, straightened(grid, config.path, tree.path_to(goal)));
-    if (points.size() < 2) return;
+    if (points.size() < 2) return std::nullopt;
     points.front() = here.p_map;
     const Eigen::Vector2d last = points.back() - points[points.size() - 2];
     const double yaw_rad = std::atan2(last.y(), last.x());
     DrivenPath path;
     path.begin = now();
     path.cost_m = *tree.cost_m(goal);
-    path.promised_nats = path.driven_nats =
-        promise(with_turns(poses_along(points, config.view_spacing_m, yaw_rad), here.yaw_rad, kTurnStep_rad));
+    std::vector<Pose2> views =
+        with_turns(poses_along(points, config.view_spacing_m, yaw_rad), here.yaw_rad, kTurnStep_rad);
+    views.insert(views.begin(), here);
+    path.promised_nats = path.driven_nats = promise(views);
     const double before_nats = surroundings_.information_nats();
     follow(poses_along(points, setting_.planner.explorer.path_spacing_m, yaw_rad));
     const double longest_s = kLongestWait_s + path.cost_m / kSlowest_m_s;
@@ -220,7 +241,7 @@ class Course {
     path.end = now();
     surroundings_.update_map(map_, std::exchange(changed_, {}));
     path.gained_nats = surroundings_.information_nats() - before_nats;
-    exploration_.known_paths.push_back(path);
+    return path;
   }
 
   double promise(const std::vector<Pose2>& path) const {

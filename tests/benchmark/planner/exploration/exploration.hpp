@@ -17,7 +17,7 @@ struct ExplorationSetting {
   PlannerComponentConfig planner;
   controller::ControllerComponentConfig controller;
   double longest_s = 300.0;  ///< of simulated time
-  int known_paths = 0;       ///< driven at the end, through what is known by then, to places that are drawn
+  int known_places = 0;      ///< drawn of what is known at the end; driven to and back, twice
 };
 
 /// What is known at a time.
@@ -36,7 +36,8 @@ struct Exploration {
   int decisions = 0;
   double decision_cpu_s = 0.0;
   std::vector<DrivenPath> paths;
-  std::vector<DrivenPath> known_paths;
+  std::vector<DrivenPath> known_paths;   ///< to places that are known, and back, the first time
+  std::vector<DrivenPath> driven_paths;  ///< the same ones, the second time
   std::map<std::string, double> left_m;  ///< length of the frontiers of the last decision, by why they were not judged
 
   /// When this share was explored [s]; infinite: never.

@@ -26,13 +26,13 @@ struct Options {
   double longest_s = 300.0;
   bool with_moments = false;
   std::string paths_file;
-  int known_paths = 0;
+  int known_places = 0;
 };
 
 ExplorationSetting setting_of(const Options& options, const std::string& scene, int seed, const std::string& method) {
   ExplorationSetting setting;
   setting.longest_s = options.longest_s;
-  setting.known_paths = options.known_paths;
+  setting.known_places = options.known_places;
   robot::RobotDescription robot;
   robot.camera.width = 320;
   robot.camera.height = 180;
@@ -78,6 +78,7 @@ void write_paths(const Exploration& e, const std::string& of, std::ofstream& pat
   };
   for (const DrivenPath& path : e.paths) write(path, name_of(path.kind));
   for (const DrivenPath& path : e.known_paths) write(path, "known");
+  for (const DrivenPath& path : e.driven_paths) write(path, "driven");
   paths.flush();
 }
 
@@ -145,7 +146,8 @@ int main(int argc, char** argv) {
   app.add_flag("--moments", options.with_moments, "also a row for each second");
   app.add_option("--paths", options.paths_file,
                  "a CSV file: what each path promised, and what it gave (launch_scripts/promise_table.py)");
-  app.add_option("--known", options.known_paths, "paths that are driven at the end, through what is known by then")
+  app.add_option("--known", options.known_places,
+                 "places that are driven to at the end, through what is known by then, and back, twice")
       ->check(CLI::NonNegativeNumber);
   CLI11_PARSE(app, argc, argv);
   try {

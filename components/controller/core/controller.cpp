@@ -79,7 +79,7 @@ void Controller::set_pose(const PlanarPose& T_map_base, time::Time stamp, time::
 
 void Controller::see(const DepthView& view, time::Time stamp, time::Time now) {
   watchdog_.note(Input::kView, now, stamp);
-  map_.add(view, T_map_base_, stamp, track_ || turn_rad_);
+  map_.add(view, T_map_base_, stamp);
 }
 
 void Controller::set_obstacles(Grid grid, time::Time stamp, time::Time now) {

@@ -18,7 +18,7 @@ struct LocalMapConfig {
   double range_m = 4.0;       ///< of depth, and of what is kept around the robot, in [0.5, 20]
   double min_height_m = 0.1;  ///< above base_link: what is lower can be driven over, in [-1, 10]
   double max_height_m = 1.2;  ///< what is higher is passed under, in [-1, 10]
-  double memory_s = 20.0;     ///< what was seen longer ago is forgotten, in [0.1, 600]
+  double memory_s = 60.0;     ///< what was seen longer ago is forgotten, in [0.1, 600]
   int stride = 4;             ///< every stride-th pixel of every stride-th row is used, in [1, 32]
   int misses_to_clear = 3;    ///< images that must look through an obstacle before it is gone, in [1, 100]
 };
@@ -49,9 +49,8 @@ class LocalMap {
  public:
   explicit LocalMap(const LocalMapConfig& config) : config_(config) {}
 
-  /// @param has_path a robot that stands without one forgets nothing: what is below its image is still there when it is
-  /// sent on. With one, what it waits for may have gone unseen.
-  void add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp, bool has_path);
+  /// While the robot stands it forgets nothing: what is below its image is still there when it drives on.
+  void add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp);
   /// The map's floor plan, and what stood in the way lately, which overrules it where it knows anything.
   void set_plan(Grid grid) { plan_ = std::move(grid); }
   void set_obstacles(Grid grid) { obstacles_ = std::move(grid); }
@@ -75,7 +74,7 @@ class LocalMap {
   };
   using Points = std::unordered_map<mapping::VoxelIndex, Point, mapping::GridIndexHash>;
 
-  void pass_time(const PlanarPose& T_map_base, time::Time stamp, bool has_path);
+  void pass_time(const PlanarPose& T_map_base, time::Time stamp);
   void look_through(const DepthView& view, const PlanarPose& T_map_base);
   void add_hits(const DepthView& view, const PlanarPose& T_map_base);
   void forget(const PlanarPose& T_map_base);

@@ -15,7 +15,7 @@ namespace lapis::planner {
 struct SurroundingsConfig {
   GridConfig grid;
   FrontierConfig frontiers;
-  RayModel ray{.votes = 15, .unknown_occupied = 0.07, .surface_occupied = 0.6};
+  RayModel ray{.votes = 15, .unknown_occupied = 0.04, .surface_occupied = 0.6};
   std::vector<double> compared_priors;  ///< P(occupied) of voxels never observed, instead of the sensor model's
 };
 

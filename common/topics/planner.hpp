@@ -9,7 +9,7 @@ namespace lapis::topics {
 // What the planner publishes.
 inline constexpr dds::Topic<nav_msgs::msg::Path> kPlannerPath{
     "/planner/path", dds::kLatched, "planner", "on change",
-    "path to the chosen goal; in base_link: a turn on the spot"};
+    "path to the chosen goal, with the headings of a first turn; in base_link: a turn on the spot"};
 inline constexpr dds::Topic<lapis_msgs::msg::CandidateSet> kCandidates{
     "/planner/candidates", dds::kLatched, "planner", "each decision", "cost, information, utility of every candidate"};
 inline constexpr dds::Topic<lapis_msgs::msg::PlannerStatus> kPlannerStatus{

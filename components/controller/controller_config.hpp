@@ -38,7 +38,7 @@ void describe(Field& field, LocalMapConfig& c) {
         "above base_link: what is lower is driven over [m]");
   field.moved("max_height_m", "robot.obstacle_max_height_m");
   field("memory_s", c.memory_s, config::in_range(0.1, 600.0),
-        "what was seen longer ago is forgotten; time in which the robot stands does not count [s]");
+        "what was seen longer ago is forgotten; time without a path does not count while the robot stands [s]");
   field("stride", c.stride, config::in_range(1, 32), "every stride-th pixel of every stride-th row is used");
   field("misses_to_clear", c.misses_to_clear, config::in_range(1, 100),
         "images that must look through an obstacle before it is gone");

@@ -79,7 +79,7 @@ void Controller::set_pose(const PlanarPose& T_map_base, time::Time stamp, time::
 
 void Controller::see(const DepthView& view, time::Time stamp, time::Time now) {
   watchdog_.note(Input::kView, now, stamp);
-  map_.add(view, T_map_base_, stamp);
+  map_.add(view, T_map_base_, stamp, track_ || turn_rad_);
 }
 
 void Controller::set_obstacles(Grid grid, time::Time stamp, time::Time now) {
@@ -126,9 +126,9 @@ Decision Controller::follow(time::Time now, double elapsed_s) {
   const double to_end_m = (track_->end().translation() - T_map_base_.translation()).norm();
   const double tolerance_m = config_.goal_tolerance_m * (is_arrived_ ? 2.0 : 1.0);
   is_arrived_ = track_->left_m() <= config_.look_ahead_m && to_end_m <= tolerance_m;
-  if (is_arrived_) return align(elapsed_s);
   if (const auto heading_rad = track_->next_heading(yaw_of(T_map_base_)))
     return turn_first(wrapped(*heading_rad - yaw_of(T_map_base_)), elapsed_s);
+  if (is_arrived_) return align(elapsed_s);
   const Obstacles obstacles = map_.obstacles_near(T_map_base_, planner_.fan().reach_m());
   local_path_ = find_local_path(obstacles);
   const Recovery next = next_phase(obstacles, now);
@@ -140,6 +140,7 @@ Decision Controller::follow(time::Time now, double elapsed_s) {
 Decision Controller::turn_first(double error_rad, double elapsed_s) {
   local_path_.reset();
   moved_at_.reset();
+  recovery_ = Recovery::kNone;
   const Velocity wanted{0.0, std::copysign(turn_limit(), error_rad)};
   return {State::kFollowing, "turns as the path begins", ramped(last_, wanted, elapsed_s, limits_), 0.0, {}};
 }

@@ -52,22 +52,22 @@ std::int8_t Grid::at(const Eigen::Vector2d& p_map) const {
                static_cast<std::size_t>(cell.x())];
 }
 
-void LocalMap::add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp) {
-  pass_time(T_map_base, stamp);
+void LocalMap::add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp, bool has_path) {
+  pass_time(T_map_base, stamp, has_path);
   forget(T_map_base);
   look_through(view, T_map_base);
   add_hits(view, T_map_base);
 }
 
 /// Where time begins again, nothing is known.
-void LocalMap::pass_time(const PlanarPose& T_map_base, time::Time stamp) {
+void LocalMap::pass_time(const PlanarPose& T_map_base, time::Time stamp, bool has_path) {
   if (last_) {
     const PlanarPose T_last_base = last_->T_map_base.inverse() * T_map_base;
     const double elapsed_s = (stamp - last_->stamp).seconds();
     if (elapsed_s < 0.0) points_.clear();
     const bool moves = T_last_base.translation().norm() > kStands_m_s * elapsed_s ||
                        std::abs(yaw_of(T_last_base)) > kStands_rad_s * elapsed_s;
-    if (moves) time_s_ += std::max(elapsed_s, 0.0);
+    if (moves || has_path) time_s_ += std::max(elapsed_s, 0.0);
   }
   last_ = {T_map_base, stamp};
 }

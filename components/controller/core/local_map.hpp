@@ -49,8 +49,9 @@ class LocalMap {
  public:
   explicit LocalMap(const LocalMapConfig& config) : config_(config) {}
 
-  /// While the robot stands it forgets nothing: what is below its image is still there when it drives on.
-  void add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp);
+  /// @param has_path a robot that stands without one forgets nothing: what is below its image is still there when it is
+  /// sent on. With one, what it waits for may have gone unseen.
+  void add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp, bool has_path);
   /// The map's floor plan, and what stood in the way lately, which overrules it where it knows anything.
   void set_plan(Grid grid) { plan_ = std::move(grid); }
   void set_obstacles(Grid grid) { obstacles_ = std::move(grid); }
@@ -74,7 +75,7 @@ class LocalMap {
   };
   using Points = std::unordered_map<mapping::VoxelIndex, Point, mapping::GridIndexHash>;
 
-  void pass_time(const PlanarPose& T_map_base, time::Time stamp);
+  void pass_time(const PlanarPose& T_map_base, time::Time stamp, bool has_path);
   void look_through(const DepthView& view, const PlanarPose& T_map_base);
   void add_hits(const DepthView& view, const PlanarPose& T_map_base);
   void forget(const PlanarPose& T_map_base);

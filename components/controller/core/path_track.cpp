@@ -31,7 +31,10 @@ PathTrack::PathTrack(std::vector<PlanarPose> poses) : poses_(std::move(poses)), 
   const auto leaves = std::find_if(poses_.begin(), poses_.end(), [&](const PlanarPose& pose) {
     return (pose.translation() - poses_.front().translation()).norm() > kOnTheSpot_m;
   });
-  if (leaves - poses_.begin() > 1 && leaves != poses_.end()) turns_ = static_cast<std::size_t>(leaves - poses_.begin());
+  const bool turns = std::any_of(poses_.begin(), leaves, [&](const PlanarPose& pose) {
+    return std::abs(wrapped(yaw_of(pose) - yaw_of(poses_.front()))) > kTurned_rad;
+  });
+  if (turns) turns_ = static_cast<std::size_t>(leaves - poses_.begin());
 }
 
 // Who has turned on while the path was made is beyond its first headings.

@@ -14,8 +14,8 @@ std::optional<double> turn_on_the_spot(const std::vector<PlanarPose>& poses);
 /// A path in the map frame and how far the robot has come on it.
 class PathTrack {
  public:
-  /// `poses`: at least one; the last one's heading is the final one. When the first ones are all at one place (1 cm),
-  /// and others follow, their headings are turned through, each the short way from the one before, before it is left.
+  /// `poses`: at least one; the last one's heading is the final one. When the first ones are at one place (1 cm) and
+  /// differ in heading, these are turned through, each the short way from the one before, before it is left.
   explicit PathTrack(std::vector<PlanarPose> poses);
 
   /// The heading of the first turn that the robot has to turn to next; nothing when it has turned.

@@ -51,7 +51,7 @@ LocalMap looked_around() {
   LocalMap map{{}};
   map.set_plan(grid());
   map.set_obstacles(grid());
-  for (const View& view : views()) map.add(view.depth, view.T_map_base, time::Time{1});
+  for (const View& view : views()) map.add(view.depth, view.T_map_base, time::Time{1}, true);
   return map;
 }
 
@@ -60,7 +60,7 @@ void add_view(benchmark::State& state) {
   std::size_t i = 0;
   for (auto _ : state) {
     const View& view = views()[++i % kViews];
-    map.add(view.depth, view.T_map_base, time::Time{1});
+    map.add(view.depth, view.T_map_base, time::Time{1}, true);
   }
 }
 BENCHMARK(add_view)->Name("controller_add_view/640x360")->Unit(benchmark::kMicrosecond);

@@ -235,7 +235,7 @@ TEST(Controller, ContinuesWhenThePathIsFreeAgain) {
   world.controller.set_path(path, "");
   ASSERT_LT(world.run_until(State::kBlocked, 20.0), 20.0) << world.last.reason;
   world.remove_last();
-  ASSERT_LT(world.run_until(State::kFollowing, 25.0), 25.0);
+  ASSERT_LT(world.run_until(State::kFollowing, 65.0), 65.0);
   ASSERT_LT(world.run_until(State::kIdle, 20.0), 20.0) << world.last.reason;
   expect_reached(world, path.back());
 }

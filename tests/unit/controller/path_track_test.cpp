@@ -38,7 +38,9 @@ TEST(PathTrack, BeginsWithTheHeadingsOfItsFirstPlace) {
   EXPECT_EQ(track.next_heading(0.5), 2.0) << "never back";
   EXPECT_EQ(track.next_heading(2.6), 3.0) << "it is nearer to the one after";
   EXPECT_EQ(track.next_heading(-3.1), std::nullopt);
-  EXPECT_EQ(PathTrack(headings).next_heading(0.0), std::nullopt) << "it does not lead away: the last heading counts";
+  EXPECT_EQ(PathTrack(headings).next_heading(0.0), 1.0) << "also when it leads nowhere";
+  const PlanarPose equal = planar_pose({0, 0}, 3.0);
+  EXPECT_EQ(PathTrack({equal, equal, planar_pose({1, 0}, 0.0)}).next_heading(0.0), std::nullopt) << "they say nothing";
   EXPECT_EQ(corner().next_heading(3.0), std::nullopt);
 }
 

@@ -45,10 +45,12 @@ class PromiseTableTest(unittest.TestCase):
         self.assertEqual(self.table(file)[1][0][-1], "0.71")
 
     def test_known_space_counts_apart(self):
-        file = self.write(["nearest,frontier,2,10,10"] * 3 + ["nearest,known,10,6,1", "nearest,known,10,0,5"])
+        file = self.write(["nearest,frontier,2,10,10"] * 3 + ["nearest,known,10,6,1", "nearest,known,10,0,5",
+                                                                   "nearest,driven,4,2,0"])
         rows = self.table(file)[1]
         self.assertEqual(rows[0][2:6], ["3", "30", "30", "1.00"])
-        self.assertEqual(rows[-1], ["nearest", "known space, 20 m", "2", "6", "6", "1.00", "0.50 nats per m apart"])
+        self.assertEqual(rows[-2], ["nearest", "known space, 20 m", "2", "6", "6", "1.00", "0.50 nats per m apart"])
+        self.assertEqual(rows[-1], ["nearest", "driven before, 4 m", "1", "2", "0", "0.00", "0.50 nats per m apart"])
 
     def test_methods_apart_from_folders_and_files(self):
         self.write(["joint,gap,1,10,20"], "run/decisions.csv")

@@ -12,6 +12,7 @@
 namespace lapis::planner {
 namespace {
 
+constexpr double kAway_m = 0.5;
 constexpr double kTurnStep_rad = 0.6;  // between views while the robot turns: half of what a camera sees
 
 ViewPath views_along(const Situation& s, const std::vector<Pose2>& path) {
@@ -35,14 +36,26 @@ std::vector<Pose2> poses_of(const Situation& s, const Candidate& candidate) {
 
 /// From what is in view already, which has more to tell to who goes on looking, and never discounted: it is what the
 /// map would gain.
-std::vector<PromisedView> promise_along(const Situation& s, const Candidate& candidate) {
+std::vector<PromisedView> promise_along(const Situation& s, const Candidate& candidate,
+                                        const std::vector<double>& first_turn_rad) {
   std::vector<Pose2> poses{s.robot};
-  const std::vector<Pose2> later = poses_of(s, candidate);
+  for (const double heading_rad : first_turn_rad) poses.push_back({s.robot.p_map, heading_rad});
+  const std::vector<Pose2> later = with_turns(candidate.path, poses.back().yaw_rad, kTurnStep_rad);
   poses.insert(poses.end(), later.begin(), later.end());
   const std::vector<double> nats = growing_information(s.field, s.view, views_along(s, poses));
   std::vector<PromisedView> promised;
   for (std::size_t i = 0; i < poses.size(); ++i) promised.push_back({poses[i], nats[i]});
   return promised;
+}
+
+/// Towards where the path has led away; its first corner may be a cell beside the robot.
+double first_heading(const Candidate& candidate) {
+  const Eigen::Vector2d& robot_map = candidate.points.front();
+  for (const Eigen::Vector2d& p_map : candidate.points) {
+    const Eigen::Vector2d away = p_map - robot_map;
+    if (away.norm() >= kAway_m) return std::atan2(away.y(), away.x());
+  }
+  return candidate.path.front().yaw_rad;
 }
 
 void add_information(const Situation& s, const std::vector<Candidate*>& open) {
@@ -217,8 +230,9 @@ Decision decide(const Situation& situation, const Memory& memory, const Decision
   Decision decision = choose(situation, proposals, memory, config);
   if (decision.chosen) {
     const Candidate& chosen = decision.candidates[*decision.chosen];
-    decision.promised = promise_along(situation, chosen);
-    decision.first_turn_rad = first_turn(situation, chosen.path.front().yaw_rad, config.hallucination.covisibility);
+    const int side = is_current_goal(chosen, memory) ? memory.turns_to : 0;
+    decision.first_turn_rad = first_turn(situation, first_heading(chosen), side, config.hallucination.covisibility);
+    decision.promised = promise_along(situation, chosen, decision.first_turn_rad);
   } else {
     decision.leftover = leftover_of(situation, decision.candidates);
   }

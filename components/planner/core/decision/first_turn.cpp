@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 namespace lapis::planner {
@@ -35,13 +34,16 @@ bool keeps_landmarks(const Situation& s, const std::vector<double>& headings_rad
 
 }  // namespace
 
-std::vector<double> first_turn(const Situation& situation, double heading_rad, const CovisibilityConfig& config) {
+std::vector<double> first_turn(const Situation& situation, double heading_rad, int side,
+                               const CovisibilityConfig& config) {
   const double shorter_rad = std::remainder(heading_rad - situation.robot.yaw_rad, 2.0 * std::numbers::pi);
   if (situation.landmarks == nullptr || std::abs(shorter_rad) < kLeast_rad) return {};
-  if (keeps_landmarks(situation, headings_through(situation.robot.yaw_rad, shorter_rad), config)) return {};
   const double longer_rad = shorter_rad - std::copysign(2.0 * std::numbers::pi, shorter_rad);
   const std::vector<double> longer = headings_through(situation.robot.yaw_rad, longer_rad);
-  return keeps_landmarks(situation, longer, config) ? longer : std::vector<double>{};
+  if (side * longer_rad > 0.0) return longer;
+  const bool is_better = !keeps_landmarks(situation, headings_through(situation.robot.yaw_rad, shorter_rad), config) &&
+                         keeps_landmarks(situation, longer, config);
+  return is_better ? longer : std::vector<double>{};
 }
 
 }  // namespace lapis::planner

@@ -46,6 +46,12 @@ std::string purpose_of(const Candidate& chosen) {
   }
 }
 
+/// 1: headings to the left of where the robot looks, -1: to the right, 0: none.
+int side_of(const std::vector<double>& headings_rad, double yaw_rad) {
+  if (headings_rad.empty()) return 0;
+  return headings_rad.back() > yaw_rad ? 1 : -1;
+}
+
 std::vector<Pose2> turns_on_the_spot(bool is_to_the_left) {
   const double turn_rad = (is_to_the_left ? 2.0 : -2.0) * std::numbers::pi / kHeadings;
   std::vector<Pose2> headings;
@@ -348,7 +354,10 @@ Memory Explorer::memory(time::Time now) const {
   memory.failed_views = failed_views_.all();
   memory.taken_views = taken_views_;
   memory.radius_m = config_.memory.radius_m;
-  if (goal_) memory.goal = goal_->pose;
+  if (goal_) {
+    memory.goal = goal_->pose;
+    memory.turns_to = goal_->turns_to;
+  }
   memory.adrift = adrift();
   return memory;
 }
@@ -407,6 +416,7 @@ void Explorer::follow(const Decision& decision, time::Time now) {
   goal_->pose = chosen.goal;
   goal_->target_map = chosen.target_map;
   goal_->kind = chosen.kind;
+  goal_->turns_to = side_of(decision.first_turn_rad, robot_.yaw_rad);
   if (is_of_frontier(chosen.kind)) looks_at_gaps_ = false;
   reason_ = purpose_of(chosen);
   std::vector<Pose2> path;

@@ -93,6 +93,7 @@ class Explorer {
     Pose2 pose = {};
     std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< none: a look around, or the path home
     CandidateKind kind = CandidateKind::kFrontier;
+    int turns_to = 0;            ///< as in Memory
     time::Time set_out_at = {};  ///< from where none was left for another
     std::optional<time::Time> deadline = std::nullopt;
     std::optional<Eigen::Vector2d> deadline_of_map = std::nullopt;  ///< the target at which it was set

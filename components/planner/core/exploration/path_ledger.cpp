@@ -10,8 +10,7 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kMetresPerRadian = 0.5;  // of turning, where the nearest place on a path is looked for
-
-constexpr double kSameView_rad = 0.6;  // between the headings of two views that show about the same
+constexpr double kSameView_rad = 0.6;     // between the headings of two views that show about the same
 
 /// Place and heading after the begin of a stretch between two views [m].
 Eigen::Vector3d offset(const Pose2& from, const Pose2& to) {

@@ -98,7 +98,7 @@ void BasicInformationField<Real>::continue_surfaces(const mapping::VoxelMap& map
                                                     const mapping::VoxelBlock& voxels, Block& block) const {
   if (measure_.ray().surface_occupied <= 0.0) return;
   const auto is_occupied = [&](const mapping::VoxelIndex& voxel) {
-    const mapping::VoxelBlock* holder = map.find(block_of(voxel));
+    const mapping::VoxelBlock* holder = block_of(voxel) == index ? &voxels : map.find(block_of(voxel));
     const int offset = offset_in_block(voxel);
     if (holder == nullptr || !holder->has_hits(offset)) return false;
     mapping::VoxelCounts counts;

@@ -14,7 +14,8 @@
 namespace lapis::planner {
 
 /// What rays have to know about the cells of a map: two numbers per voxel, renewed where the map changed. Blocks that
-/// the map does not have are unknown: the prior everywhere. Blocks whose cells are all equal share one copy.
+/// the map does not have are unknown, but for where a surface beside them goes on. Blocks whose cells are all equal
+/// share one copy.
 template <class Real>
 class BasicInformationField {
  public:
@@ -28,8 +29,8 @@ class BasicInformationField {
 
   double resolution_m() const { return resolution_m_; }
 
-  /// Reads blocks of the map again, in parallel; those that it does not have become unknown. Throws
-  /// std::invalid_argument when the map's resolution is another.
+  /// Reads blocks of the map again, in parallel; those that it does not have become unknown. Also their neighbours,
+  /// where surfaces go on. Throws std::invalid_argument when the map's resolution is another.
   void update(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed);
   /// Reads the whole map.
   void rebuild(const mapping::VoxelMap& map);

@@ -216,7 +216,7 @@ class Course {
     return grow_cost_tree(grid, setting_.planner.decision.path, {grid.cell_of(pose().p_map)});
   }
 
-  /// Nothing when the robot is there, or no path leads there any more.
+  /// Nothing when the robot is there, no path leads there any more, or it does not get there.
   std::optional<DrivenPath> drive_to(Cell goal) {
     const CostTree tree = cost_tree();
     const Pose2 here = pose();
@@ -237,7 +237,10 @@ class Course {
     const double before_nats = surroundings_.information_nats();
     follow(poses_along(points, setting_.planner.explorer.path_spacing_m, yaw_rad));
     const double longest_s = kLongestWait_s + path.cost_m / kSlowest_m_s;
-    while ((pose().p_map - points.back()).norm() > kArrival_m && (now() - path.begin).seconds() < longest_s) step();
+    while ((pose().p_map - points.back()).norm() > kArrival_m) {
+      if (is_blocked_ || (now() - path.begin).seconds() > longest_s) return std::nullopt;
+      step();
+    }
     path.end = now();
     surroundings_.update_map(map_, std::exchange(changed_, {}));
     path.gained_nats = surroundings_.information_nats() - before_nats;

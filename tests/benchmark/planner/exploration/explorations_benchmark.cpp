@@ -113,7 +113,9 @@ int run(const Options& options) {
           const ExplorationSetting setting = setting_of(options, scene, seed, method);
           const Exploration exploration = explore(simulator::open_world(setting.simulated), setting);
           print(exploration, options);
-          write_paths(exploration, scene + "," + method + "," + std::to_string(seed), paths);
+          std::string of = scene;
+          of.append(",").append(method).append(",").append(std::to_string(seed));
+          write_paths(exploration, of, paths);
         } catch (const std::exception& error) {
           std::printf("failed: %s\n", error.what());
           are_complete = false;

@@ -367,17 +367,18 @@ TEST(Decide, TurnsTheWayRoundThatKeepsLandmarksInView) {
   std::vector<Eigen::Vector3f> points;
   for (double angle_rad = 0.0; angle_rad <= 3.5; angle_rad += 0.02) {
     for (const double z : {0.8, 1.0, 1.2})
-      points.push_back(Eigen::Vector3d(x + 1.5 * std::cos(angle_rad), y + 1.5 * std::sin(angle_rad), z).cast<float>());
+      points.emplace_back(
+          Eigen::Vector3d(x + 1.5 * std::cos(angle_rad), y + 1.5 * std::sin(angle_rad), z).cast<float>());
   }
   const LandmarkIndex landmarks(test::tile_of(points, {10, 11, 12, 13, 14, 15, 16, 17}), graph, 0.25);
   explorer.graph = &graph;
   explorer.landmarks = &landmarks;
   explorer.config.hallucination.covisibility.min_visibility = 0.0;
-  const auto turn = [&](double heading_rad) {
+  const auto turn = [&](double heading_rad, int side = 0) {
     const Situation situation{
         explorer.world.grid, explorer.frontiers, explorer.field, explorer.view, geometry::T_base_camera({1.0, 0.0}),
         explorer.graph,      explorer.landmarks, explorer.robot};
-    return first_turn(situation, heading_rad, explorer.config.hallucination.covisibility);
+    return first_turn(situation, heading_rad, side, explorer.config.hallucination.covisibility);
   };
   EXPECT_TRUE(turn(1.0).empty()) << "a short turn";
   EXPECT_TRUE(turn(3.0).empty()) << "the shorter way is good";
@@ -385,9 +386,19 @@ TEST(Decide, TurnsTheWayRoundThatKeepsLandmarksInView) {
   ASSERT_FALSE(longer.empty());
   EXPECT_GT(longer.front(), 0.0);
   EXPECT_NEAR(longer.back(), 2.0 * std::numbers::pi - 2.8, 1e-9);
+  explorer.robot.yaw_rad = -0.3;
+  const Decision decision = explorer.choose();
+  ASSERT_TRUE(decision.chosen && explorer.is_left(decision.candidates[*decision.chosen]));
+  ASSERT_FALSE(decision.first_turn_rad.empty());
+  EXPECT_GT(decision.first_turn_rad.front(), -0.3) << "to the left, though the right is shorter";
+  EXPECT_EQ(decision.promised[0].robot.yaw_rad, -0.3) << "what is in view counts";
+  EXPECT_EQ(decision.promised[1].robot.yaw_rad, decision.first_turn_rad.front());
+  explorer.robot.yaw_rad = 0.0;
   const LandmarkIndex none({}, graph, 0.25);
   explorer.landmarks = &none;
   EXPECT_TRUE(turn(-2.8).empty()) << "either way leads past blank views";
+  EXPECT_FALSE(turn(-2.8, 1).empty()) << "it has begun to turn to the left";
+  EXPECT_TRUE(turn(-2.8, -1).empty());
 }
 
 // Before slam has two key-frames, and when its graph cannot be judged.

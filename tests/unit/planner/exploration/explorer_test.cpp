@@ -597,6 +597,7 @@ TEST_F(ExplorerByHand, ItsPathBeginsWithTheHeadingsOfTheFirstTurn) {
   for (std::size_t i = 0; i < 3; ++i) EXPECT_EQ(path[i].p_map, Eigen::Vector2d(0.0, 0.0));
   EXPECT_EQ(path[0].yaw_rad, 2.0);
   EXPECT_EQ(path[1].yaw_rad, 3.0);
+  EXPECT_EQ(explorer_.memory(now_).turns_to, 1);
   EXPECT_LT(path[3].p_map.x(), 0.0);
 }
 

@@ -31,7 +31,9 @@ def paths_of(source):
         sys.exit(f"{file}: no such file; wanted is a run folder of explore.sh, or a file of lapis_explorations --paths")
     with file.open(newline="") as stream:
         table = csv.DictReader(stream)
-        if missing := set(COLUMNS) - set(table.fieldnames or ()):
+        if not table.fieldnames:
+            sys.exit(f"{file}: the file is empty; the run that writes it has ended no path yet, or was killed")
+        if missing := set(COLUMNS) - set(table.fieldnames):
             sys.exit(f"{file}: the column {min(missing)} is not there; an older program wrote it")
         for row in table:
             if row["ended_kind"]:

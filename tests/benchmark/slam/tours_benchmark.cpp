@@ -278,7 +278,6 @@ void print_sources(const std::map<std::string, int>& frames_by_source) {
 
 // The final graph as g2o text, and where its key-frames truly were, in the same order.
 void keep_graph(const std::filesystem::path& folder, const std::string& name, const Run& run) {
-  std::filesystem::create_directories(folder);
   std::ostringstream g2o;
   write_g2o(g2o, run.graph);
   files::replace_text(folder / (name + ".g2o"), g2o.str());
@@ -315,6 +314,7 @@ void print_honesty(const Run& run, const EdgeHonesty& honesty, Pool& pool) {
 int run(const Options& options) {
   bool are_complete = true;
   Pool pool;
+  if (!options.graphs.empty()) std::filesystem::create_directories(options.graphs);
   print_header();
   for (const std::string& scene : options.scenes) {
     for (const int seed : options.seeds) {

@@ -22,7 +22,8 @@ constexpr int kHeadings = 8;
 constexpr int kMaxFeatures = 1000, kFewFeatures = 100;
 constexpr double kMostPoor = 0.04, kLeastPoor = 0.005;
 constexpr std::size_t kWorstShown = 4;
-constexpr std::size_t kProgressEvery = 200;
+constexpr std::size_t kJudgedEvery = 100;
+constexpr double kSurely = 1e-4;
 constexpr std::uint64_t kSeed = 1;
 
 std::vector<FeatureView> reachable_views(const World& world, double radius_m) {
@@ -44,19 +45,19 @@ std::vector<FeatureView> reachable_views(const World& world, double radius_m) {
   return views;
 }
 
-/// A fixed choice, in the order of the views.
-std::vector<FeatureView> chosen(const std::vector<FeatureView>& views, std::size_t count) {
-  if (views.size() <= count) return views;
+/// At most so many of the views, in a fixed order by chance.
+std::vector<FeatureView> drawn(const std::vector<FeatureView>& views, std::size_t count) {
   const Random random(kSeed, RandomStream::kTruth);
   std::vector<std::size_t> order(views.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return random.bits(a) < random.bits(b); });
-  order.resize(count);
-  std::sort(order.begin(), order.end());
+  order.resize(std::min(count, order.size()));
   std::vector<FeatureView> out;
   for (const std::size_t i : order) out.push_back(views[i]);
   return out;
 }
+
+bool is_poor(const FeatureView& view) { return view.features < kFewFeatures; }
 
 int count_features(cv::ORB& orb, geometry::ColorImage image) {
   cv::Mat gray;
@@ -96,7 +97,7 @@ std::vector<std::string> worst_places(const Scene& scene, const std::vector<Feat
   for (const FeatureView& view : sorted) {
     RoomViews& room = views_of[room_at(scene, view.position)];
     ++room.all;
-    if (view.features < kFewFeatures) room.poor.push_back(view);
+    if (is_poor(view)) room.poor.push_back(view);
   }
   std::vector<std::pair<std::string, RoomViews>> rooms(views_of.begin(), views_of.end());
   std::erase_if(rooms, [](const auto& room) { return room.second.poor.empty(); });
@@ -114,17 +115,36 @@ std::vector<std::string> worst_places(const Scene& scene, const std::vector<Feat
 
 }  // namespace
 
+bool is_decided(std::size_t poor, std::size_t views) {
+  const double n = static_cast<double>(views), log_share = std::log(kMostPoor), log_rest = std::log1p(-kMostPoor);
+  double fewer = 0.0, probability = 0.0;
+  for (std::size_t i = 0; i <= poor; ++i) {
+    const double k = static_cast<double>(i);
+    fewer += probability;
+    probability = std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) + k * log_share +
+                           (n - k) * log_rest);
+  }
+  return fewer + probability < kSurely || 1.0 - fewer < kSurely;
+}
+
 std::vector<FeatureView> measure_features(const World& world, const FeatureConfig& config, const Progress& progress) {
-  auto views = chosen(reachable_views(world, config.robot_radius_m), config.max_views);
+  auto views = drawn(reachable_views(world, config.robot_radius_m), config.max_views);
   const ColorNoise noise({}, kSeed);
   const auto orb = cv::ORB::create(kMaxFeatures);
   orb->setFastThreshold(20);
+  std::size_t poor = 0;
   for (std::size_t i = 0; i < views.size(); ++i) {
-    if (i % kProgressEvery == 0)
-      progress("features: view " + std::to_string(i) + " of " + std::to_string(views.size()));
+    if (i % kJudgedEvery == 0) {
+      if (is_decided(poor, i)) {
+        views.resize(i);
+        break;
+      }
+      progress("features: view " + std::to_string(i) + " of at most " + std::to_string(views.size()));
+    }
     FeatureView& view = views[i];
     const auto T = T_world_camera(world, config.mount, view.position, view.yaw_rad);
     view.features = count_features(*orb, noise.apply(world.renderer().render(config.camera, T).color, i));
+    poor += is_poor(view) ? 1 : 0;
   }
   return views;
 }
@@ -133,7 +153,7 @@ Check check_features(const Scene& scene, std::vector<FeatureView> views) {
   if (views.empty()) return {"features", Verdict::kNote, "no view can be reached", {}};
   std::stable_sort(views.begin(), views.end(), [](const auto& a, const auto& b) { return a.features < b.features; });
   const auto count = static_cast<double>(views.size());
-  const auto poor = std::count_if(views.begin(), views.end(), [](const auto& v) { return v.features < kFewFeatures; });
+  const auto poor = std::count_if(views.begin(), views.end(), is_poor);
   const double share = static_cast<double>(poor) / count;
   const double sum = std::accumulate(views.begin(), views.end(), 0.0,
                                      [](double total, const FeatureView& v) { return total + v.features; });

@@ -15,7 +15,6 @@ Decision decision(double goal_x_m, double cost_m, double nats) {
   Candidate& chosen = made.candidates.emplace_back();
   chosen.goal = at(goal_x_m, 0.0);
   chosen.value.cost_m = cost_m;
-  chosen.value.path_information = nats;
   made.promised.push_back({at(0.0, 0.0, 2.0), 0.0});
   for (int i = 0; i < 5; ++i) made.promised.push_back({at(i, 0.0), nats * (i + 1) / 5});
   made.chosen = 0;

@@ -70,6 +70,20 @@ TEST(Features, ViewsAreReachableAndAtMostAsManyAsAsked) {
   }
 }
 
+TEST(Features, ViewsAreDrawnUntilTheirShareIsBeyondDoubt) {
+  EXPECT_FALSE(is_decided(0, 0));
+  EXPECT_FALSE(is_decided(0, 100)) << "0.96^100 = 0.017";
+  EXPECT_TRUE(is_decided(0, 300)) << "0.96^300 = 5e-6";
+  EXPECT_TRUE(is_decided(100, 100));
+  EXPECT_FALSE(is_decided(20, 500)) << "4 %";
+  // Tails of Binomial(400, 0.04), summed with exact fractions: P(X <= 3) = 7.5e-5, P(X <= 4) = 3.3e-4,
+  // P(X >= 32) = 2.0e-4, P(X >= 33) = 9.0e-5.
+  EXPECT_TRUE(is_decided(3, 400));
+  EXPECT_FALSE(is_decided(4, 400));
+  EXPECT_FALSE(is_decided(32, 400));
+  EXPECT_TRUE(is_decided(33, 400));
+}
+
 TEST(Features, MoreThanFourPercentOfPoorViewsFailExceptUnderStressOrInScenesOfOthers) {
   Scene scene;
   scene.labels = test::small_labels();

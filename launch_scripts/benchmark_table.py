@@ -50,7 +50,6 @@ COLUMNS = {  # of the table: format, and what it shows of metrics.json and simul
     "hardest push m/s": ("{:.2f}", lambda m: m["hardest_push_m_s"]),
     "decision p50 ms": ("{:.0f}", lambda m: 1e3 * m["decision_time_p50_s"]),
     "decision p95 ms": ("{:.0f}", lambda m: 1e3 * m["decision_time_p95_s"]),
-    "unlike mi_only %": ("{:.0f}", lambda m: 100 * m["decisions_unlike_mi_only_share"]),
     "real-time factor": ("{:.2f}", lambda m: m["real_time_factor"]),
     "CPU s per s": ("{:.2f}", lambda m: sum(m["cpu_ms_per_frame"].values()) * m["frames_total"] / m["duration_s"] / 1e3),
 }

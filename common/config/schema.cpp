@@ -4,6 +4,7 @@
 #include <charconv>
 #include <cmath>
 #include <sstream>
+#include <utility>
 
 namespace lapis::config {
 namespace {
@@ -98,9 +99,9 @@ std::string Bound::text() const {
 Bound in_range(double lowest, double highest) { return {lowest, highest, {}}; }
 Bound at_least(double lowest) { return {lowest, std::numeric_limits<double>::infinity(), {}}; }
 Bound anything() { return {}; }
-Bound one_of(std::initializer_list<std::string> words) {
+Bound one_of(Words words) {
   Bound bound;
-  bound.words = words;
+  bound.words = std::move(words);
   return bound;
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <initializer_list>
 #include <limits>
 #include <string>
 #include <string_view>
@@ -10,11 +9,14 @@
 
 namespace lapis::config {
 
+using Words = std::vector<std::string>;
+using Numbers = std::vector<double>;
+
 /// What a value may be: a closed interval for numbers, a list of words for text, or anything.
 struct Bound {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
-  std::vector<std::string> words;
+  Words words;
 
   /// "0.1 to 20", "a | b", or empty when everything is allowed.
   std::string text() const;
@@ -22,11 +24,8 @@ struct Bound {
 
 Bound in_range(double lowest, double highest);
 Bound at_least(double lowest);
-Bound one_of(std::initializer_list<std::string> words);
+Bound one_of(Words words);
 Bound anything();
-
-using Words = std::vector<std::string>;
-using Numbers = std::vector<double>;
 
 /// One configuration value: where it is, what it may be, what it means.
 struct Entry {

@@ -134,8 +134,7 @@ void EvaluatorComponent::on_map_state(const lapis_msgs::msg::MapState& message) 
 
 void EvaluatorComponent::on_planner_status(const lapis_msgs::msg::PlannerStatus& message) {
   planner_ = message;
-  decisions_.add(
-      {message.decisions(), message.decisions_unlike_mi_only(), message.decision_time_s(), message.failures()});
+  decisions_.add({message.decisions(), message.decision_time_s(), message.failures()});
 }
 
 void EvaluatorComponent::work(const runtime::Cycle& cycle) {

@@ -7,6 +7,7 @@ figure was drawn, 1 when none was, 2 when the folder does not exist.
 import argparse
 import collections
 import csv
+import itertools
 import json
 import math
 import os
@@ -32,6 +33,7 @@ LEAST_SHOWN_M = 1e-3  # on a logarithmic axis
 HEAD_ROOM_M = 0.5  # what lies higher above the camera (ceilings) would hide the rooms
 DECISION_BARS = (("utility", "utility"), ("path_information_nats", "information\nof the path\n[nat]"),
                  ("cost_m", "cost [m]"), ("d_optimality", "D-optimality"))
+CHOSEN_BY = "is_chosen_by_"  # and a method: a column of decisions.csv
 MAX_CLASSES = 14  # in the legend of the map
 MAX_GAP_S = 0.02  # as the evaluator: the nearest true pose must be closer than this
 PLY_TYPES = {"float": "<f4", "double": "<f8", "uchar": "u1", "char": "i1", "ushort": "<u2", "short": "<i2",
@@ -295,8 +297,10 @@ def draw_candidates(axes, rows, count, shade, path):
                       arrowprops={"arrowstyle": "-|>", "color": shade[i], "linewidth": 1.6})
         axes.plot(x[i], y[i], "o", color=shade[i], markeredgecolor="black", markeredgewidth=0.5, markersize=6)
         axes.annotate(str(i + 1), (x[i], y[i]), xytext=(4, 4), textcoords="offset points", fontsize=8)
-    for column, marker, size, colour, name in (("is_chosen", "o", 15, ORANGE, "chosen"),
-                                               ("is_chosen_by_mi_only", "s", 19, BLUE, "mi_only would choose")):
+    others = [column for column in rows[0] if column.startswith(CHOSEN_BY)]
+    rings = [("is_chosen", "o", ORANGE, "chosen")]
+    rings += [(column, "s", BLUE, f"{column.removeprefix(CHOSEN_BY)} would choose") for column in others]
+    for size, (column, marker, colour, name) in zip(itertools.count(15, 4), rings):
         chosen = [i for i, row in enumerate(rows) if row[column] == "1"]
         if chosen:
             ring, = axes.plot(x[chosen], y[chosen], marker, color="none", markeredgecolor=colour, markeredgewidth=1.8,
@@ -305,9 +309,9 @@ def draw_candidates(axes, rows, count, shade, path):
     return entries
 
 
-def draw_bars(panels, rows, count, shade, path):
+def draw_bars(panels, bars, rows, count, shade, path):
     """What each candidate that was not rejected costs and gives, by rank."""
-    for panel, (column, name) in zip(panels, DECISION_BARS):
+    for panel, (column, name) in zip(panels, bars):
         panel.barh(np.arange(count), numbers(rows[:count], column, path), color=shade, height=0.7)
         panel.set_yticks(np.arange(count), np.arange(count) + 1, fontsize=8)
         panel.invert_yaxis()
@@ -329,8 +333,9 @@ def draw_decision(run):
     try:
         rows, count = shown_decision(table)
         number, method, time_s = rows[0]["decision"], rows[0]["method"], float(rows[0]["time_s"])
-        figure, (plan, *panels) = plt.subplots(1, 1 + len(DECISION_BARS), figsize=(13, 6.5),
-                                               gridspec_kw={"width_ratios": [5] + [1] * len(DECISION_BARS)})
+        bars = [bar for bar in DECISION_BARS if any(row[bar[0]] for row in rows)]  # not what the method does not ask for
+        figure, (plan, *panels) = plt.subplots(1, 1 + len(bars), figsize=(13, 6.5),
+                                               gridspec_kw={"width_ratios": [5] + [1] * len(bars)})
         if points is not None:
             draw_map(plan, points, positions[:, 2].mean() + HEAD_ROOM_M, paleness=0.7)
         gone = positions[stamps <= time_s]
@@ -338,7 +343,7 @@ def draw_decision(run):
         robot, = plan.plot(*gone[-1:, :2].T, "*", color="black", markersize=13)
         shade = plt.get_cmap("viridis")(np.linspace(0.95, 0.05, count))
         entries = draw_candidates(plan, rows, count, shade, path)
-        draw_bars(panels, rows, count, shade, path)
+        draw_bars(panels, bars, rows, count, shade, path)
     except (KeyError, TypeError, ValueError) as error:
         raise MissingInput(f"{path.name} is damaged ({error})") from error
     plan.legend(*zip((driven, "path until then"), (robot, "robot"), *entries), loc="upper center",

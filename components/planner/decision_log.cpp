@@ -7,13 +7,15 @@
 
 namespace lapis::planner {
 
-DecisionLog::DecisionLog(const std::string& path, const std::vector<double>& compared_priors) {
+DecisionLog::DecisionLog(const std::string& path, const std::vector<std::string>& compared_methods,
+                         const std::vector<double>& compared_priors) {
   if (const auto problem = files::set_aside(path)) throw std::runtime_error(*problem);
   file_.open(path);
   file_ << "decision,time_s,method,candidate,kind,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
            "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
            "utility,ended_kind,ended_s,ended_cost_m,ended_promised_nats,ended_driven_nats,ended_gained_nats,"
-           "is_chosen,is_chosen_by_mi_only,agrees_with_mi_only,";
+           "is_chosen,";
+  for (const std::string& method : compared_methods) file_ << "is_chosen_by_" << method << ',';
   for (const double prior : compared_priors) file_ << "is_chosen_with_prior_" << prior << ',';
   file_ << "rejection\n";
   if (!file_.flush()) throw std::runtime_error(path + " cannot be written");
@@ -26,17 +28,32 @@ bool DecisionLog::write(const Decision& decision, const std::optional<DrivenPath
     const Candidate& c = decision.candidates[i];
     file_ << std::setprecision(9) << id << ',' << to_string(stamp) << ',' << method << ',' << i << ','
           << name_of(c.kind) << ',' << c.frontier << ',' << c.goal.p_map.x() << ',' << c.goal.p_map.y() << ','
-          << c.goal.yaw_rad << ',' << c.value.cost_m << ',' << c.value.path_information << ','
-          << c.value.goal_information << ',' << c.loops.size() << ',' << c.value.loop_gain << ','
-          << c.gain.fixed_n_change << ',' << c.gain.end_sigma_without_loops_m << ',' << c.gain.end_sigma_m << ','
-          << c.value.d_optimality << ',' << c.utility << ',';
+          << c.goal.yaw_rad << ',' << c.value.cost_m << ',';
+    write_value(c, decision.known);
+    file_ << c.utility << ',';
     write_ended();
-    file_ << (decision.chosen == i) << ',' << (decision.by_mi_only == i) << ',' << decision.agrees_with_mi_only()
-          << ',';
+    file_ << (decision.chosen == i) << ',';
+    for (const auto& chosen : decision.by_compared_methods) file_ << (chosen == i) << ',';
     for (const auto& chosen : decision.by_compared_fields) file_ << (chosen == i) << ',';
     file_ << text_of(c.rejection) << '\n';
   }
   return static_cast<bool>(file_.flush());
+}
+
+/// Empty: nobody asked for it.
+void DecisionLog::write_value(const Candidate& candidate, const Asks& known) {
+  const PathValue& value = candidate.value;
+  if (known.path_information) file_ << value.path_information;
+  file_ << ',';
+  if (known.goal_information) file_ << value.goal_information;
+  file_ << ',';
+  if (!known.spectrum) {
+    file_ << ",,,,,,";
+    return;
+  }
+  const ExpectedGain& gain = candidate.gain;
+  file_ << candidate.loops.size() << ',' << value.loop_gain << ',' << gain.fixed_n_change << ','
+        << gain.end_sigma_without_loops_m << ',' << gain.end_sigma_m << ',' << value.d_optimality << ',';
 }
 
 void DecisionLog::write_ended() {

@@ -14,14 +14,16 @@ namespace lapis::planner {
 class DecisionLog {
  public:
   /// An older file of that name is set aside. Throws std::runtime_error when it cannot be written.
-  /// @param compared_priors of the fields that decisions are compared with; a column each
-  explicit DecisionLog(const std::string& path, const std::vector<double>& compared_priors = {});
+  /// @param compared_methods, compared_priors what decisions are compared with; a column each
+  explicit DecisionLog(const std::string& path, const std::vector<std::string>& compared_methods = {},
+                       const std::vector<double>& compared_priors = {});
   /// @param ended the path that this decision ends; its columns stand in the next row, the first of its decision
   /// False when the disk refuses.
   bool write(const Decision& decision, const std::optional<DrivenPath>& ended, std::uint64_t id,
              const std::string& method, time::Time stamp);
 
  private:
+  void write_value(const Candidate& candidate, const Asks& known);
   void write_ended();
 
   std::ofstream file_;

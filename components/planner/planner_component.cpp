@@ -61,7 +61,8 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
       explorer_(config_.explorer), ledger_(config_.explorer.memory.radius_m) {
   if (!config_.output_dir.empty()) {
     files::require_writable_folder(config_.output_dir, "planner.output_dir");
-    log_.emplace((std::filesystem::path(config_.output_dir) / kLogFile).string(), config_.surroundings.compared_priors);
+    log_.emplace((std::filesystem::path(config_.output_dir) / kLogFile).string(), config_.compared_methods,
+                 config_.surroundings.compared_priors);
   }
   context.subscribe(topics::kMapDescription, [this](const auto& m) { set_description(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { add_tile(m); });
@@ -208,9 +209,7 @@ void PlannerComponent::take_decision(bool waits) {
   decision_ = std::move(output->decision);
   const Decision& decision = decision_;
   ++decisions_;
-  disagreements_ += decision.agrees_with_mi_only() ? 0 : 1;
   context_.status().value("decisions", decisions_);
-  context_.status().value("decisions_unlike_mi_only", disagreements_);
   if (!decision.problem.empty()) drop("pose graph", decision.problem);
   const bool is_taken = explorer_.take(decision, report());
   candidates_.publish(to_message(decision, decisions_, config_.method, header()));
@@ -356,7 +355,6 @@ void PlannerComponent::publish_status() {
   message.explored_volume_m3(surroundings_ ? surroundings_->explored_volume_m3() : 0.0);
   message.decision_time_s(decision_time_s_);
   message.decisions(decisions_);
-  message.decisions_unlike_mi_only(disagreements_);
   message.failures(explorer_.failures());
   status_.publish(message);
 }

@@ -105,7 +105,7 @@ class PlannerComponent {
   DecisionWorker worker_;
   std::optional<DecisionLog> log_;
   Decision decision_;  // the last one
-  std::uint64_t decisions_ = 0, disagreements_ = 0, shown_decision_ = 0;
+  std::uint64_t decisions_ = 0, shown_decision_ = 0;
   std::size_t marker_readers_ = 0;
   double decision_time_s_ = 0.0;
   std::optional<std::uint64_t> published_path_;  // the first one is empty: a controller may follow one from before

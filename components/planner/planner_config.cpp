@@ -3,8 +3,6 @@
 namespace lapis::planner {
 namespace {
 
-constexpr const char* kLapisMethod = "joint";  // docs/decisions/0031-the-method-called-lapis.md
-
 Measure measure_of(const std::string& name) {
   if (name == "shannon") return Measure::kShannon;
   return name == "csqmi" ? Measure::kCsqmi : Measure::kSemantic;
@@ -23,8 +21,23 @@ Sparsifier sparsifier_of(const std::string& name) {
 
 }  // namespace
 
+std::vector<std::string> all_methods() {
+  std::vector<std::string> names = method_names();
+  names.insert(names.begin(), "lapis");
+  return names;
+}
+
+std::vector<std::string> comparable_methods() {
+  std::vector<std::string> names = method_names();
+  std::erase_if(names, [](const std::string& name) { return make_method(name)->has_own_candidates(); });
+  return names;
+}
+
 PlannerComponentConfig completed(PlannerComponentConfig config) {
-  config.decision.method = *method_of(config.method == "lapis" ? kLapisMethod : config.method);
+  config.decision.method = make_method(config.method, config.methods);
+  config.decision.compared_methods.clear();
+  for (const std::string& name : config.compared_methods)
+    config.decision.compared_methods.push_back(make_method(name, config.methods));
   config.surroundings.ray.measure = measure_of(config.measure);
   config.decision.graph.criterion = criterion_of(config.criterion);
   config.decision.graph.sparsifier = sparsifier_of(config.sparsifier);

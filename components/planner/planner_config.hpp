@@ -1,14 +1,16 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "common/config/schema.hpp"
 #include "common/robot/robot_description.hpp"
 #include "planner/core/exploration/explorer.hpp"
+#include "planner/core/methods/methods.hpp"
 
 namespace lapis::planner {
 
-/// What the process adds to the method's configuration.
+/// The process's configuration; what has names there is in `decision` after completed().
 struct PlannerComponentConfig {
   std::string method = "lapis";
   std::string measure = "semantic";
@@ -16,6 +18,8 @@ struct PlannerComponentConfig {
   std::string sparsifier = "none";
   bool autostart = true;
   SurroundingsConfig surroundings;
+  MethodsConfig methods;
+  std::vector<std::string> compared_methods;
   DecisionConfig decision;
   ExplorerConfig explorer;
   int view_columns = 64, view_rows = 36;
@@ -23,6 +27,11 @@ struct PlannerComponentConfig {
   std::string output_dir;
   robot::RobotDescription robot;
 };
+
+/// "lapis", which stands for one of the others, and all of these.
+std::vector<std::string> all_methods();
+/// Those that choose among the candidates of any method: TARE compares the stops of its own tour only.
+std::vector<std::string> comparable_methods();
 
 /// With all that the core needs of the robot and of names.
 PlannerComponentConfig completed(PlannerComponentConfig config);
@@ -119,18 +128,16 @@ void describe(Field& field, GoalMemoryConfig& c) {
 
 template <class Field>
 void describe(Field& field, PlannerComponentConfig& c) {
-  field("method", c.method,
-        config::one_of({"lapis", "paper", "fixed_n", "joint", "ssmi", "tare", "nearest", "mi_only", "dopt_only"}),
-        "what decides between paths (README)");
+  field("method", c.method, config::one_of(all_methods()), "what decides between paths (README)");
   field("measure", c.measure, config::one_of({"semantic", "shannon", "csqmi"}),
         "information of the map: about space and classes, or about space alone (README)");
   field("autostart", c.autostart, config::anything(), "explore at once; false: wait for /planner/start");
-  field("beta", c.decision.utility.beta, config::in_range(0.0, 100.0),
+  field("beta", c.methods.joint.beta, config::in_range(0.0, 100.0),
         "method joint: what a nat about the trajectory counts against one about the map");
   field("sigma_limit_voxels", c.decision.sigma_limit_voxels, config::in_range(0.01, 10.0),
         "loops count until the position at a path's end is so exact [voxels]");
   field("max_candidates", c.decision.max_candidates, config::in_range(1, 1000),
-        "whose information is computed; the ones with the shortest paths");
+        "that are judged; the ones with the shortest paths");
   field("view_spacing_m", c.decision.view_spacing_m, config::in_range(0.1, 10.0), "between views along a path [m]");
   field("view_votes", c.surroundings.ray.votes, config::in_range(1, 30),
         "that a voxel gets from a robot that passes; 1: a single frame, as in the paper");
@@ -165,7 +172,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("path", c.decision.path);
   field("viewpoints", c.decision.viewpoints);
   field("gaps", c.decision.gaps);
-  field("tare", c.decision.tare);
+  field("tare", c.methods.tare);
   field("hallucination", c.decision.hallucination);
   field("memory", c.explorer.memory);
   field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.5, 60.0),
@@ -200,6 +207,8 @@ void describe(Field& field, PlannerComponentConfig& c) {
               "the planner reads it on /semantic_mapper/map_description");
   field.moved("sensor_model", "semantic_mapper.sensor_model",
               "the planner reads it on /semantic_mapper/map_description");
+  field("compared_methods", c.compared_methods, config::one_of(comparable_methods()),
+        "decisions.csv says what each of these would have chosen among the same candidates");
   field("compared_priors", c.surroundings.compared_priors, config::in_range(0.001, 0.999),
         "instead of the prior of the mapper's sensor model: decisions.csv says what would have been chosen with each");
   field("decision_latency_frames", c.decision_latency_frames, config::in_range(1, 100),

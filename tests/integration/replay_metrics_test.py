@@ -20,7 +20,7 @@ OF_GROUND_TRUTH = ("explored_share", "explored_share_with_margin", "stalled_shar
                    *(f"{prefix}_{key}" for prefix in ("ideal", "mesh")
                      for key in ("map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m", *OF_LABELS)))
 NOT_MEASURED = ("ate_at_80_m", "time_to_80_s", "time_to_90_s", "failures", "collisions", "planner_state",
-                "planner_reason", "decisions", "decisions_unlike_mi_only_share", "decision_time_p50_s", "decision_time_p95_s")
+                "planner_reason", "decisions", "decision_time_p50_s", "decision_time_p95_s")
 SHORT_S = 12  # more than a metre
 
 

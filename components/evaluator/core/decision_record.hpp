@@ -10,9 +10,8 @@ namespace lapis::evaluator {
 /// What a planner says of its decisions so far.
 struct DecisionCounts {
   std::uint64_t decisions = 0;
-  std::uint64_t unlike_mi_only = 0;  ///< where mutual information alone would have chosen another candidate
-  double last_time_s = 0.0;          ///< wall time that the last one took
-  std::uint64_t failures = 0;        ///< goals that were not reached, or looked at in vain
+  double last_time_s = 0.0;    ///< wall time that the last one took
+  std::uint64_t failures = 0;  ///< goals that were not reached, or looked at in vain
 };
 
 /// The decisions of a run, from what the planner reports after each of them.
@@ -25,7 +24,7 @@ class DecisionRecord {
 
  private:
   DecisionCounts last_;
-  std::int64_t decisions_ = 0, unlike_mi_only_ = 0, failures_ = 0;
+  std::int64_t decisions_ = 0, failures_ = 0;
   std::vector<double> times_s_;
 };
 

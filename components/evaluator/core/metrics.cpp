@@ -98,7 +98,6 @@ ordered_json to_document(const RunMetrics& m) {
   document["planner_state"] = value_or_null(m.planner_state);
   document["planner_reason"] = value_or_null(m.planner_reason);
   document["decisions"] = value_or_null(m.decisions);
-  document["decisions_unlike_mi_only_share"] = value_or_null(m.decisions_unlike_mi_only_share);
   document["failures"] = value_or_null(m.failures);
   document["decision_time_p50_s"] = value_or_null(m.decision_time_p50_s);
   document["decision_time_p95_s"] = value_or_null(m.decision_time_p95_s);

@@ -69,7 +69,6 @@ struct RunMetrics {
   std::optional<std::string> planner_state;   ///< the last one
   std::optional<std::string> planner_reason;  ///< for it
   std::optional<std::int64_t> decisions;
-  std::optional<double> decisions_unlike_mi_only_share;
   std::optional<std::int64_t> failures;       ///< goals that were not reached, or looked at in vain
   std::optional<double> decision_time_p50_s;  ///< wall time
   std::optional<double> decision_time_p95_s;

@@ -185,7 +185,6 @@ TEST_F(EvaluatorContract, ThePlannersDecisionsAndSlamsSigmaAreKept) {
   status.reason("drives somewhere");
   status.decision_time_s(0.25);
   status.decisions(2);
-  status.decisions_unlike_mi_only(1);
   status.failures(3);
   planner.publish(status);
   planner.wait_until_acknowledged(5.0);
@@ -199,7 +198,6 @@ TEST_F(EvaluatorContract, ThePlannersDecisionsAndSlamsSigmaAreKept) {
   EXPECT_THAT(metrics, HasSubstr("\"decisions\": 2"));
   EXPECT_THAT(metrics, HasSubstr("\"failures\": 3"));
   EXPECT_THAT(metrics, HasSubstr("\"planner_reason\": \"drives somewhere\""));
-  EXPECT_THAT(metrics, HasSubstr("\"decisions_unlike_mi_only_share\": 0.5"));
   EXPECT_THAT(metrics, HasSubstr("\"decision_time_p95_s\": 0.25"));
   EXPECT_THAT(read(std::filesystem::path(folder) / "timeline.csv"), HasSubstr(",0.060000,TRACKING,EXPLORING,0\n"));
 }

@@ -189,6 +189,18 @@ class Figures(unittest.TestCase):
         self.assertGreater(figure.axes[0].lines[0].get_ydata()[-1], 10.0)  # once round an ellipse with axes of 6 and 4 m
         the_module().plt.close(figure)
 
+    def test_a_method_that_asks_for_nothing_has_no_bars_of_it(self):
+        decisions = self.run_folder / "decisions.csv"
+        rows = [line.split(",") for line in decisions.read_text().splitlines()]
+        for row in rows[1:]:
+            row[8] = row[9] = ""  # information and D-optimality
+        decisions.write_text("\n".join(",".join(row[:12] + row[13:]) for row in rows) + "\n")  # nor is it compared
+        result, drawn = self.draw()
+        self.assertEqual((result.returncode, result.stderr, drawn), (0, "", ALL))
+        figure = the_module().draw_decision(self.run_folder)
+        self.assertEqual([axes.get_title() for axes in figure.axes[1:]], ["utility", "cost [m]"])
+        the_module().plt.close(figure)
+
     def test_a_run_without_a_planner_has_no_figure_of_a_decision(self):
         (self.run_folder / "decisions.csv").unlink()
         result, drawn = self.draw()

@@ -140,15 +140,14 @@ TEST(Metrics, DecisionsAreCountedOnceWhateverIsReportedTwice) {
   RunMetrics metrics;
   record.add({});
   record.write_to(metrics);
-  EXPECT_FALSE(metrics.decisions || metrics.decision_time_p50_s || metrics.decisions_unlike_mi_only_share);
-  for (const DecisionCounts& reported : {DecisionCounts{1, 0, 0.1, 0}, {1, 0, 0.1, 0}, {2, 1, 0.3, 2}, {2, 1, 0.3, 2}})
+  EXPECT_FALSE(metrics.decisions || metrics.decision_time_p50_s);
+  for (const DecisionCounts& reported : {DecisionCounts{1, 0.1, 0}, {1, 0.1, 0}, {2, 0.3, 2}, {2, 0.3, 2}})
     record.add(reported);
-  record.add({1, 1, 0.5, 0});  // a planner that was restarted
-  record.add({2, 1, 0.7, 1});
+  record.add({1, 0.5, 0});  // a planner that was restarted
+  record.add({2, 0.7, 1});
   record.write_to(metrics);
   EXPECT_EQ(metrics.decisions, 4);
   EXPECT_EQ(metrics.failures, 3);
-  EXPECT_DOUBLE_EQ(*metrics.decisions_unlike_mi_only_share, 0.5);
   EXPECT_DOUBLE_EQ(*metrics.decision_time_p50_s, 0.4);
   EXPECT_DOUBLE_EQ(*metrics.decision_time_p95_s, 0.67);
 }

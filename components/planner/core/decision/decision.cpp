@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "planner/core/decision/first_turn.hpp"
-#include "planner/core/decision/proposals.hpp"
 #include "planner/core/space/path_planner.hpp"
 
 namespace lapis::planner {
@@ -58,18 +57,17 @@ double first_heading(const Candidate& candidate) {
   return candidate.path.front().yaw_rad;
 }
 
-void add_information(const Situation& s, const std::vector<Candidate*>& open) {
-  std::vector<ViewPath> paths, goals;
-  for (const Candidate* candidate : open) {
-    paths.push_back(views_along(s, poses_of(s, *candidate)));
-    goals.push_back({paths.back().back()});
+void add_information(const Situation& s, const Asks& asks, const std::vector<Candidate*>& open) {
+  std::vector<ViewPath> paths;
+  for (const Candidate* candidate : open) paths.push_back(views_along(s, poses_of(s, *candidate)));
+  if (asks.path_information) {
+    const auto nats = path_information(s.field, s.view, std::span<const ViewPath>(paths));
+    for (std::size_t i = 0; i < open.size(); ++i) open[i]->value.path_information = nats[i];
   }
-  const std::vector<double> of_paths = path_information(s.field, s.view, std::span<const ViewPath>(paths));
-  const std::vector<double> of_goals =
-      path_information(s.field, s.view, std::span<const ViewPath>(goals), Counting::kEveryRay);
-  for (std::size_t i = 0; i < open.size(); ++i) {
-    open[i]->value.path_information = of_paths[i];
-    open[i]->value.goal_information = of_goals[i];
+  if (asks.goal_information) {
+    for (ViewPath& path : paths) path.erase(path.begin(), path.end() - 1);
+    const auto nats = path_information(s.field, s.view, std::span<const ViewPath>(paths), Counting::kEveryRay);
+    for (std::size_t i = 0; i < open.size(); ++i) open[i]->value.goal_information = nats[i];
   }
 }
 
@@ -96,10 +94,9 @@ std::string add_gain(const Situation& s, const DecisionConfig& config, Candidate
         {candidate.nodes_map[static_cast<std::size_t>(place.node)], keyframe.translation(), place.probability});
   }
   candidate.value.loop_gain = candidate.gain.saturated_loop_gain;
-  const int n = s.graph->factor.node_count();
-  candidate.value.d_optimality = config.method == Method::kFixedN
-                                     ? d_optimality(n, s.graph->factor.log_trees() + candidate.gain.fixed_n_change)
-                                     : std::get<double>(literal);
+  candidate.value.d_optimality = std::get<double>(literal);
+  candidate.value.fixed_n_d_optimality =
+      d_optimality(s.graph->factor.node_count(), s.graph->factor.log_trees() + candidate.gain.fixed_n_change);
   return "";
 }
 
@@ -116,15 +113,15 @@ void discount_information(const Situation& s, double limit_m, Candidate& candida
   candidate.value.goal_information /= 1.0 + end;
 }
 
-std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, Method method, const Memory& memory,
-                                   const DecisionConfig& config) {
-  const double kept = has_hysteresis(method) ? config.keep_factor : 1.0;
+std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, const Method& method, const Memory& memory,
+                                   double keep_factor) {
+  const double kept = method.keeps_goal() ? keep_factor : 1.0;
   std::optional<std::size_t> best;
   double most = 0.0;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!candidates[i].is_open()) continue;
     const double bonus = is_current_goal(candidates[i], memory) ? kept : 1.0;
-    const double worth = bonus * utility(method, candidates[i].value, config.utility);
+    const double worth = bonus * method.utility(candidates[i].value);
     if (best && worth <= most) continue;
     best = i;
     most = worth;
@@ -145,7 +142,7 @@ std::string add_gains(const Situation& s, const DecisionConfig& config, const st
       candidate->nodes_map.clear();
       candidate->loops.clear();
       candidate->value.loop_gain = 0.0;
-      candidate->value.d_optimality = 1.0;
+      candidate->value.d_optimality = candidate->value.fixed_n_d_optimality = 1.0;
     } else if (config.information_discount_sigma_m > 0.0) {
       discount_information(s, config.information_discount_sigma_m, *candidate);
     }
@@ -179,33 +176,40 @@ Leftover leftover_of(const Situation& s, const std::vector<Candidate>& candidate
   return leftover;
 }
 
-/// What the map and the pose graph would gain by each proposal, and the best one.
+/// And of the spectrum, where information is discounted by it.
+Asks with_discount(Asks asks, const DecisionConfig& config) {
+  const bool is_discounted = config.information_discount_sigma_m > 0.0;
+  if (is_discounted && (asks.path_information || asks.goal_information)) asks.spectrum = true;
+  return asks;
+}
+
+/// What the map and the pose graph would gain by each candidate, as far as that is asked for. What is wrong with the
+/// graph, if anything is.
+std::string judge(const Situation& s, const DecisionConfig& config, const Asks& asks,
+                  std::vector<Candidate>& candidates) {
+  const std::vector<Candidate*> open = open_ones(candidates);
+  if (asks.path_information || asks.goal_information) add_information(s, asks, open);
+  std::string problem = asks.spectrum ? add_gains(s, config, open) : "";
+  for (Candidate* candidate : open) candidate->utility = config.method->utility(candidate->value);
+  return problem;
+}
+
+/// Among the candidates that are proposed.
 Decision choose(const Situation& s, std::vector<Candidate> proposals, const Memory& memory,
                 const DecisionConfig& config) {
   Decision decision;
   decision.candidates = std::move(proposals);
-  const std::vector<Candidate*> open = open_ones(decision.candidates);
-  add_information(s, open);
-  decision.problem = add_gains(s, config, open);
-  for (Candidate* candidate : open) candidate->utility = utility(config.method, candidate->value, config.utility);
-  decision.chosen = best_by(decision.candidates, config.method, memory, config);
-  decision.by_mi_only = best_by(decision.candidates, Method::kMiOnly, memory, config);
+  decision.known = config.method->asks();
+  for (const auto& other : config.compared_methods) decision.known = decision.known | other->asks();
+  decision.known = with_discount(decision.known, config);
+  decision.problem = judge(s, config, decision.known, decision.candidates);
+  decision.chosen = best_by(decision.candidates, *config.method, memory, config.keep_factor);
+  for (const auto& other : config.compared_methods)
+    decision.by_compared_methods.push_back(best_by(decision.candidates, *other, memory, config.keep_factor));
   return decision;
 }
 
 }  // namespace
-
-const char* name_of(CandidateKind kind) {
-  switch (kind) {
-    case CandidateKind::kFrontier: return "frontier";
-    case CandidateKind::kAlternative: return "alternative";
-    case CandidateKind::kCloserLook: return "closer_look";
-    case CandidateKind::kTracked: return "tracked";
-    case CandidateKind::kGap: return "gap";
-    case CandidateKind::kRevisit: return "revisit";
-  }
-  return "";
-}
 
 std::string Leftover::text() const {
   std::string text;
@@ -217,16 +221,9 @@ std::string Leftover::text() const {
   return text.empty() ? "" : "frontiers left: " + text;
 }
 
-geometry::Pose camera_at(const Situation& s, const Pose2& robot) {
-  geometry::Pose T_map_base = geometry::Pose::Identity();
-  T_map_base.translate(Eigen::Vector3d(robot.p_map.x(), robot.p_map.y(), 0.0));
-  T_map_base.rotate(Eigen::AngleAxisd(robot.yaw_rad, Eigen::Vector3d::UnitZ()));
-  return T_map_base * s.T_base_camera;
-}
-
 Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config) {
   const CostTree tree = grow_cost_tree(situation.grid, config.path, {situation.grid.cell_of(situation.robot.p_map)});
-  const std::vector<Candidate> proposals = propose(situation, tree, memory, config);
+  const std::vector<Candidate> proposals = config.method->propose({situation, tree, memory, config});
   Decision decision = choose(situation, proposals, memory, config);
   if (decision.chosen) {
     const Candidate& chosen = decision.candidates[*decision.chosen];
@@ -239,7 +236,9 @@ Decision decide(const Situation& situation, const Memory& memory, const Decision
   for (const InformationField& field : situation.compared_fields) {
     const Situation other{situation.grid,  situation.frontiers, field,          situation.view, situation.T_base_camera,
                           situation.graph, situation.landmarks, situation.robot};
-    decision.by_compared_fields.push_back(choose(other, proposals, memory, config).chosen);
+    std::vector<Candidate> candidates = proposals;
+    judge(other, config, with_discount(config.method->asks(), config), candidates);
+    decision.by_compared_fields.push_back(best_by(candidates, *config.method, memory, config.keep_factor));
   }
   return decision;
 }

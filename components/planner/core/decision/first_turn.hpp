@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "planner/core/decision/decision.hpp"
+#include "planner/core/candidates/situation.hpp"
 
 namespace lapis::planner {
 

@@ -14,7 +14,7 @@ enum class Rejection {
   kFailed,       ///< paths to it have failed, so often that it was given up
   kUnsure,       ///< by odometry alone, the position would be less sure there than the budget allows
   kLeftAlone,    ///< it has failed, and has to wait, or it waits for what was seen to enter the map
-  kOutranked,    ///< others come before it (DecisionConfig::max_candidates)
+  kOutranked,    ///< others come before it (ProposalConfig::max_candidates)
   kFarSpace,     ///< of a tour: enough sub-spaces are nearer
   kBesideStop,   ///< of a tour: it stops at others near it
 };

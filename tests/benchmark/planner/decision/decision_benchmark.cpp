@@ -13,6 +13,7 @@
 
 #include "planner/core/decision/decision.hpp"
 #include "planner/core/exploration/surroundings.hpp"
+#include "planner/core/methods/methods.hpp"
 #include "tests/benchmark/planner/half_explored.hpp"
 
 namespace lapis::planner {
@@ -126,6 +127,7 @@ Situation situation(const AnalysedGraph& graph, const LandmarkIndex& landmarks) 
 /// The view spacing with which paths have as many views as wanted.
 DecisionConfig config_for(const Situation& now) {
   DecisionConfig config;
+  config.method = make_method("joint");
   config.max_candidates = kCandidates;
   while (config.view_spacing_m > 0.1 && views_per_candidate(decide(now, {}, config)) < kViewsPerPath)
     config.view_spacing_m -= 0.05;

@@ -8,8 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "planner/core/candidates/gap_views.hpp"
 #include "planner/core/decision/first_turn.hpp"
-#include "planner/core/decision/gap_views.hpp"
+#include "planner/core/methods/methods.hpp"
 #include "tests/unit/planner/hallucination/small_world.hpp"
 #include "tests/unit/planner/space/flat_map.hpp"
 
@@ -36,7 +37,7 @@ struct Explorer {
         view({.camera = test::kCamera, .columns = 16, .rows = 9, .range_m = 5.0}) {
     frontiers.update(world.grid, world.known);
     field.rebuild(world.map.map());
-    config.method = Method::kMiOnly;
+    config.method = make_method("mi_only");
     config.viewpoints = {.min_distance_m = 0.5, .max_distance_m = 1.5, .max_per_frontier = 4};
     robot.p_map = world.grid.center_of(world.places.at('R'));
   }
@@ -69,29 +70,28 @@ struct Explorer {
 TEST(Decide, EveryMethodDrivesToAFrontier) {
   Explorer explorer;
   for (const std::string& name : method_names()) {
-    explorer.config.method = *method_of(name);
+    explorer.config.method = make_method(name);
     const Candidate candidate = explorer.chosen();
     ASSERT_FALSE(candidate.path.empty()) << name;
     EXPECT_LT((candidate.path.front().p_map - explorer.robot.p_map).norm(), 1e-9) << name;
     EXPECT_LT((candidate.path.back().p_map - candidate.goal.p_map).norm(), 1e-9) << name;
-    EXPECT_GT(candidate.value.path_information, 0.0) << name;
+    EXPECT_GT(candidate.utility, 0.0) << name;
     for (const Pose2& pose : candidate.path) {
       EXPECT_TRUE(explorer.world.grid.is_traversable(explorer.world.grid.cell_of(pose.p_map))) << name;
     }
   }
-  EXPECT_FALSE(method_of("tarot"));
+  EXPECT_EQ(make_method("tarot"), nullptr);
 }
 
 TEST(Decide, TheNearestIsNearest) {
   Explorer explorer;
-  explorer.config.method = Method::kNearest;
+  explorer.config.method = make_method("nearest");
   EXPECT_TRUE(explorer.is_left(explorer.chosen()));
 }
 
 TEST(Decide, InformationPerMetreIsWhatMiOnlyCompares) {
   const Decision decision = Explorer().choose();
   ASSERT_TRUE(decision.chosen);
-  EXPECT_TRUE(decision.agrees_with_mi_only());
   const Candidate& best = decision.candidates[*decision.chosen];
   for (const Candidate& candidate : decision.candidates) {
     EXPECT_DOUBLE_EQ(candidate.utility, candidate.value.path_information / candidate.value.cost_m);
@@ -101,7 +101,7 @@ TEST(Decide, InformationPerMetreIsWhatMiOnlyCompares) {
 
 TEST(Decide, LeavesAloneWhatItIsAskedTo) {
   Explorer explorer;
-  explorer.config.method = Method::kNearest;
+  explorer.config.method = make_method("nearest");
   Memory memory;
   memory.left_alone = {{explorer.chosen().target_map}};
   const Decision decision = explorer.choose(memory);
@@ -117,7 +117,7 @@ TEST(Decide, LeavesAloneWhatItIsAskedTo) {
 
 TEST(Decide, SaysWhatIsLeftWhenNothingIsChosen) {
   Explorer explorer;
-  explorer.config.method = Method::kNearest;
+  explorer.config.method = make_method("nearest");
   EXPECT_TRUE(explorer.choose({}).leftover.length_m.empty());
   Memory memory;
   memory.left_alone = {{explorer.chosen().target_map}};
@@ -156,7 +156,7 @@ TEST(Decide, NobodyIsToBlameForNarrowFrontiers) {
 TEST(Decide, ByOdometryAloneItStaysWithinTheBudget) {
   for (const std::string& name : method_names()) {
     Explorer explorer;
-    explorer.config.method = *method_of(name);
+    explorer.config.method = make_method(name);
     Memory memory;
     memory.adrift = {.sigma_m = 0.1, .growth = 0.1, .budget_m = 0.5};
     int near = 0, far = 0;
@@ -166,14 +166,14 @@ TEST(Decide, ByOdometryAloneItStaysWithinTheBudget) {
       ++(is_sure ? near : far);
     }
     EXPECT_GT(near, 0) << name;
-    EXPECT_TRUE(far > 0 || *method_of(name) == Method::kTare) << name << ": whose tour has one stop here";
+    EXPECT_TRUE(far > 0 || name == "tare") << name << ": whose tour has one stop here";
   }
 }
 
 TEST(Decide, BeyondTheBudgetItDrivesToWhereSlamTracked) {
   for (const std::string& name : method_names()) {
     Explorer explorer;
-    explorer.config.method = *method_of(name);
+    explorer.config.method = make_method(name);
     const Pose2 behind{explorer.robot.p_map - Eigen::Vector2d(0.5, 0.0), 1.0};
     Memory memory;
     for (const double sigma_m : {0.6, std::numeric_limits<double>::quiet_NaN()}) {
@@ -199,7 +199,7 @@ TEST(Decide, LooksAtGapsOfTheMapWhenNoFrontierIsLeft) {
                                          "##################"};
   for (const std::string& name : method_names()) {
     Explorer explorer(hall);
-    explorer.config.method = *method_of(name);
+    explorer.config.method = make_method(name);
     explorer.config.gaps = {.least_nats = 5.0};
     Memory memory;
     EXPECT_FALSE(explorer.choose(memory).chosen) << name << ": not before the mission says so";
@@ -246,7 +246,7 @@ TEST(Decide, LooksAtFrontiersBeforeGaps) {
 
 TEST(Decide, LooksFromElsewhereAtWhatAFailedViewShowed) {
   Explorer explorer;
-  explorer.config.method = Method::kNearest;
+  explorer.config.method = make_method("nearest");
   const Candidate first = explorer.chosen();
   Memory memory;
   memory.failed_views = {{first.target_map, first.goal.p_map}};
@@ -264,7 +264,7 @@ TEST(Decide, LooksFromElsewhereAtWhatAFailedViewShowed) {
 
 TEST(Decide, KeepsItsGoalUnlessAnotherIsClearlyBetter) {
   Explorer explorer;
-  explorer.config.method = Method::kNearest;
+  explorer.config.method = make_method("nearest");
   Memory memory;
   for (const Candidate& candidate : explorer.choose().candidates) {
     if (!explorer.is_left(candidate)) memory.goal = candidate.goal;
@@ -272,9 +272,9 @@ TEST(Decide, KeepsItsGoalUnlessAnotherIsClearlyBetter) {
   ASSERT_TRUE(memory.goal);
   explorer.config.keep_factor = 10.0;
   EXPECT_FALSE(explorer.is_left(explorer.chosen(memory)));
-  explorer.config.method = Method::kPaper;
+  explorer.config.method = make_method("paper");
   EXPECT_EQ(explorer.choose(memory).chosen, explorer.choose().chosen) << "the paper keeps nothing";
-  explorer.config.method = Method::kNearest;
+  explorer.config.method = make_method("nearest");
   explorer.config.max_candidates = 1;
   EXPECT_FALSE(explorer.is_left(explorer.chosen(memory))) << "however many are nearer";
   explorer.config.max_candidates = 20;
@@ -320,10 +320,26 @@ TEST(Decide, ComputesOnlyTheNearestButOneOfEachFrontierFirst) {
 }
 
 TEST(Decide, NothingIsLeftInAClosedRoom) {
-  const Decision decision = Explorer({"#######", "#.....#", "#..R..#", "#.....#", "#######"}).choose();
+  Explorer explorer({"#######", "#.....#", "#..R..#", "#.....#", "#######"});
+  explorer.config.compared_methods = {make_method("nearest")};
+  const Decision decision = explorer.choose();
   EXPECT_TRUE(decision.candidates.empty());
-  EXPECT_FALSE(decision.chosen);
-  EXPECT_TRUE(decision.agrees_with_mi_only());
+  EXPECT_FALSE(decision.chosen || decision.by_compared_methods.at(0));
+}
+
+TEST(Decide, SaysWhatOtherMethodsWouldHaveChosenAndComputesNothingElse) {
+  Explorer explorer;
+  explorer.config.method = make_method("nearest");
+  const Decision alone = explorer.choose();
+  EXPECT_EQ(alone.known, Asks{});
+  EXPECT_EQ(alone.candidates[*alone.chosen].value.path_information, 0.0);
+  explorer.config.compared_methods = {make_method("mi_only"), make_method("nearest")};
+  const Decision compared = explorer.choose();
+  EXPECT_EQ(compared.known, Asks{.path_information = true});
+  EXPECT_EQ(compared.chosen, alone.chosen);
+  explorer.config.method = make_method("mi_only");
+  EXPECT_EQ(compared.by_compared_methods, (std::vector{explorer.choose().chosen, alone.chosen}));
+  EXPECT_NE(compared.by_compared_methods[0], compared.by_compared_methods[1]);
 }
 
 // slam came from the right end long ago; its first key-frames have seen a wall of landmarks there.
@@ -339,8 +355,7 @@ TEST(Decide, LoopsDrawTheJointUtilityToOldPlaces) {
   explorer.landmarks = &landmarks;
   explorer.config.hallucination.covisibility.min_visibility = 0.0;
   explorer.config.sigma_limit_voxels = 0.01;
-  explorer.config.method = Method::kJoint;
-  explorer.config.utility.beta = 100.0;
+  explorer.config.method = make_method("joint", {.joint = {.beta = 100.0}});
   const Decision decision = explorer.choose();
   ASSERT_TRUE(decision.chosen);
   EXPECT_EQ(decision.problem, "");
@@ -352,7 +367,7 @@ TEST(Decide, LoopsDrawTheJointUtilityToOldPlaces) {
   EXPECT_GT((joint.loops[0].node_map - joint.loops[0].keyframe_map).norm(), 0.0);
   EXPECT_FALSE(joint.nodes_map.empty());
   EXPECT_LT(joint.gain.end_sigma_m, joint.gain.end_sigma_without_loops_m);
-  explorer.config.utility.beta = 0.0;
+  explorer.config.method = make_method("joint", {.joint = {.beta = 0.0}});
   EXPECT_TRUE(explorer.is_left(explorer.chosen())) << "without loops the near end is worth more per metre";
 }
 
@@ -408,14 +423,15 @@ TEST(Decide, WithoutAGraphThePaperComparesInformationPerMetre) {
   AnalysedGraph graph = broken.graph();
   const LandmarkIndex landmarks({}, graph, 0.25);
   graph.odometry_weight_metres = std::numeric_limits<double>::quiet_NaN();
-  for (const Method method : {Method::kPaper, Method::kFixedN}) {
-    explorer.config.method = method;
+  explorer.config.compared_methods = {make_method("mi_only")};
+  for (const char* method : {"paper", "fixed_n"}) {
+    explorer.config.method = make_method(method);
     for (const bool has_graph : {false, true}) {
       explorer.graph = has_graph ? &graph : nullptr;
       explorer.landmarks = has_graph ? &landmarks : nullptr;
       const Decision decision = explorer.choose();
       EXPECT_EQ(decision.problem.empty(), !has_graph);
-      EXPECT_TRUE(decision.chosen && decision.agrees_with_mi_only());
+      EXPECT_TRUE(decision.chosen && decision.chosen == decision.by_compared_methods[0]);
       for (const Candidate& candidate : decision.candidates) {
         if (!candidate.is_open()) continue;
         EXPECT_DOUBLE_EQ(candidate.utility, 1.0 + candidate.value.path_information / candidate.value.cost_m);
@@ -475,7 +491,7 @@ struct LongAway : Explorer {
         of_graph(chain.graph()), of_landmarks(test::tile_of(test::wall_at(4.5f, 3.0f), {10, 11}), of_graph, 0.25) {
     graph = &of_graph;
     landmarks = &of_landmarks;
-    config.method = Method::kJoint;
+    config.method = make_method("joint");
   }
   test::Chain chain;
   AnalysedGraph of_graph;
@@ -488,16 +504,17 @@ TEST(Decide, EachMethodComparesItsOwnFormOfD) {
   LongAway explorer;
   const int nodes = explorer.of_graph.factor.node_count();
   const double log_trees = explorer.of_graph.factor.log_trees();
-  for (const Method method : {Method::kPaper, Method::kFixedN}) {
-    explorer.config.method = method;
+  for (const bool is_paper : {true, false}) {
+    explorer.config.method = make_method(is_paper ? "paper" : "fixed_n");
     const Decision decision = explorer.choose();
     ASSERT_EQ(decision.problem, "");
     for (const Candidate& candidate : decision.candidates) {
       if (!candidate.is_open()) continue;
       const double fixed_n = d_optimality(nodes, log_trees + candidate.gain.fixed_n_change);
-      EXPECT_EQ(std::abs(candidate.value.d_optimality / fixed_n - 1.0) < 1e-12, method == Method::kFixedN);
-      EXPECT_DOUBLE_EQ(candidate.utility, candidate.value.d_optimality *
-                                              (1.0 + candidate.value.path_information / candidate.value.cost_m));
+      EXPECT_NEAR(candidate.value.fixed_n_d_optimality / fixed_n, 1.0, 1e-12);
+      EXPECT_GT(std::abs(candidate.value.d_optimality / fixed_n - 1.0), 1e-12);
+      const double d = is_paper ? candidate.value.d_optimality : candidate.value.fixed_n_d_optimality;
+      EXPECT_DOUBLE_EQ(candidate.utility, d * (1.0 + candidate.value.path_information / candidate.value.cost_m));
     }
   }
 }
@@ -522,7 +539,7 @@ TEST(Decide, RevisitsAnOldPlaceWhenItIsUnsure) {
   memory.old_places.clear();
   memory.adrift = {.sigma_m = 0.6, .growth = 0.1, .budget_m = 0.5};
   EXPECT_EQ(count(explorer.choose(memory), CandidateKind::kRevisit), 0) << "it drives to where slam tracked";
-  explorer.config.method = Method::kNearest;
+  explorer.config.method = make_method("nearest");
   EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "loops are worth nothing to it";
 }
 
@@ -546,6 +563,7 @@ TEST(Decide, AnAlternativePassesAnOldPlaceInItsDirection) {
 
 TEST(Decide, InformationFromAnUnsurePositionCountsLess) {
   LongAway explorer;
+  explorer.config.compared_methods = {make_method("ssmi")};
   const Decision sure = explorer.choose();
   explorer.config.information_discount_sigma_m = position_sigma_m(explorer.of_graph);
   const Decision unsure = explorer.choose();
@@ -556,9 +574,21 @@ TEST(Decide, InformationFromAnUnsurePositionCountsLess) {
     const double share = less.value.path_information / all.value.path_information;
     EXPECT_LE(share, 0.55) << "half at the robot's sigma";
     EXPECT_GE(share, 0.2);
+    ASSERT_GT(all.value.goal_information, 0.0);
     const double end = all.gain.end_sigma_m / explorer.config.information_discount_sigma_m;
     EXPECT_NEAR(less.value.goal_information, all.value.goal_information / (1.0 + end * end), 1e-9);
   }
+}
+
+TEST(Decide, ADiscountAsksForTheSpectrumWhereThereIsInformationToDiscount) {
+  LongAway explorer;
+  explorer.config.method = make_method("mi_only");
+  const double all = explorer.chosen().value.path_information;
+  explorer.config.information_discount_sigma_m = position_sigma_m(explorer.of_graph);
+  EXPECT_EQ(explorer.choose().known, (Asks{.path_information = true, .spectrum = true}));
+  EXPECT_LT(explorer.chosen().value.path_information, all);
+  explorer.config.method = make_method("nearest");
+  EXPECT_EQ(explorer.choose().known, Asks{});
 }
 
 InformationField field_with_prior(const Explorer& explorer, double prior_occupied) {
@@ -574,7 +604,7 @@ TEST(Decide, ReportsWhatOtherFieldsWouldHaveChosenAndChoosesTheSame) {
   int others = 0;
   for (const std::string& name : method_names()) {
     LongAway explorer;
-    explorer.config.method = *method_of(name);
+    explorer.config.method = make_method(name);
     Memory memory;
     for (const bool has_goal : {false, true}) {
       const Decision alone = explorer.choose(memory);

@@ -53,12 +53,13 @@ Decision decision() {
   chosen.frontier = 17;
   chosen.goal = {{1.5, -2.5}, 0.25};
   chosen.value = {3.5, 4.5, 5.5, 6.5, 7.5};
+  decision.known = {true, true, true};
   chosen.loops.resize(2);
   chosen.gain = {0.0, 8.5, 9.5, 10.5};
   chosen.utility = 11.5;
   decision.candidates[1].frontier = 18;
   decision.candidates[1].rejection = Rejection::kUnreachable;
-  decision.chosen = decision.by_mi_only = 0;
+  decision.chosen = 0;
   return decision;
 }
 
@@ -107,8 +108,6 @@ TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
                                                     {"ended_driven_nats", "80.5"},
                                                     {"ended_gained_nats", "90.5"},
                                                     {"is_chosen", "1"},
-                                                    {"is_chosen_by_mi_only", "1"},
-                                                    {"agrees_with_mi_only", "1"},
                                                     {"rejection", ""}};
   EXPECT_EQ(chosen, expected);
   const auto ended = std::find(rows[0].begin(), rows[0].end(), "ended_kind") - rows[0].begin();
@@ -120,24 +119,39 @@ TEST_F(DecisionLogTest, RejectionIsTheLastColumn) {
   ASSERT_TRUE(log.write(decision(), {}, 1, "joint", kStamp));
   const auto rows = read(file_);
   EXPECT_EQ(rows[2].back(), "cannot be reached");
-  EXPECT_EQ(rows[2][rows[2].size() - 4], "0") << "not chosen";
+  EXPECT_EQ(rows[2][rows[2].size() - 2], "0") << "not chosen";
 }
 
-TEST_F(DecisionLogTest, SaysWhereMiOnlyWouldHaveGone) {
+TEST_F(DecisionLogTest, SaysWhatOtherMethodsWouldHaveChosen) {
   Decision differs = decision();
   differs.candidates[1].rejection = Rejection::kNone;
-  differs.by_mi_only = 1;
-  DecisionLog log(file_.string());
+  differs.by_compared_methods = {1, std::nullopt};
+  DecisionLog log(file_.string(), {"mi_only", "ssmi"});
   ASSERT_TRUE(log.write(differs, {}, 1, "joint", kStamp));
   const auto rows = read(file_);
+  EXPECT_THAT(Row(rows[0].end() - 4, rows[0].end()),
+              ElementsAre("is_chosen", "is_chosen_by_mi_only", "is_chosen_by_ssmi", "rejection"));
   EXPECT_THAT(Row(rows[1].end() - 4, rows[1].end()), ElementsAre("1", "0", "0", ""));
   EXPECT_THAT(Row(rows[2].end() - 4, rows[2].end()), ElementsAre("0", "1", "0", ""));
+}
+
+TEST_F(DecisionLogTest, WhatNobodyAskedForIsEmpty) {
+  Decision nearest = decision();
+  nearest.known = {};
+  DecisionLog log(file_.string());
+  ASSERT_TRUE(log.write(nearest, {}, 1, "nearest", kStamp));
+  const auto rows = read(file_);
+  for (std::size_t i = 0; i < rows[0].size(); ++i) {
+    const bool is_asked_for = rows[0][i].ends_with("_nats") && !rows[0][i].starts_with("ended_");
+    if (is_asked_for || rows[0][i] == "d_optimality" || rows[0][i] == "places") EXPECT_EQ(rows[1][i], "") << rows[0][i];
+  }
+  EXPECT_EQ(rows[0].size(), rows[1].size());
 }
 
 TEST_F(DecisionLogTest, HasAColumnForEachPriorThatIsCompared) {
   Decision compared = decision();
   compared.by_compared_fields = {0, 1, std::nullopt};
-  DecisionLog log(file_.string(), {0.05, 0.1, 0.5});
+  DecisionLog log(file_.string(), {}, {0.05, 0.1, 0.5});
   ASSERT_TRUE(log.write(compared, {}, 1, "joint", kStamp));
   const auto rows = read(file_);
   const auto last_of = [](const Row& row) { return Row(row.end() - 4, row.end() - 1); };

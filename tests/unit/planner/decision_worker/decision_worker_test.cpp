@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "common/geometry/camera_mount.hpp"
+#include "planner/core/methods/methods.hpp"
 #include "tests/unit/planner/hallucination/small_world.hpp"
 #include "tests/unit/planner/space/flat_map.hpp"
 
@@ -29,7 +30,7 @@ class DecisionWorkerTest : public ::testing::Test {
     input.view = &view_;
     input.T_base_camera = geometry::T_base_camera({1.0, 0.0});
     input.robot = {{2.0, 2.0}, 0.0};
-    input.config.method = Method::kJoint;
+    input.config.method = make_method("joint");
     return input;
   }
   static GraphMessage graph(int keyframes) {

@@ -53,7 +53,7 @@ TEST(Explorer, ExploresThreeRoomsAndIsDone) {
 TEST(Explorer, EveryMethodEnds) {
   for (const std::string& name : method_names()) {
     WalkWorld world(closed(kThreeRooms));
-    world.decision_config.method = *method_of(name);
+    world.decision_config.method = make_method(name);
     world.explorer.start();
     world.run(600.0);
     EXPECT_EQ(world.explorer.state(), State::kDone) << name << ": " << world.explorer.reason();

@@ -40,7 +40,7 @@ const std::vector<std::string> kFarDoor = {
 class HardWorld : public testing::TestWithParam<std::string> {
  protected:
   static void start(WalkWorld& world) {
-    world.decision_config.method = *method_of(GetParam());
+    world.decision_config.method = make_method(GetParam());
     world.explorer.start();
   }
   /// Explores until it is over; `share` of the floor is to be known then.

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "planner/core/exploration/explorer.hpp"
+#include "planner/core/methods/methods.hpp"
 #include "planner/core/space/line.hpp"
 #include "tests/unit/planner/exploration/walk_slam.hpp"
 #include "tests/unit/planner/space/flat_map.hpp"
@@ -32,7 +33,7 @@ class WalkWorld {
   explicit WalkWorld(std::vector<std::string> lines, const ExplorerConfig& explorer_config = {})
       : lines_(std::move(lines)), known_(kResolution_m), surroundings({}, mapping::SensorModel{}, kResolution_m),
         explorer(explorer_config), view_({.camera = kCamera, .columns = 16, .rows = 9, .range_m = 5.0}) {
-    decision_config.method = Method::kMiOnly;
+    decision_config.method = make_method("mi_only");
     decision_config.gaps.least_nats = 0.0;  // the map has one layer
     for (int y = 0; y < height(); ++y) {
       for (int x = 0; x < width(y); ++x) {

@@ -3,7 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "planner/core/decision/decision.hpp"
+#include "planner/core/candidates/proposal_config.hpp"
+#include "planner/core/candidates/situation.hpp"
 #include "planner/core/space/path_search.hpp"
 
 namespace lapis::planner {

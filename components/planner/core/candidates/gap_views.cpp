@@ -1,4 +1,4 @@
-#include "planner/core/decision/gap_views.hpp"
+#include "planner/core/candidates/gap_views.hpp"
 
 #include <algorithm>
 #include <cmath>

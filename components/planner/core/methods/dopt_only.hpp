@@ -1,0 +1,14 @@
+#pragma once
+
+#include "planner/core/methods/method.hpp"
+
+namespace lapis::planner {
+
+/// D, as in Paper.
+class DoptOnly : public Method {
+ public:
+  Asks asks() const override { return {.spectrum = true}; }
+  double utility(const PathValue& value) const override { return value.d_optimality; }
+};
+
+}  // namespace lapis::planner

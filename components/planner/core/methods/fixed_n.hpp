@@ -1,0 +1,16 @@
+#pragma once
+
+#include "planner/core/methods/method.hpp"
+
+namespace lapis::planner {
+
+/// As Paper, but long paths neither win nor lose by the number of their nodes.
+class FixedN : public Method {
+ public:
+  Asks asks() const override { return {.path_information = true, .spectrum = true}; }
+  double utility(const PathValue& value) const override {
+    return value.fixed_n_d_optimality * (1.0 + value.path_information / value.paid_m());
+  }
+};
+
+}  // namespace lapis::planner

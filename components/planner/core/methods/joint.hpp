@@ -1,0 +1,27 @@
+#pragma once
+
+#include "planner/core/methods/method.hpp"
+
+namespace lapis::planner {
+
+struct JointConfig {
+  double beta = 1.0;  ///< what a nat about the trajectory counts against one about the map, in [0, 100]
+};
+
+/// (MI + beta d / 2 expected change of the log-determinant by loops) / cost, all in nats; d are the degrees of freedom
+/// of a pose.
+class Joint : public Method {
+ public:
+  explicit Joint(const JointConfig& config) : config_(config) {}
+
+  Asks asks() const override { return {.path_information = true, .spectrum = true}; }
+  double utility(const PathValue& value) const override {
+    return (value.path_information + config_.beta * 0.5 * kPoseDimensions * value.loop_gain) / value.paid_m();
+  }
+
+ private:
+  static constexpr double kPoseDimensions = 6.0;
+  JointConfig config_;
+};
+
+}  // namespace lapis::planner

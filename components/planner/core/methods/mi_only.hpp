@@ -1,0 +1,14 @@
+#pragma once
+
+#include "planner/core/methods/method.hpp"
+
+namespace lapis::planner {
+
+/// MI / cost.
+class MiOnly : public Method {
+ public:
+  Asks asks() const override { return {.path_information = true}; }
+  double utility(const PathValue& value) const override { return value.path_information / value.paid_m(); }
+};
+
+}  // namespace lapis::planner

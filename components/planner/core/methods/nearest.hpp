@@ -1,0 +1,14 @@
+#pragma once
+
+#include "planner/core/methods/method.hpp"
+
+namespace lapis::planner {
+
+/// 1 / cost.
+class Nearest : public Method {
+ public:
+  Asks asks() const override { return {}; }
+  double utility(const PathValue& value) const override { return 1.0 / value.paid_m(); }
+};
+
+}  // namespace lapis::planner

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "planner/core/methods/method.hpp"
+
+namespace lapis::planner {
+
+/// D (1 + MI / cost), all nodes of a path in D [Zhang, Bong & Beltrame 2024, eq. 24-25]; without information D, its
+/// limit.
+class Paper : public Method {
+ public:
+  Asks asks() const override { return {.path_information = true, .spectrum = true}; }
+  double utility(const PathValue& value) const override {
+    return value.d_optimality * (1.0 + value.path_information / value.paid_m());
+  }
+  bool keeps_goal() const override { return false; }
+};
+
+}  // namespace lapis::planner

@@ -1,0 +1,79 @@
+#include "planner/core/methods/methods.hpp"
+
+#include <gtest/gtest.h>
+
+namespace lapis::planner {
+namespace {
+
+constexpr PathValue kValue{.cost_m = 4.0,
+                           .path_information = 20.0,
+                           .goal_information = 50.0,
+                           .loop_gain = 2.0,
+                           .d_optimality = 3.0,
+                           .fixed_n_d_optimality = 5.0};
+
+double utility(const char* method, const PathValue& value) {
+  return make_method(method, {.joint = {.beta = 0.5}})->utility(value);
+}
+
+TEST(Methods, UtilityIsWhatTheEquationsSay) {
+  EXPECT_DOUBLE_EQ(utility("paper", kValue), 3.0 * (1.0 + 20.0 / 4.0));
+  EXPECT_DOUBLE_EQ(utility("fixed_n", kValue), 5.0 * (1.0 + 20.0 / 4.0));
+  EXPECT_DOUBLE_EQ(utility("joint", kValue), (20.0 + 0.5 * 3.0 * 2.0) / 4.0);
+  EXPECT_DOUBLE_EQ(utility("ssmi", kValue), 50.0);
+  EXPECT_DOUBLE_EQ(utility("nearest", kValue), 0.25);
+  EXPECT_DOUBLE_EQ(utility("mi_only", kValue), 5.0);
+  EXPECT_DOUBLE_EQ(utility("dopt_only", kValue), 3.0);
+}
+
+TEST(Methods, EdgeCases) {
+  PathValue value = kValue;
+  value.path_information = 0.0;
+  EXPECT_DOUBLE_EQ(utility("paper", value), 3.0) << "alpha is infinite: the limit is D";
+  value = kValue;
+  value.cost_m = 0.0;
+  EXPECT_DOUBLE_EQ(utility("mi_only", value), 80.0) << "a path of one voxel";
+}
+
+// Who is judged by what was not computed would compare zeros.
+TEST(Methods, AskForAllThatTheirUtilityIsMadeOf) {
+  for (const std::string& name : method_names()) {
+    const auto method = make_method(name);
+    ASSERT_TRUE(method) << name;
+    PathValue asked{.cost_m = 4.0, .tour_place = 2};
+    if (method->asks().path_information) asked.path_information = kValue.path_information;
+    if (method->asks().goal_information) asked.goal_information = kValue.goal_information;
+    if (method->asks().spectrum) {
+      asked.loop_gain = kValue.loop_gain;
+      asked.d_optimality = kValue.d_optimality;
+      asked.fixed_n_d_optimality = kValue.fixed_n_d_optimality;
+    }
+    PathValue all = kValue;
+    all.tour_place = 2;
+    EXPECT_EQ(method->utility(asked), method->utility(all)) << name;
+    EXPECT_GT(method->utility(asked), 0.0) << name;
+  }
+}
+
+TEST(Methods, OnlyThePaperHasNoHysteresisAndOnlyTareATourOfItsOwn) {
+  for (const std::string& name : method_names()) {
+    EXPECT_EQ(make_method(name)->keeps_goal(), name != "paper") << name;
+    EXPECT_EQ(make_method(name)->has_own_candidates(), name == "tare") << name;
+  }
+}
+
+// And old places as goals.
+TEST(Methods, LoopsAreWorthSomethingToThoseWithAGraphInTheirUtility) {
+  for (const std::string& name : method_names()) {
+    const bool has_graph = name == "paper" || name == "fixed_n" || name == "joint" || name == "dopt_only";
+    EXPECT_EQ(make_method(name)->asks().spectrum, has_graph) << name;
+  }
+}
+
+TEST(Methods, LapisIsOneOfThem) {
+  EXPECT_EQ(make_method("lapis")->utility(kValue), make_method("joint")->utility(kValue));
+  EXPECT_EQ(make_method(""), nullptr);
+}
+
+}  // namespace
+}  // namespace lapis::planner

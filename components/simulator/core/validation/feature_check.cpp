@@ -116,10 +116,11 @@ std::vector<std::string> worst_places(const Scene& scene, const std::vector<Feat
 }  // namespace
 
 bool is_decided(std::size_t poor, std::size_t views) {
-  const double n = static_cast<double>(views), log_share = std::log(kMostPoor), log_rest = std::log1p(-kMostPoor);
+  const auto n = static_cast<double>(views);
+  const double log_share = std::log(kMostPoor), log_rest = std::log1p(-kMostPoor);
   double fewer = 0.0, probability = 0.0;
   for (std::size_t i = 0; i <= poor; ++i) {
-    const double k = static_cast<double>(i);
+    const auto k = static_cast<double>(i);
     fewer += probability;
     probability = std::exp(std::lgamma(n + 1.0) - std::lgamma(k + 1.0) - std::lgamma(n - k + 1.0) + k * log_share +
                            (n - k) * log_rest);

@@ -3,8 +3,10 @@
 
 usage: promise_table.py [PNG_FILE] RUN_FOLDER|CSV_FILE...     folders of explore.sh; files of lapis_explorations --paths
 
-For each method: all paths and fifths of them by their promise, each with the sums, their ratio and, over all, Spearman's
-rank correlation. A path that was left for another one counts with what its views had promised up to there. Paths of kind
+For each method: all paths and fifths of them by what they promised when they were chosen, each with the sums, their ratio
+and, over all, Spearman's rank correlation. In the sums a path that was left for another one counts with what its views
+had promised up to there, but its fifth is that of its whole promise: fifths by the part that was driven would gather in
+the lowest one what was left at once. Paths of kind
 `known` lead through what was known already (lapis_explorations --known), and of kind `driven` where they had led before:
 of them, the mean difference per metre.
 """
@@ -18,10 +20,10 @@ import sys
 import usage
 
 FIFTHS = 5
-COLUMNS = ("method", "ended_kind", "ended_cost_m", "ended_driven_nats", "ended_gained_nats")
+COLUMNS = ("method", "ended_kind", "ended_cost_m", "ended_promised_nats", "ended_driven_nats", "ended_gained_nats")
 
 KNOWN = {"known": "known space", "driven": "driven before"}
-Path = collections.namedtuple("Path", "kind cost_m promised_nats gained_nats")
+Path = collections.namedtuple("Path", "kind cost_m whole_nats promised_nats gained_nats")
 
 
 def paths_of(source):
@@ -31,7 +33,9 @@ def paths_of(source):
         sys.exit(f"{file}: no such file; wanted is a run folder of explore.sh, or a file of lapis_explorations --paths")
     with file.open(newline="") as stream:
         table = csv.DictReader(stream)
-        if missing := set(COLUMNS) - set(table.fieldnames or ()):
+        if not table.fieldnames:
+            sys.exit(f"{file}: the file is empty; the run that writes it has ended no path yet, or was killed")
+        if missing := set(COLUMNS) - set(table.fieldnames):
             sys.exit(f"{file}: the column {min(missing)} is not there; an older program wrote it")
         for row in table:
             if row["ended_kind"]:
@@ -62,8 +66,8 @@ def spearman(paths):
 
 
 def fifths(paths):
-    """By promise, equally many in each but for the rest."""
-    paths = sorted(paths, key=lambda path: path.promised_nats)
+    """By the whole promise, equally many in each but for the rest."""
+    paths = sorted(paths, key=lambda path: path.whole_nats)
     return [paths[i * len(paths) // FIFTHS:(i + 1) * len(paths) // FIFTHS] for i in range(FIFTHS)]
 
 
@@ -78,7 +82,7 @@ def print_method(method, paths):
     correlation = spearman(new)
     print(f"| {method} | all | {cells(new)} | {'-' if correlation is None else f'{correlation:.2f}'} |")
     for group in filter(None, fifths(new)):
-        print(f"| {method} | {group[0].promised_nats:.0f} to {group[-1].promised_nats:.0f} | {cells(group)} | |")
+        print(f"| {method} | {group[0].whole_nats:.0f} to {group[-1].whole_nats:.0f} | {cells(group)} | |")
     for kind, name in KNOWN.items():
         known = [path for path in paths if path.kind == kind]
         if known:
@@ -120,7 +124,7 @@ def main():
             methods[method].append(path)
     if not methods:
         sys.exit("promise_table.py: no path ended in any of them")
-    print("| method | promised [nat] | paths | promised in all | gained in all | ratio | Spearman |")
+    print("| method | when chosen [nat] | paths | promised by what was driven | gained | ratio | Spearman |")
     print("| --- | --- | --- | --- | --- | --- | --- |")
     for method, paths in methods.items():
         print_method(method, paths)

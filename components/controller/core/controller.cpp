@@ -161,8 +161,9 @@ Decision Controller::align(double elapsed_s) {
 /// Towards a point some distance ahead on the path; where no free path leads there, towards one beyond what may stand
 /// in the way, or towards a nearer one.
 std::optional<LocalPath> Controller::find_local_path(const Obstacles& obstacles) const {
+  const auto doubtful = map_.unseen_feet_near(T_map_base_, planner_.fan().reach_m());
   for (const double share : {1.0, 2.0, 0.5}) {
-    if (auto local_path = planner_.choose(obstacles, goal_ahead(share * config_.look_ahead_m), local_path_))
+    if (auto local_path = planner_.choose(obstacles, doubtful, goal_ahead(share * config_.look_ahead_m), local_path_))
       return local_path;
   }
   return std::nullopt;

@@ -1,19 +1,23 @@
 #include "controller/core/local_map.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <numbers>
 #include <set>
 #include <utility>
 
 namespace lapis::controller {
 namespace {
 
-constexpr double kEdge_m = 0.05;    // of a voxel
-constexpr double kNearest_m = 0.1;  // depth below is none
-constexpr double kBehind_m = 0.15;  // a surface is looked through when the image sees so much farther,
-constexpr double kBehind = 0.02;    // and this share of the depth, at it
-constexpr int kAround_px = 2;       // and at the pixels so far around it: edges are ragged
-constexpr double kTouch_m = 0.05;   // a point this near to a cell explains it
+constexpr double kEdge_m = 0.05;       // of a voxel
+constexpr double kNearest_m = 0.1;     // depth below is none
+constexpr double kBehind_m = 0.15;     // a surface is looked through when the image sees so much farther,
+constexpr double kBehind = 0.02;       // and this share of the depth, at it
+constexpr int kAround_px = 2;          // and at the pixels so far around it: edges are ragged
+constexpr double kTouch_m = 0.05;      // a point this near to a cell explains it
+constexpr double kFoot_m = 0.07;       // by so much wider may be what is below an image
+constexpr double kFootHeight_m = 0.2;  // what was seen from here down has shown its foot
 constexpr double kStands_m_s = 0.03, kStands_rad_s = 0.05;  // poses of a robot that stands differ by less
 
 mapping::VoxelIndex voxel_of(const Eigen::Vector2d& p_map, double height_m) {
@@ -115,18 +119,20 @@ void LocalMap::add_hits(const DepthView& view, const PlanarPose& T_map_base) {
   }
 }
 
-/// Where in the plane points are, within a distance of the robot, in the map frame: each place once, in a fixed order.
-std::vector<Eigen::Vector2d> LocalMap::columns_near(const Eigen::Vector2d& p_map, double distance_m) const {
-  std::vector<std::pair<std::int32_t, std::int32_t>> cells;
+/// Within a distance of a place; each column once, in a fixed order.
+std::vector<LocalMap::Column> LocalMap::columns_near(const Eigen::Vector2d& p_map, double distance_m) const {
+  std::vector<std::array<std::int32_t, 3>> cells;
   for (const auto& [voxel, point] : points_) {
-    if ((center_of(voxel) - p_map).squaredNorm() <= distance_m * distance_m) cells.emplace_back(voxel.x, voxel.y);
+    if ((center_of(voxel) - p_map).squaredNorm() <= distance_m * distance_m)
+      cells.push_back({voxel.x, voxel.y, voxel.z});
   }
   std::sort(cells.begin(), cells.end());
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  std::vector<Eigen::Vector2d> centers;
-  centers.reserve(cells.size());
-  for (const auto& [x, y] : cells) centers.push_back(center_of({x, y, 0}));
-  return centers;
+  const auto is_same_column = [](const auto& a, const auto& b) { return a[0] == b[0] && a[1] == b[1]; };
+  cells.erase(std::unique(cells.begin(), cells.end(), is_same_column), cells.end());  // the lowest stays
+  std::vector<Column> columns;
+  columns.reserve(cells.size());
+  for (const auto& [x, y, z] : cells) columns.push_back({center_of({x, y, 0}), z * kEdge_m});
+  return columns;
 }
 
 std::vector<Eigen::Vector2d> LocalMap::obstacles_near(const PlanarPose& T_map_base, double distance_m) const {
@@ -134,8 +140,8 @@ std::vector<Eigen::Vector2d> LocalMap::obstacles_near(const PlanarPose& T_map_ba
   const double cell_m = std::max(plan_.resolution_m, obstacles_.resolution_m);
   const auto seen = columns_near(T_map_base.translation(), distance_m + cell_m);
   std::vector<Eigen::Vector2d> points;
-  for (const Eigen::Vector2d& p_map : seen) {
-    const Eigen::Vector2d p_base = T_base_map * p_map;
+  for (const Column& column : seen) {
+    const Eigen::Vector2d p_base = T_base_map * column.p_map;
     if (p_base.norm() <= distance_m) points.push_back(p_base);
   }
   add_occupied(plan_, T_map_base, distance_m, seen, points);
@@ -143,13 +149,28 @@ std::vector<Eigen::Vector2d> LocalMap::obstacles_near(const PlanarPose& T_map_ba
   return points;
 }
 
+std::vector<Eigen::Vector2d> LocalMap::unseen_feet_near(const PlanarPose& T_map_base, double distance_m) const {
+  const PlanarPose T_base_map = T_map_base.inverse();
+  std::vector<Eigen::Vector2d> points;
+  for (const Column& column : columns_near(T_map_base.translation(), distance_m)) {
+    if (column.lowest_m < kFootHeight_m) continue;
+    for (const int quarter : {0, 1, 2, 3}) {
+      const Eigen::Vector2d aside =
+          Eigen::Rotation2Dd(0.5 * std::numbers::pi * quarter) * Eigen::Vector2d(kFoot_m, 0.0);
+      points.push_back(T_base_map * (column.p_map + aside));
+    }
+  }
+  return points;
+}
+
 void LocalMap::add_occupied(const Grid& grid, const PlanarPose& T_map_base, double distance_m,
-                            const std::vector<Eigen::Vector2d>& columns, std::vector<Eigen::Vector2d>& points) const {
+                            const std::vector<Column>& columns, std::vector<Eigen::Vector2d>& points) const {
   if (grid.cells.empty()) return;
   std::set<std::pair<int, int>> explained;
-  for (const Eigen::Vector2d& p_map : columns) {
+  for (const Column& column : columns) {
     for (const double dx : {-kTouch_m, kTouch_m}) {
-      for (const double dy : {-kTouch_m, kTouch_m}) explained.insert(cell_of(grid, p_map + Eigen::Vector2d(dx, dy)));
+      for (const double dy : {-kTouch_m, kTouch_m})
+        explained.insert(cell_of(grid, column.p_map + Eigen::Vector2d(dx, dy)));
     }
   }
   const PlanarPose T_base_map = T_map_base.inverse();

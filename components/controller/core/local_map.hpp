@@ -61,6 +61,9 @@ class LocalMap {
   /// Obstacle points in base_link, within a distance of the robot. An occupied cell of a grid is its centre, unless
   /// points show what in it stands where.
   std::vector<Eigen::Vector2d> obstacles_near(const PlanarPose& T_map_base, double distance_m) const;
+  /// Points in base_link where something may stand that no image has shown: around columns of which only the upper part
+  /// was seen, because what leans or spreads below an image is wider at the floor.
+  std::vector<Eigen::Vector2d> unseen_feet_near(const PlanarPose& T_map_base, double distance_m) const;
   /// True when the mapper has seen that nothing is there; what the camera alone has seen is not asked.
   bool is_known_free(const Eigen::Vector2d& p_map) const;
 
@@ -73,15 +76,20 @@ class LocalMap {
     PlanarPose T_map_base;
     time::Time stamp;
   };
+  /// Points above one place of the map's plane.
+  struct Column {
+    Eigen::Vector2d p_map;
+    double lowest_m;  ///< above base_link
+  };
   using Points = std::unordered_map<mapping::VoxelIndex, Point, mapping::GridIndexHash>;
 
   void pass_time(const PlanarPose& T_map_base, time::Time stamp, bool has_path);
   void look_through(const DepthView& view, const PlanarPose& T_map_base);
   void add_hits(const DepthView& view, const PlanarPose& T_map_base);
   void forget(const PlanarPose& T_map_base);
-  std::vector<Eigen::Vector2d> columns_near(const Eigen::Vector2d& p_map, double distance_m) const;
+  std::vector<Column> columns_near(const Eigen::Vector2d& p_map, double distance_m) const;
   void add_occupied(const Grid& grid, const PlanarPose& T_map_base, double distance_m,
-                    const std::vector<Eigen::Vector2d>& columns, std::vector<Eigen::Vector2d>& points) const;
+                    const std::vector<Column>& columns, std::vector<Eigen::Vector2d>& points) const;
 
   LocalMapConfig config_;
   Points points_;

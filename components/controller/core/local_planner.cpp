@@ -13,6 +13,7 @@ constexpr double kScale_m = 0.1;         // a path that misses the goal by this 
 constexpr double kTurnScale_rad = 1.0;   // so does turning on the spot by this much more
 constexpr double kProgress =
     0.3;  // share of the distance to the goal: a path that brings the robot nearer by less is none
+constexpr double kDoubt = 0.5;  // a path past what may stand there counts so much
 constexpr double kFaith = 1.2;  // what was chosen before counts so much more, or two equal paths alternate
 constexpr double kSameHeading_rad = 0.3;
 
@@ -34,13 +35,14 @@ Approach nearest_to(const Eigen::Vector2d& goal, const FanPath& path, std::size_
 
 }  // namespace
 
-std::optional<LocalPath> LocalPlanner::choose(std::span<const Eigen::Vector2d> obstacles, const Eigen::Vector2d& goal,
+std::optional<LocalPath> LocalPlanner::choose(std::span<const Eigen::Vector2d> obstacles,
+                                              std::span<const Eigen::Vector2d> doubtful, const Eigen::Vector2d& goal,
                                               const std::optional<LocalPath>& last) const {
   std::vector<Candidate> candidates;
   for (int i = 0; i < kHeadings; ++i) {
     const double heading = wrapped(2.0 * std::numbers::pi * i / kHeadings);
     if (std::abs(wrapped(bearing(goal) - heading)) > kWidestGoal_rad) continue;
-    rate_groups(obstacles, goal, heading, candidates);
+    rate_groups(obstacles, doubtful, goal, heading, candidates);
   }
   for (Candidate& candidate : candidates) {
     if (!last) break;
@@ -57,9 +59,11 @@ std::optional<LocalPath> LocalPlanner::choose(std::span<const Eigen::Vector2d> o
 
 /// Adds the groups that have a free path to the goal. A path that an obstacle cuts while it comes nearer does not
 /// count, unless it is there already: it leads to the obstacle, not past it.
-void LocalPlanner::rate_groups(std::span<const Eigen::Vector2d> obstacles, const Eigen::Vector2d& goal,
-                               double heading_rad, std::vector<Candidate>& candidates) const {
+void LocalPlanner::rate_groups(std::span<const Eigen::Vector2d> obstacles, std::span<const Eigen::Vector2d> doubtful,
+                               const Eigen::Vector2d& goal, double heading_rad,
+                               std::vector<Candidate>& candidates) const {
   const auto free = fan_.free_poses(obstacles, heading_rad);
+  const auto sure = fan_.free_poses(doubtful, heading_rad);
   const Eigen::Vector2d goal_heading = Eigen::Rotation2Dd(-heading_rad) * goal;
   const double turn_factor = std::exp(-std::abs(heading_rad) / kTurnScale_rad);
   std::vector<Candidate> of_group(fan_.groups());
@@ -71,7 +75,8 @@ void LocalPlanner::rate_groups(std::span<const Eigen::Vector2d> obstacles, const
     const bool is_cut = free[i] < path.poses.size() && approach.pose + 1U == free[i] && approach.distance_m > kScale_m;
     if (is_cut || approach.distance_m > near_m) continue;
     Candidate& candidate = of_group[path.group];
-    candidate.score += turn_factor * std::exp(-approach.distance_m / kScale_m);
+    candidate.score +=
+        (approach.pose < sure[i] ? 1.0 : kDoubt) * turn_factor * std::exp(-approach.distance_m / kScale_m);
     if (approach.distance_m > nearest_m[path.group]) continue;
     nearest_m[path.group] = approach.distance_m;
     candidate.heading_rad = heading_rad;

@@ -25,8 +25,9 @@ class LocalPlanner {
 
   const PathFan& fan() const { return fan_; }
   /// All points in base_link; `last` is what was chosen in the cycle before. Nothing when no free path leads nearer.
-  std::optional<LocalPath> choose(std::span<const Eigen::Vector2d> obstacles, const Eigen::Vector2d& goal,
-                                  const std::optional<LocalPath>& last) const;
+  /// Paths that come too near to what is `doubtful` count less.
+  std::optional<LocalPath> choose(std::span<const Eigen::Vector2d> obstacles, std::span<const Eigen::Vector2d> doubtful,
+                                  const Eigen::Vector2d& goal, const std::optional<LocalPath>& last) const;
   /// How far the robot can continue with this curvature [m].
   double free_length_m(std::span<const Eigen::Vector2d> obstacles, double curvature_per_m) const;
 
@@ -37,8 +38,8 @@ class LocalPlanner {
     std::size_t path = 0;  ///< the best of its group
     std::size_t free_poses = 0;
   };
-  void rate_groups(std::span<const Eigen::Vector2d> obstacles, const Eigen::Vector2d& goal, double heading_rad,
-                   std::vector<Candidate>& candidates) const;
+  void rate_groups(std::span<const Eigen::Vector2d> obstacles, std::span<const Eigen::Vector2d> doubtful,
+                   const Eigen::Vector2d& goal, double heading_rad, std::vector<Candidate>& candidates) const;
   LocalPath local_path_of(const Candidate& candidate) const;
 
   PathFan fan_;

@@ -156,6 +156,20 @@ TEST(Controller, FindsAPathRoundSomethingWideThatAppearsNearIt) {
   expect_reached(world, path.back());
 }
 
+TEST(Controller, KeepsOffFeetThatNoImageHasShown) {
+  for (const double side : {-1.0, 1.0}) {
+    const double seen_y = 0.26 * side, foot_y = 0.19 * side, far_y = 0.8 * side;
+    const auto between = [](double a, double b, double low_m, double high_m, std::uint16_t label) {
+      return Box{{1.5, std::min(a, b), low_m}, {2.2, std::max(a, b), high_m}, label};
+    };
+    KinematicWorld world(
+        with(hall(), {between(seen_y, far_y, 0.4, 1.0, 9), between(foot_y, far_y, 0.0, 0.4, KinematicWorld::kGlass)}));
+    const Path path = straight({0, 0}, {4, 0}, 0.0);
+    drive(world, path, 15.0);
+    expect_reached(world, path.back());
+  }
+}
+
 TEST(Controller, AccelerationStaysWithinTheRobotsLimits) {
   KinematicWorld world(with(hall(), {{{2, -0.2, 0}, {2.4, 0.2, 0.8}, 9}}));
   world.controller.set_path(straight({0, 0}, {4, 0}, 3.0), "");

@@ -7,7 +7,7 @@
 #include "common/images/rectifier.hpp"
 #include "common/messages/converted.hpp"
 #include "idl/sensor_msgs.hpp"
-#include "slam/core/frame.hpp"
+#include "slam/core/frame/frame.hpp"
 
 namespace lapis::slam {
 

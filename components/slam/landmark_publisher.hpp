@@ -7,7 +7,7 @@
 
 #include "common/runtime/context.hpp"
 #include "idl/lapis_msgs.hpp"
-#include "slam/core/landmark_tiles.hpp"
+#include "slam/core/map/landmark_tiles.hpp"
 
 namespace lapis::slam {
 

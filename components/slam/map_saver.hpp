@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "slam/core/slam_file.hpp"
+#include "slam/core/files/slam_file.hpp"
 
 namespace lapis::slam {
 

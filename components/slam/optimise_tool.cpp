@@ -11,9 +11,9 @@
 #include <stdexcept>
 
 #include "common/files/atomic_file.hpp"
-#include "slam/core/pose_graph_file.hpp"
-#include "slam/core/pose_graph_initialization.hpp"
-#include "slam/core/pose_graph_optimizer.hpp"
+#include "slam/core/files/pose_graph_file.hpp"
+#include "slam/core/graph/pose_graph_initialization.hpp"
+#include "slam/core/graph/pose_graph_optimizer.hpp"
 
 namespace lapis::slam {
 namespace {

@@ -12,7 +12,7 @@
 #include "common/topics/slam.hpp"
 #include "common/topics/transforms.hpp"
 #include "common/trajectory/trajectory.hpp"
-#include "slam/core/pose_graph_file.hpp"
+#include "slam/core/files/pose_graph_file.hpp"
 
 namespace lapis::slam {
 namespace {

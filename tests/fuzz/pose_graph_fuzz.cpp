@@ -5,9 +5,9 @@
 #include <sstream>
 
 #include "fuzz_files.hpp"
-#include "slam/core/pose_graph_file.hpp"
-#include "slam/core/pose_graph_initialization.hpp"
-#include "slam/core/pose_graph_optimizer.hpp"
+#include "slam/core/files/pose_graph_file.hpp"
+#include "slam/core/graph/pose_graph_initialization.hpp"
+#include "slam/core/graph/pose_graph_optimizer.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
-#include "slam/core/slam_file.hpp"
+#include "slam/core/files/slam_file.hpp"
 
 namespace {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
-#include "slam/core/pose_graph.hpp"
+#include "slam/core/graph/pose_graph.hpp"
 
 namespace lapis::slam::benchmark {
 

@@ -9,7 +9,8 @@
 
 #include "simulator/core/robot/starts.hpp"
 #include "simulator/core/robot/tour_follower.hpp"
-#include "slam/core/pose_graph.hpp"
+#include "slam/core/graph/pose_graph.hpp"
+#include "slam/core/motion/covariance.hpp"
 #include "tests/benchmark/slam/dice.hpp"
 #include "tests/benchmark/slam/tour_recording.hpp"
 #include "tests/benchmark/slam/trial_rig.hpp"

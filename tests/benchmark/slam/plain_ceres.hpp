@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slam/core/pose_graph.hpp"
+#include "slam/core/graph/pose_graph.hpp"
 
 namespace lapis::slam::benchmark {
 

@@ -6,7 +6,7 @@
 #include <opencv2/features2d.hpp>
 
 #include "common/geometry/se3.hpp"
-#include "slam/core/frame.hpp"
+#include "slam/core/frame/frame.hpp"
 
 namespace lapis::slam::benchmark {
 

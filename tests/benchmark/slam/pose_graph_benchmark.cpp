@@ -14,9 +14,9 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
-#include "slam/core/pose_graph_file.hpp"
-#include "slam/core/pose_graph_initialization.hpp"
-#include "slam/core/pose_graph_optimizer.hpp"
+#include "slam/core/files/pose_graph_file.hpp"
+#include "slam/core/graph/pose_graph_initialization.hpp"
+#include "slam/core/graph/pose_graph_optimizer.hpp"
 #include "tests/benchmark/slam/plain_ceres.hpp"
 #include "tests/unit/slam/wrong_loops.hpp"
 

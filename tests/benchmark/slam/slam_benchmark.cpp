@@ -3,8 +3,8 @@
 #include <benchmark/benchmark.h>
 #include <opencv2/core.hpp>
 
-#include "slam/core/bundle_adjuster.hpp"
-#include "slam/core/place_index.hpp"
+#include "slam/core/loops/place_index.hpp"
+#include "slam/core/mapping/bundle_adjuster.hpp"
 #include "slam/core/rgbd_slam.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 

@@ -9,7 +9,7 @@
 #include "common/geometry/se3.hpp"
 #include "simulator/core/sensors.hpp"
 #include "simulator/simulator_config.hpp"
-#include "slam/core/frame.hpp"
+#include "slam/core/frame/frame.hpp"
 #include "slam/slam_config.hpp"
 
 namespace lapis::slam::benchmark {

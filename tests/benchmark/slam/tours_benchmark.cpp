@@ -19,7 +19,7 @@
 #include "common/trajectory/trajectory.hpp"
 #include "evaluator/core/ate.hpp"
 #include "simulator/set_up.hpp"
-#include "slam/core/pose_graph_file.hpp"
+#include "slam/core/files/pose_graph_file.hpp"
 #include "slam/core/rgbd_slam.hpp"
 #include "tests/benchmark/slam/edge_honesty.hpp"
 #include "tests/benchmark/slam/pose_error.hpp"

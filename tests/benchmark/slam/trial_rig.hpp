@@ -5,7 +5,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "simulator/core/simulation.hpp"
-#include "slam/core/frame.hpp"
+#include "slam/core/frame/frame.hpp"
 
 namespace lapis::slam::benchmark {
 

@@ -4,6 +4,7 @@
 #include <cstdio>
 
 #include "evaluator/core/ate.hpp"
+#include "slam/core/motion/covariance.hpp"
 
 namespace lapis::slam::benchmark {
 namespace {

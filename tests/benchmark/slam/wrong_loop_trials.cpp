@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "slam/core/graph_worker.hpp"
-#include "slam/core/pose_graph_initialization.hpp"
+#include "slam/core/graph/graph_worker.hpp"
+#include "slam/core/graph/pose_graph_initialization.hpp"
 #include "tests/unit/slam/wrong_loops.hpp"
 
 namespace lapis::slam::benchmark {

@@ -1,10 +1,10 @@
-#include "slam/core/bundle_adjuster.hpp"
+#include "slam/core/mapping/bundle_adjuster.hpp"
 
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "slam/core/noise_model.hpp"
+#include "slam/core/frame/noise_model.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
 namespace lapis::slam {

@@ -1,4 +1,4 @@
-#include "slam/core/feature_extractor.hpp"
+#include "slam/core/frame/feature_extractor.hpp"
 
 #include <algorithm>
 #include <cmath>

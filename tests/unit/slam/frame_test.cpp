@@ -1,11 +1,11 @@
-#include "slam/core/frame.hpp"
+#include "slam/core/frame/frame.hpp"
 
 #include <algorithm>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "slam/core/surface.hpp"
+#include "slam/core/frame/surface.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
 namespace lapis::slam {

@@ -11,8 +11,8 @@
 #include <gtest/gtest.h>
 
 #include "common/files/atomic_file.hpp"
+#include "slam/core/files/slam_file.hpp"
 #include "slam/core/rgbd_slam.hpp"
-#include "slam/core/slam_file.hpp"
 #include "tests/support/endless_process.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"

@@ -1,4 +1,4 @@
-#include "slam/core/landmark_tiles.hpp"
+#include "slam/core/map/landmark_tiles.hpp"
 
 #include <algorithm>
 #include <limits>

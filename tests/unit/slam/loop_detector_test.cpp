@@ -1,4 +1,4 @@
-#include "slam/core/loop_detector.hpp"
+#include "slam/core/loops/loop_detector.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,9 +1,9 @@
-#include "slam/core/map.hpp"
+#include "slam/core/map/map.hpp"
 
 #include <gtest/gtest.h>
 
-#include "slam/core/keyframe_rule.hpp"
-#include "slam/core/motion_model.hpp"
+#include "slam/core/motion/motion_model.hpp"
+#include "slam/core/tracking/keyframe_rule.hpp"
 
 namespace lapis::slam {
 namespace {

@@ -1,4 +1,4 @@
-#include "slam/core/matcher.hpp"
+#include "slam/core/tracking/matcher.hpp"
 
 #include <bit>
 #include <random>

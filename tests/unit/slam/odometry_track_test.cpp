@@ -1,10 +1,10 @@
-#include "slam/core/odometry_track.hpp"
+#include "slam/core/motion/odometry_track.hpp"
 
 #include <limits>
 
 #include <gtest/gtest.h>
 
-#include "slam/core/motion_model.hpp"
+#include "slam/core/motion/motion_model.hpp"
 
 namespace lapis::slam {
 namespace {

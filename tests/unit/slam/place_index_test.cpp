@@ -1,4 +1,4 @@
-#include "slam/core/place_index.hpp"
+#include "slam/core/loops/place_index.hpp"
 
 #include <random>
 

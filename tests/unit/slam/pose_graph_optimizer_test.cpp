@@ -1,4 +1,4 @@
-#include "slam/core/pose_graph_optimizer.hpp"
+#include "slam/core/graph/pose_graph_optimizer.hpp"
 
 #include <gtest/gtest.h>
 #include <Eigen/Cholesky>
@@ -7,9 +7,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "slam/core/block_cholesky.hpp"
-#include "slam/core/pose_graph_initialization.hpp"
-#include "slam/core/pose_graph_space.hpp"
+#include "slam/core/graph/block_cholesky.hpp"
+#include "slam/core/graph/pose_graph_initialization.hpp"
+#include "slam/core/graph/pose_graph_space.hpp"
 
 namespace lapis::slam {
 namespace {

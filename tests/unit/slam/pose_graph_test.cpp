@@ -1,4 +1,4 @@
-#include "slam/core/pose_graph.hpp"
+#include "slam/core/graph/pose_graph.hpp"
 
 #include <cstdlib>
 #include <filesystem>
@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-#include "slam/core/pose_graph_file.hpp"
+#include "slam/core/files/pose_graph_file.hpp"
 
 #include "tests/support/test_data.hpp"
 

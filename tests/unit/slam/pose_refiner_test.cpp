@@ -1,4 +1,4 @@
-#include "slam/core/pose_refiner.hpp"
+#include "slam/core/tracking/pose_refiner.hpp"
 
 #include <algorithm>
 #include <random>
@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 #include <Eigen/Eigenvalues>
 
-#include "slam/core/noise_model.hpp"
-#include "slam/core/pose_solver.hpp"
+#include "slam/core/frame/noise_model.hpp"
+#include "slam/core/tracking/pose_solver.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
 namespace lapis::slam {

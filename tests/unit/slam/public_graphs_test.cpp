@@ -4,9 +4,9 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
-#include "slam/core/pose_graph_file.hpp"
-#include "slam/core/pose_graph_initialization.hpp"
-#include "slam/core/pose_graph_optimizer.hpp"
+#include "slam/core/files/pose_graph_file.hpp"
+#include "slam/core/graph/pose_graph_initialization.hpp"
+#include "slam/core/graph/pose_graph_optimizer.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/unit/slam/wrong_loops.hpp"
 

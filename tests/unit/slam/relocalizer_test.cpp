@@ -1,10 +1,10 @@
-#include "slam/core/relocalizer.hpp"
+#include "slam/core/loops/relocalizer.hpp"
 
 #include <cmath>
 
 #include <gtest/gtest.h>
 
-#include "slam/core/surface.hpp"
+#include "slam/core/frame/surface.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
 namespace lapis::slam {

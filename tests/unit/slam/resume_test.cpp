@@ -1,8 +1,8 @@
 // A map that is saved and resumed.
 #include <gtest/gtest.h>
 
+#include "slam/core/files/slam_file.hpp"
 #include "slam/core/rgbd_slam.hpp"
-#include "slam/core/slam_file.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
 namespace lapis::slam {

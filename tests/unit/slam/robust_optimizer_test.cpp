@@ -7,9 +7,9 @@
 #include <numbers>
 #include <random>
 
-#include "slam/core/graduated_weights.hpp"
-#include "slam/core/pose_graph_initialization.hpp"
-#include "slam/core/pose_graph_optimizer.hpp"
+#include "slam/core/graph/graduated_weights.hpp"
+#include "slam/core/graph/pose_graph_initialization.hpp"
+#include "slam/core/graph/pose_graph_optimizer.hpp"
 #include "tests/unit/slam/wrong_loops.hpp"
 
 namespace lapis::slam {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "slam/core/slam_file.hpp"
+#include "slam/core/files/slam_file.hpp"
 
 namespace lapis::slam::test {
 

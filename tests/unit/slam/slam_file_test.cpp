@@ -1,4 +1,4 @@
-#include "slam/core/slam_file.hpp"
+#include "slam/core/files/slam_file.hpp"
 
 #include <algorithm>
 #include <csignal>

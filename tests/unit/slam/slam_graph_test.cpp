@@ -1,4 +1,4 @@
-#include "slam/core/slam_graph.hpp"
+#include "slam/core/graph/slam_graph.hpp"
 
 #include <algorithm>
 #include <numbers>
@@ -6,8 +6,9 @@
 
 #include <gtest/gtest.h>
 
-#include "slam/core/graph_worker.hpp"
-#include "slam/core/pose_graph_optimizer.hpp"
+#include "slam/core/graph/graph_worker.hpp"
+#include "slam/core/graph/pose_graph_optimizer.hpp"
+#include "slam/core/motion/covariance.hpp"
 
 namespace lapis::slam {
 namespace {

@@ -11,10 +11,10 @@
 #include <Eigen/Eigenvalues>
 #include <Eigen/QR>
 
-#include "slam/core/bundle_adjuster.hpp"
-#include "slam/core/noise_model.hpp"
+#include "slam/core/frame/noise_model.hpp"
+#include "slam/core/mapping/bundle_adjuster.hpp"
 #include "slam/core/rgbd_slam.hpp"
-#include "slam/core/tracker.hpp"
+#include "slam/core/tracking/tracker.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
 namespace lapis::slam {

@@ -1,12 +1,12 @@
-#include "slam/core/surface.hpp"
+#include "slam/core/frame/surface.hpp"
 
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "slam/core/noise_model.hpp"
-#include "slam/core/pose_refiner.hpp"
+#include "slam/core/frame/noise_model.hpp"
+#include "slam/core/tracking/pose_refiner.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
 namespace lapis::slam {

@@ -1,8 +1,8 @@
-#include "slam/core/surface_tracker.hpp"
+#include "slam/core/tracking/surface_tracker.hpp"
 
 #include <gtest/gtest.h>
 
-#include "slam/core/surface.hpp"
+#include "slam/core/frame/surface.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
 namespace lapis::slam {

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/geometry/se3.hpp"
-#include "slam/core/frame.hpp"
+#include "slam/core/frame/frame.hpp"
 
 namespace lapis::slam::test {
 

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
-#include "slam/core/frame.hpp"
+#include "slam/core/frame/frame.hpp"
 
 namespace lapis::slam::test {
 

@@ -1,11 +1,11 @@
-#include "slam/core/wheel_calibration.hpp"
+#include "slam/core/motion/wheel_calibration.hpp"
 
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
-#include "slam/core/odometry_track.hpp"
+#include "slam/core/motion/odometry_track.hpp"
 
 namespace lapis::slam {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <random>
 
-#include "slam/core/pose_graph_initialization.hpp"
+#include "slam/core/graph/pose_graph_initialization.hpp"
 
 namespace lapis::slam::test {
 namespace {

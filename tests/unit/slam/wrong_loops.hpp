@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "slam/core/pose_graph.hpp"
+#include "slam/core/graph/pose_graph.hpp"
 
 namespace lapis::slam::test {
 

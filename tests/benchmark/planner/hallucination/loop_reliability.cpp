@@ -10,8 +10,8 @@
 
 #include "common/mapping/map_file.hpp"
 #include "planner/core/hallucination/loop_reliability.hpp"
-#include "slam/core/landmark_tiles.hpp"
-#include "slam/core/slam_file.hpp"
+#include "slam/core/files/slam_file.hpp"
+#include "slam/core/map/landmark_tiles.hpp"
 
 namespace lapis::planner {
 namespace {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "common/geometry/se3.hpp"
-#include "slam/core/pose_graph_file.hpp"
+#include "slam/core/files/pose_graph_file.hpp"
 #include "tests/unit/planner/spectral/sample_graphs.hpp"
 
 namespace lapis::planner::test {

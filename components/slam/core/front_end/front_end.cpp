@@ -1,0 +1,261 @@
+#include "slam/core/front_end/front_end.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <utility>
+#include <vector>
+
+#include <Eigen/LU>
+
+#include "slam/core/motion/covariance.hpp"
+#include "slam/core/tracking/keyframe_rule.hpp"
+
+namespace lapis::slam {
+namespace {
+
+using geometry::Matrix6d;
+using geometry::Pose;
+
+void set_pose(const Known& known, const RelativeCamera& camera, TrackingResult& result) {
+  result.keyframe_id = camera.reference;
+  result.T_map_keyframe = known.map.keyframe(camera.reference).T_map_camera;
+  result.T_keyframe_camera = camera.T_reference_camera;
+  result.covariance = camera.covariance;
+  result.map_covariance =
+      compound_covariance(known.graph.covariance(camera.reference), camera.T_reference_camera, camera.covariance);
+}
+
+// Vision and odometry together, each as sure as it is: a bare wall says nothing of the path along it. Odometry of
+// wheels that slip loses its weight (Huber).
+RelativeCamera fuse(const Map& map, const RelativeCamera& seen, const std::optional<RelativeCamera>& reckoned) {
+  constexpr double kMostApart = 3.0;
+  if (!reckoned) return seen;
+  const Pose T_map_reckoned = map.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera;
+  const Pose T_map_seen = map.keyframe(seen.reference).T_map_camera * seen.T_reference_camera;
+  const geometry::Vector6d difference = geometry::se3_log(T_map_seen.inverse() * T_map_reckoned);
+  const Matrix6d sum = seen.covariance + reckoned->covariance;
+  const double sigmas = std::sqrt(difference.dot(sum.inverse() * difference));
+  const Matrix6d odometry = std::min(1.0, kMostApart / sigmas) * reckoned->covariance.inverse();
+  const Matrix6d together = (seen.covariance.inverse() + odometry).inverse();
+  return {seen.reference, seen.T_reference_camera * geometry::se3_exp(together * odometry * difference), together};
+}
+
+}  // namespace
+
+FrameOutcome FrontEnd::begin(const Known& known, const Frame& frame) {
+  // Without odometry a map of few features, or of surfaces, would be lost for ever as soon as they tell too little.
+  const time::Time stamp = frame.input->stamp;
+  const bool has_odometry = known.motion.odometry_at(stamp).has_value();
+  const int alone = std::min(config_.tracker.min_first_features, config_.features.max_features / 2);
+  const int least = config_.tracker.min_matches;
+  const int needed = has_odometry ? least : std::max(least, alone);
+  const bool has_features = frame.features_with_depth >= needed;
+  FrameOutcome outcome;
+  if (has_features || (has_odometry && shows_surfaces(frame))) {
+    outcome.result.state = TrackingState::kTracking;
+    outcome.result.source = has_features ? PoseSource::kVision : PoseSource::kSurfaces;
+    outcome.wants_keyframe = true;
+    held_stamp_ = stamp;
+  } else {
+    outcome.result = without_vision(
+        known, stamp,
+        "the view shows too little to begin (a blank wall?): " + std::to_string(frame.features_with_depth) +
+            " features with depth, " + std::to_string(needed) + " needed" +
+            (has_odometry ? ", and too few surfaces" : "; without odometry, surfaces are not enough to begin"));
+  }
+  outcome.result.features = static_cast<std::uint32_t>(frame.features.size());
+  return outcome;
+}
+
+FrameOutcome FrontEnd::locate(const Known& known, const Frame& frame) {
+  TrackOutcome seen = find_pose(known, frame);
+  if (!seen.is_tracked) return continue_without_features(known, frame, seen.reason);
+  blind_frames_ = 0;
+  is_placed_ = true;
+  ++frames_since_keyframe_;
+  const bool wants_keyframe = needs_keyframe_at(known.map, seen);
+  return hold(known, frame, std::move(seen), PoseSource::kVision, wants_keyframe);
+}
+
+TrackingResult FrontEnd::without_vision(const Known& known, time::Time stamp, const std::string& reason) const {
+  TrackingResult result;
+  result.state = known.map.empty() ? TrackingState::kInitializing : TrackingState::kLost;
+  result.reason = is_placed_ ? reason : "looking for a place in the saved map: " + reason;
+  const auto reckoned = known.motion.dead_reckon(stamp);
+  if (!reckoned || !set_drift(known, stamp, result)) return result;
+  if (is_contradicted()) {
+    result.reason = "what odometry says contradicts what the camera sees: the robot was carried, or its wheels spin";
+  } else if (result.drift_m > config_.odometry.max_drift_m) {
+    result.reason = "odometry alone, and its sigma is beyond slam.odometry.max_drift_m: " + reason;
+  } else {
+    result.state = TrackingState::kDeadReckoning;
+    result.source = PoseSource::kOdometry;
+    set_pose(known, *reckoned, result);
+  }
+  return result;
+}
+
+void FrontEnd::enter_keyframe(const Map& map, KeyframeId id) {
+  reference_ = id;
+  frames_since_keyframe_ = 0;
+  renew(map);
+}
+
+void FrontEnd::resume(const Map& map, KeyframeId reference) {
+  is_placed_ = false;
+  reference_ = reference;
+  renew(map);
+}
+
+// Near where motion leads, or else anywhere in the map; believed only when motion or the next frames agree.
+TrackOutcome FrontEnd::find_pose(const Known& known, const Frame& frame) {
+  awaits_confirmation_ = false;
+  TrackOutcome outcome = tracker_.track(known.map, frame, known.motion.predict(known.map, frame.input->stamp));
+  if (!outcome.is_tracked) {
+    TrackOutcome found = relocalizer_.search(known.map, known.places, tracker_, frame);
+    if (!found.is_tracked) return outcome;
+    outcome = std::move(found);
+  }
+  if (relocalizer_.believes({known.map, known.graph, known.motion, frame, is_contradicted()}, outcome)) return outcome;
+  outcome.is_tracked = false;
+  outcome.reason = "a recognised place awaits confirmation";
+  awaits_confirmation_ = true;
+  return outcome;
+}
+
+// Vision or surfaces have the pose. Where the camera is back in a part of the map that is tied to the newest by
+// odometry alone, a key-frame closes the circle, and the stretch between can be corrected.
+FrameOutcome FrontEnd::hold(const Known& known, const Frame& frame, TrackOutcome seen, PoseSource source,
+                            bool wants_keyframe) {
+  contradictions_ = fits_ = 0;
+  held_stamp_ = frame.input->stamp;
+  FrameOutcome outcome;
+  outcome.ends_drift = known.graph.are_apart(seen.reference, known.map.keyframes().back().id);
+  outcome.wants_keyframe = wants_keyframe || outcome.ends_drift;
+  // After a recovery the camera may be beside another key-frame than the one tracked last.
+  if (seen.reference != reference_) tracker_.set_reference(known.map, seen.reference);
+  reference_ = seen.reference;
+  outcome.result = result_of(known, frame, seen);
+  outcome.result.source = source;
+  outcome.seen = std::move(seen);
+  return outcome;
+}
+
+// By surfaces where motion leads, else by odometry. When the camera sees enough features to begin with, but knows
+// none of them, the map continues there.
+FrameOutcome FrontEnd::continue_without_features(const Known& known, const Frame& frame, const std::string& reason) {
+  const bool could_start = frame.features_with_depth >= config_.tracker.min_matches;
+  blind_frames_ = could_start ? blind_frames_ + 1 : 0;
+  const auto reckoned = known.motion.dead_reckon(frame.input->stamp);
+  if (!reckoned) return continue_blind(known, frame, reason, false);
+  ++frames_since_keyframe_;
+  const MotionModel::Expected expected{
+      known.map.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera, reckoned->covariance};
+  TrackOutcome aligned = surfaces_.track(known.map, frame, reference_, expected);
+  count_contradictions(aligned, could_start && !aligned.is_tracked && should_be_known(known.map, *reckoned));
+  const bool fits_by_chance = is_contradicted() && fits_ < config_.tracker.max_contradictions;
+  if (!aligned.is_tracked || fits_by_chance) {
+    const bool is_new_view = aligned.is_new_view && !could_start && !awaits_confirmation_;
+    return continue_blind(known, frame, reason + "; " + aligned.reason, is_new_view);
+  }
+  const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames;
+  if (begins_anew) blind_frames_ = 0;
+  const bool wants_keyframe = begins_anew || has_moved(aligned.alignment.T_reference_camera);
+  return hold(known, frame, std::move(aligned), PoseSource::kSurfaces, wants_keyframe);
+}
+
+// When there is enough to see, and odometry says where, the map continues there; surfaces that nobody has seen yet
+// become a key-frame's, so that the next frames can be aligned with them.
+FrameOutcome FrontEnd::continue_blind(const Known& known, const Frame& frame, const std::string& reason,
+                                      bool is_new_view) {
+  FrameOutcome outcome;
+  TrackingResult& result = outcome.result;
+  result = without_vision(known, frame.input->stamp, reason);
+  result.features = static_cast<std::uint32_t>(frame.features.size());
+  if (result.state != TrackingState::kDeadReckoning) return outcome;
+  const bool begins_anew = blind_frames_ >= config_.tracker.max_blind_frames && contradictions_ == 0;
+  if (begins_anew) {
+    blind_frames_ = 0;
+    result.state = TrackingState::kTracking;
+    result.reason.clear();
+  }
+  outcome.wants_keyframe = begins_anew || (is_new_view && has_moved(result.T_keyframe_camera) && shows_surfaces(frame));
+  return outcome;
+}
+
+TrackingResult FrontEnd::result_of(const Known& known, const Frame& frame, const TrackOutcome& seen) const {
+  TrackingResult result;
+  result.state = TrackingState::kTracking;
+  const RelativeCamera camera{seen.reference, seen.alignment.T_reference_camera,
+                              edge_information(config_.pose_graph, seen.alignment.information).inverse()};
+  auto reckoned = known.motion.dead_reckon(frame.input->stamp);
+  if (reckoned && known.graph.are_apart(reckoned->reference, camera.reference)) reckoned.reset();  // it leads astray
+  set_pose(known, fuse(known.map, camera, reckoned), result);
+  result.features = static_cast<std::uint32_t>(frame.features.size());
+  result.matches = static_cast<std::uint32_t>(seen.matches);
+  result.inliers = static_cast<std::uint32_t>(seen.alignment.inliers);
+  result.rms_px = seen.alignment.rms_px;
+  return result;
+}
+
+// False when odometry does not reach back to the last pose by vision or surfaces: nobody knows.
+bool FrontEnd::set_drift(const Known& known, time::Time stamp, TrackingResult& result) const {
+  const auto motion = held_stamp_ ? known.motion.odometry_between(*held_stamp_, stamp) : std::nullopt;
+  if (!motion) return false;
+  result.drift_m = largest_sigma(motion->covariance, 0);
+  result.drift_rad = largest_sigma(motion->covariance, 3);
+  return true;
+}
+
+void FrontEnd::count_contradictions(const TrackOutcome& aligned, bool is_unknown) {
+  if (aligned.is_contradicted || is_unknown) {
+    ++contradictions_;
+  } else if (!is_contradicted()) {
+    contradictions_ = 0;
+  }
+  fits_ = aligned.is_tracked ? fits_ + 1 : 0;
+}
+
+// The camera does not see what was mapped, for too long. Vision ends that, or surfaces that fit for as long.
+bool FrontEnd::is_contradicted() const { return contradictions_ >= config_.tracker.max_contradictions; }
+
+// From so near a key-frame with so many landmarks something is seen again, whatever the camera shows.
+bool FrontEnd::should_be_known(const Map& map, const RelativeCamera& camera) const {
+  const auto& landmarks = map.keyframe(camera.reference).landmarks;
+  const auto known = std::count_if(landmarks.begin(), landmarks.end(), [](auto id) { return id != kNoLandmark; });
+  return known >= 2 * config_.tracker.min_matches && !has_moved(camera.T_reference_camera);
+}
+
+// Far enough from the reference for another key-frame.
+bool FrontEnd::has_moved(const Pose& T_reference_camera) const {
+  KeyframeEvidence evidence;
+  evidence.frames_since_keyframe = frames_since_keyframe_;
+  evidence.T_reference_camera = T_reference_camera;
+  return needs_keyframe(config_.keyframe, evidence);
+}
+
+bool FrontEnd::shows_surfaces(const Frame& frame) const {
+  if (!config_.surface.enabled) return false;
+  const auto samples = sample_surface(config_.surface, config_.noise, frame.input->camera, frame.input->depth);
+  return samples.size() >= static_cast<std::size_t>(config_.surface.min_matches);
+}
+
+bool FrontEnd::needs_keyframe_at(const Map& map, const TrackOutcome& seen) const {
+  KeyframeEvidence evidence;
+  evidence.frames_since_keyframe = frames_since_keyframe_;
+  evidence.T_reference_camera = seen.alignment.T_reference_camera;
+  const auto& landmarks = map.keyframe(seen.reference).landmarks;
+  std::vector<LandmarkId> known;
+  std::copy_if(landmarks.begin(), landmarks.end(), std::back_inserter(known),
+               [](LandmarkId id) { return id != kNoLandmark; });
+  std::sort(known.begin(), known.end());
+  evidence.reference_landmarks = static_cast<int>(known.size());
+  evidence.tracked_landmarks =
+      static_cast<int>(std::count_if(seen.inliers.begin(), seen.inliers.end(), [&](const Match& match) {
+        return std::binary_search(known.begin(), known.end(), match.landmark);
+      }));
+  return needs_keyframe(config_.keyframe, evidence);
+}
+
+}  // namespace lapis::slam

@@ -1,0 +1,92 @@
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <string>
+
+#include "slam/core/config.hpp"
+#include "slam/core/frame/frame.hpp"
+#include "slam/core/front_end/tracking_result.hpp"
+#include "slam/core/graph/slam_graph.hpp"
+#include "slam/core/loops/loop_detector.hpp"
+#include "slam/core/loops/relocalizer.hpp"
+#include "slam/core/map/map.hpp"
+#include "slam/core/motion/motion_model.hpp"
+#include "slam/core/tracking/surface_tracker.hpp"
+#include "slam/core/tracking/tracker.hpp"
+
+namespace lapis::slam {
+
+/// What frames are compared with.
+struct Known {
+  const Map& map;
+  const SlamGraph& graph;
+  const LoopDetector& places;
+  const MotionModel& motion;
+};
+
+/// What the front end makes of a frame.
+struct FrameOutcome {
+  TrackingResult result;             ///< as long as the frame is no key-frame; without the graph's version
+  std::optional<TrackOutcome> seen;  ///< by vision or surfaces; none: by odometry alone, or there is no pose
+  bool wants_keyframe = false;
+  bool ends_drift = false;  ///< a key-frame here closes a circle of which a part is known by odometry alone
+};
+
+/// Finds the pose of each frame by the best source that has one (vision, surfaces, odometry), and says which frames are
+/// to become key-frames. It changes nothing but its own memory of the frames before.
+class FrontEnd {
+ public:
+  explicit FrontEnd(const SlamConfig& config)
+      : config_(config), tracker_(config), relocalizer_(config), surfaces_(config) {}
+
+  /// Whether a map can begin with this frame; if not, the result has the reason.
+  FrameOutcome begin(const Known& known, const Frame& frame);
+  /// @pre the map is not empty
+  FrameOutcome locate(const Known& known, const Frame& frame);
+  /// What to report of a frame that cannot be used: it has the pose of dead reckoning or none.
+  TrackingResult without_vision(const Known& known, time::Time stamp, const std::string& reason) const;
+
+  /// The frame has become this key-frame, and is the reference of the next ones.
+  void enter_keyframe(const Map& map, KeyframeId id);
+  /// The map has changed.
+  void renew(const Map& map) { tracker_.set_reference(map, reference_); }
+  /// The map is a saved one: there is no pose until the camera has found its place in it.
+  void resume(const Map& map, KeyframeId reference);
+
+  KeyframeId reference() const { return reference_; }
+  /// Compares frames with any key-frame.
+  const Tracker& tracker() const { return tracker_; }
+  /// Recognised places that were not believed, because odometry contradicted them.
+  std::size_t places_doubted() const { return relocalizer_.doubted(); }
+
+ private:
+  TrackOutcome find_pose(const Known& known, const Frame& frame);
+  FrameOutcome hold(const Known& known, const Frame& frame, TrackOutcome seen, PoseSource source, bool wants_keyframe);
+  FrameOutcome continue_without_features(const Known& known, const Frame& frame, const std::string& reason);
+  FrameOutcome continue_blind(const Known& known, const Frame& frame, const std::string& reason, bool is_new_view);
+
+  TrackingResult result_of(const Known& known, const Frame& frame, const TrackOutcome& seen) const;
+  bool set_drift(const Known& known, time::Time stamp, TrackingResult& result) const;
+  void count_contradictions(const TrackOutcome& aligned, bool is_unknown);
+  bool is_contradicted() const;
+  bool should_be_known(const Map& map, const RelativeCamera& camera) const;
+  bool has_moved(const geometry::Pose& T_reference_camera) const;
+  bool shows_surfaces(const Frame& frame) const;
+  bool needs_keyframe_at(const Map& map, const TrackOutcome& seen) const;
+
+  SlamConfig config_;
+  Tracker tracker_;
+  Relocalizer relocalizer_;
+  SurfaceTracker surfaces_;
+  KeyframeId reference_ = 0;
+  int frames_since_keyframe_ = 0;
+  int blind_frames_ = 0;                  // in a row, with enough to see
+  int contradictions_ = 0;                // in a row, of surfaces with odometry
+  int fits_ = 0;                          // in a row, of the same
+  std::optional<time::Time> held_stamp_;  // of the newest pose by vision or surfaces
+  bool awaits_confirmation_ = false;      // a place was recognised in the newest frame, and is not believed yet
+  bool is_placed_ = true;                 // in a saved map: false until the camera has been found there
+};
+
+}  // namespace lapis::slam

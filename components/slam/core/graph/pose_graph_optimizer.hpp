@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "slam/core/graph/pose_graph.hpp"
+
+namespace lapis::slam {
+
+struct OptimizerOptions {
+  int max_iterations = 100;         ///< linear systems solved; a robust run may take as many for each of its rounds
+  double relative_decrease = 1e-6;  ///< of chi2; a step that promises or brings less is the last
+  bool is_robust = false;           ///< wrong loop closures are to be expected
+};
+
+struct OptimizerReport {
+  double initial_chi2 = 0.0;  ///< sum of e' Omega e, all edges with weight 1
+  double final_chi2 = 0.0;    ///< the same, each edge with its weight
+  int iterations = 0;         ///< linear systems solved
+  bool has_converged = false;
+  std::vector<double> weights;  ///< of each edge, in [0, 1]; 1 where not robust
+};
+
+/// Moves the nodes to where the sum of e' Omega e over the edges is least, e = (translation, 2 vec q) of
+/// T_from_to^-1 * T_from^-1 * T_to, q its unit quaternion with w >= 0: g2o's chi2. (Planar graphs: translation, angle.)
+/// Levenberg and Marquardt's method on sparse normal equations. The first node of the graph, and of each part that no
+/// edge joins with it, stays where it is.
+///
+/// Robust: edges of type loop closure lose their weight where their chi2 would stay above the 99 % quantile; truncated
+/// least squares by graduated non-convexity (Yang et al., RA-L 2020). Other edges are trusted.
+///
+/// Throws std::invalid_argument where an edge names a node that the graph lacks or the same node twice.
+OptimizerReport optimize_pose_graph(const OptimizerOptions& options, PoseGraphSnapshot& graph);
+
+/// Sum of e' Omega e over all edges, as above, where none counts for more than `most`.
+double pose_graph_chi2(const PoseGraphSnapshot& graph, double most = std::numeric_limits<double>::infinity());
+
+/// Covariance of poses relative to the graph's first node, in the tangent of a right perturbation (translation,
+/// rotation) [m^2, rad^2], from the graph's information at its poses and the edges' weights (none: all 1). One
+/// factorisation for all. Nothing for a node that is unknown or that no weighted edges join with the first one.
+std::vector<std::optional<geometry::Matrix6d>> node_covariances(const PoseGraphSnapshot& graph,
+                                                                const std::vector<std::uint64_t>& ids,
+                                                                const std::vector<double>& weights = {});
+std::optional<geometry::Matrix6d> node_covariance(const PoseGraphSnapshot& graph, std::uint64_t id,
+                                                  const std::vector<double>& weights = {});
+
+}  // namespace lapis::slam

@@ -1,0 +1,165 @@
+#include "slam/core/graph/slam_graph.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "slam/core/motion/covariance.hpp"
+
+namespace lapis::slam {
+
+using geometry::Matrix6d;
+using geometry::Pose;
+
+namespace {
+
+constexpr double kLeastWeight = 0.5;  // of an edge that stays
+
+}  // namespace
+
+SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink> links,
+                     std::vector<Matrix6d> covariances)
+    : edges_(std::move(edges)), links_(std::move(links)), parents_(covariances.size()),
+      covariances_(std::move(covariances)) {
+  // A key-frame's first edge from an older one is that to its parent.
+  std::vector<bool> has_parent(parents_.size(), false);
+  std::map<std::size_t, Matrix6d> surfaces;  // information of edges to parents
+  for (const PoseGraphEdge& edge : edges_) {
+    const auto to = static_cast<std::size_t>(edge.to);
+    if (edge.type == EdgeType::kLoopClosure || has_parent[to]) continue;
+    has_parent[to] = true;
+    parents_[to] = {edge.from, edge.information.inverse(), edge.type == EdgeType::kWheelOdometry, false};
+    if (edge.type == EdgeType::kSurface) surfaces[to] = edge.information;
+  }
+  // Surfaces leave directions open, which odometry's edge beside them holds.
+  for (const PoseGraphEdge& edge : edges_) {
+    const auto found = surfaces.find(static_cast<std::size_t>(edge.to));
+    if (found == surfaces.end() || edge.type != EdgeType::kWheelOdometry || edge.from != parents_[found->first].id)
+      continue;
+    parents_[found->first].covariance = (found->second + edge.information).inverse();
+  }
+  for (const PoseGraphEdge& edge : edges_) {
+    if (edge.type != EdgeType::kWheelOdometry) parents_[static_cast<std::size_t>(edge.from)].has_child = true;
+    hold_circle(edge);
+  }
+}
+
+void SlamGraph::add_root() {
+  parents_.emplace_back();
+  covariances_.emplace_back(Matrix6d::Zero());
+}
+
+void SlamGraph::add_keyframe(const PoseGraphEdge& edge, const Matrix6d& covariance) {
+  edges_.push_back(edge);
+  const bool is_odometry = edge.type == EdgeType::kWheelOdometry;
+  parents_.push_back({edge.from, covariance, is_odometry, false});
+  if (!is_odometry) parents_[static_cast<std::size_t>(edge.from)].has_child = true;
+  covariances_.push_back(compound_covariance(this->covariance(edge.from), edge.T_from_to, covariance));
+}
+
+void SlamGraph::follow(const Map& map, const std::vector<KeyframeId>& moved) {
+  const auto has_moved = [&](KeyframeId id) { return std::find(moved.begin(), moved.end(), id) != moved.end(); };
+  for (PoseGraphEdge& edge : edges_) {
+    const bool is_visual = edge.type == EdgeType::kOdometry || edge.type == EdgeType::kSurface;
+    if (!is_visual || !(has_moved(edge.from) || has_moved(edge.to))) continue;
+    edge.T_from_to = map.keyframe(edge.from).T_map_camera.inverse() * map.keyframe(edge.to).T_map_camera;
+  }
+}
+
+Matrix6d SlamGraph::chain_covariance(const Map& map, KeyframeId from, KeyframeId to) const {
+  const auto T_between = [&](KeyframeId a, KeyframeId b) {
+    return Pose(map.keyframe(a).T_map_camera.inverse() * map.keyframe(b).T_map_camera);
+  };
+  Matrix6d of_from = Matrix6d::Zero();  // covariance of T_ancestor_from
+  Matrix6d of_to = Matrix6d::Zero();    // covariance of T_ancestor_to
+  KeyframeId a = from;
+  KeyframeId b = to;
+  while (a != b) {
+    KeyframeId& younger = a > b ? a : b;
+    Matrix6d& covariance = a > b ? of_from : of_to;
+    const Parent& parent = parents_[static_cast<std::size_t>(younger)];
+    covariance = compound_covariance(parent.covariance, T_between(younger, a > b ? from : to), covariance);
+    younger = parent.id;
+  }
+  // T_from_to = (T_ancestor_from exp(f))^-1 T_ancestor_to exp(t)
+  const Matrix6d move = geometry::adjoint(T_between(to, from));
+  return move * of_from * move.transpose() + of_to;
+}
+
+Matrix6d SlamGraph::relative_covariance(const Map& map, KeyframeId from, KeyframeId to) const {
+  const Matrix6d chain = chain_covariance(map, from, to);
+  const Matrix6d move = geometry::adjoint(map.keyframe(to).T_map_camera.inverse() * map.keyframe(from).T_map_camera);
+  const Matrix6d apart = move * covariance(from) * move.transpose() + covariance(to);
+  return largest_sigma(apart, 0) < largest_sigma(chain, 0) ? apart : chain;
+}
+
+void SlamGraph::apply(const GraphCorrection& correction, Map& map) {
+  // What a loop that is removed has made sure of is not known any more, also where no new covariance comes.
+  const auto is_out = [&](std::size_t i) {
+    return i < correction.weights.size() && edges_[i].type == EdgeType::kLoopClosure &&
+           correction.weights[i] < kLeastWeight;
+  };
+  bool has_removed = false;
+  for (std::size_t i = 0; i < edges_.size(); ++i) has_removed = has_removed || is_out(i);
+  std::vector<Pose> moves;  // of each key-frame, in the map
+  for (const Keyframe& keyframe : map.keyframes()) {
+    const auto i = static_cast<std::size_t>(keyframe.id);
+    const bool is_known = i < correction.T_map_camera.size();
+    moves.push_back(is_known ? Pose(correction.T_map_camera[i] * correction.T_map_before[i].inverse())
+                             : moves[static_cast<std::size_t>(parents_[i].id)]);
+    if (is_known && correction.covariances[i]) {
+      covariances_[i] = *correction.covariances[i];
+    } else if (i > 0 && (!is_known || has_removed)) {
+      const Parent& parent = parents_[i];
+      const Pose T_parent_keyframe = map.keyframe(parent.id).T_map_camera.inverse() * keyframe.T_map_camera;
+      covariances_[i] = compound_covariance(covariance(parent.id), T_parent_keyframe, parent.covariance);
+    }
+  }
+  map.move(moves);
+  std::vector<PoseGraphEdge> kept;
+  for (std::size_t i = 0; i < edges_.size(); ++i) {
+    const bool is_known = i < correction.weights.size();
+    if (is_out(i)) {
+      ++loops_removed_;
+      continue;
+    }
+    kept.push_back(edges_[i]);
+    if (is_known) hold_circle(edges_[i]);
+  }
+  edges_ = std::move(kept);
+}
+
+bool SlamGraph::are_apart(KeyframeId a, KeyframeId b) const {
+  while (a != b) {
+    KeyframeId& younger = a > b ? a : b;
+    const Parent& parent = parents_[static_cast<std::size_t>(younger)];
+    if (parent.is_bridge) return true;
+    younger = parent.id;
+  }
+  return false;
+}
+
+// An edge beside those to the parents closes a circle with them: the two paths to the common ancestor.
+void SlamGraph::hold_circle(const PoseGraphEdge& edge) {
+  auto a = static_cast<std::size_t>(edge.from), b = static_cast<std::size_t>(edge.to);
+  if (parents_[b].id == edge.from || parents_[a].id == edge.to) return;
+  while (a != b) {
+    std::size_t& younger = a > b ? a : b;
+    parents_[younger].is_bridge = false;
+    younger = static_cast<std::size_t>(parents_[younger].id);
+  }
+}
+
+std::size_t SlamGraph::count(EdgeType type) const {
+  return static_cast<std::size_t>(
+      std::count_if(edges_.begin(), edges_.end(), [&](const PoseGraphEdge& edge) { return edge.type == type; }));
+}
+
+PoseGraphSnapshot SlamGraph::snapshot(const Map& map, std::uint64_t version) const {
+  PoseGraphSnapshot snapshot{version, {}, edges_};
+  for (const Keyframe& keyframe : map.keyframes()) {
+    snapshot.nodes.push_back({keyframe.id, keyframe.stamp, keyframe.T_map_camera, is_drifting(keyframe.id)});
+  }
+  return snapshot;
+}
+
+}  // namespace lapis::slam

@@ -1,0 +1,43 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "slam/core/frame/feature_extractor.hpp"
+#include "slam/core/map/map.hpp"
+
+namespace lapis::slam {
+
+/// Finds key-frames that show what a frame shows, by votes of their binary descriptors: locality-sensitive hashing by
+/// sampled bits (Gionis, Indyk, Motwani, VLDB 1999), each vote weighted with the rarity of its word (inverse document
+/// frequency; Sivic, Zisserman, ICCV 2003). Grows on-line, needs no vocabulary, is the same in every run.
+class PlaceIndex {
+ public:
+  struct Candidate {
+    KeyframeId keyframe = 0;
+    double score = 0.0;
+  };
+
+  PlaceIndex();
+  /// Adds a key-frame; ids come in ascending order. Only features with depth count: the others show no landmark.
+  void add(KeyframeId id, std::span<const Feature> features);
+  /// The key-frames below `before` that are most similar, best first, at most `most`. Of neighbours in time only the
+  /// best.
+  std::vector<Candidate> query(std::span<const Feature> features, KeyframeId before, std::size_t most) const;
+
+  std::size_t size() const { return norms_.size(); }
+
+ private:
+  static constexpr std::size_t kTables = 6;
+  static constexpr std::size_t kBits = 16;
+  static std::size_t word_of(const std::array<std::uint8_t, kBits>& bits, const Descriptor& descriptor);
+
+  std::array<std::array<std::uint8_t, kBits>, kTables> bits_{};
+  std::vector<std::vector<std::uint32_t>> words_;  // key-frames by table and word, ascending
+  std::vector<double> norms_;                      // of each key-frame: root of its number of features
+};
+
+}  // namespace lapis::slam

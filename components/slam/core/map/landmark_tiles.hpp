@@ -1,0 +1,58 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <unordered_map>
+#include <vector>
+
+#include "common/mapping/landmark_tile.hpp"
+#include "common/mapping/tile_versions.hpp"
+#include "slam/core/map/map.hpp"
+
+namespace lapis::slam {
+
+struct LandmarkTileConfig {
+  double edge_m = 1.6;        ///< of a tile [0.1, 100]
+  double tolerance_m = 0.01;  ///< a landmark that has moved no further stays as it was sent [0, 1]
+  std::size_t max_tile_bytes = mapping::kMaxLandmarkTileBytes;
+};
+
+/// The landmarks of a map as others have them: by cubes, each with the graph version at which it last changed. What is
+/// the same as before, or nearly, is not made again.
+class LandmarkTiles {
+ public:
+  explicit LandmarkTiles(const LandmarkTileConfig& config) : config_(config) {}
+
+  /// Follows the map to `graph_version`, which grows from call to call, and returns the tiles that differ from those
+  /// returned before, ascending. Landmarks of the map are never fewer than at the call before. A tile that has lost its
+  /// last landmark is returned empty and continues to exist. Afterwards every landmark with observations is in the one
+  /// tile around the position that it was sent with, at most `tolerance_m` from where it is. Left out are positions
+  /// that are not finite or beyond mapping::kMaxLandmarkCoordinate_m.
+  std::vector<mapping::LandmarkTile> update(const Map& map, std::uint64_t graph_version);
+  /// After the last update; its session is left to the caller.
+  mapping::LandmarkState state() const;
+
+ private:
+  // A landmark as it was sent.
+  struct Sent {
+    bool is_in_tile = false;
+    mapping::TileIndex tile;
+    Eigen::Vector3f p_map = Eigen::Vector3f::Zero();
+    std::uint64_t observers = 0;  // sum of hashes
+  };
+  // Landmarks of tiles, ascending.
+  using Members = std::unordered_map<mapping::TileIndex, std::vector<LandmarkId>, mapping::GridIndexHash>;
+
+  static Sent as_now(const Landmark& landmark);
+  bool is_same(const Sent& a, const Sent& b) const;
+  Members follow(const Map& map);
+  mapping::LandmarkTile make_tile(const Map& map, const mapping::TileIndex& index,
+                                  const std::vector<LandmarkId>& members) const;
+
+  LandmarkTileConfig config_;
+  std::vector<Sent> sent_;  // by id
+  mapping::TileVersions versions_;
+  std::uint64_t graph_version_ = 0;
+};
+
+}  // namespace lapis::slam

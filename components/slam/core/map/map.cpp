@@ -1,0 +1,92 @@
+#include "slam/core/map/map.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace lapis::slam {
+
+KeyframeId Map::add_keyframe(Keyframe keyframe) {
+  keyframe.id = keyframes_.size();
+  keyframe.landmarks.assign(keyframe.features.size(), kNoLandmark);
+  keyframes_.push_back(std::move(keyframe));
+  return keyframes_.back().id;
+}
+
+LandmarkId Map::add_landmark(const Eigen::Vector3d& p_map, double finest_distance_m) {
+  landmarks_.push_back({p_map, {}, finest_distance_m, {}});
+  return static_cast<LandmarkId>(landmarks_.size() - 1);
+}
+
+bool Map::add_observation(LandmarkId landmark, const Observation& observation) {
+  Keyframe& keyframe = keyframes_[static_cast<std::size_t>(observation.keyframe)];
+  const auto feature = static_cast<std::size_t>(observation.feature);
+  auto& observations = landmarks_[landmark].observations;
+  const bool seen = std::any_of(observations.begin(), observations.end(),
+                                [&](const Observation& o) { return o.keyframe == observation.keyframe; });
+  if (seen || keyframe.landmarks[feature] != kNoLandmark) return false;
+  if (observations.empty()) ++alive_;
+  observations.push_back(observation);
+  keyframe.landmarks[feature] = landmark;
+  landmarks_[landmark].descriptor = keyframe.features[feature].descriptor;
+  return true;
+}
+
+void Map::remove_observation(LandmarkId landmark, const Observation& observation) {
+  auto& observations = landmarks_[landmark].observations;
+  const auto removed = std::erase_if(observations, [&](const Observation& o) {
+    return o.keyframe == observation.keyframe && o.feature == observation.feature;
+  });
+  if (removed == 0) return;
+  keyframes_[static_cast<std::size_t>(observation.keyframe)].landmarks[static_cast<std::size_t>(observation.feature)] =
+      kNoLandmark;
+  if (observations.empty()) --alive_;
+}
+
+void Map::set_pose(KeyframeId id, const geometry::Pose& T_map_camera) {
+  keyframes_[static_cast<std::size_t>(id)].T_map_camera = T_map_camera;
+}
+
+void Map::move(const std::vector<geometry::Pose>& moves) {
+  for (Keyframe& keyframe : keyframes_) {
+    const geometry::Pose moved = moves[static_cast<std::size_t>(keyframe.id)] * keyframe.T_map_camera;
+    // Rounding would treble with every move that was computed from the pose itself.
+    keyframe.T_map_camera = geometry::make_pose(moved.translation(), Eigen::Quaterniond(moved.linear()));
+  }
+  for (Landmark& landmark : landmarks_) {
+    if (landmark.observations.empty()) continue;
+    landmark.p_map = moves[static_cast<std::size_t>(landmark.observations.front().keyframe)] * landmark.p_map;
+  }
+}
+
+std::vector<KeyframeId> Map::covisible(KeyframeId id, std::size_t most) const {
+  std::vector<std::size_t> shared(keyframes_.size(), 0);
+  for (const LandmarkId landmark : keyframe(id).landmarks) {
+    if (landmark == kNoLandmark) continue;
+    for (const Observation& observation : landmarks_[landmark].observations) {
+      ++shared[static_cast<std::size_t>(observation.keyframe)];
+    }
+  }
+  std::vector<KeyframeId> found;
+  for (KeyframeId other = 0; other < shared.size(); ++other) {
+    if (other != id && shared[static_cast<std::size_t>(other)] > 0) found.push_back(other);
+  }
+  std::sort(found.begin(), found.end(), [&](KeyframeId a, KeyframeId b) {
+    return std::pair(shared[static_cast<std::size_t>(a)], a) > std::pair(shared[static_cast<std::size_t>(b)], b);
+  });
+  found.resize(std::min(found.size(), most));
+  return found;
+}
+
+std::vector<LandmarkId> Map::landmarks_of(const std::vector<KeyframeId>& keyframes) const {
+  std::vector<LandmarkId> found;
+  for (const KeyframeId id : keyframes) {
+    for (const LandmarkId landmark : keyframe(id).landmarks) {
+      if (landmark != kNoLandmark) found.push_back(landmark);
+    }
+  }
+  std::sort(found.begin(), found.end());
+  found.erase(std::unique(found.begin(), found.end()), found.end());
+  return found;
+}
+
+}  // namespace lapis::slam

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "common/geometry/se3.hpp"
+#include "common/time/time.hpp"
+#include "slam/core/frame/frame.hpp"
+#include "slam/core/frame/surface.hpp"
+#include "slam/core/map/shared_array.hpp"
+
+namespace lapis::slam {
+
+using KeyframeId = std::uint64_t;
+using LandmarkId = std::uint32_t;
+inline constexpr LandmarkId kNoLandmark = std::numeric_limits<LandmarkId>::max();
+
+/// Feature `feature` of key-frame `keyframe` shows the landmark.
+struct Observation {
+  KeyframeId keyframe = 0;
+  int feature = 0;
+};
+
+/// Point of the world that features show.
+struct Landmark {
+  Eigen::Vector3d p_map = Eigen::Vector3d::Zero();
+  Descriptor descriptor{};       ///< of its newest observation
+  double finest_distance_m = 0;  ///< distance at which it shows on the finest pyramid level
+  std::vector<Observation> observations;
+};
+
+/// Frame that stays in the map.
+struct Keyframe {
+  KeyframeId id = 0;
+  time::Time stamp;
+  geometry::PinholeCamera camera;
+  geometry::Pose T_map_camera = geometry::Pose::Identity();
+  SharedArray<Feature> features;
+  std::vector<LandmarkId> landmarks;   ///< of each feature, or kNoLandmark
+  SharedArray<SurfaceSample> surface;  ///< in this key-frame's optical frame
+};
+
+/// Key-frames, landmarks and who sees what. A key-frame's id is its index; key-frames are never removed.
+class Map {
+ public:
+  /// Adds a key-frame without landmarks; its id is set here and returned.
+  KeyframeId add_keyframe(Keyframe keyframe);
+  LandmarkId add_landmark(const Eigen::Vector3d& p_map, double finest_distance_m);
+  /// Links a free feature with a landmark that the key-frame does not show yet; false when either is taken.
+  bool add_observation(LandmarkId landmark, const Observation& observation);
+  /// Unlinks; a landmark without observations is dead and never comes back.
+  void remove_observation(LandmarkId landmark, const Observation& observation);
+
+  bool empty() const { return keyframes_.empty(); }
+  const std::vector<Keyframe>& keyframes() const { return keyframes_; }
+  const Keyframe& keyframe(KeyframeId id) const { return keyframes_[static_cast<std::size_t>(id)]; }
+  const Landmark& landmark(LandmarkId id) const { return landmarks_[id]; }
+  /// All that ever were, by id; the dead ones have no observations.
+  const std::vector<Landmark>& landmarks() const { return landmarks_; }
+  std::size_t landmark_count() const { return alive_; }
+  void set_pose(KeyframeId id, const geometry::Pose& T_map_camera);
+  /// Moves every key-frame by its transform of the map (T_map_camera becomes moves[id] * T_map_camera), and every
+  /// landmark by that of the key-frame that saw it first.
+  void move(const std::vector<geometry::Pose>& moves);
+  void set_position(LandmarkId id, const Eigen::Vector3d& p_map) { landmarks_[id].p_map = p_map; }
+
+  /// Key-frames that share landmarks with `id`: most shared first, then the newest. Without `id` itself.
+  std::vector<KeyframeId> covisible(KeyframeId id, std::size_t most) const;
+  /// Landmarks that any of the key-frames shows, each once, ascending.
+  std::vector<LandmarkId> landmarks_of(const std::vector<KeyframeId>& keyframes) const;
+
+ private:
+  std::vector<Keyframe> keyframes_;
+  std::vector<Landmark> landmarks_;
+  std::size_t alive_ = 0;
+};
+
+}  // namespace lapis::slam

@@ -1,0 +1,61 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "slam/core/config.hpp"
+#include "slam/core/map/map.hpp"
+#include "slam/core/tracking/matcher.hpp"
+#include "slam/core/tracking/pose_refiner.hpp"
+
+namespace lapis::slam {
+
+/// Pose of a frame relative to a key-frame, or the reason why there is none.
+struct TrackOutcome {
+  bool is_tracked = false;
+  std::string reason;            ///< empty when tracked
+  bool is_new_view = false;      ///< by surfaces: too little of the view was seen before
+  bool is_contradicted = false;  ///< by surfaces: the frame sees through those that should be in view
+  KeyframeId reference = 0;
+  Alignment alignment;
+  std::vector<Match> inliers;
+  int matches = 0;  ///< before the refinement
+};
+
+/// Finds the pose of frames in the map around a reference key-frame.
+class Tracker {
+ public:
+  explicit Tracker(const SlamConfig& config) : config_(config) {}
+
+  /// Call after every change of the map: renews the local map around `reference`.
+  void set_reference(const Map& map, KeyframeId reference);
+  /// Tries, in this order, until one is convincing: projection with the predicted pose, the same with a wider search,
+  /// brute force with the reference key-frame, brute force with the newest key-frames.
+  TrackOutcome track(const Map& map, const Frame& frame, const std::optional<geometry::Pose>& predicted) const;
+  /// Pose of a frame relative to a key-frame anywhere in the map, by brute force; where the pose is about known
+  /// (`T_map_camera`), by projection. No neighbour is tried. By features alone: surfaces that are seen from metres
+  /// apart are paired with others that are parallel, which errs by centimetres and does not show in the residuals.
+  TrackOutcome recognize(const Map& map, const Frame& frame, KeyframeId keyframe,
+                         const std::optional<geometry::Pose>& T_map_camera = std::nullopt) const;
+
+ private:
+  /// What frames near a key-frame are compared with.
+  struct LocalMap {
+    KeyframeId reference = 0;
+    std::vector<LandmarkId> landmarks;
+    std::vector<SurfaceSample> surface;  // in the reference key-frame's optical frame
+  };
+
+  LocalMap local_map(const Map& map, KeyframeId reference) const;
+  TrackOutcome track_projected(const Map& map, const Frame& frame, const LocalMap& local,
+                               const geometry::Pose& predicted, double radius_px) const;
+  TrackOutcome track_brute_force(const Map& map, const Frame& frame, const LocalMap& local) const;
+  TrackOutcome align(const Map& map, const Frame& frame, const LocalMap& local, const std::vector<Match>& matches,
+                     const geometry::Pose& T_reference_camera) const;
+
+  SlamConfig config_;
+  LocalMap local_;
+};
+
+}  // namespace lapis::slam

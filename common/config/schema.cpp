@@ -83,7 +83,29 @@ struct ValueText {
   }
 };
 
+struct IsAllowed {
+  const Bound& bound;
+
+  bool operator()(const bool*) const { return true; }
+  bool operator()(const int* v) const { return bound.allows(static_cast<double>(*v)); }
+  bool operator()(const std::int64_t* v) const { return bound.allows(static_cast<double>(*v)); }
+  bool operator()(const double* v) const { return bound.allows(*v); }
+  bool operator()(const std::string* v) const { return bound.allows(*v); }
+  template <class Item>
+  bool operator()(const std::vector<Item>* v) const {
+    return std::all_of(v->begin(), v->end(), [this](const Item& item) { return bound.allows(item); });
+  }
+};
+
 }  // namespace
+
+bool Bound::allows(const std::string& word) const {
+  return words.empty() || std::find(words.begin(), words.end(), word) != words.end();
+}
+
+std::string Bound::refusal() const {
+  return (words.empty() ? " is out of range, allowed is " : " is not one of ") + text();
+}
 
 std::string Bound::text() const {
   if (!words.empty()) {
@@ -96,13 +118,21 @@ std::string Bound::text() const {
   return number_text(lowest) + " to " + number_text(highest);
 }
 
-Bound in_range(double lowest, double highest) { return {lowest, highest, {}}; }
-Bound at_least(double lowest) { return {lowest, std::numeric_limits<double>::infinity(), {}}; }
+Bound in_range(double lowest, double highest) { return {lowest, highest, {}, {}}; }
+Bound at_least(double lowest) { return {lowest, std::numeric_limits<double>::infinity(), {}, {}}; }
 Bound anything() { return {}; }
-Bound one_of(Words words) {
+Bound one_of(Words words, std::string listed_in) {
   Bound bound;
   bound.words = std::move(words);
+  bound.listed_in = std::move(listed_in);
   return bound;
+}
+
+void check(const Schema& schema) {
+  for (const Entry& entry : schema.entries()) {
+    if (std::visit(IsAllowed{entry.bound}, entry.value)) continue;
+    throw Error(entry.path + ": " + to_text(entry) + entry.bound.refusal());
+  }
 }
 
 std::string to_text(const Entry& entry) { return std::visit(ValueText{}, entry.value); }
@@ -111,7 +141,7 @@ std::string to_markdown(const Schema& schema) {
   std::ostringstream out;
   out << "| key | default | allowed | meaning |\n| --- | --- | --- | --- |\n";
   for (const auto& entry : schema.entries()) {
-    std::string allowed = entry.bound.text();
+    std::string allowed = entry.bound.document();
     for (std::size_t at = 0; (at = allowed.find('|', at)) != std::string::npos; at += 2) allowed.insert(at, "\\");
     out << "| `" << entry.path << "` | `" << to_text(entry) << "` | " << allowed << " | " << entry.meaning << " |\n";
   }

@@ -2,12 +2,19 @@
 
 #include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <variant>
 #include <vector>
 
 namespace lapis::config {
+
+/// A configuration that cannot be used; the message names the source, the full path, the value and the bound.
+class Error : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
 
 using Words = std::vector<std::string>;
 using Numbers = std::vector<double>;
@@ -17,14 +24,22 @@ struct Bound {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   Words words;
+  std::string listed_in = {};  ///< where documents refer to for the words, which may become more; empty: they list them
 
   /// "0.1 to 20", "a | b", or empty when everything is allowed.
   std::string text() const;
+  /// The same for documents.
+  std::string document() const { return listed_in.empty() ? text() : listed_in; }
+  /// NaN is never allowed.
+  bool allows(double number) const { return number >= lowest && number <= highest; }
+  bool allows(const std::string& word) const;
+  /// Why a value is refused: " is out of range, allowed is 0.1 to 20".
+  std::string refusal() const;
 };
 
 Bound in_range(double lowest, double highest);
 Bound at_least(double lowest);
-Bound one_of(Words words);
+Bound one_of(Words words, std::string listed_in = "");
 Bound anything();
 
 /// One configuration value: where it is, what it may be, what it means.
@@ -87,6 +102,16 @@ class Schema {
   std::vector<Entry> entries_;
   std::vector<FormerKey> former_;
 };
+
+/// Throws Error unless all values are within their bounds: "fan.length_m: 9 is out of range, allowed is 0.5 to 5".
+void check(const Schema& schema);
+/// The same for a described struct that comes from elsewhere than a configuration.
+template <class Struct>
+void check(const std::string& section, Struct values) {
+  Schema schema;
+  schema(section, values);
+  check(schema);
+}
 
 /// Whether it is UTF-8 without NUL, as text is.
 bool is_utf8(std::string_view text);

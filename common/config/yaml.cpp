@@ -23,22 +23,6 @@ std::string place(const std::string& source, const YAML::Node& node) {
   return node.Mark().is_null() ? source : source + ":" + std::to_string(node.Mark().line + 1);
 }
 
-template <class Value>
-bool allows(const Bound& bound, const Value& value) {
-  if constexpr (std::is_arithmetic_v<Value>) {
-    const auto number = static_cast<double>(value);
-    return !std::isnan(number) && number >= bound.lowest && number <= bound.highest;
-  } else if constexpr (std::is_same_v<Value, std::string>) {
-    return bound.words.empty() || std::find(bound.words.begin(), bound.words.end(), value) != bound.words.end();
-  } else {
-    return std::all_of(value.begin(), value.end(), [&](const auto& item) { return allows(bound, item); });
-  }
-}
-
-std::string refusal(const Bound& bound) {
-  return (bound.words.empty() ? " is out of range, allowed is " : " is not one of ") + bound.text();
-}
-
 /// Checks and stores one scalar or list; visited with the pointer to the target.
 struct Store {
   const Entry& entry;
@@ -80,13 +64,13 @@ struct Store {
   template <class T>
   T bounded(const YAML::Node& item, const std::string& wanted) const {
     const T value = scalar<T>(item, wanted);
-    if (!allows(entry.bound, value)) reject(shown(item) + refusal(entry.bound));
+    if (!entry.bound.allows(static_cast<double>(value))) reject(shown(item) + entry.bound.refusal());
     return value;
   }
 
   std::string word(const YAML::Node& item) const {
     if (!item.IsScalar()) reject("text is needed");
-    if (!allows(entry.bound, item.Scalar())) reject(shown(item) + refusal(entry.bound));
+    if (!entry.bound.allows(item.Scalar())) reject(shown(item) + entry.bound.refusal());
     return item.Scalar();
   }
 };
@@ -209,13 +193,6 @@ void apply_override(const Schema& schema, const std::string& assignment) {
   std::visit(Store{*entry, node, source}, entry->value);
 }
 
-void check(const Schema& schema) {
-  for (const auto& entry : schema.entries()) {
-    if (std::visit([&](const auto* value) { return allows(entry.bound, *value); }, entry.value)) continue;
-    throw Error(entry.path + ": " + to_text(entry) + refusal(entry.bound));
-  }
-}
-
 void check(const Schema& schema, const Rules& rules) {
   for (const auto& rule : rules) {
     if (!rule.holds) throw Error(with_values(schema, rule.text));
@@ -234,7 +211,7 @@ std::string to_yaml(const Schema& schema) {
     for (; depth + 1 < parts.size(); ++depth) out << std::string(2 * depth, ' ') << parts[depth] << ":\n";
     open.assign(parts.begin(), parts.end() - 1);
     const std::string indent(2 * (parts.size() - 1), ' ');
-    const std::string allowed = entry.bound.text();
+    const std::string allowed = entry.bound.document();
     out << indent << "# " << entry.meaning << (allowed.empty() ? "" : " [" + allowed + "]") << '\n';
     out << indent << parts.back() << ": " << to_text(entry) << '\n';
   }

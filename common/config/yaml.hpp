@@ -1,17 +1,10 @@
 #pragma once
 
-#include <stdexcept>
 #include <string>
 
 #include "common/config/schema.hpp"
 
 namespace lapis::config {
-
-/// A configuration that cannot be used; the message names the source, the full path, the value and the bound.
-class Error : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// Text of a configuration file. Throws Error when it is no regular file of at most 16 MiB that holds UTF-8.
 std::string read_text(const std::string& file);
@@ -23,8 +16,6 @@ void apply_file(const Schema& schema, const std::string& file);
 void apply_text(const Schema& schema, const std::string& text, const std::string& source);
 /// Applies one "path=value" as given to --set.
 void apply_override(const Schema& schema, const std::string& assignment);
-/// Throws Error when a value, wherever it came from, is out of its bound.
-void check(const Schema& schema);
 /// Throws Error for the first rule that is broken: its text, with each key's value behind the key.
 void check(const Schema& schema, const Rules& rules);
 /// The whole configuration as a YAML file with a comment per key; reading it back changes nothing.

@@ -14,6 +14,8 @@ namespace lapis::files {
 /// Appends little-endian numbers and variable-length integers (seven bits a byte, low bits first) to a buffer.
 class ByteWriter {
  public:
+  /// For so many more bytes.
+  void reserve(std::size_t more) { bytes_.reserve(bytes_.size() + more); }
   void u8(std::uint8_t v) { bytes_.push_back(v); }
   void u16(std::uint16_t v) { fixed(v, 2); }
   void u32(std::uint32_t v) { fixed(v, 4); }

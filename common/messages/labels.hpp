@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/model/label_list.hpp"
 #include "common/messages/converted.hpp"
 #include "common/messages/time.hpp"
 #include "idl/vision_msgs.hpp"

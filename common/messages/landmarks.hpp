@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/mapping/landmark_tile.hpp"
+#include "common/mapping/wire/landmark_tile.hpp"
 #include "common/messages/converted.hpp"
 #include "idl/lapis_msgs.hpp"
 

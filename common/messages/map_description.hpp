@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "common/mapping/map_description.hpp"
+#include "common/mapping/file/map_description.hpp"
 #include "common/messages/converted.hpp"
 #include "common/messages/time.hpp"
 #include "idl/lapis_msgs.hpp"

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <optional>
 
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/model/label_list.hpp"
 #include "common/messages/camera_frame.hpp"
 #include "common/runtime/context.hpp"
 #include "idl/vision_msgs.hpp"

@@ -12,7 +12,7 @@ inline constexpr dds::Topic<lapis_msgs::msg::MapDescription> kMapDescription{
     "resolution, sensor model, settings of frames and labels of the map"};
 inline constexpr dds::Topic<lapis_msgs::msg::VoxelTile> kVoxelTiles{
     "lapis/semantic_mapper/tiles", dds::kKeyedTiles, "semantic_mapper", "changed tiles, at most 2 Hz",
-    "counts of the map by tile (common/mapping/tile_codec.hpp)"};
+    "counts of the map by tile (common/mapping/wire/tile_codec.hpp)"};
 inline constexpr dds::Topic<lapis_msgs::msg::MapState> kMapState{"/semantic_mapper/map_state", dds::kLatched,
                                                                  "semantic_mapper", "after the tiles of a version",
                                                                  "version and checksum of the map"};

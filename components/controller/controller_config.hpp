@@ -20,18 +20,6 @@ RobotLimits limits_of(const robot::RobotDescription& robot);
 ControllerComponentConfig completed(ControllerComponentConfig config);
 
 template <class Field>
-void describe(Field& field, FanConfig& c) {
-  field("length_m", c.length_m, config::in_range(0.5, 5.0), "of the paths that are tried [m]");
-  field("max_curvature_per_m", c.max_curvature_per_m, config::in_range(0.1, 10.0), "of the tightest [1/m]");
-  field("groups", c.groups, config::in_range(3, 99), "curvatures at the start; odd");
-  field("branches", c.branches, config::in_range(1, 99), "curvatures after half of the length; odd");
-  field("max_bearing_rad", c.max_bearing_rad, config::in_range(0.1, 3.0),
-        "a path ends where it leaves what lies ahead by so much to either side [rad]");
-  field("margin_m", c.margin_m, config::in_range(0.0, 1.0),
-        "of clearance besides the robot's disc, from 0.4 m ahead on; half of it nearer [m]");
-}
-
-template <class Field>
 void describe(Field& field, LocalMapConfig& c) {
   field("range_m", c.range_m, config::in_range(0.5, 20.0), "of depth; obstacles farther away are not kept [m]");
   field("min_height_m", c.min_height_m, config::in_range(-1.0, 10.0),

@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/mapping/map_description.hpp"
-#include "common/mapping/map_mirror.hpp"
+#include "common/mapping/file/map_description.hpp"
+#include "common/mapping/wire/map_mirror.hpp"
 #include "evaluator/core/coverage.hpp"
 #include "evaluator/core/ground_truth.hpp"
 #include "evaluator/core/metrics.hpp"

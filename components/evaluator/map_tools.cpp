@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "common/report/report.hpp"
 #include "evaluator/core/coverage.hpp"
 #include "evaluator/core/iou.hpp"

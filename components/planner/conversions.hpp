@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mapping/map_mirror.hpp"
+#include "common/mapping/wire/map_mirror.hpp"
 #include "common/messages/converted.hpp"
 #include "idl/lapis_msgs.hpp"
 #include "idl/nav_msgs.hpp"

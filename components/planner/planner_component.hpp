@@ -6,9 +6,9 @@
 #include <tuple>
 #include <vector>
 
-#include "common/mapping/landmark_mirror.hpp"
-#include "common/mapping/map_description.hpp"
-#include "common/mapping/map_mirror.hpp"
+#include "common/mapping/file/map_description.hpp"
+#include "common/mapping/wire/landmark_mirror.hpp"
+#include "common/mapping/wire/map_mirror.hpp"
 #include "common/runtime/context.hpp"
 #include "idl/vision_msgs.hpp"
 #include "planner/conversions.hpp"

@@ -128,7 +128,8 @@ void describe(Field& field, GoalMemoryConfig& c) {
 
 template <class Field>
 void describe(Field& field, PlannerComponentConfig& c) {
-  field("method", c.method, config::one_of(all_methods()), "what decides between paths (README)");
+  field("method", c.method, config::one_of(all_methods(), "see Method in components/planner/README.md"),
+        "what decides between paths");
   field("measure", c.measure, config::one_of({"semantic", "shannon", "csqmi"}),
         "information of the map: about space and classes, or about space alone (README)");
   field("autostart", c.autostart, config::anything(), "explore at once; false: wait for /planner/start");
@@ -207,7 +208,8 @@ void describe(Field& field, PlannerComponentConfig& c) {
               "the planner reads it on /semantic_mapper/map_description");
   field.moved("sensor_model", "semantic_mapper.sensor_model",
               "the planner reads it on /semantic_mapper/map_description");
-  field("compared_methods", c.compared_methods, config::one_of(comparable_methods()),
+  field("compared_methods", c.compared_methods,
+        config::one_of(comparable_methods(), "see Method in components/planner/README.md"),
         "decisions.csv says what each of these would have chosen among the same candidates");
   field("compared_priors", c.surroundings.compared_priors, config::in_range(0.001, 0.999),
         "instead of the prior of the mapper's sensor model: decisions.csv says what would have been chosen with each");

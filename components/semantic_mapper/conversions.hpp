@@ -3,8 +3,8 @@
 #include <span>
 #include <string>
 
-#include "common/mapping/label_list.hpp"
-#include "common/mapping/map_mirror.hpp"
+#include "common/mapping/model/label_list.hpp"
+#include "common/mapping/wire/map_mirror.hpp"
 #include "common/messages/converted.hpp"
 #include "idl/lapis_msgs.hpp"
 #include "idl/nav_msgs.hpp"

@@ -8,7 +8,7 @@
 #include <ostream>
 #include <string>
 
-#include "common/mapping/sensor_model.hpp"
+#include "common/mapping/model/sensor_model.hpp"
 #include "common/report/report.hpp"
 #include "semantic_mapper/tool_input.hpp"
 

@@ -6,8 +6,8 @@
 #include <filesystem>
 
 #include "common/files/atomic_file.hpp"
-#include "common/mapping/map_file.hpp"
-#include "common/mapping/tile_codec.hpp"
+#include "common/mapping/file/map_file.hpp"
+#include "common/mapping/wire/tile_codec.hpp"
 #include "common/messages/labels.hpp"
 #include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"

@@ -5,7 +5,7 @@
 #include <set>
 #include <string>
 
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "common/runtime/context.hpp"
 #include "common/runtime/stamped_input.hpp"
 #include "idl/std_srvs.hpp"

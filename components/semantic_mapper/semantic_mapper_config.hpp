@@ -2,7 +2,6 @@
 
 #include <string>
 
-#include "common/mapping/describe.hpp"
 #include "common/robot/robot_description.hpp"
 #include "semantic_mapper/core/obstacle_layer.hpp"
 #include "semantic_mapper/core/occupancy_grid.hpp"

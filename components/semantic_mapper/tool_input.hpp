@@ -3,7 +3,7 @@
 #include <string>
 #include <variant>
 
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "semantic_mapper/core/octree_file.hpp"
 
 namespace lapis::semantic_mapper {

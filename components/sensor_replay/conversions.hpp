@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/model/label_list.hpp"
 #include "common/messages/camera_frame.hpp"
 #include "sensor_replay/core/tum_dataset.hpp"
 

@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/model/label_list.hpp"
 #include "simulator/core/scene/scene_spec.hpp"
 
 namespace lapis::simulator {

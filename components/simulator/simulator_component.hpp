@@ -7,7 +7,7 @@
 #include <stop_token>
 #include <string>
 
-#include "common/mapping/map_description.hpp"
+#include "common/mapping/file/map_description.hpp"
 #include "common/runtime/camera_publisher.hpp"
 #include "common/runtime/context.hpp"
 #include "common/runtime/lockstep_driver.hpp"

@@ -6,8 +6,8 @@
 
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
-#include "common/mapping/map_file.hpp"
-#include "common/mapping/zstd_codec.hpp"
+#include "common/mapping/file/map_file.hpp"
+#include "common/mapping/wire/zstd_codec.hpp"
 
 namespace {
 

@@ -3,8 +3,8 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
-#include "common/mapping/map_file.hpp"
-#include "common/mapping/zstd_codec.hpp"
+#include "common/mapping/file/map_file.hpp"
+#include "common/mapping/wire/zstd_codec.hpp"
 #include "fuzz_files.hpp"
 #include "semantic_mapper/core/export.hpp"
 #include "unit/mapping/random_votes.hpp"

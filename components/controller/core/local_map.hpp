@@ -8,7 +8,7 @@
 #include "common/geometry/image.hpp"
 #include "common/geometry/pinhole_camera.hpp"
 #include "common/geometry/se3.hpp"
-#include "common/mapping/voxel_index.hpp"
+#include "common/mapping/model/voxel_index.hpp"
 #include "common/time/time.hpp"
 #include "controller/core/planar.hpp"
 

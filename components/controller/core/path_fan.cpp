@@ -36,14 +36,9 @@ PlanarPose arc(double length_m, double curvature_per_m) {
 }  // namespace
 
 PathFan::PathFan(const FanConfig& config, double radius_m) : groups_(static_cast<std::size_t>(config.groups)) {
-  require(config.length_m >= 0.5 && config.length_m <= 5.0, "length_m must be in [0.5, 5]");
-  require(config.max_curvature_per_m >= 0.1 && config.max_curvature_per_m <= 10.0,
-          "max_curvature_per_m must be in [0.1, 10]");
-  require(config.groups >= 3 && config.groups <= 99 && config.groups % 2 == 1, "groups must be odd, in [3, 99]");
-  require(config.branches >= 1 && config.branches <= 99 && config.branches % 2 == 1,
-          "branches must be odd, in [1, 99]");
-  require(config.max_bearing_rad >= 0.1 && config.max_bearing_rad <= 3.0, "max_bearing_rad must be in [0.1, 3]");
-  require(config.margin_m >= 0.0 && config.margin_m <= 1.0, "margin_m must be in [0, 1]");
+  config::check("fan", config);
+  require(config.groups % 2 == 1, "groups must be odd");
+  require(config.branches % 2 == 1, "branches must be odd");
   require(radius_m > 0.0, "the robot's radius must be positive");
   reach_m_ = config.length_m + radius_m + config.margin_m;
   cells_per_side_ = 2 * static_cast<int>(std::ceil(reach_m_ / kStep_m));

@@ -5,18 +5,31 @@
 #include <span>
 #include <vector>
 
+#include "common/config/schema.hpp"
 #include "controller/core/planar.hpp"
 
 namespace lapis::controller {
 
 struct FanConfig {
-  double length_m = 1.5;             ///< of a path, in [0.5, 5]
-  double max_curvature_per_m = 2.5;  ///< in [0.1, 10]
-  int groups = 19;                   ///< curvatures at the start, in [3, 99]
-  int branches = 7;                  ///< curvatures after half of a path, in [1, 99]
-  double max_bearing_rad = 1.05;     ///< a path ends where it leaves this angle to either side, in [0.1, 3]
-  double margin_m = 0.05;            ///< kept between the robot's disc and obstacles, in [0, 1]
+  double length_m = 1.5;             ///< of a path
+  double max_curvature_per_m = 2.5;  ///< of the tightest path
+  int groups = 19;                   ///< curvatures at the start
+  int branches = 7;                  ///< curvatures after half of a path
+  double max_bearing_rad = 1.05;     ///< a path ends where it leaves this angle to either side
+  double margin_m = 0.05;            ///< kept between the robot's disc and obstacles
 };
+
+template <class Field>
+void describe(Field& field, FanConfig& c) {
+  field("length_m", c.length_m, config::in_range(0.5, 5.0), "of the paths that are tried [m]");
+  field("max_curvature_per_m", c.max_curvature_per_m, config::in_range(0.1, 10.0), "of the tightest [1/m]");
+  field("groups", c.groups, config::in_range(3, 99), "curvatures at the start; odd");
+  field("branches", c.branches, config::in_range(1, 99), "curvatures after half of the length; odd");
+  field("max_bearing_rad", c.max_bearing_rad, config::in_range(0.1, 3.0),
+        "a path ends where it leaves what lies ahead by so much to either side [rad]");
+  field("margin_m", c.margin_m, config::in_range(0.0, 1.0),
+        "of clearance besides the robot's disc, from 0.4 m ahead on; half of it nearer [m]");
+}
 
 /// A path of the fan in base_link at its beginning.
 struct FanPath {

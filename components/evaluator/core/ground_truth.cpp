@@ -6,7 +6,7 @@
 #include <stdexcept>
 
 #include "common/files/atomic_file.hpp"
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "evaluator/core/map_input.hpp"
 
 namespace lapis::evaluator {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "common/mapping/sensor_model.hpp"
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/sensor_model.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 #include "evaluator/core/voxels.hpp"
 
 namespace lapis::evaluator {

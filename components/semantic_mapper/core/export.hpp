@@ -7,9 +7,9 @@
 #include <Eigen/Core>
 
 #include "common/geometry/image.hpp"
-#include "common/mapping/label_list.hpp"
-#include "common/mapping/sensor_model.hpp"
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/label_list.hpp"
+#include "common/mapping/model/sensor_model.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 
 namespace lapis::semantic_mapper {
 

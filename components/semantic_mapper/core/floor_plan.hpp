@@ -5,9 +5,9 @@
 #include <set>
 #include <span>
 
-#include "common/mapping/column_projection.hpp"
-#include "common/mapping/sensor_model.hpp"
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/column_projection.hpp"
+#include "common/mapping/model/sensor_model.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 #include "semantic_mapper/core/occupancy_grid.hpp"
 
 namespace lapis::semantic_mapper {

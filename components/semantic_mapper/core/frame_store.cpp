@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "common/mapping/frame_codec.hpp"
+#include "common/mapping/wire/frame_codec.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "common/files/spill_file.hpp"
-#include "common/mapping/compact_frame.hpp"
-#include "common/mapping/frame_votes.hpp"
+#include "common/mapping/model/frame_votes.hpp"
+#include "common/mapping/votes/compact_frame.hpp"
 
 namespace lapis::semantic_mapper {
 

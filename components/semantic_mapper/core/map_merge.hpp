@@ -1,7 +1,7 @@
 #pragma once
 
 #include "common/geometry/se3.hpp"
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 
 namespace lapis::semantic_mapper {
 

@@ -6,8 +6,8 @@
 #include <limits>
 #include <unordered_map>
 
-#include "common/mapping/frame_votes.hpp"
-#include "common/mapping/voxel_index.hpp"
+#include "common/mapping/model/frame_votes.hpp"
+#include "common/mapping/model/voxel_index.hpp"
 #include "common/time/time.hpp"
 #include "semantic_mapper/core/occupancy_grid.hpp"
 

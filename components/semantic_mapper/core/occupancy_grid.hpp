@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "common/mapping/column_projection.hpp"
+#include "common/mapping/model/column_projection.hpp"
 
 namespace lapis::semantic_mapper {
 

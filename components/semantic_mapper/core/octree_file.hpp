@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "common/geometry/image.hpp"
-#include "common/mapping/voxel_index.hpp"
+#include "common/mapping/model/voxel_index.hpp"
 
 namespace lapis::semantic_mapper {
 

@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "common/mapping/column_projection.hpp"
-#include "common/mapping/frame_votes.hpp"
+#include "common/mapping/model/column_projection.hpp"
+#include "common/mapping/model/frame_votes.hpp"
 #include "semantic_mapper/core/occupancy_grid.hpp"
 
 namespace lapis::semantic_mapper {

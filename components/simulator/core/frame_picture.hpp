@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "common/geometry/image.hpp"
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/model/label_list.hpp"
 #include "simulator/core/render/renderer.hpp"
 
 namespace lapis::simulator {

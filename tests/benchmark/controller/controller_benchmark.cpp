@@ -75,8 +75,11 @@ BENCHMARK(obstacles_near)->Name("controller_obstacles_near")->Unit(benchmark::kM
 
 void choose(benchmark::State& state) {
   const LocalPlanner planner(PathFan({}, 0.2));
-  const auto obstacles = looked_around().obstacles_near(views()[0].T_map_base, planner.fan().reach_m());
-  for (auto _ : state) benchmark::DoNotOptimize(planner.choose(obstacles, {1.0, 0.0}, std::nullopt));
+  const LocalMap map = looked_around();
+  const auto obstacles = map.obstacles_near(views()[0].T_map_base, planner.fan().reach_m());
+  const auto doubtful = map.unseen_feet_near(views()[0].T_map_base, planner.fan().reach_m());
+  for (auto _ : state) benchmark::DoNotOptimize(planner.choose(obstacles, doubtful, {1.0, 0.0}, std::nullopt));
+  state.counters["doubtful"] = static_cast<double>(doubtful.size());
 }
 BENCHMARK(choose)->Name("controller_choose")->Unit(benchmark::kMicrosecond);
 

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-#include "common/mapping/integration.hpp"
+#include "common/mapping/votes/integration.hpp"
 #include "simulator/set_up.hpp"
 
 namespace lapis::planner::test {

@@ -3,8 +3,8 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
-#include "common/mapping/compact_frame.hpp"
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/voxel_map.hpp"
+#include "common/mapping/votes/compact_frame.hpp"
 #include "simulator/simulator_config.hpp"
 
 namespace lapis::planner::test {

@@ -12,7 +12,7 @@
 #include <random>
 #include <thread>
 
-#include "common/mapping/map_mirror.hpp"
+#include "common/mapping/wire/map_mirror.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/time.hpp"
 #include "common/runtime/run_component.hpp"

@@ -10,7 +10,7 @@
 
 #include <benchmark/benchmark.h>
 
-#include "common/mapping/sensor_model.hpp"
+#include "common/mapping/model/sensor_model.hpp"
 #include "semantic_mapper/core/semantic_mapper.hpp"
 #include "tests/benchmark/semantic_mapper/benchmarks.hpp"
 #include "tests/support/synthetic_flat.hpp"

@@ -11,7 +11,7 @@
 #include <random>
 #include <thread>
 
-#include "common/mapping/landmark_mirror.hpp"
+#include "common/mapping/wire/landmark_mirror.hpp"
 #include "common/messages/landmarks.hpp"
 #include "common/messages/time.hpp"
 #include "common/runtime/run_component.hpp"

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <iterator>
 
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/labels.hpp"
 #include "common/messages/map_description.hpp"

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 
 namespace lapis::test {
 

@@ -12,8 +12,8 @@
 #include <vector>
 
 #include "common/geometry/camera_mount.hpp"
-#include "common/mapping/map_description.hpp"
-#include "common/mapping/tile_codec.hpp"
+#include "common/mapping/file/map_description.hpp"
+#include "common/mapping/wire/tile_codec.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/landmarks.hpp"
 #include "common/messages/map_description.hpp"

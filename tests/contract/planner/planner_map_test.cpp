@@ -86,7 +86,7 @@ TEST_F(PlannerContract, DescriptionThatMakesNoSenseEndsIt) {
   peers.describe_map();
   EXPECT_EQ(planner->wait(), 1) << planner->log();
   has_ended = true;
-  const char* reason = "/semantic_mapper/map_description: sensor model: prior_occupied";
+  const char* reason = "/semantic_mapper/map_description: sensor_model.prior_occupied";
   EXPECT_THAT(planner->log(), HasSubstr(reason));
   EXPECT_TRUE(wait_until([this] { return !error().empty(); }, Seconds(5)));
   EXPECT_THAT(error(), HasSubstr(reason));

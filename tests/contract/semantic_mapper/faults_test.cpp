@@ -10,7 +10,7 @@
 #include <limits>
 
 #include "common/files/atomic_file.hpp"
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "common/topics/services.hpp"
 #include "tests/contract/semantic_mapper/mapper_contract.hpp"
 #include "tests/support/temporary_folder.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mapping/map_mirror.hpp"
+#include "common/mapping/wire/map_mirror.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/labels.hpp"
 #include "common/messages/map_description.hpp"

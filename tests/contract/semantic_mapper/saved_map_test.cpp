@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "common/files/atomic_file.hpp"
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "semantic_mapper/core/map_merge.hpp"
 #include "tests/contract/semantic_mapper/mapper_contract.hpp"
 #include "tests/support/temporary_folder.hpp"

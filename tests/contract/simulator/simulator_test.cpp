@@ -9,7 +9,7 @@
 #include <map>
 #include <set>
 
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "common/messages/camera.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/map_description.hpp"

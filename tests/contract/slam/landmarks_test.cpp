@@ -5,7 +5,7 @@
 #include <csignal>
 #include <set>
 
-#include "common/mapping/landmark_mirror.hpp"
+#include "common/mapping/wire/landmark_mirror.hpp"
 #include "common/messages/landmarks.hpp"
 #include "common/messages/time.hpp"
 #include "common/topics/slam.hpp"

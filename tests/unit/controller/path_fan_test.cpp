@@ -143,10 +143,10 @@ TEST(PathFan, RefusesWhatIsOutOfRangeByName) {
     }
     return std::string("accepted");
   };
-  EXPECT_EQ(refused([](FanConfig& c) { c.groups = 4; }), "fan: groups must be odd, in [3, 99]");
-  EXPECT_EQ(refused([](FanConfig& c) { c.branches = 0; }), "fan: branches must be odd, in [1, 99]");
-  EXPECT_EQ(refused([](FanConfig& c) { c.length_m = 9.0; }), "fan: length_m must be in [0.5, 5]");
-  EXPECT_EQ(refused([](FanConfig& c) { c.margin_m = -0.1; }), "fan: margin_m must be in [0, 1]");
+  EXPECT_EQ(refused([](FanConfig& c) { c.groups = 4; }), "fan: groups must be odd");
+  EXPECT_EQ(refused([](FanConfig& c) { c.branches = 0; }), "fan.branches: 0 is out of range, allowed is 1 to 99");
+  EXPECT_EQ(refused([](FanConfig& c) { c.length_m = 9.0; }), "fan.length_m: 9 is out of range, allowed is 0.5 to 5");
+  EXPECT_EQ(refused([](FanConfig& c) { c.margin_m = -0.1; }), "fan.margin_m: -0.1 is out of range, allowed is 0 to 1");
 }
 
 }  // namespace

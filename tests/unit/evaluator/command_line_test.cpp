@@ -10,7 +10,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 
 namespace lapis::evaluator {
 namespace {

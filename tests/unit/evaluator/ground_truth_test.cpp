@@ -5,7 +5,7 @@
 
 #include <fstream>
 
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 
 namespace lapis::evaluator {
 namespace {

@@ -1,4 +1,4 @@
-#include "common/mapping/compact_frame.hpp"
+#include "common/mapping/votes/compact_frame.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/mapping/frame_codec.hpp"
+#include "common/mapping/wire/frame_codec.hpp"
 #include "tests/support/synthetic_room.hpp"
 
 namespace lapis::mapping {

@@ -1,4 +1,5 @@
-#include "common/mapping/integration.hpp"
+#include "common/mapping/votes/integration.hpp"
+#include "common/mapping/votes/cell_hits.hpp"
 
 #include <cmath>
 #include <map>
@@ -8,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 #include "tests/support/synthetic_flat.hpp"
 #include "tests/unit/mapping/plain_votes.hpp"
 

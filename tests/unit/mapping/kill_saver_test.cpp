@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "common/files/atomic_file.hpp"
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "tests/support/endless_process.hpp"
 #include "tests/support/temporary_folder.hpp"
 

@@ -1,4 +1,4 @@
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/model/label_list.hpp"
 
 #include <set>
 #include <stdexcept>

@@ -1,4 +1,4 @@
-#include "common/mapping/landmark_mirror.hpp"
+#include "common/mapping/wire/landmark_mirror.hpp"
 
 #include <algorithm>
 #include <random>

@@ -1,4 +1,4 @@
-#include "common/mapping/map_description.hpp"
+#include "common/mapping/file/map_description.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -35,7 +35,7 @@ TEST(MapDescriptionTest, EveryValueThatCannotBeIsNamed) {
       {[](auto& d) { d.resolution_m = 0.6; }, "resolution_m"},
       {[](auto& d) { d.frames.stride = 0; }, "stride"},
       {[](auto& d) { d.frames.integration.max_range_m = kNaN; }, "max_range_m"},
-      {[](auto& d) { d.frames.integration.min_height_m = -kInfinity; }, "heights"},
+      {[](auto& d) { d.frames.integration.min_height_m = -kInfinity; }, "min_height_m"},
       {[](auto& d) { d.frames.integration.kernel_length_voxels = 1.0; }, "kernel_length_voxels"},
       {[](auto& d) {
          d.resolution_m = 0.02;

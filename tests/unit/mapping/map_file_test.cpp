@@ -1,4 +1,4 @@
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 
 #include <algorithm>
 #include <chrono>
@@ -17,7 +17,7 @@
 #include "common/files/atomic_file.hpp"
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
-#include "common/mapping/zstd_codec.hpp"
+#include "common/mapping/wire/zstd_codec.hpp"
 #include "tests/unit/mapping/random_votes.hpp"
 
 namespace lapis::mapping {

@@ -1,4 +1,4 @@
-#include "common/mapping/map_mirror.hpp"
+#include "common/mapping/wire/map_mirror.hpp"
 
 #include <algorithm>
 #include <functional>

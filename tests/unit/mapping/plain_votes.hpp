@@ -6,7 +6,8 @@
 #include <map>
 #include <set>
 
-#include "common/mapping/integration.hpp"
+#include "common/mapping/votes/cell_hits.hpp"
+#include "common/mapping/votes/integration.hpp"
 
 namespace lapis::mapping::test {
 

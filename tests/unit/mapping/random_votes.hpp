@@ -3,8 +3,8 @@
 #include <map>
 #include <random>
 
-#include "common/mapping/frame_votes.hpp"
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/frame_votes.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 
 namespace lapis::mapping::test {
 

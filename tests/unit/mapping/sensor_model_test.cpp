@@ -1,4 +1,4 @@
-#include "common/mapping/sensor_model.hpp"
+#include "common/mapping/model/sensor_model.hpp"
 
 #include <cmath>
 #include <numeric>
@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/mapping/frame_votes.hpp"
+#include "common/mapping/model/frame_votes.hpp"
 
 namespace lapis::mapping {
 namespace {

@@ -1,4 +1,4 @@
-#include "common/mapping/tile_codec.hpp"
+#include "common/mapping/wire/tile_codec.hpp"
 
 #include <algorithm>
 #include <set>

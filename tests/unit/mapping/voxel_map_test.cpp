@@ -1,4 +1,4 @@
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/mapping/frame_codec.hpp"
+#include "common/mapping/wire/frame_codec.hpp"
 #include "tests/unit/mapping/random_votes.hpp"
 
 namespace lapis::mapping {

@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/mapping/frame_votes.hpp"
+#include "common/mapping/model/frame_votes.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {

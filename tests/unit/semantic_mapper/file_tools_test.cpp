@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "common/files/atomic_file.hpp"
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/test_data.hpp"
 #include "tests/unit/mapping/random_votes.hpp"

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/mapping/integration.hpp"
+#include "common/mapping/votes/integration.hpp"
 #include "tests/support/synthetic_room.hpp"
 
 namespace lapis::semantic_mapper {

@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "tests/support/synthetic_room.hpp"
 
 namespace lapis::semantic_mapper {

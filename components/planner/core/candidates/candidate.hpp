@@ -20,6 +20,9 @@ enum class CandidateKind {
   kRevisit,      ///< the best path to an old key-frame
 };
 
+/// Whether it shows a frontier.
+inline bool is_of_frontier(CandidateKind kind) { return kind < CandidateKind::kTracked; }
+
 /// "frontier" and so on, as in decisions.csv.
 const char* name_of(CandidateKind kind);
 

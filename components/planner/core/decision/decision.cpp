@@ -121,7 +121,7 @@ std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, con
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!candidates[i].is_open()) continue;
     const double bonus = is_current_goal(candidates[i], memory) ? kept : 1.0;
-    const double worth = bonus * method.utility(candidates[i].value);
+    const double worth = bonus * method.utility(candidates[i]);
     if (best && worth <= most) continue;
     best = i;
     most = worth;
@@ -190,7 +190,7 @@ std::string judge(const Situation& s, const DecisionConfig& config, const Asks& 
   const std::vector<Candidate*> open = open_ones(candidates);
   if (asks.path_information || asks.goal_information) add_information(s, asks, open);
   std::string problem = asks.spectrum ? add_gains(s, config, open) : "";
-  for (Candidate* candidate : open) candidate->utility = config.method->utility(candidate->value);
+  for (Candidate* candidate : open) candidate->utility = config.method->utility(*candidate);
   return problem;
 }
 

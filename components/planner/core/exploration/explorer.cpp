@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -11,8 +10,6 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kBlockedRadius_m = 0.2;       // what stops the robot nearer to each other is one
-constexpr int kChange_cells = 5;               // known around a target: what failed there may succeed now
 constexpr double kLeastDecisionTime_s = 0.5;   // from one decision to the next, whatever happens
 constexpr double kBlindPatience_s = 2.0;       // without a pose, before it looks around for it
 constexpr double kLeastGrowth = 0.02;          // of sigma by odometry alone, for each metre
@@ -20,22 +17,11 @@ constexpr int kBlindTurns = 2, kHeadings = 3;  // of such a look around: full tu
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
 
-// Who stands in a path may go, however often that happens.
-GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
-  config.radius_m = kBlockedRadius_m;
-  config.max_failures = std::numeric_limits<int>::max();
-  return config;
-}
-
-bool is_of_frontier(CandidateKind kind) { return kind < CandidateKind::kTracked; }
-
 bool is_any_left_alone(const Decision& decision) {
   return std::any_of(decision.candidates.begin(), decision.candidates.end(), [](const Candidate& c) {
     return c.rejection >= Rejection::kFailedView && c.rejection <= Rejection::kLeftAlone;
   });
 }
-
-bool has_ended(State state) { return state == State::kDone || state == State::kGaveUp || state == State::kFailed; }
 
 std::string purpose_of(const Candidate& chosen) {
   switch (chosen.kind) {
@@ -61,82 +47,67 @@ std::vector<Pose2> turns_on_the_spot(bool is_to_the_left) {
 
 }  // namespace
 
-Explorer::Explorer(const ExplorerConfig& config)
-    : config_(config), memory_(config.memory), revisited_(config.memory), gap_places_(config.memory),
-      progress_(config.stall), blocked_(memory_of_blocked(config.memory)) {}
+Explorer::Explorer(const ExplorerConfig& config) : config_(config), setbacks_(config.memory), progress_(config.stall) {}
 
 void Explorer::start() {
-  if (state_ != State::kExploring) drop_goal();
-  if (has_ended(state_) || state_ == State::kIdle) {
-    memory_.clear();
-    revisited_.clear();
-    gap_places_.clear();
-    blocked_.clear();
-    failed_views_.forgive();
-    taken_views_.clear();
-    losses_.clear();
-  }
+  if (!std::holds_alternative<Exploring>(mission_)) drop_goal();
+  if (std::holds_alternative<Idle>(mission_) || std::holds_alternative<Ended>(mission_)) setbacks_.begin_anew();
   progress_.begin_anew();
-  looks_at_gaps_ = looks_again_ = goes_back_ = false;
-  empty_decisions_ = 0;
-  nothing_since_.reset();
-  lost_at_.reset();
   blind_since_.reset();
-  enter(State::kExploring, home_ ? "started" : "waits for slam's first pose");
+  enter(Exploring{}, home_ ? "started" : "waits for slam's first pose");
 }
 
 void Explorer::stop() {
   drop_goal();
-  enter(State::kIdle, "stopped");
+  enter(Idle{}, "stopped");
 }
 
 bool Explorer::pause() {
   if (!is_active()) return false;
   drop_goal();
-  enter(State::kPaused, "paused");
+  enter(Paused{}, "paused");
   return true;
 }
 
 void Explorer::return_home() {
   drop_goal();
-  const bool returns_already =
-      state_ == State::kReturning || (state_ == State::kRecovering && interrupted_ == State::kReturning);
-  if (state_ != State::kGaveUp && !returns_already) {
-    end_ = State::kDone;
-    end_reason_.clear();
+  Returning returning;
+  if (const auto* recovering = std::get_if<Recovering>(&mission_);
+      recovering != nullptr && std::holds_alternative<Returning>(recovering->interrupted)) {
+    returning = std::get<Returning>(recovering->interrupted);
+  } else if (const auto* already = std::get_if<Returning>(&mission_)) {
+    returning = *already;
+  } else if (const auto* ended = std::get_if<Ended>(&mission_); ended != nullptr && ended->how == State::kGaveUp) {
+    returning.then = *ended;
   }
-  enter(State::kReturning, "asked to return");
+  enter(returning, "asked to return");
 }
 
 void Explorer::forget_map() {
   drop_goal();
-  memory_.clear();
-  revisited_.clear();
-  gap_places_.clear();
-  blocked_.clear();
-  nothing_since_.reset();
-  failed_views_.clear();
-  taken_views_.clear();
+  setbacks_.forget_map();
   progress_ = ProgressWatch(config_.stall);
-  looks_at_gaps_ = false;
-  losses_.clear();
   awaited_.clear();
-  looks_again_ = goes_back_ = false;
   blind_since_.reset();
   home_.reset();
   trail_.clear();
   decided_at_.reset();
   chosen_at_.reset();
-  empty_decisions_ = 0;
-  if (state_ == State::kRecovering) enter(interrupted_, "slam has begun another map");
-  if (state_ == State::kReturning) enter(State::kFailed, "the map in which it started is gone");
+  if (std::holds_alternative<Recovering>(mission_)) resume("slam has begun another map");
+  if (auto* exploring = std::get_if<Exploring>(&mission_)) *exploring = {};
+  if (std::holds_alternative<Returning>(mission_)) fail("the map in which it started is gone");
 }
 
 /// What is to be done is decided anew.
-void Explorer::enter(State state, std::string reason) {
+void Explorer::enter(MissionState mission, std::string reason) {
   decided_at_.reset();
-  state_ = state;
+  mission_ = std::move(mission);
   reason_ = std::move(reason);
+}
+
+void Explorer::resume(std::string reason) {
+  const auto interrupted = std::get<Recovering>(mission_).interrupted;
+  std::visit([&](const auto& state) { enter(state, std::move(reason)); }, interrupted);
 }
 
 void Explorer::set_path(std::vector<Pose2> path, bool is_turn) {
@@ -151,7 +122,8 @@ void Explorer::drop_goal() {
 }
 
 bool Explorer::is_active() const {
-  return state_ == State::kExploring || state_ == State::kReturning || state_ == State::kRecovering;
+  return std::holds_alternative<Exploring>(mission_) || std::holds_alternative<Returning>(mission_) ||
+         std::holds_alternative<Recovering>(mission_);
 }
 
 bool Explorer::step(const Report& report, Surroundings* surroundings) {
@@ -167,7 +139,7 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
     await_first_pose(report.now);
     return false;
   }
-  if (report.tracking == Tracking::kLost || state_ == State::kRecovering) {
+  if (report.tracking == Tracking::kLost || std::holds_alternative<Recovering>(mission_)) {
     recover(report);
     return false;
   }
@@ -176,12 +148,10 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
     return false;
   }
   surroundings->mark_driven(report.robot->p_map);
-  surroundings->set_blocked(blocked_places(report.now));
-  if (state_ == State::kReturning) {
-    go_home(report, *surroundings);
-    return false;
-  }
-  return explore(report, *surroundings);
+  surroundings->set_blocked(setbacks_.blocked_places(is_adrift_, report.now));
+  if (auto* exploring = std::get_if<Exploring>(&mission_)) return explore(*exploring, report, *surroundings);
+  go_home(report, *surroundings);
+  return false;
 }
 
 void Explorer::note_pose(const Report& report) {
@@ -202,65 +172,58 @@ void Explorer::await_first_pose(time::Time now) {
   if (!blind_since_) return;
   if ((now - *blind_since_).seconds() <= config_.lost_timeout_s) return look_for_pose(now);
   drop_goal();
-  enter(State::kFailed, "slam has found no first pose in " + std::to_string(std::lround(config_.lost_timeout_s)) +
-                            " s: move the robot to where there is something to see, and start again");
+  fail("slam has found no first pose in " + std::to_string(std::lround(config_.lost_timeout_s)) +
+       " s: move the robot to where there is something to see, and start again");
 }
 
 // Other views may show slam where it is, first those that it has turned away from. The controller turns slowly, and the
 // robot stands when it has turned twice.
 void Explorer::look_for_pose(time::Time now) {
   if ((now - *blind_since_).seconds() < kBlindPatience_s) return;
-  reason_ = state_ == State::kRecovering ? "slam is lost: looks around" : "looks around for slam's first pose";
+  reason_ = std::holds_alternative<Recovering>(mission_) ? "slam is lost: looks around"
+                                                         : "looks around for slam's first pose";
   if (!is_turn_) set_path(turns_on_the_spot(!trail_.turned_left()), true);
 }
 
-bool Explorer::explore(const Report& report, Surroundings& surroundings) {
-  const auto known_cells = [&](const Eigen::Vector2d& target_map) {
-    return surroundings.known_cells(target_map, config_.memory.radius_m);
-  };
-  for (const Eigen::Vector2d& target_map : memory_.forget_changed(known_cells, kChange_cells))
-    failed_views_.forget(target_map, config_.memory.radius_m);
-  for (const FailedView& view : failed_views_.judge(surroundings, looks_again_, report.now)) {
-    memory_.add_failure(view.target_map, {Rejection::kFailedView, view.from_map, is_adrift_}, report.now);
-    ++failures_;
-  }
+bool Explorer::explore(Exploring& exploring, const Report& report, Surroundings& surroundings) {
+  setbacks_.judge(surroundings, exploring.looks_again, is_adrift_, report.now);
   progress_.note(surroundings.explored_volume_m3(), report.robot->p_map, report.now);
   may_change_ = surroundings.grid().has_passing_obstacles();
   awaited_ = surroundings.awaited_targets();
-  if (awaited_.empty()) looks_again_ = false;
-  if (!is_adrift_ || awaited_.empty() || trail_.poses().empty()) goes_back_ = false;
+  if (awaited_.empty()) exploring.looks_again = false;
+  if (!is_adrift_ || awaited_.empty() || trail_.poses().empty()) exploring.goes_back = false;
   if (goal_ && is_of_other_tier(*goal_)) drop_goal();
   const bool may_decide = !chosen_at_ || (report.now - *chosen_at_).seconds() >= kLeastDecisionTime_s;
   if (!goal_) return may_decide;
-  if (is_at(goal_->pose, *report.robot)) {
-    note_arrival(report.now);
-    drop_goal();
-    return may_decide;
-  }
-  if (progress_.is_stalled()) {
-    note_stall(report.now);
-    return may_decide;
-  }
-  const bool is_late = goal_->deadline && report.now > *goal_->deadline;
-  if (report.is_blocked || is_late || stands_still(report)) {
-    if (goal_->target_map) note_failure(report, surroundings);  // nothing is in the way of a turn
-    reason_ = report.is_blocked ? "the path was blocked" : is_late ? "the path took too long" : "it did not get on";
+  if (ends_goal(report, surroundings)) {
     drop_goal();
     return may_decide;
   }
   return may_decide && (is_due(report.now) || !is_path_free(path_, *report.robot, surroundings.grid()));
 }
 
+/// It has been reached, or has failed. To go to and fro, or after what is never seen, has to end whatever a method
+/// promises itself of it.
+bool Explorer::ends_goal(const Report& report, Surroundings& surroundings) {
+  if (is_at(goal_->pose, *report.robot)) {
+    note_arrival(report.now);
+    return true;
+  }
+  if (progress_.is_stalled()) {
+    add_failure(report.now, is_adrift_);
+    reason_ = "nothing new was seen for long";
+    return true;
+  }
+  const bool is_late = goal_->deadline && report.now > *goal_->deadline;
+  if (!report.is_blocked && !is_late && !stands_still(report)) return false;
+  if (goal_->target_map) note_blocked(report, surroundings);  // nothing is in the way of a turn
+  reason_ = report.is_blocked ? "the path was blocked" : is_late ? "the path took too long" : "it did not get on";
+  return true;
+}
+
 /// Slam tracks again where it drove to for that, or the budget of sigma is spent before another goal.
 bool Explorer::is_of_other_tier(const Goal& goal) const {
   return goal.kind == CandidateKind::kTracked ? !is_adrift_ : goal.target_map && is_beyond_budget();
-}
-
-// Going to and fro, or after what is never seen, has to end whatever a method promises itself of it.
-void Explorer::note_stall(time::Time now) {
-  add_failure(now, is_adrift_);
-  reason_ = "nothing new was seen for long";
-  drop_goal();
 }
 
 bool Explorer::is_due(time::Time now) const {
@@ -270,10 +233,9 @@ bool Explorer::is_due(time::Time now) const {
 void Explorer::note_arrival(time::Time now) {
   if (!goal_->target_map) return;
   if (goal_->kind == CandidateKind::kTracked) return trail_.drop_nearest(goal_->pose);
-  if (goal_->kind == CandidateKind::kGap) return taken_views_.push_back(goal_->pose);
-  if (goal_->kind == CandidateKind::kRevisit)  // not for ever
-    return revisited_.add_failure(*goal_->target_map, {.is_adrift = is_adrift_}, now);
-  await({*goal_->target_map, goal_->pose.p_map}, now, config_.settle_s);
+  if (goal_->kind == CandidateKind::kGap) return setbacks_.note_view(goal_->pose);
+  if (goal_->kind == CandidateKind::kRevisit) return setbacks_.note_revisit(*goal_->target_map, is_adrift_, now);
+  setbacks_.await({*goal_->target_map, goal_->pose.p_map}, now, config_.settle_s);
 }
 
 // What is seen from nearby only, such as an obstacle on a place that the map does not know, is forgotten when the robot
@@ -291,14 +253,7 @@ void Explorer::note_vanished(const Decision& decision, time::Time now) {
     is_unsure |= c.rejection == Rejection::kUnsure;
   }
   if (is_unsure) note_loss(now);
-  if (!is_there) await({*goal_->target_map, robot_.p_map}, now, config_.memory.expiry_s);
-}
-
-/// Leaves the target alone until then, when it is judged whether the view has failed.
-void Explorer::await(const FailedView& view, time::Time now, double seconds) {
-  const time::Time due = now + time::Duration::from_seconds(seconds);
-  failed_views_.await(view, due);
-  memory_.leave_alone(view.target_map, due);
+  if (!is_there) setbacks_.await({*goal_->target_map, robot_.p_map}, now, config_.memory.expiry_s);
 }
 
 bool Explorer::is_at(const Pose2& place, const Pose2& robot) const {
@@ -315,73 +270,59 @@ bool Explorer::stands_still(const Report& report) {
 }
 
 // The target is left alone, and paths no longer lead through what stopped the robot.
-void Explorer::note_failure(const Report& report, Surroundings& surroundings) {
+void Explorer::note_blocked(const Report& report, Surroundings& surroundings) {
   add_failure(report.now, is_adrift_);
   const auto place = place_ahead(path_, *report.robot);
   if (!place) return;
-  blocked_.add_failure(*place, {}, report.now);
-  surroundings.set_blocked(blocked_places(report.now));
+  setbacks_.block(*place, report.now);
+  surroundings.set_blocked(setbacks_.blocked_places(is_adrift_, report.now));
 }
 
-/// Of the goal. A place that cannot be had, of an old key-frame or for a view of gaps, says nothing of a frontier
-/// beside it.
 void Explorer::add_failure(time::Time now, bool is_adrift) {
   progress_.begin_anew();
   if (!goal_->target_map) return;
-  ++failures_;
-  if (goal_->kind == CandidateKind::kTracked) return trail_.drop_nearest(goal_->pose);
-  const bool is_place = !is_of_frontier(goal_->kind);
-  GoalMemory& memory = goal_->kind == CandidateKind::kGap ? gap_places_ : is_place ? revisited_ : memory_;
-  memory.add_failure(is_place ? goal_->pose.p_map : *goal_->target_map,
-                     {Rejection::kFailed, goal_->pose.p_map, is_adrift}, now);
-}
-
-std::vector<Eigen::Vector2d> Explorer::blocked_places(time::Time now) const {
-  std::vector<Eigen::Vector2d> places_map;
-  for (const LeftAlone& place : blocked_.left_alone(now, is_adrift_)) places_map.push_back(place.target_map);
-  return places_map;
+  setbacks_.note_failure(goal_->kind, *goal_->target_map, goal_->pose, is_adrift, now);
+  if (goal_->kind == CandidateKind::kTracked) trail_.drop_nearest(goal_->pose);
 }
 
 Memory Explorer::memory(time::Time now) const {
-  Memory memory;
-  memory.left_alone = memory_.left_alone(now, is_adrift_);
+  const auto* running = std::get_if<Exploring>(&mission_);
+  const Exploring exploring = running != nullptr ? *running : Exploring{};
+  Memory memory = setbacks_.memory(is_adrift_, now);
   for (const Eigen::Vector2d& target_map : awaited_) {
-    if (!looks_again_) memory.left_alone.push_back({target_map});
+    if (!exploring.looks_again) memory.left_alone.push_back({target_map});
   }
-  memory.old_places = revisited_.left_alone(now, is_adrift_);
-  memory.gap_places = gap_places_.left_alone(now, is_adrift_);
-  memory.looks_at_gaps = looks_at_gaps_;
-  memory.failed_views = failed_views_.all();
-  memory.taken_views = taken_views_;
-  memory.radius_m = config_.memory.radius_m;
+  memory.looks_at_gaps = exploring.looks_at_gaps;
   if (goal_) {
     memory.goal = goal_->pose;
     memory.turns_to = goal_->turns_to;
   }
-  memory.adrift = adrift();
+  memory.adrift = adrift(exploring);
   return memory;
 }
 
-std::optional<Adrift> Explorer::adrift() const {
+std::optional<Adrift> Explorer::adrift(const Exploring& exploring) const {
   if (!is_adrift_) return std::nullopt;
   const double growth = std::max(kLeastGrowth, drift_m_ / std::max(1.0, reckoned_m_));
   return Adrift{.sigma_m = drift_m_,
                 .growth = growth,
-                .budget_m = goes_back_ ? 0.0 : config_.max_drift_m,
+                .budget_m = exploring.goes_back ? 0.0 : config_.max_drift_m,
                 .tracked = {trail_.poses().rbegin(), trail_.poses().rend()}};
 }
 
 bool Explorer::take(const Decision& decision, const Report& report) {
-  if (state_ != State::kExploring || (goal_ && report.is_blocked)) return false;
+  auto* exploring = std::get_if<Exploring>(&mission_);
+  if (exploring == nullptr || (goal_ && report.is_blocked)) return false;
   const time::Time now = report.now;
   decided_at_ = chosen_at_ = now;
   note_vanished(decision, now);
   if (decision.chosen) {
-    empty_decisions_ = 0;
-    nothing_since_.reset();
+    exploring->empty_decisions = 0;
+    exploring->nothing_since.reset();
+    if (is_of_frontier(decision.candidates[*decision.chosen].kind)) exploring->looks_at_gaps = false;
     follow(decision, now);
   } else {
-    end_or_look_around(decision, report);
+    end_or_look_around(*exploring, decision, report);
   }
   return true;
 }
@@ -417,7 +358,6 @@ void Explorer::follow(const Decision& decision, time::Time now) {
   goal_->target_map = chosen.target_map;
   goal_->kind = chosen.kind;
   goal_->turns_to = side_of(decision.first_turn_rad, robot_.yaw_rad);
-  if (is_of_frontier(chosen.kind)) looks_at_gaps_ = false;
   reason_ = purpose_of(chosen);
   std::vector<Pose2> path;
   for (const double heading_rad : decision.first_turn_rad) path.push_back({chosen.points.front(), heading_rad});
@@ -428,83 +368,82 @@ void Explorer::follow(const Decision& decision, time::Time now) {
 
 // First the map is searched for gaps, which is sure to bring something; then a turn in all directions may show what has
 // been missed, and what has failed gets another chance.
-void Explorer::end_or_look_around(const Decision& decision, const Report& report) {
+void Explorer::end_or_look_around(Exploring& exploring, const Decision& decision, const Report& report) {
   const time::Time now = report.now;
   const bool turns = goal_ && !goal_->target_map && distance(robot_, goal_->pose) <= config_.goal_tolerance_m;
   if (turns) return;
   drop_goal();
-  if (!std::exchange(looks_at_gaps_, true)) return;
-  if (!nothing_since_) nothing_since_ = now;
-  const double passed_s = (now - *nothing_since_).seconds();
+  if (!std::exchange(exploring.looks_at_gaps, true)) return;
+  if (!exploring.nothing_since) exploring.nothing_since = now;
+  const double passed_s = (now - *exploring.nothing_since).seconds();
   const bool may_change = (may_change_ || report.is_map_behind) && passed_s < config_.patience_s;
-  const bool is_worth_waiting = may_change || ((is_beyond_budget() || goes_back_) && passed_s < config_.lost_timeout_s);
-  if (empty_decisions_ < config_.confirmations || is_worth_waiting) {
-    ++empty_decisions_;
+  const bool is_worth_waiting =
+      may_change || ((is_beyond_budget() || exploring.goes_back) && passed_s < config_.lost_timeout_s);
+  if (exploring.empty_decisions < config_.confirmations || is_worth_waiting) {
+    ++exploring.empty_decisions;
     goal_ = Goal{.pose = robot_, .moved_from = robot_, .moved_at = now};
     goal_->pose.yaw_rad += 2.0 * std::numbers::pi / config_.confirmations;
     reason_ = "looks around: no frontier can be driven to";
     return set_path({goal_->pose});
   }
-  empty_decisions_ = 0;
-  if (has_another_chance(decision, report)) return;
+  exploring.empty_decisions = 0;
+  if (has_another_chance(exploring, decision, report)) return;
   end(decision.leftover);
 }
 
 void Explorer::end(const Leftover& leftover) {
   const bool has_given_up = leftover.share_to_blame > config_.max_left_share;
-  end_ = has_given_up ? State::kGaveUp : State::kDone;
   const std::string left = leftover.text();
-  end_reason_ = (has_given_up ? "what is left was tried in vain" : "nothing is left that can be reached") +
-                (left.empty() ? "" : "; " + left);
-  enter(config_.returns_home ? State::kReturning : end_, end_reason_);
+  const Ended ended{has_given_up ? State::kGaveUp : State::kDone,
+                    (has_given_up ? "what is left was tried in vain" : "nothing is left that can be reached") +
+                        (left.empty() ? "" : "; " + left)};
+  if (config_.returns_home) {
+    enter(Returning{ended}, ended.why);
+  } else {
+    enter(ended, ended.why);
+  }
 }
 
 // What is left alone for a time is tried again, what has failed for good once more from another side, and where paths
 // were blocked they may be free; then, once, what waits for the map's correction: where slam tracks, it may come.
-bool Explorer::has_another_chance(const Decision& decision, const Report& report) {
-  const bool has_forgiven = is_any_left_alone(decision) && memory_.forgive(report.now);
-  const bool has_unblocked = blocked_.forgive(report.now);
+bool Explorer::has_another_chance(Exploring& exploring, const Decision& decision, const Report& report) {
+  const bool has_forgiven = is_any_left_alone(decision) && setbacks_.forgive_targets(report.now);
+  const bool has_unblocked = setbacks_.forgive_blocked(report.now);
   if (has_forgiven || has_unblocked) return true;
-  if (awaited_.empty() || std::exchange(looks_again_, true)) return false;
-  goes_back_ = is_adrift_;
+  if (awaited_.empty() || std::exchange(exploring.looks_again, true)) return false;
+  exploring.goes_back = is_adrift_;
   return true;
 }
 
 void Explorer::recover(const Report& report) {
   if (report.tracking != Tracking::kLost) {
-    lost_at_.reset();
     drop_goal();
-    return enter(interrupted_, is_adrift_ ? "slam reckons by odometry alone" : "slam tracks again");
+    return resume(is_adrift_ ? "slam reckons by odometry alone" : "slam tracks again");
   }
-  if (state_ != State::kRecovering) {
+  if (!std::holds_alternative<Recovering>(mission_)) {
     note_loss(report.now);
     drop_goal();
-    interrupted_ = state_;
-    lost_at_ = report.now;
-    enter(State::kRecovering, "slam is lost");
+    Recovering recovering{{}, report.now};
+    if (const auto* exploring = std::get_if<Exploring>(&mission_)) recovering.interrupted = *exploring;
+    if (const auto* returning = std::get_if<Returning>(&mission_)) recovering.interrupted = *returning;
+    enter(std::move(recovering), "slam is lost");
   }
-  if ((report.now - *lost_at_).seconds() > config_.lost_timeout_s) {
+  if ((report.now - std::get<Recovering>(mission_).lost_at).seconds() > config_.lost_timeout_s) {
     drop_goal();
-    return enter(State::kFailed,
-                 "slam has not tracked for " + std::to_string(std::lround(config_.lost_timeout_s)) + " s");
+    return fail("slam has not tracked for " + std::to_string(std::lround(config_.lost_timeout_s)) + " s");
   }
   look_for_pose(report.now);
 }
 
 // Slam may lose itself anywhere; on the way to the same target again, it does so for what is seen there.
 void Explorer::note_loss(time::Time now) {
-  if (!goal_ || !goal_->target_map) return;
-  const bool is_again = std::any_of(losses_.begin(), losses_.end(), [&](const Eigen::Vector2d& target_map) {
-    return (target_map - *goal_->target_map).norm() <= config_.memory.radius_m;
-  });
-  if (is_again) add_failure(now, false);
-  losses_.push_back(*goal_->target_map);
+  if (goal_ && goal_->target_map && setbacks_.note_loss(*goal_->target_map)) add_failure(now, false);
 }
 
 // Who stood in the way may have gone, or may go.
 bool Explorer::may_yet_return(const Report& report, Surroundings& surroundings) {
-  if (blocked_.forgive(report.now)) {
-    surroundings.set_blocked(blocked_places(report.now));
+  if (setbacks_.forgive_blocked(report.now)) {
+    surroundings.set_blocked(setbacks_.blocked_places(is_adrift_, report.now));
     goal_->moved_at = report.now;
     return true;
   }
@@ -516,9 +455,10 @@ void Explorer::go_home(const Report& report, Surroundings& surroundings) {
   const bool has_path = !path_.empty();
   if (has_path && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m) {
     drop_goal();
-    return enter(end_, "is back where it started" + (end_reason_.empty() ? "" : "; " + end_reason_));
+    const Ended ended = std::get<Returning>(mission_).then;
+    return enter(ended, "is back where it started" + (ended.why.empty() ? "" : "; " + ended.why));
   }
-  if (report.is_blocked) note_failure(report, surroundings);
+  if (report.is_blocked) note_blocked(report, surroundings);
   const bool is_wanted = !has_path || !is_path_free(path_, *report.robot, surroundings.grid());
   if (report.is_blocked || (is_wanted && is_due(report.now))) drive_to(*home_, report, surroundings);
   if (!path_.empty()) reason_ = "drives back to where it started";
@@ -526,7 +466,7 @@ void Explorer::go_home(const Report& report, Surroundings& surroundings) {
   if (!stands_still(report) || may_yet_return(report, surroundings)) return;
   const std::string trouble = path_.empty() ? "no path back is known" : "it does not get on to where it started";
   drop_goal();
-  enter(State::kFailed, trouble);
+  fail(trouble);
 }
 
 void Explorer::drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings) {

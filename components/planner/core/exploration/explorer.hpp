@@ -6,24 +6,14 @@
 #include <vector>
 
 #include "planner/core/decision/decision.hpp"
-#include "planner/core/exploration/failed_views.hpp"
 #include "planner/core/exploration/goal_memory.hpp"
+#include "planner/core/exploration/mission_state.hpp"
 #include "planner/core/exploration/progress_watch.hpp"
+#include "planner/core/exploration/setbacks.hpp"
 #include "planner/core/exploration/surroundings.hpp"
 #include "planner/core/exploration/trail.hpp"
 
 namespace lapis::planner {
-
-enum class State {
-  kIdle,        ///< nobody has asked for anything
-  kExploring,   ///< drives to frontiers
-  kPaused,      ///< stands still until it is started again
-  kRecovering,  ///< slam has no pose: looks around
-  kReturning,   ///< drives to where it started
-  kDone,        ///< nothing is left that can be reached, or it has returned
-  kGaveUp,      ///< the same, but frontiers are left that geometry does not excuse; the reason says which
-  kFailed,      ///< needs help; the reason says why
-};
 
 struct ExplorerConfig {
   GoalMemoryConfig memory = {};
@@ -77,14 +67,14 @@ class Explorer {
   /// path was found blocked: the goal that it did not know to have failed is judged first. False for these.
   bool take(const Decision& decision, const Report& report);
 
-  State state() const { return state_; }
+  State state() const { return state_of(mission_); }
   const std::string& reason() const { return reason_; }
   /// To the current goal; empty: stand still.
   const std::vector<Pose2>& path() const { return path_; }
   /// The path is not of the map: it turns on the spot, through headings relative to the one that the robot has now.
   bool is_turn() const { return is_turn_; }
   /// Goals so far that were not reached, or looked at in vain.
-  std::uint64_t failures() const { return failures_; }
+  std::uint64_t failures() const { return setbacks_.count(); }
   /// Grows with every new path.
   std::uint64_t path_number() const { return path_number_; }
 
@@ -101,21 +91,24 @@ class Explorer {
     time::Time moved_at;
   };
 
-  void enter(State state, std::string reason);
+  void enter(MissionState mission, std::string reason);
+  void fail(std::string reason) { enter(Ended{State::kFailed, ""}, std::move(reason)); }
+  void resume(std::string reason);
   void set_path(std::vector<Pose2> path, bool is_turn = false);
   void drop_goal();
-  bool explore(const Report& report, Surroundings& surroundings);
   void note_pose(const Report& report);
   void await_first_pose(time::Time now);
   void look_for_pose(time::Time now);
+  bool explore(Exploring& exploring, const Report& report, Surroundings& surroundings);
+  bool ends_goal(const Report& report, Surroundings& surroundings);
   void follow(const Decision& decision, time::Time now);
   bool is_detour(const Decision& decision) const;
   void set_deadline(const Candidate& chosen, bool is_detour, time::Time now);
-  void end_or_look_around(const Decision& decision, const Report& report);
+  void end_or_look_around(Exploring& exploring, const Decision& decision, const Report& report);
   void end(const Leftover& leftover);
-  bool has_another_chance(const Decision& decision, const Report& report);
+  bool has_another_chance(Exploring& exploring, const Decision& decision, const Report& report);
   void recover(const Report& report);
-  std::optional<Adrift> adrift() const;
+  std::optional<Adrift> adrift(const Exploring& exploring) const;
   bool is_beyond_budget() const { return is_adrift_ && !(drift_m_ <= config_.max_drift_m); }
   bool is_of_other_tier(const Goal& goal) const;
   void note_loss(time::Time now);
@@ -123,51 +116,34 @@ class Explorer {
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
   void note_arrival(time::Time now);
   void note_vanished(const Decision& decision, time::Time now);
-  void await(const FailedView& view, time::Time now, double seconds);
   bool is_active() const;
   bool may_yet_return(const Report& report, Surroundings& surroundings);
   bool is_at(const Pose2& place, const Pose2& robot) const;
   bool stands_still(const Report& report);
   bool is_due(time::Time now) const;
-  void note_failure(const Report& report, Surroundings& surroundings);
-  void note_stall(time::Time now);
+  void note_blocked(const Report& report, Surroundings& surroundings);
   void add_failure(time::Time now, bool is_adrift);
-  std::vector<Eigen::Vector2d> blocked_places(time::Time now) const;
 
   ExplorerConfig config_;
-  GoalMemory memory_;      ///< targets of frontiers
-  GoalMemory revisited_;   ///< old places
-  GoalMemory gap_places_;  ///< for views of gaps
-  ProgressWatch progress_;
-  GoalMemory blocked_;              ///< places on the path
-  std::vector<Pose2> taken_views_;  ///< of gaps
-  State state_ = State::kIdle;
-  State interrupted_ = State::kExploring;  ///< what to resume when slam tracks again
+  MissionState mission_;
   std::string reason_ = "not started";
+  Setbacks setbacks_;
+  ProgressWatch progress_;
   std::vector<Pose2> path_;
   bool is_turn_ = false;
-  std::uint64_t path_number_ = 0, failures_ = 0;
+  std::uint64_t path_number_ = 0;
   std::optional<Goal> goal_;
-  FailedViews failed_views_;
-  std::vector<Eigen::Vector2d> losses_;   ///< targets on the way to which slam stopped tracking [m, map]
   std::vector<Eigen::Vector2d> awaited_;  ///< targets that wait for a correction of the map [m, map]
-  bool looks_at_gaps_ = false;            ///< of the map: no frontier is left to try
-  bool looks_again_ = false;              ///< at these, too: nothing else is left
-  bool goes_back_ = false;                ///< to where slam tracked, or else they never come into the map
   std::optional<Pose2> home_;
   Pose2 robot_;  ///< where it was known to be last
   Trail trail_;
   std::optional<time::Time> decided_at_;   ///< in this state
   std::optional<time::Time> chosen_at_;    ///< the last decision took effect
   std::optional<time::Time> blind_since_;  ///< while it was active: slam has no pose
-  std::optional<time::Time> lost_at_, nothing_since_;
-  int empty_decisions_ = 0;
-  State end_ = State::kDone;  ///< after the return, and why
-  std::string end_reason_;
-  bool is_adrift_ = false;   ///< slam reckons by odometry alone
-  double drift_m_ = 0.0;     ///< sigma of the position since slam tracked
-  double reckoned_m_ = 0.0;  ///< driven since
-  bool may_change_ = false;  ///< obstacles stand where there may soon be none
+  bool is_adrift_ = false;                 ///< slam reckons by odometry alone
+  double drift_m_ = 0.0;                   ///< sigma of the position since slam tracked
+  double reckoned_m_ = 0.0;                ///< driven since
+  bool may_change_ = false;                ///< obstacles stand where there may soon be none
 };
 
 }  // namespace lapis::planner

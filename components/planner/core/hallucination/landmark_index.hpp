@@ -9,7 +9,7 @@
 
 #include "common/geometry/pinhole_camera.hpp"
 #include "common/geometry/se3.hpp"
-#include "common/mapping/landmark_tile.hpp"
+#include "common/mapping/wire/landmark_tile.hpp"
 #include "planner/core/hallucination/analysed_graph.hpp"
 #include "planner/core/information/information_field.hpp"
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "common/mapping/sensor_model.hpp"
-#include "common/mapping/voxel_block.hpp"
+#include "common/mapping/model/sensor_model.hpp"
+#include "common/mapping/model/voxel_block.hpp"
 
 namespace lapis::planner {
 

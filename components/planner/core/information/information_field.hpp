@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 #include "planner/core/information/cell_information.hpp"
 
 namespace lapis::planner {

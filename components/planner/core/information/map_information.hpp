@@ -4,8 +4,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "common/mapping/sensor_model.hpp"
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/sensor_model.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 
 namespace lapis::planner {
 

@@ -8,8 +8,8 @@ namespace lapis::planner {
 class FixedN : public Method {
  public:
   Asks asks() const override { return {.path_information = true, .spectrum = true}; }
-  double utility(const PathValue& value) const override {
-    return value.fixed_n_d_optimality * (1.0 + value.path_information / value.paid_m());
+  double utility(const Candidate& candidate) const override {
+    return candidate.value.fixed_n_d_optimality * (1.0 + candidate.value.path_information / candidate.value.paid_m());
   }
 };
 

@@ -15,8 +15,9 @@ class Joint : public Method {
   explicit Joint(const JointConfig& config) : config_(config) {}
 
   Asks asks() const override { return {.path_information = true, .spectrum = true}; }
-  double utility(const PathValue& value) const override {
-    return (value.path_information + config_.beta * 0.5 * kPoseDimensions * value.loop_gain) / value.paid_m();
+  double utility(const Candidate& candidate) const override {
+    return (candidate.value.path_information + config_.beta * 0.5 * kPoseDimensions * candidate.value.loop_gain) /
+           candidate.value.paid_m();
   }
 
  private:

@@ -24,10 +24,10 @@ class Method {
  public:
   virtual ~Method() = default;
 
-  /// Of a PathValue; the rest may be zero.
+  /// What of a candidate's value its utility needs; the rest may be zero.
   virtual Asks asks() const = 0;
-  /// Larger is better.
-  virtual double utility(const PathValue& value) const = 0;
+  /// Of a candidate that is open; larger is better.
+  virtual double utility(const Candidate& candidate) const = 0;
   /// All candidates with their paths, those that are out of the question with the reason. Who asks for the spectrum
   /// gets old places as goals, too.
   virtual std::vector<Candidate> propose(const ProposalInput& in) const;

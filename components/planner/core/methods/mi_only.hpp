@@ -8,7 +8,9 @@ namespace lapis::planner {
 class MiOnly : public Method {
  public:
   Asks asks() const override { return {.path_information = true}; }
-  double utility(const PathValue& value) const override { return value.path_information / value.paid_m(); }
+  double utility(const Candidate& candidate) const override {
+    return candidate.value.path_information / candidate.value.paid_m();
+  }
 };
 
 }  // namespace lapis::planner

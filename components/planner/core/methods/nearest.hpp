@@ -8,7 +8,7 @@ namespace lapis::planner {
 class Nearest : public Method {
  public:
   Asks asks() const override { return {}; }
-  double utility(const PathValue& value) const override { return 1.0 / value.paid_m(); }
+  double utility(const Candidate& candidate) const override { return 1.0 / candidate.value.paid_m(); }
 };
 
 }  // namespace lapis::planner

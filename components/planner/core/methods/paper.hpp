@@ -9,8 +9,8 @@ namespace lapis::planner {
 class Paper : public Method {
  public:
   Asks asks() const override { return {.path_information = true, .spectrum = true}; }
-  double utility(const PathValue& value) const override {
-    return value.d_optimality * (1.0 + value.path_information / value.paid_m());
+  double utility(const Candidate& candidate) const override {
+    return candidate.value.d_optimality * (1.0 + candidate.value.path_information / candidate.value.paid_m());
   }
   bool keeps_goal() const override { return false; }
 };

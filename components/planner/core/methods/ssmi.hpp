@@ -8,7 +8,7 @@ namespace lapis::planner {
 class Ssmi : public Method {
  public:
   Asks asks() const override { return {.goal_information = true}; }
-  double utility(const PathValue& value) const override { return value.goal_information; }
+  double utility(const Candidate& candidate) const override { return candidate.value.goal_information; }
 };
 
 }  // namespace lapis::planner

@@ -11,7 +11,9 @@ class Tare : public Method {
   explicit Tare(const TareConfig& config) : config_(config) {}
 
   Asks asks() const override { return {}; }
-  double utility(const PathValue& value) const override { return value.tour_place > 0 ? 1.0 / value.tour_place : 0.0; }
+  double utility(const Candidate& candidate) const override {
+    return candidate.value.tour_place > 0 ? 1.0 / candidate.value.tour_place : 0.0;
+  }
   bool has_own_candidates() const override { return true; }
   std::vector<Candidate> propose(const ProposalInput& in) const override;
 

@@ -10,7 +10,7 @@
 
 #include <Eigen/Core>
 
-#include "common/mapping/column_projection.hpp"
+#include "common/mapping/model/column_projection.hpp"
 #include "common/time/time.hpp"
 #include "planner/core/space/distance_field.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "common/mapping/voxel_index.hpp"
+#include "common/mapping/model/voxel_index.hpp"
 #include "planner/core/space/line.hpp"
 
 namespace lapis::planner {

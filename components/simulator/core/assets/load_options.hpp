@@ -1,6 +1,6 @@
 #pragma once
 
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/model/label_list.hpp"
 
 namespace lapis::simulator {
 

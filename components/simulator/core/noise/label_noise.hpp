@@ -5,7 +5,7 @@
 
 #include "common/geometry/image.hpp"
 #include "common/geometry/se3.hpp"
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/model/label_list.hpp"
 #include "simulator/core/noise/random.hpp"
 
 namespace lapis::simulator {

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/model/label_list.hpp"
 #include "simulator/core/scene/mesh.hpp"
 
 namespace lapis::simulator {

@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "common/geometry/image.hpp"
-#include "common/mapping/label_list.hpp"
+#include "common/mapping/model/label_list.hpp"
 #include "simulator/core/scene/scene.hpp"
 
 namespace lapis::simulator {

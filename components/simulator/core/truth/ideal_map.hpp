@@ -3,8 +3,8 @@
 #include "common/geometry/image.hpp"
 #include "common/geometry/pinhole_camera.hpp"
 #include "common/geometry/se3.hpp"
-#include "common/mapping/map_description.hpp"
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/file/map_description.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 
 namespace lapis::simulator {
 

@@ -9,7 +9,7 @@
 #include <string>
 
 #include "common/files/atomic_file.hpp"
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "simulator/core/robot/nav_map_picture.hpp"
 
 namespace lapis::simulator {

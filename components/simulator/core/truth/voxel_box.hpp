@@ -6,7 +6,7 @@
 
 #include <Eigen/Geometry>
 
-#include "common/mapping/voxel_index.hpp"
+#include "common/mapping/model/voxel_index.hpp"
 
 namespace lapis::simulator {
 

@@ -5,8 +5,8 @@
 #include <unordered_map>
 #include <vector>
 
-#include "common/mapping/landmark_tile.hpp"
-#include "common/mapping/tile_versions.hpp"
+#include "common/mapping/wire/landmark_tile.hpp"
+#include "common/mapping/wire/tile_versions.hpp"
 #include "slam/core/map/map.hpp"
 
 namespace lapis::slam {

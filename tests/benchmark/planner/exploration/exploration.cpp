@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
-#include "common/mapping/integration.hpp"
-#include "common/mapping/map_description.hpp"
+#include "common/mapping/file/map_description.hpp"
+#include "common/mapping/votes/integration.hpp"
 #include "controller/core/controller.hpp"
 #include "planner/core/exploration/explorer.hpp"
 #include "planner/core/space/path_planner.hpp"

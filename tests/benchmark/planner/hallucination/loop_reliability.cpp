@@ -8,7 +8,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "planner/core/hallucination/loop_reliability.hpp"
 #include "slam/core/files/slam_file.hpp"
 #include "slam/core/map/landmark_tiles.hpp"

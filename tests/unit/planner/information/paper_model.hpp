@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "common/mapping/sensor_model.hpp"
+#include "common/mapping/model/sensor_model.hpp"
 
 namespace lapis::planner::test {
 

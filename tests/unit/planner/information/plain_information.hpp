@@ -7,7 +7,7 @@
 
 #include <Eigen/Core>
 
-#include "common/mapping/voxel_index.hpp"
+#include "common/mapping/model/voxel_index.hpp"
 #include "planner/core/information/path_information.hpp"
 
 namespace lapis::planner::test {

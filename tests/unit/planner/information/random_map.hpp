@@ -3,7 +3,7 @@
 #include <random>
 
 #include "common/geometry/se3.hpp"
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 
 namespace lapis::planner::test {
 

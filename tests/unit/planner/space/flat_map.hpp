@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 #include "planner/core/space/planning_grid.hpp"
 
 namespace lapis::planner::test {

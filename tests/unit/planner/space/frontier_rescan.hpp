@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "common/geometry/image.hpp"
-#include "common/mapping/column_projection.hpp"
+#include "common/mapping/model/column_projection.hpp"
 #include "planner/core/space/cell.hpp"
 
 namespace lapis::planner::test {

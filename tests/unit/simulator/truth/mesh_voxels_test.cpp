@@ -6,7 +6,7 @@
 #include <map>
 
 #include "box_world.hpp"
-#include "common/mapping/voxel_map.hpp"
+#include "common/mapping/model/voxel_map.hpp"
 #include "simulator/core/noise/random.hpp"
 
 namespace lapis::simulator {

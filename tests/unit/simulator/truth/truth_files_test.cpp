@@ -9,7 +9,7 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "box_world.hpp"
-#include "common/mapping/map_file.hpp"
+#include "common/mapping/file/map_file.hpp"
 #include "evaluator/core/ground_truth.hpp"
 #include "evaluator/core/map_input.hpp"
 

@@ -1,0 +1,74 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "common/mapping/model/voxel_map.hpp"
+#include "common/mapping/wire/tile_codec.hpp"
+#include "common/mapping/wire/tile_versions.hpp"
+
+namespace lapis::mapping {
+
+/// What the mapper says about a version of its map, after having published the tiles of that version.
+struct MapState {
+  std::int64_t epoch = 0;  ///< grows when a mapper starts a new map
+  std::uint64_t version = 0;
+  std::uint32_t tiles = 0;     ///< tiles that exist in this version
+  std::uint64_t checksum = 0;  ///< sum of tile_hash(index, version that last changed it), modulo 2^64
+  double resolution_m = 0.0;
+  std::int64_t session = 0;      ///< of slam, in whose map frame it is
+  std::uint64_t frames_off = 0;  ///< in the map more than a voxel from where the newest graph has them, so far
+};
+
+enum class TileResult { kAccepted, kOutdated, kDamaged };
+
+/// Mirror of the mapper's map in another process. Tiles and states may come in any order, repeated, late, and across a
+/// restart of the mapper; map() is always one version of the mapper's map as a whole: the newest whose tiles were all
+/// there together.
+class MapMirror {
+ public:
+  TileResult apply_tile(std::int64_t epoch, const TileIndex& index, std::uint64_t version,
+                        std::span<const std::uint8_t> bytes);
+  void apply_state(const MapState& state);
+
+  /// True when map() is the newest announced version.
+  bool is_consistent() const { return served_ && newest_ && is_same(*served_, *newest_); }
+  /// The last consistent version; null before the first.
+  const VoxelMap* map() const { return map_ ? &*map_ : nullptr; }
+  /// State that map() belongs to; nothing before the first.
+  const std::optional<MapState>& state() const { return served_; }
+  /// Blocks whose content in map() is another one than at the last call, in the canonical order; those that are gone
+  /// are among them.
+  std::vector<BlockIndex> take_changed_blocks();
+  /// Newest state that was announced; nothing before the first.
+  const std::optional<MapState>& newest_state() const { return newest_; }
+
+ private:
+  struct PendingTile {
+    int blocks_per_edge;
+    std::vector<std::pair<BlockIndex, VoxelBlock>> blocks;
+  };
+
+  static bool is_same(const MapState& a, const MapState& b) { return a.epoch == b.epoch && a.version == b.version; }
+  /// False when `epoch` is over; a newer one starts from nothing.
+  bool enter_epoch(std::int64_t epoch);
+  void serve_if_complete();
+  void replace_map(double resolution_m);
+  void apply(const TileIndex& index, PendingTile& tile);
+
+  std::optional<std::int64_t> epoch_;
+  TileVersions versions_;                     ///< newest received, of epoch_
+  std::map<TileIndex, PendingTile> pending_;  ///< received, not yet in map_
+  std::optional<MapState> newest_;
+  std::optional<MapState> served_;
+  std::optional<VoxelMap> map_;
+  std::set<BlockIndex> changed_;
+};
+
+}  // namespace lapis::mapping

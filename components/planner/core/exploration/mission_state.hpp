@@ -1,0 +1,64 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <variant>
+
+#include "common/time/time.hpp"
+
+namespace lapis::planner {
+
+enum class State {
+  kIdle,        ///< nobody has asked for anything
+  kExploring,   ///< drives to frontiers
+  kPaused,      ///< stands still until it is started again
+  kRecovering,  ///< slam has no pose: looks around
+  kReturning,   ///< drives to where it started
+  kDone,        ///< nothing is left that can be reached, or it has returned
+  kGaveUp,      ///< the same, but frontiers are left that geometry does not excuse; the reason says which
+  kFailed,      ///< needs help; the reason says why
+};
+
+struct Idle {};
+
+struct Paused {};
+
+struct Exploring {
+  bool looks_at_gaps = false;  ///< of the map: no frontier is left to try
+  bool looks_again = false;    ///< at what waits for a correction of the map, too: nothing else is left
+  bool goes_back = false;      ///< to where slam tracked, or else what waits never comes into the map
+  int empty_decisions = 0;     ///< in a row, each answered by a look around
+  std::optional<time::Time> nothing_since;
+};
+
+/// How it ended.
+struct Ended {
+  State how = State::kDone;  ///< kDone, kGaveUp or kFailed
+  std::string why;           ///< what is left, of an exploration; else empty
+};
+
+struct Returning {
+  Ended then;
+};
+
+struct Recovering {
+  std::variant<Exploring, Returning> interrupted;
+  time::Time lost_at;
+};
+
+/// What the mission does, with what only that needs to know.
+using MissionState = std::variant<Idle, Exploring, Paused, Recovering, Returning, Ended>;
+
+inline State state_of(const MissionState& mission) {
+  struct Names {
+    State operator()(const Idle&) const { return State::kIdle; }
+    State operator()(const Exploring&) const { return State::kExploring; }
+    State operator()(const Paused&) const { return State::kPaused; }
+    State operator()(const Recovering&) const { return State::kRecovering; }
+    State operator()(const Returning&) const { return State::kReturning; }
+    State operator()(const Ended& ended) const { return ended.how; }
+  };
+  return std::visit(Names{}, mission);
+}
+
+}  // namespace lapis::planner

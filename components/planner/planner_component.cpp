@@ -20,6 +20,7 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kFarewell_s = 1.0;
+constexpr time::Duration kLongestLead{1'000'000'000};  // of what overtakes the first frame of a session
 constexpr const char* kLogFile = "decisions.csv";
 
 Tracking tracking_of(const lapis_msgs::msg::TrackedFrame& frame) {
@@ -145,12 +146,18 @@ void PlannerComponent::set_provisional_area(nav_msgs::msg::OccupancyGrid message
   provisional_area_ = std::move(message);
 }
 
-/// Nothing that is known is in the map frame of the new session.
-void PlannerComponent::begin_session(std::int64_t session) {
+/// Nothing that is known is in the map frame of the new session, but for what has overtaken its first frame: messages
+/// of one instant come in any order.
+void PlannerComponent::begin_session(std::int64_t session, time::Time first_frame) {
+  const auto is_of_session = [first_frame](const std_msgs::msg::Header& header) {
+    const time::Duration later = messages::from_message(header.stamp()) - first_frame;
+    return later >= time::Duration{} && later < kLongestLead;
+  };
   session_ = session;
   worker_.discard();
-  robot_.reset();
-  obstacles_.reset();
+  if (robot_ && !is_of_session(robot_header_)) robot_.reset();
+  if (obstacles_ && !is_of_session(obstacles_->header())) obstacles_.reset();
+  if (provisional_area_ && !is_of_session(provisional_area_->header())) provisional_area_.reset();
   surroundings_.reset();
   surroundings_state_.reset();
   decision_ = {};
@@ -161,7 +168,7 @@ void PlannerComponent::begin_session(std::int64_t session) {
 }
 
 void PlannerComponent::note_frame(const Tracked& frame) {
-  if (frame.session() != session_) begin_session(frame.session());
+  if (frame.session() != session_) begin_session(frame.session(), messages::from_message(frame.header().stamp()));
   context_.status().value("frames", ++frames_);
   stamp_ = messages::from_message(frame.header().stamp());
   tracking_ = tracking_of(frame);
@@ -181,6 +188,7 @@ void PlannerComponent::set_pose(const nav_msgs::msg::Odometry& message) {
   auto pose = to_core(message.pose().pose());
   if (!pose) return drop("pose", pose.reason);
   robot_ = *pose;
+  robot_header_ = message.header();
   last_robot_ = *robot_;
   position_variance_m2_ = position_variance_m2(message.pose().covariance());
 }

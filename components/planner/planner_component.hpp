@@ -43,7 +43,7 @@ class PlannerComponent {
   void set_graph(const lapis_msgs::msg::PoseGraph& message);
   void set_obstacles(nav_msgs::msg::OccupancyGrid message);
   void set_provisional_area(nav_msgs::msg::OccupancyGrid message);
-  void begin_session(std::int64_t session);
+  void begin_session(std::int64_t session, time::Time first_frame);
   void note_frame(const Tracked& frame);
   void note_slam(const lapis_msgs::msg::SlamStatus& message);
   void set_pose(const nav_msgs::msg::Odometry& message);
@@ -90,6 +90,7 @@ class PlannerComponent {
   double drift_m_ = 0.0;     // of its pose since slam tracked last
   std::string slam_reason_;  // of the newest frame, before the first one of slam's status; empty while it tracks
   std::optional<Pose2> robot_;
+  std_msgs::msg::Header robot_header_;
   Pose2 last_robot_;                   // also while slam has no pose
   double position_variance_m2_ = 0.0;  // of robot_, each axis, as slam says; 0: it does not
   bool is_blocked_ = false;

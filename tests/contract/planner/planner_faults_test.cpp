@@ -297,6 +297,23 @@ TEST_F(PlannerContract, ObstacleThatIsPutOnThePathMovesOrEmptiesIt) {
   ASSERT_TRUE(ticks_until([this] { return stands() || goal().x() < 3.25; }, 2.0)) << reason() << planner->log();
 }
 
+// What the mapper says of the first frame may come before slam's word that it is one of another session.
+TEST_F(PlannerContract, ObstaclesThatOvertakeTheFirstFrameOfAMapCount) {
+  ASSERT_TRUE(start()) << planner->log();
+  peers.draw(kRoomWithDoor);
+  auto grid = peers.free_grid();  // a wall right through the room, between the robot and the door
+  grid.info().width(1);
+  grid.info().height(16);
+  grid.info().origin().position().x(3.25);
+  grid.data().assign(16, 100);
+  grid.header(messages::header(peers.stamp + time::Duration::from_seconds(1.0 / kRate_hz), "map"));
+  peers.obstacles.publish(grid);
+  ASSERT_TRUE(ticks_until([this] { return !candidates.empty(); })) << reason() << planner->log();
+  for (const auto& candidate : candidates.front().candidates()) {
+    EXPECT_FALSE(candidate.is_selected() && candidate.goal().position().x() > 3.25) << "through the wall";
+  }
+}
+
 TEST_F(PlannerContract, WhatWaitsForACorrectionIsLeftAloneAsLongAsAnythingElseIsLeft) {
   ASSERT_TRUE(start()) << planner->log();
   auto area = peers.free_grid();  // behind the door on the right

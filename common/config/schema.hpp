@@ -5,12 +5,14 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
 namespace lapis::config {
 
-/// A configuration that cannot be used; the message names the source, the full path, the value and the bound.
+/// A configuration that cannot be used; the message names the path, the value and the bound, and the source where there
+/// is one.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;

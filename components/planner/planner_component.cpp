@@ -20,7 +20,8 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kFarewell_s = 1.0;
-constexpr time::Duration kLongestLead{1'000'000'000};  // of what overtakes the first frame of a session
+constexpr time::Duration kLongestLead =
+    time::Duration::from_seconds(1.0);  // of what overtakes the first frame of a session
 constexpr const char* kLogFile = "decisions.csv";
 
 Tracking tracking_of(const lapis_msgs::msg::TrackedFrame& frame) {
@@ -147,17 +148,19 @@ void PlannerComponent::set_provisional_area(nav_msgs::msg::OccupancyGrid message
 }
 
 /// Nothing that is known is in the map frame of the new session, but for what has overtaken its first frame: messages
-/// of one instant come in any order.
+/// of one instant come in any order. By their stamps: when slam begins anew at the frame at which it died, its own pose
+/// follows at once. The provisional area is published when it changes: before the first session there is no other one.
 void PlannerComponent::begin_session(std::int64_t session, time::Time first_frame) {
-  const auto is_of_session = [first_frame](const std_msgs::msg::Header& header) {
-    const time::Duration later = messages::from_message(header.stamp()) - first_frame;
+  const auto is_of_session = [first_frame](time::Time stamp) {
+    const time::Duration later = stamp - first_frame;
     return later >= time::Duration{} && later < kLongestLead;
   };
-  session_ = session;
+  const bool is_first = std::exchange(session_, session) == 0;
   worker_.discard();
-  if (robot_ && !is_of_session(robot_header_)) robot_.reset();
-  if (obstacles_ && !is_of_session(obstacles_->header())) obstacles_.reset();
-  if (provisional_area_ && !is_of_session(provisional_area_->header())) provisional_area_.reset();
+  if (!is_of_session(robot_stamp_)) robot_.reset();
+  if (obstacles_ && !is_of_session(messages::from_message(obstacles_->header().stamp()))) obstacles_.reset();
+  if (provisional_area_ && !is_first && !is_of_session(messages::from_message(provisional_area_->header().stamp())))
+    provisional_area_.reset();
   surroundings_.reset();
   surroundings_state_.reset();
   decision_ = {};
@@ -188,7 +191,7 @@ void PlannerComponent::set_pose(const nav_msgs::msg::Odometry& message) {
   auto pose = to_core(message.pose().pose());
   if (!pose) return drop("pose", pose.reason);
   robot_ = *pose;
-  robot_header_ = message.header();
+  robot_stamp_ = messages::from_message(message.header().stamp());
   last_robot_ = *robot_;
   position_variance_m2_ = position_variance_m2(message.pose().covariance());
 }

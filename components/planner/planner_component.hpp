@@ -90,7 +90,7 @@ class PlannerComponent {
   double drift_m_ = 0.0;     // of its pose since slam tracked last
   std::string slam_reason_;  // of the newest frame, before the first one of slam's status; empty while it tracks
   std::optional<Pose2> robot_;
-  std_msgs::msg::Header robot_header_;
+  time::Time robot_stamp_;             // of that
   Pose2 last_robot_;                   // also while slam has no pose
   double position_variance_m2_ = 0.0;  // of robot_, each axis, as slam says; 0: it does not
   bool is_blocked_ = false;

@@ -7,7 +7,7 @@
 namespace lapis::mapping {
 namespace {
 
-constexpr int kLargestLabel = 65534;  // integration.cpp needs one value for itself
+constexpr int kLargestLabel = 65534;  // 65535 is no class
 
 /// Every stride-th pixel of a row.
 template <class Pixel>

@@ -149,7 +149,7 @@ class Tracing {
   }
 
   void smooth_hits() {
-    if (config_.kernel_length_voxels == 0.0) return;
+    if (!(config_.kernel_length_voxels > 0.0)) return;
     sort_by_cell(s_.kernel_votes, s_.sorted_kernel_votes, cell_count());
     smooth(s_.kernel_votes, hits_);
   }

@@ -151,9 +151,10 @@ std::vector<Eigen::Vector2d> LocalMap::obstacles_near(const PlanarPose& T_map_ba
 
 std::vector<Eigen::Vector2d> LocalMap::unseen_feet_near(const PlanarPose& T_map_base, double distance_m) const {
   const PlanarPose T_base_map = T_map_base.inverse();
+  const double shown_m = std::max(kFootHeight_m, config_.min_height_m + 2.0 * kEdge_m);  // what is lower is not kept
   std::vector<Eigen::Vector2d> points;
   for (const Column& column : columns_near(T_map_base.translation(), distance_m)) {
-    if (column.lowest_m < kFootHeight_m) continue;
+    if (column.lowest_m < shown_m) continue;
     for (const int quarter : {0, 1, 2, 3}) {
       const Eigen::Vector2d aside =
           Eigen::Rotation2Dd(0.5 * std::numbers::pi * quarter) * Eigen::Vector2d(kFoot_m, 0.0);

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <variant>
 
 #include "planner/core/space/pose_path.hpp"
 
@@ -150,7 +151,7 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
   surroundings->mark_driven(report.robot->p_map);
   surroundings->set_blocked(setbacks_.blocked_places(is_adrift_, report.now));
   if (auto* exploring = std::get_if<Exploring>(&mission_)) return explore(*exploring, report, *surroundings);
-  go_home(report, *surroundings);
+  go_home(std::get<Returning>(mission_), report, *surroundings);
   return false;
 }
 
@@ -450,12 +451,12 @@ bool Explorer::may_yet_return(const Report& report, Surroundings& surroundings) 
   return surroundings.grid().has_passing_obstacles() && (report.now - goal_->moved_at).seconds() < config_.patience_s;
 }
 
-void Explorer::go_home(const Report& report, Surroundings& surroundings) {
+void Explorer::go_home(const Returning& returning, const Report& report, Surroundings& surroundings) {
   if (!goal_) goal_ = Goal{.pose = *home_, .moved_from = *report.robot, .moved_at = report.now};
   const bool has_path = !path_.empty();
   if (has_path && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m) {
     drop_goal();
-    const Ended ended = std::get<Returning>(mission_).then;
+    const Ended ended = returning.then;  // entering it ends `returning`
     return enter(ended, "is back where it started" + (ended.why.empty() ? "" : "; " + ended.why));
   }
   if (report.is_blocked) note_blocked(report, surroundings);

@@ -112,7 +112,7 @@ class Explorer {
   bool is_beyond_budget() const { return is_adrift_ && !(drift_m_ <= config_.max_drift_m); }
   bool is_of_other_tier(const Goal& goal) const;
   void note_loss(time::Time now);
-  void go_home(const Report& report, Surroundings& surroundings);
+  void go_home(const Returning& returning, const Report& report, Surroundings& surroundings);
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
   void note_arrival(time::Time now);
   void note_vanished(const Decision& decision, time::Time now);

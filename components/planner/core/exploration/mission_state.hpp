@@ -24,26 +24,26 @@ struct Idle {};
 struct Paused {};
 
 struct Exploring {
-  bool looks_at_gaps = false;  ///< of the map: no frontier is left to try
-  bool looks_again = false;    ///< at what waits for a correction of the map, too: nothing else is left
-  bool goes_back = false;      ///< to where slam tracked, or else what waits never comes into the map
-  int empty_decisions = 0;     ///< in a row, each answered by a look around
-  std::optional<time::Time> nothing_since;
+  bool looks_at_gaps = false;               ///< of the map: no frontier is left to try
+  bool looks_again = false;                 ///< at what waits for a correction of the map, too: nothing else is left
+  bool goes_back = false;                   ///< to where slam tracked, or else what waits never comes into the map
+  int empty_decisions = 0;                  ///< in a row, each answered by a look around
+  std::optional<time::Time> nothing_since;  ///< no candidate was open
 };
 
 /// How it ended.
 struct Ended {
   State how = State::kDone;  ///< kDone, kGaveUp or kFailed
-  std::string why;           ///< what is left, of an exploration; else empty
+  std::string why;           ///< of an exploration that came to its end; else empty
 };
 
 struct Returning {
-  Ended then;
+  Ended then;  ///< when it has arrived
 };
 
 struct Recovering {
   std::variant<Exploring, Returning> interrupted;
-  time::Time lost_at;
+  time::Time lost_at;  ///< when slam lost its pose
 };
 
 /// What the mission does, with what only that needs to know.

@@ -2,12 +2,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <iterator>
 #include <utility>
 #include <vector>
 
 #include <Eigen/LU>
 
+#include "slam/core/frame/surface.hpp"
+#include "slam/core/graph/pose_graph.hpp"
 #include "slam/core/motion/covariance.hpp"
 #include "slam/core/tracking/keyframe_rule.hpp"
 
@@ -29,14 +32,14 @@ void set_pose(const Known& known, const RelativeCamera& camera, TrackingResult& 
 // Vision and odometry together, each as sure as it is: a bare wall says nothing of the path along it. Odometry of
 // wheels that slip loses its weight (Huber).
 RelativeCamera fuse(const Map& map, const RelativeCamera& seen, const std::optional<RelativeCamera>& reckoned) {
-  constexpr double kMostApart = 3.0;
+  constexpr double kMostApart_sigmas = 3.0;
   if (!reckoned) return seen;
   const Pose T_map_reckoned = map.keyframe(reckoned->reference).T_map_camera * reckoned->T_reference_camera;
   const Pose T_map_seen = map.keyframe(seen.reference).T_map_camera * seen.T_reference_camera;
   const geometry::Vector6d difference = geometry::se3_log(T_map_seen.inverse() * T_map_reckoned);
   const Matrix6d sum = seen.covariance + reckoned->covariance;
   const double sigmas = std::sqrt(difference.dot(sum.inverse() * difference));
-  const Matrix6d odometry = std::min(1.0, kMostApart / sigmas) * reckoned->covariance.inverse();
+  const Matrix6d odometry = std::min(1.0, kMostApart_sigmas / sigmas) * reckoned->covariance.inverse();
   const Matrix6d together = (seen.covariance.inverse() + odometry).inverse();
   return {seen.reference, seen.T_reference_camera * geometry::se3_exp(together * odometry * difference), together};
 }

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "common/time/time.hpp"
 #include "slam/core/config.hpp"
 #include "slam/core/frame/frame.hpp"
 #include "slam/core/front_end/tracking_result.hpp"

@@ -1,8 +1,5 @@
 #include "slam/core/graph/pose_graph.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include <Eigen/Eigenvalues>
 
 namespace lapis::slam {

@@ -4,7 +4,10 @@
 
 #include <Eigen/LU>
 
+#include "slam/core/frame/surface.hpp"
+#include "slam/core/graph/pose_graph.hpp"
 #include "slam/core/mapping/local_bundle.hpp"
+#include "slam/core/tracking/tracker.hpp"
 
 namespace lapis::slam {
 

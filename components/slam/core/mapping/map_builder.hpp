@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstddef>
-#include <optional>
 
 #include "slam/core/config.hpp"
 #include "slam/core/frame/frame.hpp"

@@ -4,7 +4,6 @@
 
 namespace lapis::slam {
 
-/// A variance from its sigma.
 inline double squared(double x) { return x * x; }
 
 /// Covariance of A * B for independent right perturbations.

@@ -129,11 +129,11 @@ Decision Controller::follow(time::Time now, double elapsed_s) {
   if (const auto heading_rad = track_->next_heading(yaw_of(T_map_base_)))
     return turn_first(wrapped(*heading_rad - yaw_of(T_map_base_)), elapsed_s);
   if (is_arrived_) return align(elapsed_s);
-  const Obstacles obstacles = map_.obstacles_near(T_map_base_, planner_.fan().reach_m());
-  local_path_ = find_local_path(obstacles);
-  const Recovery next = next_phase(obstacles, now);
+  const Surroundings around = map_.near(T_map_base_, planner_.fan().reach_m());
+  local_path_ = find_local_path(around);
+  const Recovery next = next_phase(around.obstacles, now);
   if (next != recovery_) enter(next, now);
-  return recovery_ == Recovery::kNone ? drive(obstacles, elapsed_s) : recover(elapsed_s);
+  return recovery_ == Recovery::kNone ? drive(around.obstacles, elapsed_s) : recover(elapsed_s);
 }
 
 /// As the path asks for at its beginning; at one rate, through headings that lie between.
@@ -160,10 +160,9 @@ Decision Controller::align(double elapsed_s) {
 
 /// Towards a point some distance ahead on the path; where no free path leads there, towards one beyond what may stand
 /// in the way, or towards a nearer one.
-std::optional<LocalPath> Controller::find_local_path(const Obstacles& obstacles) const {
-  const auto doubtful = map_.unseen_feet_near(T_map_base_, planner_.fan().reach_m());
+std::optional<LocalPath> Controller::find_local_path(const Surroundings& around) const {
   for (const double share : {1.0, 2.0, 0.5}) {
-    if (auto local_path = planner_.choose(obstacles, doubtful, goal_ahead(share * config_.look_ahead_m), local_path_))
+    if (auto local_path = planner_.choose(around, goal_ahead(share * config_.look_ahead_m), local_path_))
       return local_path;
   }
   return std::nullopt;

@@ -86,7 +86,7 @@ class Controller {
   Velocity recovery_velocity() const;
   Recovery next_phase(const Obstacles& obstacles, time::Time now);
   void enter(Recovery phase, time::Time now);
-  std::optional<LocalPath> find_local_path(const Obstacles& obstacles) const;
+  std::optional<LocalPath> find_local_path(const Surroundings& around) const;
   double speed_limit(const LocalPath& local_path, const Obstacles& obstacles) const;
   bool may_back_up(const Obstacles& obstacles) const;
   bool is_stuck(time::Time now);

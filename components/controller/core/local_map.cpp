@@ -119,7 +119,7 @@ void LocalMap::add_hits(const DepthView& view, const PlanarPose& T_map_base) {
   }
 }
 
-/// Within a distance of a place; each column once, in a fixed order.
+/// Within a distance of a place; each column once, by x and then y.
 std::vector<LocalMap::Column> LocalMap::columns_near(const Eigen::Vector2d& p_map, double distance_m) const {
   std::vector<std::array<std::int32_t, 3>> cells;
   for (const auto& [voxel, point] : points_) {
@@ -135,33 +135,38 @@ std::vector<LocalMap::Column> LocalMap::columns_near(const Eigen::Vector2d& p_ma
   return columns;
 }
 
-std::vector<Eigen::Vector2d> LocalMap::obstacles_near(const PlanarPose& T_map_base, double distance_m) const {
+Surroundings LocalMap::near(const PlanarPose& T_map_base, double distance_m) const {
   const PlanarPose T_base_map = T_map_base.inverse();
   const double cell_m = std::max(plan_.resolution_m, obstacles_.resolution_m);
-  const auto seen = columns_near(T_map_base.translation(), distance_m + cell_m);
-  std::vector<Eigen::Vector2d> points;
-  for (const Column& column : seen) {
+  const auto columns = columns_near(T_map_base.translation(), distance_m + cell_m);
+  Surroundings around;
+  for (const Column& column : columns) {
     const Eigen::Vector2d p_base = T_base_map * column.p_map;
-    if (p_base.norm() <= distance_m) points.push_back(p_base);
+    if (p_base.norm() > distance_m) continue;
+    around.obstacles.push_back(p_base);
+    add_unseen_feet(column, columns, T_base_map, around.unseen_feet);
   }
-  add_occupied(plan_, T_map_base, distance_m, seen, points);
-  add_occupied(obstacles_, T_map_base, distance_m, seen, points);
-  return points;
+  add_occupied(plan_, T_map_base, distance_m, columns, around.obstacles);
+  add_occupied(obstacles_, T_map_base, distance_m, columns, around.obstacles);
+  return around;
 }
 
-std::vector<Eigen::Vector2d> LocalMap::unseen_feet_near(const PlanarPose& T_map_base, double distance_m) const {
-  const PlanarPose T_base_map = T_map_base.inverse();
+/// On each side of a column, but where another one stands, or this one between it and the robot.
+void LocalMap::add_unseen_feet(const Column& column, const std::vector<Column>& columns, const PlanarPose& T_base_map,
+                               std::vector<Eigen::Vector2d>& points) const {
   const double shown_m = std::max(kFootHeight_m, config_.min_height_m + 2.0 * kEdge_m);  // what is lower is not kept
-  std::vector<Eigen::Vector2d> points;
-  for (const Column& column : columns_near(T_map_base.translation(), distance_m)) {
-    if (column.lowest_m < shown_m) continue;
-    for (const int quarter : {0, 1, 2, 3}) {
-      const Eigen::Vector2d aside =
-          Eigen::Rotation2Dd(0.5 * std::numbers::pi * quarter) * Eigen::Vector2d(kFoot_m, 0.0);
-      points.push_back(T_base_map * (column.p_map + aside));
-    }
+  if (column.lowest_m < shown_m) return;
+  const double behind_m = (T_base_map * column.p_map).norm() + 0.5 * kFoot_m;
+  const auto is_before = [](const Column& a, const Column& b) {
+    return std::pair(a.p_map.x(), a.p_map.y()) < std::pair(b.p_map.x(), b.p_map.y());
+  };
+  for (const int quarter : {0, 1, 2, 3}) {
+    const Eigen::Vector2d aside = Eigen::Rotation2Dd(0.5 * std::numbers::pi * quarter) * Eigen::Vector2d(kFoot_m, 0.0);
+    const Eigen::Vector2d p_map = column.p_map + aside, p_base = T_base_map * p_map;
+    const Column there{center_of(voxel_of(p_map, 0.0)), 0.0};
+    const bool is_taken = std::binary_search(columns.begin(), columns.end(), there, is_before);
+    if (p_base.norm() < behind_m && !is_taken) points.push_back(p_base);
   }
-  return points;
 }
 
 void LocalMap::add_occupied(const Grid& grid, const PlanarPose& T_map_base, double distance_m,

@@ -43,6 +43,15 @@ struct Grid {
   std::int8_t at(const Eigen::Vector2d& p_map) const;
 };
 
+/// Points in base_link.
+struct Surroundings {
+  /// An occupied cell of a grid is its centre, unless points show what in it stands where.
+  std::vector<Eigen::Vector2d> obstacles;
+  /// Where something may stand that no image has shown: around columns of which only the upper part was seen, because
+  /// what leans or spreads below an image is wider at the floor.
+  std::vector<Eigen::Vector2d> unseen_feet;
+};
+
 /// What stands around the robot: points of the camera's own images, finer and newer than any map, remembered for a
 /// while because the camera does not see its feet; and beyond them the mapper's grids.
 class LocalMap {
@@ -58,12 +67,8 @@ class LocalMap {
   /// The map frame has jumped: remembered points are where they were from the robot.
   void move_points(const PlanarPose& T_new_old);
 
-  /// Obstacle points in base_link, within a distance of the robot. An occupied cell of a grid is its centre, unless
-  /// points show what in it stands where.
-  std::vector<Eigen::Vector2d> obstacles_near(const PlanarPose& T_map_base, double distance_m) const;
-  /// Points in base_link where something may stand that no image has shown: around columns of which only the upper part
-  /// was seen, because what leans or spreads below an image is wider at the floor.
-  std::vector<Eigen::Vector2d> unseen_feet_near(const PlanarPose& T_map_base, double distance_m) const;
+  /// What is within a distance of the robot.
+  Surroundings near(const PlanarPose& T_map_base, double distance_m) const;
   /// True when the mapper has seen that nothing is there; what the camera alone has seen is not asked.
   bool is_known_free(const Eigen::Vector2d& p_map) const;
 
@@ -88,6 +93,8 @@ class LocalMap {
   void add_hits(const DepthView& view, const PlanarPose& T_map_base);
   void forget(const PlanarPose& T_map_base);
   std::vector<Column> columns_near(const Eigen::Vector2d& p_map, double distance_m) const;
+  void add_unseen_feet(const Column& column, const std::vector<Column>& columns, const PlanarPose& T_base_map,
+                       std::vector<Eigen::Vector2d>& points) const;
   void add_occupied(const Grid& grid, const PlanarPose& T_map_base, double distance_m,
                     const std::vector<Column>& columns, std::vector<Eigen::Vector2d>& points) const;
 

@@ -35,14 +35,13 @@ Approach nearest_to(const Eigen::Vector2d& goal, const FanPath& path, std::size_
 
 }  // namespace
 
-std::optional<LocalPath> LocalPlanner::choose(std::span<const Eigen::Vector2d> obstacles,
-                                              std::span<const Eigen::Vector2d> doubtful, const Eigen::Vector2d& goal,
+std::optional<LocalPath> LocalPlanner::choose(const Surroundings& around, const Eigen::Vector2d& goal,
                                               const std::optional<LocalPath>& last) const {
   std::vector<Candidate> candidates;
   for (int i = 0; i < kHeadings; ++i) {
     const double heading = wrapped(2.0 * std::numbers::pi * i / kHeadings);
     if (std::abs(wrapped(bearing(goal) - heading)) > kWidestGoal_rad) continue;
-    rate_groups(obstacles, doubtful, goal, heading, candidates);
+    rate_groups(around, goal, heading, candidates);
   }
   for (Candidate& candidate : candidates) {
     if (!last) break;
@@ -59,11 +58,10 @@ std::optional<LocalPath> LocalPlanner::choose(std::span<const Eigen::Vector2d> o
 
 /// Adds the groups that have a free path to the goal. A path that an obstacle cuts while it comes nearer does not
 /// count, unless it is there already: it leads to the obstacle, not past it.
-void LocalPlanner::rate_groups(std::span<const Eigen::Vector2d> obstacles, std::span<const Eigen::Vector2d> doubtful,
-                               const Eigen::Vector2d& goal, double heading_rad,
+void LocalPlanner::rate_groups(const Surroundings& around, const Eigen::Vector2d& goal, double heading_rad,
                                std::vector<Candidate>& candidates) const {
-  const auto free = fan_.free_poses(obstacles, heading_rad);
-  const auto sure = fan_.free_poses(doubtful, heading_rad);
+  const auto free = fan_.free_poses(around.obstacles, heading_rad);
+  const auto sure = fan_.free_poses(around.unseen_feet, heading_rad);
   const Eigen::Vector2d goal_heading = Eigen::Rotation2Dd(-heading_rad) * goal;
   const double turn_factor = std::exp(-std::abs(heading_rad) / kTurnScale_rad);
   std::vector<Candidate> of_group(fan_.groups());

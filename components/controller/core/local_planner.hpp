@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "controller/core/local_map.hpp"
 #include "controller/core/path_fan.hpp"
 
 namespace lapis::controller {
@@ -24,10 +25,10 @@ class LocalPlanner {
   explicit LocalPlanner(PathFan fan) : fan_(std::move(fan)) {}
 
   const PathFan& fan() const { return fan_; }
-  /// All points in base_link; `last` is what was chosen in the cycle before. Nothing when no free path leads nearer.
-  /// Paths that come too near to what is `doubtful` count less.
-  std::optional<LocalPath> choose(std::span<const Eigen::Vector2d> obstacles, std::span<const Eigen::Vector2d> doubtful,
-                                  const Eigen::Vector2d& goal, const std::optional<LocalPath>& last) const;
+  /// The goal in base_link; `last` is what was chosen in the cycle before. Nothing when no free path leads nearer.
+  /// Paths that come too near to unseen feet count less.
+  std::optional<LocalPath> choose(const Surroundings& around, const Eigen::Vector2d& goal,
+                                  const std::optional<LocalPath>& last) const;
   /// How far the robot can continue with this curvature [m].
   double free_length_m(std::span<const Eigen::Vector2d> obstacles, double curvature_per_m) const;
 
@@ -38,8 +39,8 @@ class LocalPlanner {
     std::size_t path = 0;  ///< the best of its group
     std::size_t free_poses = 0;
   };
-  void rate_groups(std::span<const Eigen::Vector2d> obstacles, std::span<const Eigen::Vector2d> doubtful,
-                   const Eigen::Vector2d& goal, double heading_rad, std::vector<Candidate>& candidates) const;
+  void rate_groups(const Surroundings& around, const Eigen::Vector2d& goal, double heading_rad,
+                   std::vector<Candidate>& candidates) const;
   LocalPath local_path_of(const Candidate& candidate) const;
 
   PathFan fan_;

@@ -65,21 +65,20 @@ void add_view(benchmark::State& state) {
 }
 BENCHMARK(add_view)->Name("controller_add_view/640x360")->Unit(benchmark::kMicrosecond);
 
-void obstacles_near(benchmark::State& state) {
+void points_near(benchmark::State& state) {
   const LocalMap map = looked_around();
   std::size_t points = 0;
-  for (auto _ : state) points = map.obstacles_near(views()[0].T_map_base, 1.75).size();
+  for (auto _ : state) points = map.near(views()[0].T_map_base, 1.75).obstacles.size();
   state.counters["points"] = static_cast<double>(points);
 }
-BENCHMARK(obstacles_near)->Name("controller_obstacles_near")->Unit(benchmark::kMicrosecond);
+BENCHMARK(points_near)->Name("controller_points_near")->Unit(benchmark::kMicrosecond);
 
 void choose(benchmark::State& state) {
   const LocalPlanner planner(PathFan({}, 0.2));
   const LocalMap map = looked_around();
-  const auto obstacles = map.obstacles_near(views()[0].T_map_base, planner.fan().reach_m());
-  const auto doubtful = map.unseen_feet_near(views()[0].T_map_base, planner.fan().reach_m());
-  for (auto _ : state) benchmark::DoNotOptimize(planner.choose(obstacles, doubtful, {1.0, 0.0}, std::nullopt));
-  state.counters["doubtful"] = static_cast<double>(doubtful.size());
+  const Surroundings around = map.near(views()[0].T_map_base, planner.fan().reach_m());
+  for (auto _ : state) benchmark::DoNotOptimize(planner.choose(around, {1.0, 0.0}, std::nullopt));
+  state.counters["doubtful"] = static_cast<double>(around.unseen_feet.size());
 }
 BENCHMARK(choose)->Name("controller_choose")->Unit(benchmark::kMicrosecond);
 

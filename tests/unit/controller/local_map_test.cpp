@@ -36,7 +36,7 @@ class LocalMapTest : public ::testing::Test {
   }
   bool has_point(const Eigen::Vector2d& p_base, double within_m = 0.06,
                  const PlanarPose& T_map_base = PlanarPose::Identity()) const {
-    const auto points = map.obstacles_near(T_map_base, 4.0);
+    const auto points = map.near(T_map_base, 4.0).obstacles;
     return std::any_of(points.begin(), points.end(), [&](const auto& p) { return (p - p_base).norm() < within_m; });
   }
   /// 3 x 3 m around the origin, of 0.25 m, unknown but for one value at (1.125, 0.125).
@@ -55,14 +55,14 @@ TEST_F(LocalMapTest, SeesWhatStandsInTheBandAndNotTheFloor) {
   look({kFloor, kWall, box_at(1.5, 0.0)});
   EXPECT_TRUE(has_point({1.3, 0.0}));
   EXPECT_TRUE(has_point({3.0, 1.0}));
-  for (const auto& p : map.obstacles_near(PlanarPose::Identity(), 9.0)) {
+  for (const auto& p : map.near(PlanarPose::Identity(), 9.0).obstacles) {
     EXPECT_TRUE(p.x() > 2.9 || (p - Eigen::Vector2d(1.5, 0.0)).norm() < 0.4) << p.transpose() << " is floor";
   }
 }
 
 TEST_F(LocalMapTest, LowThingsAreDrivenOverAndHighOnesPassedUnder) {
   look({kFloor, box_at(1.8, 0.0, 0.06), box_at(1.8, 0.8, 1.6, 1.3)});
-  EXPECT_TRUE(map.obstacles_near(PlanarPose::Identity(), 4.0).empty());
+  EXPECT_TRUE(map.near(PlanarPose::Identity(), 4.0).obstacles.empty());
 }
 
 TEST_F(LocalMapTest, RemembersWhatTheCameraDoesNotSeeAnyMore) {

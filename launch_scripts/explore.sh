@@ -14,8 +14,8 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
 
   --scene NAME     bundled scene, generated building (office_7: docs/buildings.md), scene file, or folder of a scanned
                    building (docs/scenes.md); default: apartment
-  --method METHOD  that chooses where to go: lapis (default), paper, ssmi, tare, nearest, mi_only, dopt_only, fixed_n or
-                   joint (components/planner/README.md)
+  --method METHOD  that chooses where to go: lapis (default), paper, ssmi, tare, nearest, mi_only, dopt_only, placed,
+                   fixed_n or joint (components/planner/README.md)
   --duration S     simulated seconds after which the run ends; default: 300 (large_building needs 600)
   --seed N         of the simulator: start, noise, jitter of furniture; default: 1
   --out DIR        run folder; default: out/<name of scene>_<method>_<seed>

@@ -215,7 +215,7 @@ lapis_msgs::msg::CandidateSet to_message(const Decision& decision, std::uint64_t
     item.reason(text_of(candidate.rejection));
     item.cost_m(candidate.value.cost_m);
     item.mutual_information_nats(candidate.value.path_information);
-    item.d_optimality(candidate.value.d_optimality);
+    item.d_optimality(candidate.value.optimality);
     item.utility(candidate.utility);
     message.candidates().push_back(item);
   }

@@ -53,7 +53,7 @@ void DecisionLog::write_value(const Candidate& candidate, const Asks& known) {
   }
   const ExpectedGain& gain = candidate.gain;
   file_ << candidate.loops.size() << ',' << value.loop_gain << ',' << gain.fixed_n_change << ','
-        << gain.end_sigma_without_loops_m << ',' << gain.end_sigma_m << ',' << value.d_optimality << ',';
+        << gain.end_sigma_without_loops_m << ',' << gain.end_sigma_m << ',' << value.optimality << ',';
 }
 
 void DecisionLog::write_ended() {

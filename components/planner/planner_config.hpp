@@ -159,7 +159,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("information_discount_sigma_m", c.decision.information_discount_sigma_m, config::in_range(0.0, 100.0),
         "information from a position with this sigma counts half; 0: all counts [m]");
   field("criterion", c.criterion, config::one_of({"d", "a", "t", "e"}),
-        "mean of the eigenvalues of an edge's information that is its weight in the pose graph (README)");
+        "optimality of the pose graph: mean of its eigenvalues, and of those of an edge's information (README)");
   field("sparsifier", c.sparsifier, config::one_of({"none", "mac", "log_det"}),
         "what thins a large pose graph out: for connectivity, or for its log-determinant (README)");
   field("max_graph_edges", c.decision.graph.max_edges, config::in_range(1, 10'000'000),

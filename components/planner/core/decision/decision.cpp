@@ -12,6 +12,7 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kAway_m = 0.5;
+constexpr double kAround_m = 2.0;      // what is looked at: frontiers are that long
 constexpr double kTurnStep_rad = 0.6;  // between views while the robot turns: half of what a camera sees
 
 ViewPath views_along(const Situation& s, const std::vector<Pose2>& path) {
@@ -71,6 +72,21 @@ void add_information(const Situation& s, const Asks& asks, const std::vector<Can
   }
 }
 
+/// Of the cells within kAround_m, what nobody has seen.
+double unknown_share(const PlanningGrid& grid, const Eigen::Vector2d& center_map) {
+  const Cell center = grid.cell_of(center_map);
+  const int reach = static_cast<int>(kAround_m / grid.resolution_m());
+  int cells = 0, unknown = 0;
+  for (Cell offset{0, -reach}; offset.y <= reach; ++offset.y) {
+    for (offset.x = -reach; offset.x <= reach; ++offset.x) {
+      if (squared_distance(offset, {}) > reach * reach) continue;
+      ++cells;
+      unknown += grid.state(center + offset) == mapping::kUnknown ? 1 : 0;
+    }
+  }
+  return static_cast<double>(unknown) / cells;
+}
+
 std::vector<geometry::Pose> nodes_along(const Situation& s, const Candidate& candidate, double spacing_m) {
   std::vector<geometry::Pose> nodes = views_along(s, poses_along(candidate.points, spacing_m, candidate.goal.yaw_rad));
   if (nodes.size() > 1) nodes.erase(nodes.begin());  // the robot is there already
@@ -84,7 +100,7 @@ std::string add_gain(const Situation& s, const DecisionConfig& config, Candidate
       hallucinate(*s.graph, *s.landmarks, s.field, s.view.config().camera, nodes, config.hallucination);
   const auto gain = expect_gain(*s.graph, path, config.sigma_limit_voxels * s.grid.resolution_m());
   if (const auto* error = std::get_if<GraphError>(&gain)) return error->message;
-  const auto literal = literal_d_optimality(*s.graph, path);
+  const auto literal = literal_optimality(*s.graph, path);
   if (const auto* error = std::get_if<GraphError>(&literal)) return error->message;
   candidate.gain = std::get<ExpectedGain>(gain);
   for (const geometry::Pose& node : nodes) candidate.nodes_map.emplace_back(node.translation());
@@ -94,7 +110,7 @@ std::string add_gain(const Situation& s, const DecisionConfig& config, Candidate
         {candidate.nodes_map[static_cast<std::size_t>(place.node)], keyframe.translation(), place.probability});
   }
   candidate.value.loop_gain = candidate.gain.saturated_loop_gain;
-  candidate.value.d_optimality = std::get<double>(literal);
+  candidate.value.optimality = std::get<double>(literal);
   candidate.value.fixed_n_d_optimality =
       d_optimality(s.graph->factor.node_count(), s.graph->factor.log_trees() + candidate.gain.fixed_n_change);
   return "";
@@ -142,7 +158,7 @@ std::string add_gains(const Situation& s, const DecisionConfig& config, const st
       candidate->nodes_map.clear();
       candidate->loops.clear();
       candidate->value.loop_gain = 0.0;
-      candidate->value.d_optimality = candidate->value.fixed_n_d_optimality = 1.0;
+      candidate->value.optimality = candidate->value.fixed_n_d_optimality = 1.0;
     } else if (config.information_discount_sigma_m > 0.0) {
       discount_information(s, config.information_discount_sigma_m, *candidate);
     }
@@ -189,6 +205,9 @@ std::string judge(const Situation& s, const DecisionConfig& config, const Asks& 
                   std::vector<Candidate>& candidates) {
   const std::vector<Candidate*> open = open_ones(candidates);
   if (asks.path_information || asks.goal_information) add_information(s, asks, open);
+  if (asks.unknown_share) {
+    for (Candidate* candidate : open) candidate->value.unknown_share = unknown_share(s.grid, candidate->target_map);
+  }
   std::string problem = asks.spectrum ? add_gains(s, config, open) : "";
   for (Candidate* candidate : open) candidate->utility = config.method->utility(*candidate);
   return problem;

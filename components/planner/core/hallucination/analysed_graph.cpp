@@ -145,12 +145,18 @@ std::variant<AnalysedGraph, GraphError> analyse_graph(std::span<const Keyframe> 
   auto selected = select(keyframes, part.keyframes);
   if (!selected) return GraphError{"an edge names a key-frame that the pose graph does not have"};
   if (selected->size() < 2) return GraphError{"the newest key-frame is not connected to any other"};
-  const auto thinned = sparsify(part.graph, config.sparsifier, config.max_edges);
+  auto thinned = sparsify(part.graph, config.sparsifier, config.max_edges);
   if (auto* error = std::get_if<GraphError>(&thinned)) return *error;
   auto factor = LaplacianFactor::make(std::get<WeightedGraph>(thinned));
   if (auto* error = std::get_if<GraphError>(&factor)) return *error;
 
-  AnalysedGraph graph{std::get<LaplacianFactor>(std::move(factor)), *std::move(selected), {}, {}, {}};
+  AnalysedGraph graph{std::get<WeightedGraph>(std::move(thinned)),
+                      config.criterion,
+                      std::get<LaplacianFactor>(std::move(factor)),
+                      *std::move(selected),
+                      {},
+                      {},
+                      {}};
   graph.loops = loops_of(graph, edges, config.criterion);
   const int newest = static_cast<int>(graph.keyframes.size()) - 1;
   graph.path_from_newest_m = path_lengths_from(newest, part.graph, graph.keyframes);

@@ -24,7 +24,7 @@ inline constexpr double kMetresPerRadian = 0.5;
 double path_between(const geometry::Pose& a, const geometry::Pose& b);
 
 struct GraphConfig {
-  Criterion criterion = Criterion::kD;  ///< of the edges' weights
+  Criterion criterion = Criterion::kD;  ///< of the graph, and of its edges' weights
   Sparsifier sparsifier = Sparsifier::kNone;
   int max_edges = 10'000;  ///< what the sparsifier leaves of a larger graph, in [1, 10^7]
 };
@@ -37,6 +37,8 @@ struct LoopClosure {
 /// slam's pose graph as decisions need it: the part that hangs together with the newest key-frame. Node i is
 /// keyframes[i]; the newest is the last. Made once per version of the graph.
 struct AnalysedGraph {
+  WeightedGraph graph;  ///< that is analysed, thinned out if it was large
+  Criterion criterion;  ///< of its weights
   LaplacianFactor factor;
   std::vector<Keyframe> keyframes;  ///< by id
   std::vector<LoopClosure> loops;

@@ -3,6 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <utility>
+
+#include "planner/core/spectral/graph_optimality.hpp"
 
 namespace lapis::planner {
 namespace {
@@ -77,6 +80,14 @@ double probability_of(PlaceSet closed, const std::vector<Place>& places) {
   return probability;
 }
 
+std::variant<double, GraphError> optimality_with(const HallucinatedGraph& path, const AnalysedGraph& graph) {
+  std::vector<WeightedEdge> edges = graph.graph.edges();
+  for (const HallucinatedEdge& edge : path.edges) edges.push_back(edge.edge);
+  const auto extended = WeightedGraph::make(graph.graph.node_count() + path.node_count, std::move(edges));
+  if (const auto* error = std::get_if<GraphError>(&extended)) return *error;
+  return optimality(std::get<WeightedGraph>(extended), graph.criterion);
+}
+
 }  // namespace
 
 double loop_probability(int landmarks, const HallucinationConfig& config) {
@@ -133,12 +144,13 @@ std::variant<ExpectedGain, GraphError> expect_gain(const AnalysedGraph& graph, c
   return expected;
 }
 
-std::variant<double, GraphError> literal_d_optimality(const AnalysedGraph& graph, const Hallucination& path) {
+std::variant<double, GraphError> literal_optimality(const AnalysedGraph& graph, const Hallucination& path) {
   HallucinatedGraph weighted = path.graph;
   for (HallucinatedEdge& edge : weighted.edges) {
     if (edge.place != HallucinatedEdge::kCertain)
       edge.edge.weight *= path.places[static_cast<std::size_t>(edge.place)].probability;
   }
+  if (graph.criterion != Criterion::kD) return optimality_with(weighted, graph);
   auto gain = CandidateGain::make(graph.factor, weighted);
   if (auto* error = std::get_if<GraphError>(&gain)) return *error;
   return std::get<CandidateGain>(gain).d_optimality(kEveryPlace);

@@ -59,8 +59,9 @@ struct ExpectedGain {
 std::variant<ExpectedGain, GraphError> expect_gain(const AnalysedGraph& graph, const Hallucination& path,
                                                    double sigma_limit_m);
 
-/// D-optimality with all nodes and loop edges, these with probability times weight: the paper's form, which is too
-/// optimistic (E ln det <= ln det E).
-std::variant<double, GraphError> literal_d_optimality(const AnalysedGraph& graph, const Hallucination& path);
+/// Optimality with all nodes and loop edges, these with probability times weight, by the graph's criterion: the paper's
+/// form, which is too optimistic (E ln det <= ln det E). D is a low-rank update, anything else an analysis of the whole
+/// graph with the path.
+std::variant<double, GraphError> literal_optimality(const AnalysedGraph& graph, const Hallucination& path);
 
 }  // namespace lapis::planner

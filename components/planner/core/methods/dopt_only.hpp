@@ -8,7 +8,7 @@ namespace lapis::planner {
 class DoptOnly : public Method {
  public:
   Asks asks() const override { return {.spectrum = true}; }
-  double utility(const Candidate& candidate) const override { return candidate.value.d_optimality; }
+  double utility(const Candidate& candidate) const override { return candidate.value.optimality; }
 };
 
 }  // namespace lapis::planner

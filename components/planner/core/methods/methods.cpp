@@ -8,6 +8,7 @@
 #include "planner/core/methods/mi_only.hpp"
 #include "planner/core/methods/nearest.hpp"
 #include "planner/core/methods/paper.hpp"
+#include "planner/core/methods/placed.hpp"
 #include "planner/core/methods/ssmi.hpp"
 
 namespace lapis::planner {
@@ -35,6 +36,7 @@ constexpr Entry kMethods[] = {
     {"nearest", make<Nearest>},
     {"mi_only", make<MiOnly>},
     {"dopt_only", make<DoptOnly>},
+    {"placed", make<Placed>},
 };
 
 constexpr const char* kLapis = "joint";  // docs/decisions/0031-the-method-called-lapis.md

@@ -10,7 +10,7 @@ class Paper : public Method {
  public:
   Asks asks() const override { return {.path_information = true, .spectrum = true}; }
   double utility(const Candidate& candidate) const override {
-    return candidate.value.d_optimality * (1.0 + candidate.value.path_information / candidate.value.paid_m());
+    return candidate.value.optimality * (1.0 + candidate.value.path_information / candidate.value.paid_m());
   }
   bool keeps_goal() const override { return false; }
 };

@@ -77,7 +77,7 @@ Decision decision() {
     candidate.points = {{0.0, 0.0}, {k, -k}};
     candidate.value.cost_m = 1.0 + k;
     candidate.value.path_information = 10.0 + k;
-    candidate.value.d_optimality = 20.0 + k;
+    candidate.value.optimality = 20.0 + k;
     candidate.utility = 30.0 + k;
   }
   decision.candidates[2].rejection = Rejection::kUnreachable;

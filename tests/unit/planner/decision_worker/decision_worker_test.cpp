@@ -112,7 +112,7 @@ TEST_F(DecisionWorkerTest, KnowledgeIsKeptUntilThereIsANewerGraph) {
   worker_.start(std::move(second), 2);
   auto output = worker_.take(2, true);
   EXPECT_EQ(output->knowledge, known) << "nothing new, nothing computed";
-  EXPECT_GT(output->decision.candidates[*output->decision.chosen].value.d_optimality, 0.0) << "but used";
+  EXPECT_GT(output->decision.candidates[*output->decision.chosen].value.optimality, 0.0) << "but used";
 
   DecisionInput third = input();
   third.knowledge = known;

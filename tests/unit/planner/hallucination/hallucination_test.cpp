@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include <cmath>
 #include <numbers>
 
@@ -155,14 +157,41 @@ TEST(ExpectGain, LoopsBeyondTheLimitAreWorthNothing) {
   EXPECT_NEAR(gain_at(0.5 * with_m), all, 1e-12);
 }
 
-TEST(LiteralDOptimality, WeighsLoopsByTheirProbability) {
+TEST(LiteralOptimality, WeighsLoopsByTheirProbability) {
   const Square world;
   const AnalysedGraph graph = world.chain.graph();
   Hallucination path = world.drive(kHome);
-  const double literal = std::get<double>(literal_d_optimality(graph, path));
+  const double literal = std::get<double>(literal_optimality(graph, path));
   path.graph.edges.back().edge.weight *= path.places[0].probability;
   const int nodes = graph.factor.node_count() + path.graph.node_count;
   EXPECT_NEAR(literal, d_optimality(nodes, log_trees(graph, world.chain.edges, path, kEveryPlace)), 1e-9 * literal);
+}
+
+TEST(LiteralOptimality, OfEveryCriterionIsThatOfAllTheEigenvalues) {
+  const Square world;
+  const Hallucination path = world.drive(kHome);
+  for (const Criterion criterion : {Criterion::kD, Criterion::kA, Criterion::kT, Criterion::kE}) {
+    GraphConfig config;
+    config.criterion = criterion;
+    const auto graph = std::get<AnalysedGraph>(analyse_graph(world.chain.keyframes, world.chain.edges, config));
+    const int n = graph.graph.node_count() + path.graph.node_count;
+    Eigen::MatrixXd laplacian = Eigen::MatrixXd::Zero(n, n);
+    const auto add = [&](const WeightedEdge& edge, double probability) {
+      const Eigen::VectorXd across = Eigen::VectorXd::Unit(n, edge.a) - Eigen::VectorXd::Unit(n, edge.b);
+      laplacian += probability * edge.weight * across * across.transpose();
+    };
+    for (const WeightedEdge& edge : graph.graph.edges()) add(edge, 1.0);
+    for (const HallucinatedEdge& edge : path.graph.edges)
+      add(edge.edge, edge.place < 0 ? 1.0 : path.places[static_cast<std::size_t>(edge.place)].probability);
+    const Eigen::VectorXd values =
+        Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(laplacian, Eigen::EigenvaluesOnly).eigenvalues().tail(n - 1);
+    const double expected = criterion == Criterion::kD   ? std::exp(values.array().log().sum() / n)
+                            : criterion == Criterion::kA ? n / values.cwiseInverse().sum()
+                            : criterion == Criterion::kT ? values.sum() / n
+                                                         : values[0];
+    EXPECT_NEAR(std::get<double>(literal_optimality(graph, path)), expected, 1e-9 * expected)
+        << static_cast<int>(criterion);
+  }
 }
 
 }  // namespace

@@ -9,7 +9,8 @@ constexpr PathValue kValue{.cost_m = 4.0,
                            .path_information = 20.0,
                            .goal_information = 50.0,
                            .loop_gain = 2.0,
-                           .d_optimality = 3.0,
+                           .unknown_share = 0.25,
+                           .optimality = 3.0,
                            .fixed_n_d_optimality = 5.0};
 
 double utility(const Method& method, const PathValue& value) {
@@ -29,6 +30,7 @@ TEST(Methods, UtilityIsWhatTheEquationsSay) {
   EXPECT_DOUBLE_EQ(utility("nearest", kValue), 0.25);
   EXPECT_DOUBLE_EQ(utility("mi_only", kValue), 5.0);
   EXPECT_DOUBLE_EQ(utility("dopt_only", kValue), 3.0);
+  EXPECT_DOUBLE_EQ(utility("placed", kValue), 3.0 * 1.25);
 }
 
 TEST(Methods, EdgeCases) {
@@ -48,9 +50,10 @@ TEST(Methods, AskForAllThatTheirUtilityIsMadeOf) {
     PathValue asked{.cost_m = 4.0, .tour_place = 2};
     if (method->asks().path_information) asked.path_information = kValue.path_information;
     if (method->asks().goal_information) asked.goal_information = kValue.goal_information;
+    if (method->asks().unknown_share) asked.unknown_share = kValue.unknown_share;
     if (method->asks().spectrum) {
       asked.loop_gain = kValue.loop_gain;
-      asked.d_optimality = kValue.d_optimality;
+      asked.optimality = kValue.optimality;
       asked.fixed_n_d_optimality = kValue.fixed_n_d_optimality;
     }
     PathValue all = kValue;
@@ -60,9 +63,9 @@ TEST(Methods, AskForAllThatTheirUtilityIsMadeOf) {
   }
 }
 
-TEST(Methods, OnlyThePaperHasNoHysteresisAndOnlyTareATourOfItsOwn) {
+TEST(Methods, ThoseOfThePaperHaveNoHysteresisAndOnlyTareHasATourOfItsOwn) {
   for (const std::string& name : method_names()) {
-    EXPECT_EQ(make_method(name)->keeps_goal(), name != "paper") << name;
+    EXPECT_EQ(make_method(name)->keeps_goal(), name != "paper" && name != "placed") << name;
     EXPECT_EQ(make_method(name)->has_own_candidates(), name == "tare") << name;
   }
 }
@@ -70,8 +73,8 @@ TEST(Methods, OnlyThePaperHasNoHysteresisAndOnlyTareATourOfItsOwn) {
 // And old places as goals.
 TEST(Methods, LoopsAreWorthSomethingToThoseWithAGraphInTheirUtility) {
   for (const std::string& name : method_names()) {
-    const bool has_graph = name == "paper" || name == "fixed_n" || name == "joint" || name == "dopt_only";
-    EXPECT_EQ(make_method(name)->asks().spectrum, has_graph) << name;
+    const bool has_none = name == "ssmi" || name == "tare" || name == "nearest" || name == "mi_only";
+    EXPECT_EQ(make_method(name)->asks().spectrum, !has_none) << name;
   }
 }
 

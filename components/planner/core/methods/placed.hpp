@@ -1,0 +1,19 @@
+#pragma once
+
+#include "planner/core/methods/method.hpp"
+
+namespace lapis::planner {
+
+/// D (1 + share of unknown cells around the frontier): as Paper, but the map counts at the goal alone and whatever the
+/// path costs, after what Zhang et al. 2024 compare with [Placed, Rodriguez, Tardos & Castellanos, "ExplORB-SLAM",
+/// 2022].
+class Placed : public Method {
+ public:
+  Asks asks() const override { return {.unknown_share = true, .spectrum = true}; }
+  double utility(const Candidate& candidate) const override {
+    return candidate.value.optimality * (1.0 + candidate.value.unknown_share);
+  }
+  bool keeps_goal() const override { return false; }
+};
+
+}  // namespace lapis::planner

@@ -15,7 +15,8 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
   --scene NAME     bundled scene, generated building (office_7: docs/buildings.md), scene file, or folder of a scanned
                    building (docs/scenes.md); default: apartment
   --method METHOD  that chooses where to go: lapis (default), paper, ssmi, tare, nearest, mi_only, dopt_only, placed,
-                   fixed_n or joint (components/planner/README.md)
+                   fixed_n or joint (components/planner/README.md); with the settings of config/methods/METHOD.yaml,
+                   where there is such a file: --set planner.method=METHOD takes its utility alone
   --duration S     simulated seconds after which the run ends; default: 300 (large_building needs 600)
   --seed N         of the simulator: start, noise, jitter of furniture; default: 1
   --out DIR        run folder; default: out/<name of scene>_<method>_<seed>
@@ -54,6 +55,8 @@ while [ $# -gt 0 ]; do
   shift
 done
 require_build
+preset=$repository/config/methods/$method.yaml
+[ ! -f "$preset" ] || options=(--config "$preset" "${options[@]}")
 out=${out:-$repository/out/$(basename "$scene" .yaml)_${method}_$seed}
 echo "explores $scene by method $method with seed $seed; logs: $out/logs"
 run_system explore "$command" --out "$out" --set "simulator.scene=$scene" --set "planner.method=$method" \

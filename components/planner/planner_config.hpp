@@ -72,6 +72,8 @@ void describe(Field& field, ViewpointConfig& c) {
   field("min_distance_m", c.min_distance_m, config::in_range(0.0, 10.0), "from the frontier [m]");
   field("max_distance_m", c.max_distance_m, config::in_range(0.25, 20.0), "from the frontier [m]");
   field("max_per_frontier", c.max_per_frontier, config::in_range(1, 64), "viewpoints");
+  field("nearest_first", c.nearest_first, config::anything(),
+        "of the places the nearest to the frontier's middle, as in the paper; false: any, drawn");
   field("seed", c.seed, config::anything(), "draws them");
 }
 
@@ -117,6 +119,8 @@ void describe(Field& field, HallucinationConfig& c) {
   field("revisit_spacing_m", c.revisit_spacing_m, config::in_range(0.0, 1000.0),
         "path after a loop closure before its place counts again [m]");
   field("max_places", c.max_places, config::in_range(1, 8), "of a path; the most probable ones");
+  field("loop_weight", c.loop_weight, config::in_range(0.0, 1000.0),
+        "of a loop's edge, probability apart, in weights of a metre of odometry; 0: as the loops that were closed");
 }
 
 template <class Field>
@@ -176,10 +180,10 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("tare", c.methods.tare);
   field("hallucination", c.decision.hallucination);
   field("memory", c.explorer.memory);
-  field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.5, 60.0),
-        "between decisions while a goal is being driven to [s]");
+  field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.0, 60.0),
+        "between decisions while a goal is being driven to, at least 0.5; 0: none, as in the paper [s]");
   field("goal_tolerance_m", c.explorer.goal_tolerance_m, config::in_range(0.05, 2.0), "at a goal [m]");
-  field("goal_tolerance_rad", c.explorer.goal_tolerance_rad, config::in_range(0.05, 0.5), "at a goal [rad]");
+  field("goal_tolerance_rad", c.explorer.goal_tolerance_rad, config::in_range(0.05, 3.2), "at a goal [rad]");
   field("progress_timeout_s", c.explorer.progress_timeout_s, config::in_range(1.0, 600.0),
         "without moving a goal has failed [s]");
   field("slowest_m_s", c.explorer.slowest_m_s, config::in_range(0.01, 5.0),

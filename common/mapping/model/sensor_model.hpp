@@ -45,6 +45,8 @@ void describe(Field& field, SensorModel& c) {
   field("fusion", c.fusion, config::one_of({"log_odds", "dirichlet", "bki"}), "rule by which counts become beliefs");
   field("prior_votes", c.prior_votes, config::in_range(0.01, 1000.0),
         "of dirichlet and bki: so many votes weigh as much as the prior");
+  field("paper_increments", c.use_paper_increments, config::anything(),
+        "log-odds +1 for the class of a hit, -0.1 for all others and for a miss, as in the paper");
   field("prior_occupied", c.prior_occupied, config::in_range(1e-4, 0.9999), "of a voxel that was never observed");
 }
 

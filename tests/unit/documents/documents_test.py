@@ -8,6 +8,8 @@ import subprocess
 import sys
 import unittest
 
+import yaml
+
 REPOSITORY = pathlib.Path(sys.argv.pop(1))
 BIN = pathlib.Path(sys.argv.pop(1))
 COMPONENTS = ["sensor_replay", "simulator", "slam", "semantic_mapper", "evaluator", "planner", "controller"]
@@ -26,6 +28,14 @@ def meanings_of(name):
     rows = output_of(BIN / f"lapis_{name}", "--print-config-table").splitlines()[2:]
     keys = {row.split("`")[1]: row.removesuffix(" |").rsplit(" | ", 1)[1] for row in rows}
     return {path: meaning for path, meaning in keys.items() if not path.startswith(SHARED)}
+
+
+def with_settings(configuration, settings):
+    """A copy of a configuration in which the settings are as told."""
+    changed = dict(configuration)
+    for key, value in settings.items():
+        changed[key] = with_settings(changed[key], value) if isinstance(value, dict) else value
+    return changed
 
 
 RENAMED = {  # keys of before, by the component that refuses them
@@ -94,6 +104,16 @@ class Documents(unittest.TestCase):
         for file in files:
             with self.subTest(str(file)):
                 output_of(BIN / f"lapis_{file.stem}", "--config", file, "--check-config")
+
+    def test_presets_of_methods_are_of_methods_and_are_shown(self):
+        presets = sorted(REPOSITORY.glob("config/methods/*.yaml"))
+        self.assertTrue(presets)
+        for preset in presets:
+            output_of(BIN / "lapis_planner", "--set", f"planner.method={preset.stem}", "--check-config")
+            for name, settings in yaml.safe_load(preset.read_text()).items():
+                with self.subTest(f"{preset}, {name}"):
+                    shown = yaml.safe_load(output_of(BIN / f"lapis_{name}", "--config", preset, "--print-config"))
+                    self.assertEqual(with_settings(shown[name], settings), shown[name])
 
     def test_the_robot_file_says_what_the_defaults_are(self):
         for name in KNOW_THE_ROBOT:

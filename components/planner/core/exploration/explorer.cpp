@@ -228,7 +228,8 @@ bool Explorer::is_of_other_tier(const Goal& goal) const {
 }
 
 bool Explorer::is_due(time::Time now) const {
-  return !decided_at_ || (now - *decided_at_).seconds() >= config_.replan_period_s;
+  const double period_s = config_.replan_period_s;
+  return !decided_at_ || (period_s > 0.0 && (now - *decided_at_).seconds() >= period_s);
 }
 
 void Explorer::note_arrival(time::Time now) {

@@ -18,9 +18,9 @@ namespace lapis::planner {
 struct ExplorerConfig {
   GoalMemoryConfig memory = {};
   PathConfig path = {};
-  double replan_period_s = 1.0;     ///< between decisions while a goal is being driven to, in [0.5, 60]
+  double replan_period_s = 1.0;     ///< between decisions while a goal is being driven to; 0: none; in [0, 60]
   double goal_tolerance_m = 0.3;    ///< in [0.05, 2]
-  double goal_tolerance_rad = 0.3;  ///< in [0.05, 0.5]
+  double goal_tolerance_rad = 0.3;  ///< in [0.05, 3.2]
   double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
   double slowest_m_s = 0.15;        ///< a path that takes longer than at this speed has failed, in [0.01, 5]
   Allowance stall = {};             ///< without seeing anything new before a goal has failed

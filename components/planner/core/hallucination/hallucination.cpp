@@ -113,9 +113,11 @@ Hallucination hallucinate(const AnalysedGraph& graph, const LandmarkIndex& landm
     before = &pose;
   }
   result.places = finder.most_probable();
+  const double loop_weight =
+      config.loop_weight > 0.0 ? config.loop_weight * graph.odometry_weight_metres : graph.loop_weight;
   for (std::size_t i = 0; i < result.places.size(); ++i) {
     const Place& place = result.places[i];
-    result.graph.edges.push_back({{first + place.node, place.keyframe, graph.loop_weight}, static_cast<int>(i)});
+    result.graph.edges.push_back({{first + place.node, place.keyframe, loop_weight}, static_cast<int>(i)});
   }
   return result;
 }

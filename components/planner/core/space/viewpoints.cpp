@@ -11,7 +11,7 @@ namespace lapis::planner {
 namespace {
 
 struct Candidate {
-  std::uint64_t draw;  ///< order of the draw
+  std::uint64_t rank;  ///< by which they are taken
   Cell cell;
   auto operator<=>(const Candidate&) const = default;
 };
@@ -27,7 +27,7 @@ std::size_t sector_of(Cell c, Cell middle, std::size_t count) {
   return std::min(count - 1, static_cast<std::size_t>(turns * static_cast<double>(count)));
 }
 
-/// Cells of the ring that can be reached, in the order of the draw; `lack` says what the best ones lack.
+/// Cells of the ring that can be reached, in the order in which they are taken; `lack` says what the best ones lack.
 std::vector<Candidate> reachable_ring(const PlanningGrid& grid, const CostTree& paths, Cell target,
                                       const ViewpointConfig& config, Rejection& lack) {
   std::vector<Candidate> ring;
@@ -38,7 +38,10 @@ std::vector<Candidate> reachable_ring(const PlanningGrid& grid, const CostTree& 
       const Cell c = target + step;
       if (distance(c, target) < low || distance(c, target) > high || !grid.is_traversable(c)) continue;
       lack = std::max(lack, Rejection::kUnreachable);
-      if (paths.cost_m(c)) ring.push_back({draw(static_cast<std::uint64_t>(config.seed), c), c});
+      if (!paths.cost_m(c)) continue;
+      const auto rank = config.nearest_first ? static_cast<std::uint64_t>(squared_distance(c, target))
+                                             : draw(static_cast<std::uint64_t>(config.seed), c);
+      ring.push_back({rank, c});
     }
   }
   std::sort(ring.begin(), ring.end());

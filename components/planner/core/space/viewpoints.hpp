@@ -15,6 +15,7 @@ struct ViewpointConfig {
   double min_distance_m = 0.5;  ///< from the cell of the frontier that is looked at, in [0, 10]
   double max_distance_m = 2.0;  ///< above min_distance_m; below the sensor's range; in [0.25, 20]
   int max_per_frontier = 8;     ///< in [1, 64]
+  bool nearest_first = false;   ///< to what is looked at; false: drawn at random
   std::int64_t seed = 1;
 };
 
@@ -61,9 +62,9 @@ struct ViewpointResult {
 };
 
 /// Viewpoints in the ring around the first representative of the frontier that has any: at most one in each of
-/// max_per_frontier equal sectors, drawn at random (seeded) from all cells of the sector that are traversable, reached
-/// by `paths`, and see the target through free and unknown cells, if that is needed. All cells of the ring are tried
-/// before one gives up.
+/// max_per_frontier equal sectors, drawn at random (seeded), or the nearest to what is looked at, from all cells of the
+/// sector that are traversable, reached by `paths`, and see the target through free and unknown cells, if that is
+/// needed. All cells of the ring are tried before one gives up.
 ViewpointResult sample_viewpoints(const PlanningGrid& grid, const CostTree& paths, const Frontier& frontier,
                                   const ViewpointConfig& config, Sight sight = Sight::kNeeded);
 

@@ -61,6 +61,18 @@ TEST(Explorer, EveryMethodEnds) {
   }
 }
 
+// As in the paper: a goal is driven to, whatever is seen on the way.
+TEST(Explorer, DecidesOnlyAtGoalsWhenToldTo) {
+  WalkWorld often(closed(kThreeRooms)), seldom(closed(kThreeRooms), {.replan_period_s = 0.0});
+  for (WalkWorld* world : {&often, &seldom}) {
+    world->explorer.start();
+    world->run(300.0);
+    EXPECT_EQ(world->explorer.state(), State::kDone) << world->explorer.reason();
+    EXPECT_GT(world->explored_share(), 0.98);
+  }
+  EXPECT_LT(2 * seldom.decisions, often.decisions);
+}
+
 TEST(Explorer, DrivesHomeWhenAsked) {
   WalkWorld world(closed(kThreeRooms), {.returns_home = true});
   const Pose2 home = world.robot;

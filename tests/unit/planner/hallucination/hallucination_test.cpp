@@ -157,6 +157,15 @@ TEST(ExpectGain, LoopsBeyondTheLimitAreWorthNothing) {
   EXPECT_NEAR(gain_at(0.5 * with_m), all, 1e-12);
 }
 
+TEST(Hallucinate, ALoopWeighsWhatItIsToldTo) {
+  Square world;
+  const double by_graph = world.drive(kHome).graph.edges.back().edge.weight;
+  EXPECT_EQ(by_graph, world.chain.graph().loop_weight);
+  world.config.loop_weight = 10.0;
+  EXPECT_DOUBLE_EQ(world.drive(kHome).graph.edges.back().edge.weight,
+                   10.0 * world.chain.graph().odometry_weight_metres);
+}
+
 TEST(LiteralOptimality, WeighsLoopsByTheirProbability) {
   const Square world;
   const AnalysedGraph graph = world.chain.graph();

@@ -69,6 +69,21 @@ TEST(Viewpoints, AreReproducibleAndMoveWithTheSeed) {
   EXPECT_NE(cells(1), cells(2));
 }
 
+TEST(Viewpoints, TheNearestIsInFrontOfTheMiddle) {
+  const TextWorld world(kRoom);
+  const ViewpointConfig config{
+      .min_distance_m = 0.0, .max_distance_m = 1.5, .max_per_frontier = 1, .nearest_first = true};
+  const auto views = views_of(world, {2, 2}, {5, 5}, config).viewpoints;
+  ASSERT_EQ(views.size(), 1u);
+  const double nearest = distance(views[0].cell, views[0].target);
+  for (Cell c{0, 0}; c.y < 7; ++c.y) {
+    for (c.x = 0; c.x < 12; ++c.x) {
+      if (!world.grid.is_traversable(c)) continue;
+      EXPECT_GE(distance(c, views[0].target), nearest);
+    }
+  }
+}
+
 TEST(Viewpoints, BehindGlassIsUnreachable) {
   const TextWorld world({"##############", "#....#........", "#....#........", "#....#........", "##############"});
   EXPECT_EQ(views_of(world, {2, 2}, {13, 2}).rejection, Rejection::kUnreachable);

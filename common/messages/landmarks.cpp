@@ -1,55 +1,14 @@
 #include "common/messages/landmarks.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <functional>
+#include <string>
+#include <utility>
 
 namespace lapis::messages {
-namespace {
-
 using mapping::LandmarkTile;
 
-template <class Iterator>
-bool is_ascending(Iterator begin, Iterator end) {
-  return std::adjacent_find(begin, end, std::greater_equal<>()) == end;
-}
-
-// Why the observers cannot be read, or nothing.
-std::string fault_of_observers(const lapis_msgs::msg::LandmarkTile& message) {
-  const auto& ends = message.observer_ends();
-  const auto& observers = message.observers();
-  if (ends.size() != message.ids().size()) return "observer_ends and ids differ in number";
-  if ((ends.empty() ? 0 : ends.back()) != observers.size()) return "observer_ends do not end with the observers";
-  if (!is_ascending(ends.begin(), ends.end()) || (!ends.empty() && ends.front() == 0)) {
-    return "a landmark has no observer";
-  }
-  std::uint32_t begin = 0;
-  for (const std::uint32_t end : ends) {
-    if (!is_ascending(observers.begin() + begin, observers.begin() + end)) return "observers are not ascending";
-    begin = end;
-  }
-  return {};
-}
-
-std::string fault_of(const lapis_msgs::msg::LandmarkTile& message) {
-  const auto& ids = message.ids();
-  const auto& positions = message.positions();
-  if (mapping::landmark_tile_bytes(ids.size(), message.observers().size()) > mapping::kMaxLandmarkTileBytes) {
-    return "tile is larger than 1 MiB";
-  }
-  if (positions.size() != 3 * ids.size()) return "positions and ids differ in number";
-  if (!is_ascending(ids.begin(), ids.end())) return "ids are not ascending";
-  if (!std::all_of(positions.begin(), positions.end(), [](float x) { return std::isfinite(x); })) {
-    return "a position is not finite";
-  }
-  return fault_of_observers(message);
-}
-
-}  // namespace
-
 Converted<LandmarkTile> from_message(const lapis_msgs::msg::LandmarkTile& message) {
-  const std::string fault = fault_of(message);
-  if (!fault.empty()) return Converted<LandmarkTile>::refused(fault);
+  if (message.positions().size() != 3 * message.ids().size())
+    return Converted<LandmarkTile>::refused("positions and ids differ in number");
   LandmarkTile tile;
   tile.index = {message.x(), message.y(), message.z()};
   tile.graph_version = message.graph_version();
@@ -61,6 +20,8 @@ Converted<LandmarkTile> from_message(const lapis_msgs::msg::LandmarkTile& messag
   }
   tile.observer_ends = message.observer_ends();
   tile.observers = message.observers();
+  if (std::string fault = mapping::fault_of(tile); !fault.empty())
+    return Converted<LandmarkTile>::refused(std::move(fault));
   return tile;
 }
 

@@ -13,6 +13,8 @@ namespace lapis::planner {
 /// decisions.csv: a row for every candidate of every decision (docs/evaluation.md).
 class DecisionLog {
  public:
+  static constexpr const char* kFile = "decisions.csv";
+
   /// An older file of that name is set aside. Throws std::runtime_error when it cannot be written.
   /// @param compared_methods, compared_priors what decisions are compared with; a column each
   explicit DecisionLog(const std::string& path, const std::vector<std::string>& compared_methods = {},

@@ -19,7 +19,9 @@ std::pair<std::shared_ptr<const GraphKnowledge>, std::string> renew(DecisionInpu
           ""};
 }
 
-DecisionOutput make(DecisionInput input) {
+}  // namespace
+
+DecisionOutput make_decision(DecisionInput input) {
   const auto begin = std::chrono::steady_clock::now();
   DecisionOutput output;
   std::string problem;
@@ -43,11 +45,9 @@ DecisionOutput make(DecisionInput input) {
   return output;
 }
 
-}  // namespace
-
 void DecisionWorker::start(DecisionInput input, std::uint64_t due) {
   due_ = due;
-  result_ = std::async(std::launch::async, make, std::move(input));
+  result_ = std::async(std::launch::async, make_decision, std::move(input));
 }
 
 std::optional<DecisionOutput> DecisionWorker::take(std::uint64_t frame, bool waits) {

@@ -36,6 +36,9 @@ struct DecisionOutput {
   double time_s = 0.0;  ///< wall time that it took
 };
 
+/// At once.
+DecisionOutput make_decision(DecisionInput input);
+
 /// Makes decisions in a thread of its own. The result is due at a fixed frame, so that in lock-step, where who asks
 /// waits for it, runs are the same on fast and on slow machines.
 class DecisionWorker {

@@ -1,5 +1,7 @@
 #include "planner/planner_component.hpp"
 
+#include <CLI/CLI.hpp>
+
 #include <filesystem>
 #include <utility>
 
@@ -15,6 +17,7 @@
 #include "common/topics/planner_views.hpp"
 #include "common/topics/services.hpp"
 #include "common/topics/slam.hpp"
+#include "planner/replay_tool.hpp"
 
 namespace lapis::planner {
 namespace {
@@ -22,7 +25,7 @@ namespace {
 constexpr double kFarewell_s = 1.0;
 constexpr time::Duration kLongestLead =
     time::Duration::from_seconds(1.0);  // of what overtakes the first frame of a session
-constexpr const char* kLogFile = "decisions.csv";
+constexpr const char* kSituations = "situations";
 
 Tracking tracking_of(const lapis_msgs::msg::TrackedFrame& frame) {
   using namespace lapis_msgs::msg::TrackedFrame_Constants;
@@ -31,6 +34,13 @@ Tracking tracking_of(const lapis_msgs::msg::TrackedFrame& frame) {
 }
 
 }  // namespace
+
+void PlannerComponent::add_options(CLI::App& app, Config& config) {
+  app.add_option("--replay", config.replay,
+                 "decide a recorded situation again (planner.record_situations_every), print the candidates, and exit");
+}
+
+std::optional<int> PlannerComponent::run_tool(const Config& config) { return run_replay(config); }
 
 /// Without these the planner would find nothing to do, or loops everywhere.
 config::Rules PlannerComponent::rules(const Config& config) {
@@ -51,7 +61,9 @@ config::Rules PlannerComponent::rules(const Config& config) {
            "robot.obstacle_min_height_m has to be less than robot.obstacle_max_height_m"},
           {comfort_m > robot.radius_m + grid.margin_m,
            "planner.path.comfort_m has to be more than robot.radius_m and planner.grid.margin_m together"},
-          {comfort_m <= grid.max_clearance_m, "planner.path.comfort_m has to be at most planner.grid.max_clearance_m"}};
+          {comfort_m <= grid.max_clearance_m, "planner.path.comfort_m has to be at most planner.grid.max_clearance_m"},
+          {config.record_situations_every == 0 || !config.output_dir.empty(),
+           "planner.record_situations_every needs planner.output_dir"}};
 }
 
 PlannerComponent::PlannerComponent(const Config& config, runtime::Context& context)
@@ -63,9 +75,12 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
       explorer_(config_.explorer), ledger_(config_.explorer.memory.radius_m) {
   if (!config_.output_dir.empty()) {
     files::require_writable_folder(config_.output_dir, "planner.output_dir");
-    log_.emplace((std::filesystem::path(config_.output_dir) / kLogFile).string(), config_.compared_methods,
+    log_.emplace((std::filesystem::path(config_.output_dir) / DecisionLog::kFile).string(), config_.compared_methods,
                  config_.surroundings.compared_priors);
   }
+  if (config_.record_situations_every > 0)
+    files::require_writable_folder((std::filesystem::path(config_.output_dir) / kSituations).string(),
+                                   "planner.output_dir");
   context.subscribe(topics::kMapDescription, [this](const auto& m) { set_description(m); });
   context.subscribe(topics::kVoxelTiles, [this](const auto& m) { add_tile(m); });
   context.subscribe(topics::kMapState, [this](const auto& m) { set_map_state(m); });
@@ -167,6 +182,7 @@ void PlannerComponent::begin_session(std::int64_t session, time::Time first_fram
   ledger_ = PathLedger(config_.explorer.memory.radius_m);
   knowledge_.reset();
   known_graph_ = {};
+  recorded_graph_.reset();
   explorer_.forget_map();
 }
 
@@ -227,7 +243,7 @@ void PlannerComponent::take_decision(bool waits) {
   const Decision* driven = is_taken && decision.chosen ? &decision : nullptr;
   const auto ended = ledger_.note(driven, surroundings_->information_nats(), last_robot_, stamp_);
   if (log_ && !log_->write(decision, ended, decisions_, config_.method, stamp_)) {
-    spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, kLogFile);
+    spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, DecisionLog::kFile);
     log_.reset();
   }
 }
@@ -324,7 +340,28 @@ void PlannerComponent::begin_decision() {
     if (landmarks_.state() && landmarks_.state()->session == graph_->session) input.landmarks = landmarks_.tiles();
     known_graph_ = versions_of_graph();
   }
+  if (config_.record_situations_every > 0) record(input);
   worker_.start(std::move(input), frames_ + static_cast<std::uint64_t>(config_.decision_latency_frames));
+}
+
+/// Before it is made: the map may be another one afterwards.
+void PlannerComponent::record(const DecisionInput& input) {
+  if (input.graph)
+    recorded_graph_ = {input.graph->keyframes, input.graph->edges, input.position_variance_m2, input.landmarks};
+  const std::uint64_t number = decisions_ + 1;
+  if (number % static_cast<std::uint64_t>(config_.record_situations_every) != 0) return;
+  const RecordedSituation situation{
+      {*map_.map(),
+       surroundings_model_,
+       description_->labels,
+       {{"decision", std::to_string(number)}, {"stamp", to_string(stamp_)}, {"method", config_.method}}},
+      surroundings_->grid().marks(),
+      input.robot,
+      input.memory,
+      recorded_graph_};
+  const auto file = std::filesystem::path(config_.output_dir) / kSituations / (std::to_string(number) + ".lapis");
+  if (const auto problem = files::replace_file(file.string(), encode_situation(situation)))
+    spdlog::error("{}", *problem);
 }
 
 void PlannerComponent::publish() {

@@ -12,9 +12,14 @@
 #include "common/runtime/context.hpp"
 #include "idl/vision_msgs.hpp"
 #include "planner/conversions.hpp"
+#include "planner/core/replay/situation_file.hpp"
 #include "planner/decision_log.hpp"
 #include "planner/decision_worker.hpp"
 #include "planner/planner_config.hpp"
+
+namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 calls itself so
+class App;
+}
 
 namespace lapis::planner {
 
@@ -25,7 +30,9 @@ class PlannerComponent {
   static constexpr const char* kName = "planner";
   static constexpr const char* kSummary = "Exploration: semantic mutual information and the pose graph's spectrum.";
 
+  static void add_options(CLI::App& app, Config& config);
   static config::Rules rules(const Config& config);
+  static std::optional<int> run_tool(const Config& config);
 
   PlannerComponent(const Config& config, runtime::Context& context);
   void finish();
@@ -60,6 +67,7 @@ class PlannerComponent {
   std::string reason() const;
   GraphVersions versions_of_graph() const;
   void begin_decision();
+  void record(const DecisionInput& input);
   void publish();
   void publish_markers();
   void publish_status();
@@ -100,7 +108,8 @@ class PlannerComponent {
   std::optional<mapping::MapState> surroundings_state_;
   mapping::SensorModel surroundings_model_;  // by which the map was read
   std::shared_ptr<const GraphKnowledge> knowledge_;
-  GraphVersions known_graph_;  // in knowledge_
+  GraphVersions known_graph_;                    // in knowledge_
+  std::optional<RecordedGraph> recorded_graph_;  // the same, where situations are recorded
   Explorer explorer_;
   PathLedger ledger_;
   DecisionWorker worker_;

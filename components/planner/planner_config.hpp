@@ -25,6 +25,8 @@ struct PlannerComponentConfig {
   int view_columns = 64, view_rows = 36;
   int decision_latency_frames = 3;
   std::string output_dir;
+  int record_situations_every = 0;
+  std::string replay;  ///< a situation file; from the command line
   robot::RobotDescription robot;
 };
 
@@ -220,6 +222,8 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("decision_latency_frames", c.decision_latency_frames, config::in_range(1, 100),
         "from the frame that a decision is made from to the one at which it takes effect");
   field("output_dir", c.output_dir, config::anything(), "folder for decisions.csv; empty: none");
+  field("record_situations_every", c.record_situations_every, config::in_range(0, 1'000'000),
+        "so many decisions what one is made from goes to situations/ in output_dir, for --replay; 0: never");
 }
 
 }  // namespace lapis::planner

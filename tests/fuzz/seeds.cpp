@@ -8,6 +8,7 @@
 #include "fuzz_files.hpp"
 #include "semantic_mapper/core/export.hpp"
 #include "unit/mapping/random_votes.hpp"
+#include "unit/planner/replay/sample_situation.hpp"
 #include "unit/simulator/loaders/sample_scenes.hpp"
 #include "unit/slam/sample_state.hpp"
 
@@ -151,6 +152,7 @@ Seeds seeds() {
   add_scene_files(seeds["scene"]);
   for (const unsigned keyframes : {1U, 3U})
     seeds["slam"].push_back(slam::encode_slam_file(slam::test::sample_file(keyframes, keyframes)));
+  seeds["situation"] = {planner::encode_situation(planner::test::sample_situation())};
   add_poses(seeds);
   add_maps(seeds);
   return seeds;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -30,6 +31,9 @@ struct LandmarkTile {
 
   bool operator==(const LandmarkTile&) const = default;
 };
+
+/// Why a tile from outside cannot be read, in one of a few sentences; empty when it can.
+std::string fault_of(const LandmarkTile& tile);
 
 /// What slam says about a version of its landmarks, after having published the tiles of that version.
 struct LandmarkState {

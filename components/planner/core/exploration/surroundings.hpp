@@ -50,6 +50,8 @@ class Surroundings {
   int known_cells(const Eigen::Vector2d& place_map, double radius_m) const;
   /// The robot is there [m, map]: it can pass.
   void mark_driven(const Eigen::Vector2d& robot_map) { grid_.mark_driven(robot_map); }
+  /// As grid().marks() of other surroundings with the same map.
+  void set_marks(const GridMarks& marks) { frontiers_.update(grid_, grid_.set_marks(marks)); }
   /// Places that the robot found it cannot pass, whatever the map says [m, map]; all others are as the map says.
   void set_blocked(std::span<const Eigen::Vector2d> places_map);
 

@@ -154,6 +154,17 @@ void PlanningGrid::mark_driven(const Eigen::Vector2d& robot_map) {
   }
 }
 
+GridMarks PlanningGrid::marks() const {
+  std::set<Cell> hindered = blocked_;
+  for (const auto& [cell, seen] : obstacles_) hindered.insert(cell);
+  return {driven_.cells_with(true), {hindered.begin(), hindered.end()}};
+}
+
+std::vector<Cell> PlanningGrid::set_marks(const GridMarks& marks) {
+  for (const Cell& cell : marks.driven) driven_.set(cell, true);
+  return set_blocked({marks.hindered.begin(), marks.hindered.end()});
+}
+
 bool PlanningGrid::has_passing_obstacles() const {
   return std::any_of(obstacles_.begin(), obstacles_.end(),
                      [&](const auto& entry) { return mapped_.at(entry.first) == mapping::kFree; });

@@ -41,6 +41,12 @@ struct ObstacleGrid {
 /// Grids that reach farther from the origin of the map frame are not believed [m].
 inline constexpr double kMaxReach_m = 1000.0;
 
+/// Cells about which a planning grid knows what its map does not.
+struct GridMarks {
+  std::vector<Cell> driven;    ///< the robot has stood there
+  std::vector<Cell> hindered;  ///< occupied whatever the map says: by obstacles, or because the robot cannot pass
+};
+
 /// Floor plan in which the robot plans: the projection of the map's voxels (column_projection.hpp) under a layer of
 /// obstacles that come and go. Free are only cells whose bottom has been seen: a camera looks over what is low and
 /// near. An obstacle makes its cell occupied until a grid says that it is free or until no grid has shown it for
@@ -68,6 +74,10 @@ class PlanningGrid {
   std::vector<Cell> set_blocked(std::set<Cell> cells);
   /// The robot is there [m, map]. A later correction of the map does not move such places.
   void mark_driven(const Eigen::Vector2d& robot_map);
+  /// Sorted. In a grid of the same map set_marks() makes every state and every passable cell the same again; obstacles
+  /// do not expire there.
+  GridMarks marks() const;
+  std::vector<Cell> set_marks(const GridMarks& marks);
   /// Forgets obstacles that were last seen more than `obstacle_expiry_s` before `now`.
   std::vector<Cell> expire_obstacles(time::Time now);
 

@@ -35,6 +35,21 @@ class SparseGrid {
     if (!(at(c) == value)) (*this)[c] = value;
   }
 
+  /// Sorted; not for the default.
+  std::vector<Cell> cells_with(const T& value) const {
+    std::vector<Cell> cells;
+    for (std::size_t i = 0; i < chunks_.size(); ++i) {
+      if (!chunks_[i]) continue;
+      const Cell chunk{low_.x + static_cast<std::int32_t>(i) % width_, low_.y + static_cast<std::int32_t>(i) / width_};
+      for (std::int32_t k = 0; k < kChunkEdge * kChunkEdge; ++k) {
+        const Cell cell{chunk.x * kChunkEdge + k % kChunkEdge, chunk.y * kChunkEdge + k / kChunkEdge};
+        if ((*chunks_[i])[offset(cell)] == value) cells.push_back(cell);
+      }
+    }
+    std::sort(cells.begin(), cells.end());
+    return cells;
+  }
+
   /// Memory [bytes].
   std::size_t bytes() const { return chunks_.size() * sizeof(chunks_[0]) + count_ * sizeof(Chunk); }
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "common/mapping/file/map_file.hpp"
-#include "evaluator/core/map_input.hpp"
+#include "evaluator/core/map/map_input.hpp"
 
 namespace lapis::evaluator {
 namespace {

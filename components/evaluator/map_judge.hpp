@@ -8,11 +8,11 @@
 
 #include "common/mapping/file/map_description.hpp"
 #include "common/mapping/wire/map_mirror.hpp"
-#include "evaluator/core/coverage.hpp"
-#include "evaluator/core/ground_truth.hpp"
-#include "evaluator/core/metrics.hpp"
-#include "evaluator/core/plain_fusion.hpp"
-#include "evaluator/core/timeline.hpp"
+#include "evaluator/core/map/coverage.hpp"
+#include "evaluator/core/map/ground_truth.hpp"
+#include "evaluator/core/map/plain_fusion.hpp"
+#include "evaluator/core/run/metrics.hpp"
+#include "evaluator/core/run/timeline.hpp"
 
 namespace lapis::evaluator {
 

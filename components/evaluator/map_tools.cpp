@@ -9,10 +9,10 @@
 
 #include "common/mapping/file/map_file.hpp"
 #include "common/report/report.hpp"
-#include "evaluator/core/coverage.hpp"
-#include "evaluator/core/iou.hpp"
-#include "evaluator/core/map_input.hpp"
-#include "evaluator/core/map_metrics.hpp"
+#include "evaluator/core/map/coverage.hpp"
+#include "evaluator/core/map/iou.hpp"
+#include "evaluator/core/map/map_input.hpp"
+#include "evaluator/core/map/map_metrics.hpp"
 
 namespace lapis::evaluator {
 namespace {

@@ -4,7 +4,7 @@
 #include <optional>
 #include <string>
 
-#include "evaluator/core/metrics.hpp"
+#include "evaluator/core/run/metrics.hpp"
 #include "idl/diagnostic_msgs.hpp"
 
 namespace lapis::evaluator {

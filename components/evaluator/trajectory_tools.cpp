@@ -10,8 +10,8 @@
 #include <string>
 
 #include "common/report/report.hpp"
-#include "evaluator/core/ate.hpp"
-#include "evaluator/core/rpe.hpp"
+#include "evaluator/core/trajectory/ate.hpp"
+#include "evaluator/core/trajectory/rpe.hpp"
 
 namespace lapis::evaluator {
 namespace {

@@ -7,9 +7,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "simulator/core/assets/load_scene.hpp"
 #include "simulator/core/assets/text_scan.hpp"
 #include "simulator/core/generator/generate_building.hpp"
+#include "simulator/core/loaders/load_scene.hpp"
 #include "simulator/core/robot/tour_revisits.hpp"
 #include "simulator/furniture.hpp"
 #include "simulator/scene_yaml.hpp"

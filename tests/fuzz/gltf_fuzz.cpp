@@ -1,4 +1,4 @@
-#include "simulator/core/assets/semantics_json.hpp"
+#include "simulator/core/loaders/semantics_json.hpp"
 
 #include "check_scene.hpp"
 #include "fuzz_files.hpp"

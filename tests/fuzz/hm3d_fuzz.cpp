@@ -1,4 +1,4 @@
-#include "simulator/core/assets/hm3d.hpp"
+#include "simulator/core/loaders/hm3d.hpp"
 
 #include "check_scene.hpp"
 #include "fuzz_files.hpp"

@@ -1,4 +1,4 @@
-#include "simulator/core/assets/matterport.hpp"
+#include "simulator/core/loaders/matterport.hpp"
 
 #include "check_scene.hpp"
 #include "fuzz_files.hpp"

@@ -4,13 +4,13 @@
 #include <stdexcept>
 
 #include "fuzz_files.hpp"
-#include "simulator/core/assets/csv_table.hpp"
-#include "simulator/core/assets/hm3d.hpp"
 #include "simulator/core/assets/java_properties.hpp"
-#include "simulator/core/assets/matterport.hpp"
 #include "simulator/core/assets/mtl.hpp"
-#include "simulator/core/assets/semantics_json.hpp"
-#include "simulator/core/assets/uri.hpp"
+#include "simulator/core/loaders/csv_table.hpp"
+#include "simulator/core/loaders/hm3d.hpp"
+#include "simulator/core/loaders/matterport.hpp"
+#include "simulator/core/loaders/semantics_json.hpp"
+#include "simulator/core/loaders/uri.hpp"
 
 namespace {
 

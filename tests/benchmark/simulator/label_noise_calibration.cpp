@@ -6,8 +6,8 @@
 #include <exception>
 #include <numbers>
 
-#include "evaluator/core/iou.hpp"
-#include "evaluator/core/map_input.hpp"
+#include "evaluator/core/map/iou.hpp"
+#include "evaluator/core/map/map_input.hpp"
 #include "simulator/core/simulation.hpp"
 #include "simulator/run_files.hpp"
 #include "simulator/set_up.hpp"

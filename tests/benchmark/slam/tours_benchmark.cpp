@@ -17,7 +17,7 @@
 
 #include "common/files/atomic_file.hpp"
 #include "common/trajectory/trajectory.hpp"
-#include "evaluator/core/ate.hpp"
+#include "evaluator/core/trajectory/ate.hpp"
 #include "simulator/set_up.hpp"
 #include "slam/core/files/pose_graph_file.hpp"
 #include "slam/core/rgbd_slam.hpp"

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "evaluator/core/ate.hpp"
+#include "evaluator/core/trajectory/ate.hpp"
 #include "slam/core/motion/covariance.hpp"
 
 namespace lapis::slam::benchmark {

@@ -1,4 +1,4 @@
-#include "evaluator/core/ground_truth.hpp"
+#include "evaluator/core/map/ground_truth.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

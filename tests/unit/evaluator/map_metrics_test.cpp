@@ -1,4 +1,4 @@
-#include "evaluator/core/map_metrics.hpp"
+#include "evaluator/core/map/map_metrics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,9 +7,9 @@
 #include <random>
 #include <stdexcept>
 
-#include "evaluator/core/coverage.hpp"
-#include "evaluator/core/iou.hpp"
-#include "evaluator/core/nearest_voxel.hpp"
+#include "evaluator/core/map/coverage.hpp"
+#include "evaluator/core/map/iou.hpp"
+#include "evaluator/core/map/nearest_voxel.hpp"
 #include "evaluator/core/statistics.hpp"
 
 namespace lapis::evaluator {

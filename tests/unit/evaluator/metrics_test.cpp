@@ -1,4 +1,4 @@
-#include "evaluator/core/metrics.hpp"
+#include "evaluator/core/run/metrics.hpp"
 
 #include <gmock/gmock.h>
 
@@ -6,8 +6,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "evaluator/core/decision_record.hpp"
-#include "evaluator/core/timeline.hpp"
+#include "evaluator/core/run/decision_record.hpp"
+#include "evaluator/core/run/timeline.hpp"
 
 namespace lapis::evaluator {
 namespace {

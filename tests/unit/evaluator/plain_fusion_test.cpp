@@ -1,4 +1,4 @@
-#include "evaluator/core/plain_fusion.hpp"
+#include "evaluator/core/map/plain_fusion.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,8 +7,8 @@
 #include <numbers>
 
 #include "common/trajectory/trajectory.hpp"
-#include "evaluator/core/ate.hpp"
-#include "evaluator/core/rpe.hpp"
+#include "evaluator/core/trajectory/ate.hpp"
+#include "evaluator/core/trajectory/rpe.hpp"
 #include "tests/support/test_data.hpp"
 
 namespace lapis::evaluator {

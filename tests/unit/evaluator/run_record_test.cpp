@@ -1,4 +1,4 @@
-#include "evaluator/core/run_record.hpp"
+#include "evaluator/core/run/run_record.hpp"
 
 #include <gtest/gtest.h>
 

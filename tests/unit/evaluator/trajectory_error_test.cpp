@@ -5,10 +5,10 @@
 #include <random>
 #include <set>
 
-#include "evaluator/core/association.hpp"
-#include "evaluator/core/ate.hpp"
-#include "evaluator/core/rpe.hpp"
 #include "evaluator/core/statistics.hpp"
+#include "evaluator/core/trajectory/association.hpp"
+#include "evaluator/core/trajectory/ate.hpp"
+#include "evaluator/core/trajectory/rpe.hpp"
 
 namespace lapis::evaluator {
 namespace {

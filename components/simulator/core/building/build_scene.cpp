@@ -7,11 +7,11 @@
 
 #include "simulator/core/building/floor_plan.hpp"
 #include "simulator/core/building/lamps.hpp"
-#include "simulator/core/building/parametric_furniture.hpp"
 #include "simulator/core/building/placement.hpp"
-#include "simulator/core/building/shapes.hpp"
 #include "simulator/core/building/structure.hpp"
-#include "simulator/core/building/textures.hpp"
+#include "simulator/core/furniture/parametric_furniture.hpp"
+#include "simulator/core/looks/shapes.hpp"
+#include "simulator/core/looks/textures.hpp"
 #include "simulator/core/noise/random.hpp"
 
 namespace lapis::simulator {

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "simulator/core/building/shapes.hpp"
 #include "simulator/core/building/structure.hpp"
+#include "simulator/core/looks/shapes.hpp"
 #include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {

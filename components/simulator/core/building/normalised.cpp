@@ -4,7 +4,7 @@
 #include <sstream>
 
 #include "simulator/core/building/floor_plan.hpp"
-#include "simulator/core/building/textures.hpp"
+#include "simulator/core/looks/textures.hpp"
 #include "simulator/core/scene/polygon.hpp"
 
 namespace lapis::simulator {

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "simulator/core/building/floor_plan.hpp"
-#include "simulator/core/building/shapes.hpp"
-#include "simulator/core/building/textures.hpp"
+#include "simulator/core/looks/shapes.hpp"
+#include "simulator/core/looks/textures.hpp"
 #include "simulator/core/scene/scene.hpp"
 
 namespace lapis::simulator {

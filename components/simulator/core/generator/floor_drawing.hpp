@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "simulator/core/building/dice.hpp"
 #include "simulator/core/generator/building_plan.hpp"
+#include "simulator/core/looks/dice.hpp"
 
 namespace lapis::simulator {
 

@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
-#include "simulator/core/building/dice.hpp"
 #include "simulator/core/generator/articles.hpp"
 #include "simulator/core/generator/room_space.hpp"
+#include "simulator/core/looks/dice.hpp"
 
 namespace lapis::simulator {
 

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-#include "simulator/core/building/parametric_furniture.hpp"
+#include "simulator/core/furniture/parametric_furniture.hpp"
 #include "simulator/core/scene/polygon.hpp"
 #include "small_building.hpp"
 

@@ -1,4 +1,4 @@
-#include "simulator/core/building/canvas.hpp"
+#include "simulator/core/looks/canvas.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/core/building/parametric_furniture.hpp"
+#include "simulator/core/furniture/parametric_furniture.hpp"
 
 #include <gtest/gtest.h>
 

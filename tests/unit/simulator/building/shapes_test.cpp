@@ -1,4 +1,4 @@
-#include "simulator/core/building/shapes.hpp"
+#include "simulator/core/looks/shapes.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/core/building/textures.hpp"
+#include "simulator/core/looks/textures.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/core/assets/csv_table.hpp"
+#include "simulator/core/loaders/csv_table.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/core/assets/gltf.hpp"
+#include "simulator/core/loaders/gltf.hpp"
 
 #include <gmock/gmock.h>
 

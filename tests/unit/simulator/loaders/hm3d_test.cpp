@@ -1,4 +1,4 @@
-#include "simulator/core/assets/hm3d.hpp"
+#include "simulator/core/loaders/hm3d.hpp"
 
 #include <gmock/gmock.h>
 

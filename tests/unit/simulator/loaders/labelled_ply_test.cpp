@@ -1,4 +1,4 @@
-#include "simulator/core/assets/labelled_ply.hpp"
+#include "simulator/core/loaders/labelled_ply.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/core/assets/load_scene.hpp"
+#include "simulator/core/loaders/load_scene.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/core/assets/ply.hpp"
+#include "simulator/core/loaders/ply.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/core/assets/replica.hpp"
+#include "simulator/core/loaders/replica.hpp"
 
 #include <gmock/gmock.h>
 

@@ -1,4 +1,4 @@
-#include "simulator/core/assets/semantics_json.hpp"
+#include "simulator/core/loaders/semantics_json.hpp"
 
 #include <gmock/gmock.h>
 

@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "simulator/core/assets/load_scene.hpp"
-#include "simulator/core/assets/ply.hpp"
+#include "simulator/core/loaders/load_scene.hpp"
+#include "simulator/core/loaders/ply.hpp"
 #include "tests/support/test_data.hpp"
 #include "unit/simulator/loaders/sample_scenes.hpp"
 

@@ -1,4 +1,4 @@
-#include "simulator/core/assets/uri.hpp"
+#include "simulator/core/loaders/uri.hpp"
 
 #include <gtest/gtest.h>
 

@@ -6,7 +6,7 @@
 
 #include "sensor_replay/camera_yaml.hpp"
 #include "sensor_replay/core/tum_dataset.hpp"
-#include "simulator/core/assets/load_scene.hpp"
+#include "simulator/core/loaders/load_scene.hpp"
 #include "simulator/core/render/renderer.hpp"
 #include "tests/support/test_data.hpp"
 

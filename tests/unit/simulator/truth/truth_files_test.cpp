@@ -10,8 +10,8 @@
 
 #include "box_world.hpp"
 #include "common/mapping/file/map_file.hpp"
-#include "evaluator/core/ground_truth.hpp"
-#include "evaluator/core/map_input.hpp"
+#include "evaluator/core/map/ground_truth.hpp"
+#include "evaluator/core/map/map_input.hpp"
 
 namespace lapis::simulator {
 namespace {

@@ -9,9 +9,9 @@
 #include <map>
 
 #include "box_world.hpp"
-#include "evaluator/core/coverage.hpp"
-#include "evaluator/core/iou.hpp"
-#include "evaluator/core/map_input.hpp"
+#include "evaluator/core/map/coverage.hpp"
+#include "evaluator/core/map/iou.hpp"
+#include "evaluator/core/map/map_input.hpp"
 #include "simulator/core/render/renderer.hpp"
 #include "simulator/core/truth/explorable.hpp"
 #include "simulator/core/truth/ideal_map.hpp"

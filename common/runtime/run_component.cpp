@@ -162,6 +162,20 @@ int set_up_and_spin(const ComponentFactory& factory, const ContextOptions& optio
   return spin(factory, *context, finish);
 }
 
+/// What the command line asks for instead of a component: exit status.
+std::optional<int> answer(const ComponentFactory& factory, const Arguments& arguments) {
+  if (arguments.print_config) {
+    std::cout << config::to_yaml(factory.schema);
+    return kAskedToStop;
+  }
+  if (arguments.print_config_table) {
+    std::cout << config::to_markdown(factory.schema);
+    return kAskedToStop;
+  }
+  if (arguments.check_config) return kAskedToStop;
+  return factory.run_tool ? factory.run_tool() : std::nullopt;
+}
+
 }  // namespace
 
 int run(ComponentFactory factory, int argc, char** argv) {
@@ -186,23 +200,7 @@ int run(ComponentFactory factory, int argc, char** argv) {
     config::check(factory.schema);
     if (factory.rules) config::check(factory.schema, factory.rules());
     options = context_options(factory.name, arguments, dds);
-  } catch (const std::exception& error) {
-    std::cerr << "lapis_" << factory.name << ": " << error.what() << '\n';
-    return kBadSetup;
-  }
-  if (arguments.print_config) {
-    std::cout << config::to_yaml(factory.schema);
-    return kAskedToStop;
-  }
-  if (arguments.print_config_table) {
-    std::cout << config::to_markdown(factory.schema);
-    return kAskedToStop;
-  }
-  if (arguments.check_config) return kAskedToStop;
-  try {
-    if (factory.run_tool) {
-      if (const auto status = factory.run_tool()) return *status;
-    }
+    if (const auto status = answer(factory, arguments)) return *status;
   } catch (const std::exception& error) {
     std::cerr << "lapis_" << factory.name << ": " << error.what() << '\n';
     return kBadSetup;

@@ -132,17 +132,9 @@ void describe(Field& field, GoalMemoryConfig& c) {
   field("max_failures", c.max_failures, config::in_range(1, 100), "after so many it is left alone for good");
 }
 
+/// What candidates there are, and what they are judged by.
 template <class Field>
-void describe(Field& field, PlannerComponentConfig& c) {
-  field("method", c.method, config::one_of(all_methods(), "see Method in components/planner/README.md"),
-        "what decides between paths");
-  field("measure", c.measure, config::one_of({"semantic", "shannon", "csqmi"}),
-        "information of the map: about space and classes, or about space alone (README)");
-  field("autostart", c.autostart, config::anything(), "explore at once; false: wait for /planner/start");
-  field("beta", c.methods.joint.beta, config::in_range(0.0, 100.0),
-        "method joint: what a nat about the trajectory counts against one about the map");
-  field("sigma_limit_voxels", c.decision.sigma_limit_voxels, config::in_range(0.01, 10.0),
-        "loops count until the position at a path's end is so exact [voxels]");
+void describe_decisions(Field& field, PlannerComponentConfig& c) {
   field("max_candidates", c.decision.max_candidates, config::in_range(1, 1000),
         "that are judged; the ones with the shortest paths");
   field("view_spacing_m", c.decision.view_spacing_m, config::in_range(0.1, 10.0), "between views along a path [m]");
@@ -174,14 +166,11 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "when nothing else is left, frontiers so long are looked at from nearby, whatever seems to hide them [m]");
   field("keep_factor", c.decision.keep_factor, config::in_range(1.0, 10.0),
         "another goal must be so much better than the one being driven to");
-  field("grid", c.surroundings.grid);
-  field("frontiers", c.surroundings.frontiers);
-  field("path", c.decision.path);
-  field("viewpoints", c.decision.viewpoints);
-  field("gaps", c.decision.gaps);
-  field("tare", c.methods.tare);
-  field("hallucination", c.decision.hallucination);
-  field("memory", c.explorer.memory);
+}
+
+/// Of the mission around decisions.
+template <class Field>
+void describe_mission(Field& field, PlannerComponentConfig& c) {
   field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.0, 60.0),
         "between decisions while a goal is being driven to, at least 0.5; 0: none, as in the paper [s]");
   field("goal_tolerance_m", c.explorer.goal_tolerance_m, config::in_range(0.05, 2.0), "at a goal [m]");
@@ -210,6 +199,29 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("max_left_share", c.explorer.max_left_share, config::in_range(0.0, 1.0),
         "of the frontiers left, what was tried in vain though the robot would fit through: with more it has given up");
   field("returns_home", c.explorer.returns_home, config::anything(), "drives to where it started when nothing is left");
+}
+
+template <class Field>
+void describe(Field& field, PlannerComponentConfig& c) {
+  field("method", c.method, config::one_of(all_methods(), "see Method in components/planner/README.md"),
+        "what decides between paths");
+  field("measure", c.measure, config::one_of({"semantic", "shannon", "csqmi"}),
+        "information of the map: about space and classes, or about space alone (README)");
+  field("autostart", c.autostart, config::anything(), "explore at once; false: wait for /planner/start");
+  field("beta", c.methods.joint.beta, config::in_range(0.0, 100.0),
+        "method joint: what a nat about the trajectory counts against one about the map");
+  field("sigma_limit_voxels", c.decision.sigma_limit_voxels, config::in_range(0.01, 10.0),
+        "loops count until the position at a path's end is so exact [voxels]");
+  describe_decisions(field, c);
+  field("grid", c.surroundings.grid);
+  field("frontiers", c.surroundings.frontiers);
+  field("path", c.decision.path);
+  field("viewpoints", c.decision.viewpoints);
+  field("gaps", c.decision.gaps);
+  field("tare", c.methods.tare);
+  field("hallucination", c.decision.hallucination);
+  field("memory", c.explorer.memory);
+  describe_mission(field, c);
   field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain",
               "the planner reads it on /semantic_mapper/map_description");
   field.moved("sensor_model", "semantic_mapper.sensor_model",

@@ -25,7 +25,6 @@ constexpr const char* kMapFile = "map.lapis";
 constexpr const char* kOctreeFile = "map.ot";
 constexpr const char* kPointsFile = "map.ply";
 constexpr double kFarewell_s = 1.0;
-constexpr double kLongestLoading_s = 300.0;
 constexpr double kLongestSave_s = 300.0;
 constexpr double kLongestFlush_s = 600.0;
 constexpr std::size_t kWaitingFrames = 30;  // images wait here for slam's pose: one second at 30 Hz
@@ -73,20 +72,21 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       confidence_(context, topics::kLabelConfidence, "label confidence", kWaitingFrames),
-      info_(context, topics::kColorInfo, "camera info", kWaitingFrames) {
+      info_(context, topics::kColorInfo, "camera info", kWaitingFrames), disk_({SemanticMapperComponent::kName,
+                                                                                config.output_dir,
+                                                                                config.resume_from,
+                                                                                {kMapFile, kOctreeFile, kPointsFile},
+                                                                                config.save_period_s},
+                                                                               context) {
   config_.map.integration.max_range_m = config_.robot.sensing_range_m;
   config_.map.band = {config_.robot.obstacle_min_height_m, config_.robot.obstacle_max_height_m};
   if (config_.sensor_model.fusion == "bki") {
     config_.map.integration.kernel_length_voxels = config_.kernel_length_voxels;
   }
-  if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "semantic_mapper.output_dir");
   if (config_.map.re_anchor) {
     files::require_writable_folder(config_.map.stored_frames.spill_dir, "semantic_mapper.stored_frames.spill_dir");
   }
-  if (!config_.resume_from.empty()) {
-    const runtime::LongWork work(context.heart(), "loads the map", kLongestLoading_s);
-    load_map();
-  }
+  load_map();
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
@@ -95,21 +95,18 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   describe_map();
 }
 
-/// Reads the map to resume; throws with file and remedy.
+/// The one to resume, if there is one; throws with file and remedy.
 void SemanticMapperComponent::load_map() {
-  std::string error;
-  resumed_ = mapping::load_map(config_.resume_from, error);
-  if (!resumed_) throw std::runtime_error("semantic_mapper.resume_from: " + error);
+  resumed_ = disk_.resume(mapping::load_map);
+  if (!resumed_) return;
   const double resolution_m = resumed_->map.resolution_m();
   if (resolution_m != config_.map.resolution_m) {
-    throw std::runtime_error("semantic_mapper.resume_from: " + config_.resume_from +
-                             ": semantic_mapper.resolution_m was " + std::to_string(resolution_m) +
-                             " when it was made: set it so again");
+    throw std::runtime_error(disk_.misfit("semantic_mapper.resolution_m was " + std::to_string(resolution_m) +
+                                          " when it was made: set it so again"));
   }
   if ((resumed_->sensor_model.fusion == "bki") != (config_.sensor_model.fusion == "bki")) {
-    throw std::runtime_error("semantic_mapper.resume_from: " + config_.resume_from +
-                             ": semantic_mapper.sensor_model.fusion was " + resumed_->sensor_model.fusion +
-                             " when it was made: votes of a kernel and whole ones do not mix");
+    throw std::runtime_error(disk_.misfit("semantic_mapper.sensor_model.fusion was " + resumed_->sensor_model.fusion +
+                                          " when it was made: votes of a kernel and whole ones do not mix"));
   }
   resumed_labels_ = label_list_ = resumed_->labels;
   config_.frame.max_label = label_list_.largest_accepted_id();
@@ -281,7 +278,7 @@ void SemanticMapperComponent::end_map() {
   if (mapper_ == nullptr) return;
   spdlog::warn("slam began a new map; so does the mapper");
   log_drift();
-  if (!config_.output_dir.empty()) {
+  if (disk_.is_kept()) {
     if (const auto problem = save()) spdlog::error("map not saved: {}; mapping continues", *problem);
   }
   mapper_.reset();
@@ -303,21 +300,10 @@ std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t 
   return std::make_unique<SemanticMapper>(config_.map, std::move(resumed_->map));
 }
 
-/// Files of the map before stay under another name; but for those of the map that is resumed: the new ones hold
-/// all of it.
-void SemanticMapperComponent::set_old_files_aside() const {
-  const std::filesystem::path folder(config_.output_dir);
-  std::error_code error;
-  if (resumed_ && std::filesystem::equivalent(folder / kMapFile, config_.resume_from, error)) return;
-  for (const char* name : {kMapFile, kOctreeFile, kPointsFile}) {
-    if (const auto problem = files::set_aside(folder / name)) spdlog::error(*problem);
-  }
-}
-
 void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time stamp) {
   end_map();
   mapper_ = begin_map(session);
-  if (!config_.output_dir.empty()) set_old_files_aside();
+  disk_.begin(stamp, resumed_.has_value());
   resumed_.reset();
   floor_plan_.emplace(config_.map.band);
   obstacle_layer_.emplace(config_.obstacles, config_.map.band, config_.map.resolution_m);
@@ -328,7 +314,6 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
   obstacles_stamp_.reset();
   provisional_stamp_.reset();
   provisional_changes_.reset();
-  saved_stamp_ = stamp;
 }
 
 /// All tiles published so far are over.
@@ -354,8 +339,8 @@ void SemanticMapperComponent::publish(bool is_final) {
   if (is_final || seconds_since(provisional_stamp_, published_stamp_) >= config_.view_period_s)
     publish_provisional_area();
   publish_views(is_final || seconds_since(views_stamp_, stamp_) >= config_.view_period_s);
-  if (config_.output_dir.empty() || seconds_since(saved_stamp_, stamp_) < config_.save_period_s) return;
-  saved_stamp_ = stamp_;
+  if (!disk_.is_due(stamp_)) return;
+  disk_.note_save(stamp_);
   if (const auto problem = save()) spdlog::error("map not saved: {}; mapping continues", *problem);
 }
 
@@ -438,7 +423,7 @@ void SemanticMapperComponent::publish_views(bool is_due) {
 std_srvs::srv::Trigger_Response SemanticMapperComponent::save_on_request() {
   std_srvs::srv::Trigger_Response response;
   response.success(false);
-  if (config_.output_dir.empty()) {
+  if (!disk_.is_kept()) {
     response.message("semantic_mapper.output_dir is not set");
   } else if (mapper_ == nullptr) {
     response.message("there is no map yet");
@@ -469,7 +454,6 @@ std::optional<std::string> SemanticMapperComponent::save() {
 std::optional<std::string> SemanticMapperComponent::write_files() {
   const runtime::LongWork work(context_.heart(), "saves the map", kLongestSave_s);
   const auto reader = belief_reader();
-  const std::filesystem::path folder(config_.output_dir);
   const mapping::MapFile file{mapper_->map(),
                               reader.model(),
                               label_list_,
@@ -477,11 +461,11 @@ std::optional<std::string> SemanticMapperComponent::write_files() {
                                {"graph_version", std::to_string(mapper_->graph_version())},
                                {"session", std::to_string(session_)}},
                               is_mixed_ ? std::nullopt : std::optional(frame_settings())};
-  if (auto problem = mapping::save_map((folder / kMapFile).string(), file)) return problem;
+  if (auto problem = mapping::save_map(disk_.path(kMapFile), file)) return problem;
   const auto tree = encode_octree(file.map, reader, label_list_);
-  if (auto problem = files::replace_file((folder / kOctreeFile).string(), tree.file)) return problem;
+  if (auto problem = files::replace_file(disk_.path(kOctreeFile), tree.file)) return problem;
   const auto ply = encode_ply(occupied_points(file.map, reader, label_list_));
-  return files::replace_file((folder / kPointsFile).string(), ply);
+  return files::replace_file(disk_.path(kPointsFile), ply);
 }
 
 void SemanticMapperComponent::finish() {
@@ -496,7 +480,7 @@ void SemanticMapperComponent::finish() {
   for (dds::Writer* writer : std::initializer_list<dds::Writer*>{&map_description_, &tiles_, &map_state_}) {
     writer->wait_until_acknowledged(kFarewell_s);
   }
-  if (config_.output_dir.empty()) return;
+  if (!disk_.is_kept()) return;
   if (const auto problem = save()) throw std::runtime_error(*problem);
 }
 

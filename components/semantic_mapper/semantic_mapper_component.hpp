@@ -6,7 +6,7 @@
 #include <string>
 
 #include "common/mapping/file/map_file.hpp"
-#include "common/runtime/context.hpp"
+#include "common/runtime/saved_map.hpp"
 #include "common/runtime/stamped_input.hpp"
 #include "idl/std_srvs.hpp"
 #include "semantic_mapper/conversions.hpp"
@@ -52,7 +52,6 @@ class SemanticMapperComponent {
   void end_map();
   void forget_resumed();
   std::unique_ptr<SemanticMapper> begin_map(std::int64_t session);
-  void set_old_files_aside() const;
   void publish(bool is_final);
   void publish_tiles();
   void publish_obstacles();
@@ -87,6 +86,7 @@ class SemanticMapperComponent {
   mapping::LabelList label_list_;
   std::optional<mapping::MapDescription> described_;  // published last
 
+  runtime::SavedMap disk_;
   std::optional<mapping::MapFile> resumed_;  // until the first map begins with it
   mapping::LabelList resumed_labels_;
   std::uint64_t resumed_frames_ = 0;
@@ -103,9 +103,8 @@ class SemanticMapperComponent {
   std::optional<time::Time> views_stamp_;
   std::optional<time::Time> obstacles_stamp_;
   std::optional<time::Time> provisional_stamp_;
-  OccupancyGrid provisional_area_;                    // published last
-  std::optional<std::uint64_t> provisional_changes_;  // of the map's, when it was looked at last
-  std::optional<time::Time> saved_stamp_;
+  OccupancyGrid provisional_area_;                       // published last
+  std::optional<std::uint64_t> provisional_changes_;     // of the map's, when it was looked at last
   std::set<std::tuple<int, int, int>> published_tiles_;  // of this epoch
   std::map<const dds::Writer*, std::uint64_t> seen_matches_;
   std::uint64_t frames_integrated_ = 0;

@@ -19,7 +19,6 @@ namespace {
 
 constexpr std::size_t kEarlyReadings = 1000;
 constexpr double kFarewell_s = 1.0;
-constexpr double kLongestLoading_s = 300.0;
 constexpr double kLongestSave_s = 600.0;
 constexpr const char* kGraphFile = "pose_graph.g2o";
 constexpr const char* kKeyframesFile = "keyframes.txt";
@@ -42,28 +41,29 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
       odometry_(context.advertise(topics::kSlamOdometry)), tracked_frame_(context.advertise(topics::kTrackedFrame)),
       transforms_(context.advertise(topics::kTransforms)), path_(context.advertise(topics::kKeyframePath)),
       pose_graph_(context.advertise(topics::kPoseGraph)), status_(context.advertise(topics::kSlamStatus)),
-      landmarks_(context, config.landmark_period_s), input_(config.input, context) {
+      landmarks_(context, config.landmark_period_s), input_(config.input, context),
+      disk_({SlamComponent::kName,
+             config.output_dir,
+             config.resume_from,
+             {kMapFile, kGraphFile, kKeyframesFile},
+             config.autosave_period_s},
+            context) {
   cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
-  if (!config_.output_dir.empty()) files::require_writable_folder(config_.output_dir, "slam.output_dir");
-  if (!config_.resume_from.empty()) {
-    const runtime::LongWork work(context.heart(), "loads the map", kLongestLoading_s);
-    load_map();
-  }
+  load_map();
   input_.on_restart([this] { end_map(); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { add_mount(m); });
   context.subscribe(topics::kWheelOdometry, [this](const auto& m) { add_odometry(m); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
 
-/// Reads the map to resume; throws with file and remedy.
+/// The one to resume, if there is one; throws with file and remedy.
 void SlamComponent::load_map() {
-  std::string error;
-  resumed_ = read_slam_file(config_.resume_from, error);
-  if (!resumed_) throw std::runtime_error("slam.resume_from: " + error);
+  resumed_ = disk_.resume(read_slam_file);
+  if (!resumed_) return;
   const double scale = resumed_->state.scale_factor;
   if (scale != config_.method.features.scale_factor) {
-    throw std::runtime_error("slam.resume_from: " + config_.resume_from + ": slam.features.scale_factor was " +
-                             std::to_string(scale) + " when it was made: set it so again");
+    throw std::runtime_error(
+        disk_.misfit("slam.features.scale_factor was " + std::to_string(scale) + " when it was made: set it so again"));
   }
   session_ = resumed_->session;
   spdlog::info("{}: {} key-frames, {} landmarks", config_.resume_from, resumed_->state.keyframes.size(),
@@ -110,8 +110,8 @@ bool SlamComponent::prepare(const JoinedFrame& first) {
   }
   frame_.T_base_camera = *T_base_camera;
   session_ = std::max(first.stamp.nanoseconds, session_ + 1);
+  disk_.begin(first.stamp, resumed_.has_value());
   frame_.session = session_;
-  if (!config_.output_dir.empty()) set_old_files_aside();
   slam_ = begin_map();
   for (const auto& [stamp, T_odom_base] : early_odometry_) slam_->add_odometry(stamp, T_odom_base);
   early_odometry_.clear();
@@ -120,17 +120,6 @@ bool SlamComponent::prepare(const JoinedFrame& first) {
   return true;
 }
 
-/// Files of the map before stay under another name; but for the file that is resumed: the new one holds all of it.
-void SlamComponent::set_old_files_aside() {
-  for (const char* name : {kGraphFile, kKeyframesFile, kMapFile}) {
-    const auto file = std::filesystem::path(config_.output_dir) / name;
-    std::error_code error;
-    if (resumed_ && std::filesystem::equivalent(file, config_.resume_from, error)) continue;
-    if (const auto problem = files::set_aside(file)) spdlog::error(*problem);
-  }
-}
-
-/// The first map of the process resumes the saved one, if there is one.
 std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
   if (!resumed_) return std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, frame_.T_base_camera);
   saved_camera_ = resumed_->state.keyframes.back().camera;
@@ -144,9 +133,8 @@ void SlamComponent::track(const JoinedFrame& joined) {
   const auto frame = input_.convert(joined);
   if (!frame) return drop(joined.stamp, frame.reason);
   if (saved_camera_ && !is_same_camera(*saved_camera_, frame->camera)) {
-    throw runtime::BadSetup("slam.resume_from: " + config_.resume_from + ": was made with another camera, of " +
-                            std::to_string(saved_camera_->width) + " x " + std::to_string(saved_camera_->height) +
-                            " px");
+    throw runtime::BadSetup(disk_.misfit("was made with another camera, of " + std::to_string(saved_camera_->width) +
+                                         " x " + std::to_string(saved_camera_->height) + " px"));
   }
   saved_camera_.reset();
   ++frames_total_;
@@ -209,7 +197,6 @@ void SlamComponent::end_map() {
   slam_->settle();
   if (const auto problem = write_files()) spdlog::error("{}; tracking continues", *problem);
   slam_.reset();
-  save_stamp_.reset();
   saved_version_ = 0;
   last_pose_.reset();
   graph_stamp_.reset();
@@ -323,13 +310,10 @@ void SlamComponent::report_waiting() {
 /// again after the next period, and the old file stays as it was.
 void SlamComponent::autosave() {
   if (const auto save = saver_.take_finished()) note_save(save->problem);
-  if (config_.output_dir.empty() || config_.autosave_period_s == 0.0) return;
-  if (!save_stamp_) save_stamp_ = frame_.stamp;
-  const bool is_due = (frame_.stamp - *save_stamp_).seconds() >= config_.autosave_period_s;
-  if (!is_due || saver_.is_busy() || slam_->graph_version() == saved_version_) return;
-  save_stamp_ = frame_.stamp;
+  if (!disk_.is_due(frame_.stamp) || saver_.is_busy() || slam_->graph_version() == saved_version_) return;
+  disk_.note_save(frame_.stamp);
   saved_version_ = slam_->graph_version();
-  saver_.begin(std::filesystem::path(config_.output_dir) / kMapFile, saved_map());
+  saver_.begin(disk_.path(kMapFile), saved_map());
 }
 
 void SlamComponent::note_save(const std::optional<std::string>& problem) {
@@ -358,10 +342,10 @@ void SlamComponent::finish() {
 /// All files of the map; the first problem, if any.
 std::optional<std::string> SlamComponent::write_files() {
   if (const auto save = saver_.wait()) note_save(save->problem);
-  if (config_.output_dir.empty() || slam_ == nullptr) return std::nullopt;
+  if (!disk_.is_kept() || slam_ == nullptr) return std::nullopt;
   std::optional<std::string> problem;
   if (slam_->keyframe_count() > 0) {
-    problem = write_slam_file((std::filesystem::path(config_.output_dir) / kMapFile).string(), saved_map());
+    problem = write_slam_file(disk_.path(kMapFile), saved_map());
   }
   try {
     write_graph();
@@ -375,11 +359,11 @@ void SlamComponent::write_graph() const {
   const auto graph = slam_->pose_graph();
   std::ostringstream g2o;
   write_g2o(g2o, graph);
-  const std::filesystem::path folder(config_.output_dir);
-  files::replace_text(folder / kGraphFile, g2o.str());
+  files::replace_text(disk_.path(kGraphFile), g2o.str());
   trajectory::Trajectory keyframes;
   for (const auto& node : graph.nodes) keyframes.push_back({node.stamp, node.T_map_camera});
-  trajectory::write_trajectory(folder / kKeyframesFile, keyframes, "key-frames: camera optical frame in " + ids_.map);
+  trajectory::write_trajectory(disk_.path(kKeyframesFile), keyframes,
+                               "key-frames: camera optical frame in " + ids_.map);
 }
 
 }  // namespace lapis::slam

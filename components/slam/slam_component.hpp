@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "common/messages/geometry.hpp"
-#include "common/runtime/context.hpp"
+#include "common/runtime/saved_map.hpp"
 #include "slam/conversions.hpp"
 #include "slam/core/files/slam_file.hpp"
 #include "slam/core/rgbd_slam.hpp"
@@ -32,7 +32,6 @@ class SlamComponent {
   bool next_frame(const runtime::Cycle& cycle);
   void load_map();
   bool prepare(const JoinedFrame& first);
-  void set_old_files_aside();
   std::unique_ptr<RgbdSlam> begin_map();
   void track(const JoinedFrame& joined);
   void add_mount(const tf2_msgs::msg::TFMessage& message);
@@ -80,10 +79,10 @@ class SlamComponent {
   std::optional<std::pair<time::Time, std::pair<TrackingState, PoseSource>>> reported_;
   std::string waits_for_;                 // before the first frame: what is missing
   std::optional<time::Time> waiting_at_;  // when that was published last
+  runtime::SavedMap disk_;
   MapSaver saver_;
-  std::optional<time::Time> save_stamp_;  // from which the period counts
-  std::uint64_t saved_version_ = 0;       // of the graph, handed to the saver last
-  std::string save_problem_;              // of the newest save, if any
+  std::uint64_t saved_version_ = 0;  // of the graph, handed to the saver last
+  std::string save_problem_;         // of the newest save, if any
   std::uint64_t frames_total_ = 0;
   std::uint64_t frames_tracked_ = 0;
   std::uint64_t frames_dropped_ = 0;

@@ -18,7 +18,7 @@ std::string qos_text(const lapis::dds::Qos& qos) {
 int main() {
   std::cout
       << "# Topics\n\n"
-         "Printed by `lapis_topics` from `common/topics.hpp`; a test compares. Everything is RELIABLE and KEEP_LAST;\n"
+         "Printed by `lapis_topics` from `common/topics/`; a test compares. Everything is RELIABLE and KEEP_LAST;\n"
          "*latched* is TRANSIENT_LOCAL, the rest VOLATILE; the number is the depth. Names with a leading slash are ROS "
          "2\n"
          "names (`rt/...` on the wire); keyed topics are plain DDS, which ROS 2 tools do not see. `--namespace robot1` "

@@ -37,7 +37,7 @@ struct ExpectedLoop {
 struct PathValue {
   static constexpr double kLeastCost_m = 0.25;
 
-  double cost_m = 0.0;
+  double cost_m = 0.0;  ///< length and turning; nearness shapes the path only (set_path in candidate_paths.cpp)
   double path_information = 0.0;      ///< of its views, each cell once
   double goal_information = 0.0;      ///< of the last view, every ray for itself
   double loop_gain = 0.0;             ///< expected change of the log-determinant by loops, saturated

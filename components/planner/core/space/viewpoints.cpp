@@ -10,10 +10,10 @@
 namespace lapis::planner {
 namespace {
 
-struct Candidate {
+struct RingCell {
   std::uint64_t rank;  ///< by which they are taken
   Cell cell;
-  auto operator<=>(const Candidate&) const = default;
+  auto operator<=>(const RingCell&) const = default;
 };
 
 std::uint64_t draw(std::uint64_t seed, Cell c) {
@@ -28,9 +28,9 @@ std::size_t sector_of(Cell c, Cell middle, std::size_t count) {
 }
 
 /// Cells of the ring that can be reached, in the order in which they are taken; `lack` says what the best ones lack.
-std::vector<Candidate> reachable_ring(const PlanningGrid& grid, const CostTree& paths, Cell target,
-                                      const ViewpointConfig& config, Rejection& lack) {
-  std::vector<Candidate> ring;
+std::vector<RingCell> reachable_ring(const PlanningGrid& grid, const CostTree& paths, Cell target,
+                                     const ViewpointConfig& config, Rejection& lack) {
+  std::vector<RingCell> ring;
   const double low = config.min_distance_m / grid.resolution_m(), high = config.max_distance_m / grid.resolution_m();
   const int reach = static_cast<int>(high);
   for (Cell step{0, -reach}; step.y <= reach; ++step.y) {
@@ -49,10 +49,10 @@ std::vector<Candidate> reachable_ring(const PlanningGrid& grid, const CostTree& 
 }
 
 std::vector<Viewpoint> one_per_sector(const PlanningGrid& grid, const CostTree& paths, Cell target,
-                                      const std::vector<Candidate>& ring, int sectors, Sight sight) {
+                                      const std::vector<RingCell>& ring, int sectors, Sight sight) {
   std::vector<bool> is_filled(static_cast<std::size_t>(sectors), false);
   std::vector<Viewpoint> viewpoints;
-  for (const Candidate& candidate : ring) {
+  for (const RingCell& candidate : ring) {
     const Cell c = candidate.cell;
     const std::size_t sector = sector_of(c, target, is_filled.size());
     if (is_filled[sector] || (sight == Sight::kNeeded && !is_in_sight(grid, c, target))) continue;
@@ -96,7 +96,7 @@ ViewpointResult sample_viewpoints(const PlanningGrid& grid, const CostTree& path
                                   const ViewpointConfig& config, Sight sight) {
   ViewpointResult result;
   for (const Cell& target : frontier.representatives) {
-    const std::vector<Candidate> ring = reachable_ring(grid, paths, target, config, result.rejection);
+    const std::vector<RingCell> ring = reachable_ring(grid, paths, target, config, result.rejection);
     if (ring.empty()) continue;
     result.rejection = Rejection::kHidden;
     result.viewpoints = one_per_sector(grid, paths, target, ring, config.max_per_frontier, sight);

@@ -7,7 +7,7 @@ source "$(dirname "$0")/lib.sh"
 usage() {
   cat <<'TEXT'
 usage: explore.sh [--scene NAME|DIR] [--method METHOD] [--duration S] [--seed N] [--out DIR] [--robot FILE]...
-                  [--world FILE]... [--freerun] [--restart] [--set KEY=VALUE]...
+                  [--world FILE]... [--no-preset] [--freerun] [--restart] [--set KEY=VALUE]...
 
 Lets the robot explore a simulated building until nothing reachable is left or the time is up, and leaves a run folder
 with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figures.
@@ -15,8 +15,9 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
   --scene NAME     bundled scene, generated building (office_7: docs/buildings.md), scene file, or folder of a scanned
                    building (docs/scenes.md); default: apartment
   --method METHOD  that chooses where to go: lapis (default), paper, ssmi, tare, nearest, mi_only, dopt_only, placed,
-                   fixed_n or joint (components/planner/README.md); with the settings of config/methods/METHOD.yaml,
-                   where there is such a file: --set planner.method=METHOD takes its utility alone
+                   fixed_n or joint (components/planner/README.md); with the settings of config/methods/METHOD,
+                   where there is such a folder
+  --no-preset      without these settings: the method's utility alone
   --duration S     simulated seconds after which the run ends; default: 300 (large_building needs 600)
   --seed N         of the simulator: start, noise, jitter of furniture; default: 1
   --out DIR        run folder; default: out/<name of scene>_<method>_<seed>
@@ -33,7 +34,7 @@ too, everything up to there is in DIR, but for the figures.
 TEXT
 }
 
-command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" options=()
+command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" has_preset=1 options=()
 while [ $# -gt 0 ]; do
   case $1 in
     --scene | --method | --duration | --seed | --out | --robot | --world | --set)
@@ -47,6 +48,7 @@ while [ $# -gt 0 ]; do
     --seed) seed=$2 && shift ;;
     --out) out=$2 && shift ;;
     --robot | --world) options+=(--config "$2") && shift ;;
+    --no-preset) has_preset=0 ;;
     --freerun) options+=(--variant freerun) ;;
     --restart) options+=(--restart) ;;
     --set) options+=(--set "$2") && shift ;;
@@ -55,8 +57,9 @@ while [ $# -gt 0 ]; do
   shift
 done
 require_build
-preset=$repository/config/methods/$method.yaml
-[ ! -f "$preset" ] || options=(--config "$preset" "${options[@]}")
+for preset in "$repository/config/methods/$method"/*.yaml; do
+  if [ $has_preset -eq 1 ] && [ -f "$preset" ]; then options=(--config "$preset" "${options[@]}"); fi
+done
 out=${out:-$repository/out/$(basename "$scene" .yaml)_${method}_$seed}
 echo "explores $scene by method $method with seed $seed; logs: $out/logs"
 run_system explore "$command" --out "$out" --set "simulator.scene=$scene" --set "planner.method=$method" \

@@ -38,7 +38,7 @@ describe_commit() {
 # identity_of SCENE WORD...: what the results of a scene depend on; other programs, settings or scenes give another.
 identity_of() {
   {
-    cat "${programs[@]/#/$bin/lapis_}" "$repository"/config/{robot.yaml,run.yaml,systems/*,methods/*,scenes/*,labels/*}
+    cat "${programs[@]/#/$bin/lapis_}" "$repository"/config/{robot.yaml,run.yaml,systems/*,scenes/*,labels/*}
     if [ -f "$1" ]; then cat "$1"; fi
     ls -l /usr/share/sweethome3d/furniture 2>/dev/null || echo "parametric furniture"
     echo "${@:2}"

@@ -13,6 +13,7 @@ DecisionLog::DecisionLog(const std::string& path, const std::vector<std::string>
   file_.open(path);
   file_ << "decision,time_s,method,candidate,kind,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
            "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
+           "unknown_share,"
            "utility,ended_kind,ended_s,ended_cost_m,ended_promised_nats,ended_driven_nats,ended_gained_nats,"
            "is_chosen,";
   for (const std::string& method : compared_methods) file_ << "is_chosen_by_" << method << ',';
@@ -47,13 +48,15 @@ void DecisionLog::write_value(const Candidate& candidate, const Asks& known) {
   file_ << ',';
   if (known.goal_information) file_ << value.goal_information;
   file_ << ',';
-  if (!known.spectrum) {
-    file_ << ",,,,,,";
-    return;
-  }
   const ExpectedGain& gain = candidate.gain;
-  file_ << candidate.loops.size() << ',' << value.loop_gain << ',' << gain.fixed_n_change << ','
-        << gain.end_sigma_without_loops_m << ',' << gain.end_sigma_m << ',' << value.optimality << ',';
+  if (known.spectrum) {
+    file_ << candidate.loops.size() << ',' << value.loop_gain << ',' << gain.fixed_n_change << ','
+          << gain.end_sigma_without_loops_m << ',' << gain.end_sigma_m << ',' << value.optimality << ',';
+  } else {
+    file_ << ",,,,,,";
+  }
+  if (known.unknown_share) file_ << value.unknown_share;
+  file_ << ',';
 }
 
 void DecisionLog::write_ended() {

@@ -350,6 +350,8 @@ void PlannerComponent::record(const DecisionInput& input) {
     recorded_graph_ = {input.graph->keyframes, input.graph->edges, input.position_variance_m2, input.landmarks};
   const std::uint64_t number = decisions_ + 1;
   if (number % static_cast<std::uint64_t>(config_.record_situations_every) != 0) return;
+  const mapping::MapState &shown = *surroundings_state_, &newest = *map_.state();
+  if (shown.epoch != newest.epoch || shown.version != newest.version) return;  // of a map that cannot be read yet
   const RecordedSituation situation{
       {*map_.map(),
        surroundings_model_,

@@ -11,6 +11,8 @@
 namespace lapis::planner {
 namespace {
 
+constexpr const char* kFile = "replayed.csv";
+
 RecordedSituation read_situation(const std::string& file) {
   std::string error;
   const auto bytes = files::read_file(file, error);
@@ -28,8 +30,8 @@ std::string number(bool is_known, double value, int digits) {
 }
 
 void print(const Decision& decision) {
-  std::printf("  %-11s %8s %16s %8s %10s %10s %6s %12s %11s\n", "kind", "frontier", "goal [m]", "cost [m]", "MI [nats]",
-              "goal's MI", "places", "D", "utility");
+  std::printf("  %-11s %8s %16s %8s %10s %10s %6s %12s %8s %11s\n", "kind", "frontier", "goal [m]", "cost [m]",
+              "MI [nats]", "goal's MI", "places", "D", "unknown", "utility");
   for (std::size_t i = 0; i < decision.candidates.size(); ++i) {
     const Candidate& c = decision.candidates[i];
     std::printf("%c %-11s %8u %7.2f, %7.2f ", decision.chosen == i ? '>' : ' ', name_of(c.kind), c.frontier,
@@ -39,11 +41,12 @@ void print(const Decision& decision) {
       continue;
     }
     const Asks& known = decision.known;
-    std::printf("%8.2f %10s %10s %6s %12s %11.5g\n", c.value.cost_m,
+    std::printf("%8.2f %10s %10s %6s %12s %8s %11.5g\n", c.value.cost_m,
                 number(known.path_information, c.value.path_information, 1).c_str(),
                 number(known.goal_information, c.value.goal_information, 1).c_str(),
                 number(known.spectrum, static_cast<double>(c.loops.size()), 0).c_str(),
-                number(known.spectrum, c.value.optimality, 4).c_str(), c.utility);
+                number(known.spectrum, c.value.optimality, 4).c_str(),
+                number(known.unknown_share, c.value.unknown_share, 3).c_str(), c.utility);
   }
   if (!decision.problem.empty()) std::printf("pose graph: %s\n", decision.problem.c_str());
   if (!decision.chosen) std::printf("nothing is chosen; %s\n", decision.leftover.text().c_str());
@@ -85,7 +88,7 @@ std::optional<int> run_replay(const PlannerComponentConfig& config) {
   print(decision);
   if (config.output_dir.empty()) return 0;
   files::require_writable_folder(config.output_dir, "planner.output_dir");
-  DecisionLog log((std::filesystem::path(config.output_dir) / DecisionLog::kFile).string(), config.compared_methods,
+  DecisionLog log((std::filesystem::path(config.output_dir) / kFile).string(), config.compared_methods,
                   config.surroundings.compared_priors);
   if (!log.write(decision, std::nullopt, 1, config.method, {}))
     throw std::runtime_error(config.output_dir + " is full");

@@ -12,8 +12,8 @@ namespace lapis::planner {
 /// between candidates that are worth the same the choice may be another.
 Decision decide_again(const RecordedSituation& situation, const PlannerComponentConfig& config);
 
-/// With a situation to decide again: does so, prints the candidates, and writes decisions.csv where that is wanted.
-/// Exit status; nothing without one.
+/// With a situation to decide again: does so, prints the candidates, and writes replayed.csv, as decisions.csv, into
+/// planner.output_dir. Exit status; nothing without one.
 std::optional<int> run_replay(const PlannerComponentConfig& config);
 
 }  // namespace lapis::planner

@@ -2,6 +2,9 @@
 
 #include <cstddef>
 #include <cstdlib>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"

@@ -51,6 +51,28 @@ class LocalMapTest : public ::testing::Test {
   bool has_path = true;
 };
 
+// A shelf whose legs are below the image may lean on something wider.
+TEST_F(LocalMapTest, LooksForFeetUnderWhatHasNotShownItsOwn) {
+  look({kFloor, box_at(1.5, 0.0, 0.8, 0.5)});
+  const Surroundings around = map.near(PlanarPose::Identity(), 4.0);
+  ASSERT_FALSE(around.unseen_feet.empty());
+  double farthest_m = 0.0;
+  for (const auto& p : around.obstacles) farthest_m = std::max(farthest_m, p.norm());
+  for (const auto& foot : around.unseen_feet) {
+    const auto nearest = std::min_element(around.obstacles.begin(), around.obstacles.end(),
+                                          [&](auto& a, auto& b) { return (a - foot).norm() < (b - foot).norm(); });
+    EXPECT_NEAR((*nearest - foot).norm(), 0.05, 0.025) << foot.transpose() << ": beside a column, not in one";
+    EXPECT_LT(foot.norm(), farthest_m + 0.04) << "nothing is behind all of it";
+  }
+}
+
+TEST_F(LocalMapTest, WhatHasShownItsFootHasNoOther) {
+  look({kFloor, kWall});
+  const Surroundings around = map.near(PlanarPose::Identity(), 3.5);
+  EXPECT_FALSE(around.obstacles.empty());
+  EXPECT_TRUE(around.unseen_feet.empty());
+}
+
 TEST_F(LocalMapTest, SeesWhatStandsInTheBandAndNotTheFloor) {
   look({kFloor, kWall, box_at(1.5, 0.0)});
   EXPECT_TRUE(has_point({1.3, 0.0}));

@@ -106,14 +106,16 @@ class Documents(unittest.TestCase):
                 output_of(BIN / f"lapis_{file.stem}", "--config", file, "--check-config")
 
     def test_presets_of_methods_are_of_methods_and_are_shown(self):
-        presets = sorted(REPOSITORY.glob("config/methods/*.yaml"))
+        presets = sorted(REPOSITORY.glob("config/methods/*/*.yaml"))
         self.assertTrue(presets)
         for preset in presets:
-            output_of(BIN / "lapis_planner", "--set", f"planner.method={preset.stem}", "--check-config")
-            for name, settings in yaml.safe_load(preset.read_text()).items():
-                with self.subTest(f"{preset}, {name}"):
-                    shown = yaml.safe_load(output_of(BIN / f"lapis_{name}", "--config", preset, "--print-config"))
-                    self.assertEqual(with_settings(shown[name], settings), shown[name])
+            with self.subTest(str(preset)):
+                name = preset.stem
+                output_of(BIN / "lapis_planner", "--set", f"planner.method={preset.parent.name}", "--check-config")
+                shown = yaml.safe_load(output_of(BIN / f"lapis_{name}", "--config", preset, "--print-config"))
+                settings = yaml.safe_load(preset.read_text())
+                self.assertEqual(list(settings), [name])
+                self.assertEqual(with_settings(shown[name], settings[name]), shown[name])
 
     def test_the_robot_file_says_what_the_defaults_are(self):
         for name in KNOW_THE_ROBOT:

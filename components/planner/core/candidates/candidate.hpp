@@ -41,10 +41,10 @@ struct PathValue {
   double path_information = 0.0;      ///< of its views, each cell once
   double goal_information = 0.0;      ///< of the last view, every ray for itself
   double loop_gain = 0.0;             ///< expected change of the log-determinant by loops, saturated
-  double unknown_share = 0.0;         ///< of the cells around what is looked at, in [0, 1]
   double optimality = 0.0;            ///< of the graph with the path, all its nodes in it; 1: no graph to judge
   double fixed_n_d_optimality = 0.0;  ///< from the expected change of the log-determinant at equal number of nodes
   int tour_place = 0;                 ///< of the goal in TARE's tour, from 1
+  double unknown_share = 0.0;         ///< of the cells around what is looked at, in [0, 1]
 
   /// The cost, but that of a voxel for a shorter path.
   double paid_m() const { return std::max(cost_m, kLeastCost_m); }

@@ -31,6 +31,8 @@ struct Adrift {
   double growth = 0.0;              ///< of sigma by cost of a path [m/m]
   double budget_m = 0.5;            ///< of sigma at a path's end
   std::vector<Pose2> tracked = {};  ///< where slam tracked, the newest first
+
+  bool operator==(const Adrift&) const = default;
 };
 
 /// What is not to be driven to, and what is being driven to.
@@ -45,6 +47,8 @@ struct Memory {
   std::optional<Pose2> goal;       ///< current one
   int turns_to = 0;                ///< before the path there, the longer way round: 1 to the left, -1 to the right
   std::optional<Adrift> adrift;    ///< nothing while slam tracks
+
+  bool operator==(const Memory&) const = default;
 };
 
 /// Pose of the camera of a robot that stands there, T_map_camera.

@@ -11,6 +11,8 @@
 namespace lapis::planner {
 namespace {
 
+constexpr double kTurnTolerance_rad = 0.3;     // of a turn on the spot
+constexpr double kHomePeriod_s = 1.0;          // between paths home, where decisions have no period
 constexpr double kLeastDecisionTime_s = 0.5;   // from one decision to the next, whatever happens
 constexpr double kBlindPatience_s = 2.0;       // without a pose, before it looks around for it
 constexpr double kLeastGrowth = 0.02;          // of sigma by odometry alone, for each metre
@@ -200,13 +202,14 @@ bool Explorer::explore(Exploring& exploring, const Report& report, Surroundings&
     drop_goal();
     return may_decide;
   }
-  return may_decide && (is_due(report.now) || !is_path_free(path_, *report.robot, surroundings.grid()));
+  return may_decide &&
+         (is_due(report.now, config_.replan_period_s) || !is_path_free(path_, *report.robot, surroundings.grid()));
 }
 
 /// It has been reached, or has failed. To go to and fro, or after what is never seen, has to end whatever a method
 /// promises itself of it.
 bool Explorer::ends_goal(const Report& report, Surroundings& surroundings) {
-  if (is_at(goal_->pose, *report.robot)) {
+  if (is_at(*goal_, *report.robot)) {
     note_arrival(report.now);
     return true;
   }
@@ -227,8 +230,7 @@ bool Explorer::is_of_other_tier(const Goal& goal) const {
   return goal.kind == CandidateKind::kTracked ? !is_adrift_ : goal.target_map && is_beyond_budget();
 }
 
-bool Explorer::is_due(time::Time now) const {
-  const double period_s = config_.replan_period_s;
+bool Explorer::is_due(time::Time now, double period_s) const {
   return !decided_at_ || (period_s > 0.0 && (now - *decided_at_).seconds() >= period_s);
 }
 
@@ -258,9 +260,12 @@ void Explorer::note_vanished(const Decision& decision, time::Time now) {
   if (!is_there) setbacks_.await({*goal_->target_map, robot_.p_map}, now, config_.memory.expiry_s);
 }
 
-bool Explorer::is_at(const Pose2& place, const Pose2& robot) const {
-  return distance(robot, place) <= config_.goal_tolerance_m &&
-         turn_between(robot.yaw_rad, place.yaw_rad) <= config_.goal_tolerance_rad;
+/// Of a turn on the spot the heading is what counts, however little it does elsewhere.
+bool Explorer::is_at(const Goal& goal, const Pose2& robot) const {
+  const double tolerance_rad =
+      goal.target_map ? config_.goal_tolerance_rad : std::min(config_.goal_tolerance_rad, kTurnTolerance_rad);
+  return distance(robot, goal.pose) <= config_.goal_tolerance_m &&
+         turn_between(robot.yaw_rad, goal.pose.yaw_rad) <= tolerance_rad;
 }
 
 bool Explorer::stands_still(const Report& report) {
@@ -462,7 +467,8 @@ void Explorer::go_home(const Returning& returning, const Report& report, Surroun
   }
   if (report.is_blocked) note_blocked(report, surroundings);
   const bool is_wanted = !has_path || !is_path_free(path_, *report.robot, surroundings.grid());
-  if (report.is_blocked || (is_wanted && is_due(report.now))) drive_to(*home_, report, surroundings);
+  const double period_s = config_.replan_period_s > 0.0 ? config_.replan_period_s : kHomePeriod_s;
+  if (report.is_blocked || (is_wanted && is_due(report.now, period_s))) drive_to(*home_, report, surroundings);
   if (!path_.empty()) reason_ = "drives back to where it started";
   if (!has_path && !path_.empty()) goal_->moved_at = report.now;  // a path has opened
   if (!stands_still(report) || may_yet_return(report, surroundings)) return;

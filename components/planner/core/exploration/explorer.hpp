@@ -118,9 +118,9 @@ class Explorer {
   void note_vanished(const Decision& decision, time::Time now);
   bool is_active() const;
   bool may_yet_return(const Report& report, Surroundings& surroundings);
-  bool is_at(const Pose2& place, const Pose2& robot) const;
+  bool is_at(const Goal& goal, const Pose2& robot) const;
   bool stands_still(const Report& report);
-  bool is_due(time::Time now) const;
+  bool is_due(time::Time now, double period_s) const;
   void note_blocked(const Report& report, Surroundings& surroundings);
   void add_failure(time::Time now, bool is_adrift);
 

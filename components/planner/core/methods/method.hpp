@@ -10,12 +10,12 @@ namespace lapis::planner {
 struct Asks {
   bool path_information = false;
   bool goal_information = false;
-  bool unknown_share = false;
   bool spectrum = false;  ///< of the pose graph with the path: loop_gain, optimality, fixed_n_d_optimality
+  bool unknown_share = false;
 
   Asks operator|(const Asks& other) const {
     return {path_information || other.path_information, goal_information || other.goal_information,
-            unknown_share || other.unknown_share, spectrum || other.spectrum};
+            spectrum || other.spectrum, unknown_share || other.unknown_share};
   }
   bool operator==(const Asks&) const = default;
 };

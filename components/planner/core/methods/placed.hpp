@@ -9,7 +9,7 @@ namespace lapis::planner {
 /// 2022].
 class Placed : public Method {
  public:
-  Asks asks() const override { return {.unknown_share = true, .spectrum = true}; }
+  Asks asks() const override { return {.spectrum = true, .unknown_share = true}; }
   double utility(const Candidate& candidate) const override {
     return candidate.value.optimality * (1.0 + candidate.value.unknown_share);
   }

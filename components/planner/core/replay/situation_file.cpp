@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::string_view kMagic = "LAPISSIT";
 constexpr std::uint32_t kFormatVersion = 1;
+constexpr double kFarthest_m = 20'000.0;        // of a pose from the origin: conversions.hpp accepts no farther ones
 constexpr std::int32_t kFarthestCell = 40'000;  // from the origin, along an axis
 constexpr int kMostDimensions = 6;              // of an edge's information
 constexpr double kRounding = 1e-6;              // of a rotation
@@ -22,6 +23,7 @@ constexpr double kRounding = 1e-6;              // of a rotation
 /// Writes what the functions below list.
 struct Encoder {
   void number(double value) { out.f64(value); }
+  void any_number(double value) { out.f64(value); }
   void whole(std::uint64_t value) { out.u64(value); }
   void whole(std::int64_t value) { out.u64(static_cast<std::uint64_t>(value)); }
   void whole(std::uint32_t value) { out.u32(value); }
@@ -48,6 +50,7 @@ struct Decoder {
     value = in.f64();
     require(std::isfinite(value));
   }
+  void any_number(double& value) { value = in.f64(); }
   void whole(std::uint64_t& value) { value = in.u64(); }
   void whole(std::int64_t& value) { value = static_cast<std::int64_t>(in.u64()); }
   void whole(std::uint32_t& value) { value = in.u32(); }
@@ -87,7 +90,7 @@ constexpr auto kCell = [](auto& file, auto& cell) {
 constexpr auto kPose = [](auto& file, auto& pose) {
   kNumbers(file, pose.p_map);
   file.number(pose.yaw_rad);
-  file.require(pose.p_map.norm() <= kMaxReach_m);
+  file.require(pose.p_map.norm() <= kFarthest_m);
 };
 
 constexpr auto kLeftAlone = [](auto& file, auto& place) {
@@ -105,8 +108,8 @@ constexpr auto kFailedView = [](auto& file, auto& view) {
 };
 
 constexpr auto kAdrift = [](auto& file, auto& adrift) {
-  file.number(adrift.sigma_m);
-  file.number(adrift.growth);
+  file.any_number(adrift.sigma_m);
+  file.any_number(adrift.growth);
   file.number(adrift.budget_m);
   file.list(adrift.tracked, kPose);
 };
@@ -128,7 +131,7 @@ constexpr auto kKeyframe = [](auto& file, auto& keyframe) {
   file.whole(keyframe.id);
   kNumbers(file, keyframe.T_map_camera.matrix());
   file.require(keyframe.T_map_camera.linear().isUnitary(kRounding) &&
-               keyframe.T_map_camera.translation().norm() <= kMaxReach_m);
+               keyframe.T_map_camera.translation().norm() <= kFarthest_m);
 };
 
 constexpr auto kEdge = [](auto& file, auto& edge) {

@@ -43,6 +43,8 @@ inline constexpr std::size_t kStraightSteps = 4;
 struct Pose2 {
   Eigen::Vector2d p_map{0, 0};  ///< [m]
   double yaw_rad = 0.0;         ///< counter-clockwise from the x axis
+
+  bool operator==(const Pose2&) const = default;
 };
 
 /// Angle between two headings, in [0, pi] [rad].

@@ -45,6 +45,8 @@ inline constexpr double kMaxReach_m = 1000.0;
 struct GridMarks {
   std::vector<Cell> driven;    ///< the robot has stood there
   std::vector<Cell> hindered;  ///< occupied whatever the map says: by obstacles, or because the robot cannot pass
+
+  bool operator==(const GridMarks&) const = default;
 };
 
 /// Floor plan in which the robot plans: the projection of the map's voxels (column_projection.hpp) under a layer of

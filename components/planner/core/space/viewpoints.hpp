@@ -30,6 +30,8 @@ struct Viewpoint {
 /// A target that is a frontier still, although it has been viewed from there [m, map].
 struct FailedView {
   Eigen::Vector2d target_map, from_map;
+
+  bool operator==(const FailedView&) const = default;
 };
 
 /// A target that is not to be looked at [m, map].
@@ -37,6 +39,8 @@ struct LeftAlone {
   Eigen::Vector2d target_map;
   Rejection reason = Rejection::kLeftAlone;
   std::optional<Eigen::Vector2d> side_map = std::nullopt;  ///< only from the side of the target where this lies
+
+  bool operator==(const LeftAlone&) const = default;
 };
 
 /// Why a target is left alone, the last of all that are near in the order of the enumeration; kNone: it is not.

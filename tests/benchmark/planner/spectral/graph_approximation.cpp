@@ -10,6 +10,9 @@
 #include <fstream>
 #include <stdexcept>
 #include <string>
+#include <utility>
+#include <variant>
+#include <vector>
 
 #include "slam/core/files/pose_graph_file.hpp"
 #include "tests/unit/planner/spectral/full_information.hpp"

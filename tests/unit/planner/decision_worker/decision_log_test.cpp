@@ -53,7 +53,8 @@ Decision decision() {
   chosen.frontier = 17;
   chosen.goal = {{1.5, -2.5}, 0.25};
   chosen.value = {3.5, 4.5, 5.5, 6.5, 7.5};
-  decision.known = {true, true, true};
+  chosen.value.unknown_share = 0.125;
+  decision.known = {true, true, true, true};
   chosen.loops.resize(2);
   chosen.gain = {0.0, 8.5, 9.5, 10.5};
   chosen.utility = 11.5;
@@ -100,6 +101,7 @@ TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
                                                     {"end_sigma_without_loops_m", "9.5"},
                                                     {"end_sigma_m", "10.5"},
                                                     {"d_optimality", "7.5"},
+                                                    {"unknown_share", "0.125"},
                                                     {"utility", "11.5"},
                                                     {"ended_kind", "revisit"},
                                                     {"ended_s", "2.5"},

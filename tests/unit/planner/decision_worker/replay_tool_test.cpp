@@ -2,6 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <optional>
+#include <stdexcept>
+
 #include "tests/unit/planner/replay/sample_situation.hpp"
 
 namespace lapis::planner {
@@ -11,7 +15,7 @@ namespace {
 class ReplayTest : public ::testing::Test {
  protected:
   ReplayTest() : situation_(test::sample_situation()) {
-    situation_.memory = {};
+    situation_.memory.adrift.reset();
     config_.robot.camera.width = 64;
     config_.robot.camera.height = 36;
     config_.view_columns = 16;

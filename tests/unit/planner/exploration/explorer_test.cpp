@@ -70,7 +70,29 @@ TEST(Explorer, DecidesOnlyAtGoalsWhenToldTo) {
     EXPECT_EQ(world->explorer.state(), State::kDone) << world->explorer.reason();
     EXPECT_GT(world->explored_share(), 0.98);
   }
-  EXPECT_LT(2 * seldom.decisions, often.decisions);
+  EXPECT_LT(seldom.decisions, often.decisions);
+}
+
+TEST(Explorer, TurnsToLookAroundHoweverLittleHeadingsMatterAtGoals) {
+  WalkWorld world(closed(kThreeRooms), {.goal_tolerance_m = 0.6, .goal_tolerance_rad = 3.2, .returns_home = true});
+  world.explorer.start();
+  double turned_rad = 0.0, before_rad = world.robot.yaw_rad;
+  for (int step = 0; step < 3000 && world.explorer.state() == State::kExploring; ++step) {
+    world.run(0.1);
+    const bool looks = world.explorer.reason().find("looks around") != std::string::npos;
+    turned_rad += looks ? turn_between(world.robot.yaw_rad, before_rad) : 0.0;
+    before_rad = world.robot.yaw_rad;
+  }
+  EXPECT_GT(turned_rad, 3.0) << "a full turn, but for the first part";
+}
+
+TEST(Explorer, PlansHomeAgainWithoutAPeriodOfDecisions) {
+  WalkWorld world(closed(kThreeRooms), {.replan_period_s = 0.0, .returns_home = true});
+  const Pose2 home = world.robot;
+  world.explorer.start();
+  world.run(400.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+  EXPECT_LT((world.robot.p_map - home.p_map).norm(), 0.3);
 }
 
 TEST(Explorer, DrivesHomeWhenAsked) {

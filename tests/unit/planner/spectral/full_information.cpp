@@ -51,13 +51,16 @@ class Comparer {
     for (std::size_t i = 0; i < graph_.edges.size(); ++i) {
       if (i == without || std::max(from(i), to(i)) >= nodes) continue;
       const Eigen::MatrixXd information = graph_.edges[i].information(free_, free_);
-      weighted.push_back({from(i), to(i), edge_weight(information, Criterion::kD).value()});
+      const auto weight = edge_weight(information, Criterion::kD);
+      if (!weight) throw std::runtime_error("the information of an edge is not positive definite");
+      weighted.push_back({from(i), to(i), *weight});
       add(i, information, elements);
     }
     Eigen::SparseMatrix<double> H(d * (nodes - 1), d * (nodes - 1));
     H.setFromTriplets(elements.begin(), elements.end());
     const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>> factor(H);
-    if (factor.info() != Eigen::Success) throw std::runtime_error("the information of the poses is singular");
+    if (factor.info() != Eigen::Success || (factor.vectorD().array() <= 0.0).any())
+      throw std::runtime_error("the information of the poses is singular");
     return {make_factor(make_graph(nodes, std::move(weighted))).log_trees(),
             factor.vectorD().array().log().sum() / static_cast<double>(d)};
   }

@@ -21,7 +21,8 @@ struct GraphComparison {
   std::vector<LogDeterminants> loops;
 };
 
-/// Of a connected graph with the poses of all its nodes. Throws std::runtime_error when it is none.
+/// Of a graph with the poses of all its nodes, connected at every stage and without any of its loops. Throws
+/// std::runtime_error when it is not.
 GraphComparison compare_with_full_information(const slam::PoseGraphSnapshot& graph);
 
 /// Spearman's correlation of the two over a list; NaN of less than two.

@@ -6,6 +6,7 @@ import csv
 import math
 import re
 import struct
+import subprocess
 
 import chain
 
@@ -105,6 +106,22 @@ class LongExploreTest(ExploreCase):
 class ExploreTest(ExploreCase):
     def test_the_same_seed_gives_the_same_bytes(self):
         self.explore_twice("--scene", self.write_flat(), "--duration", "10", "--seed", "3")
+
+    def test_a_recorded_decision_is_made_again_as_it_was(self):
+        folder = self.explore("run", "--scene", self.write_flat(), "--duration", "8",
+                              "--set", "planner.record_situations_every=3")
+        chosen = {row["decision"]: row for row in table(folder / "decisions.csv") if row["is_chosen"] == "1"}
+        numbers = [file.stem for file in folder.glob("situations/*.lapis") if file.stem in chosen]
+        self.assertGreaterEqual(len(numbers), 2)
+        for number in numbers:
+            again = self.folder / f"again_{number}"
+            again.mkdir()
+            subprocess.run([chain.BIN / "lapis_planner", "--config", chain.REPOSITORY / "config/robot.yaml", "--replay",
+                            folder / f"situations/{number}.lapis", "--set", f"planner.output_dir={again}"],
+                           check=True, capture_output=True)
+            replayed = next(row for row in table(again / "replayed.csv") if row["is_chosen"] == "1")
+            for column in ("kind", "x_m", "y_m", "yaw_rad", "cost_m", "path_information_nats", "d_optimality", "utility"):
+                self.assertEqual(replayed[column], chosen[number][column], f"{column} of decision {number}")
 
     def test_done_when_nothing_is_left(self):
         folder = self.explore("run", "--scene", self.write_flat(), "--method", "nearest", "--duration", "120")

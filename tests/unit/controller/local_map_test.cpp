@@ -67,8 +67,8 @@ TEST_F(LocalMapTest, LooksForFeetUnderWhatHasNotShownItsOwn) {
 }
 
 TEST_F(LocalMapTest, WhatHasShownItsFootHasNoOther) {
-  look({kFloor, kWall});
-  const Surroundings around = map.near(PlanarPose::Identity(), 3.5);
+  look({kFloor, {{1.52, -9, 0}, {1.8, 9, 2.6}, 1}});
+  const Surroundings around = map.near(PlanarPose::Identity(), 4.0);
   EXPECT_FALSE(around.obstacles.empty());
   EXPECT_TRUE(around.unseen_feet.empty());
 }

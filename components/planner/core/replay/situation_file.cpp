@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
-#include <ranges>
 #include <string_view>
 #include <utility>
 
@@ -175,7 +174,7 @@ constexpr auto kGraph = [](auto& file, auto& graph) {
 
 void write_graph(Encoder& file, const std::optional<RecordedGraph>& graph) {
   file.maybe(graph, kGraph);
-  if (graph) file.list(std::views::values(graph->landmarks), kTile);
+  if (graph) file.list(graph->landmarks, [](Encoder& to, const auto& entry) { kTile(to, entry.second); });
 }
 
 void read_graph(Decoder& file, std::optional<RecordedGraph>& graph) {

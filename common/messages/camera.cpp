@@ -41,11 +41,12 @@ Pixel read(const std::uint8_t* bytes) {
 /// Applies `convert(pointer to the pixel's bytes)` to every pixel.
 template <class Out, class Convert>
 geometry::Image<Out> map_pixels(const Image& image, std::size_t bytes_per_pixel, Convert convert) {
-  geometry::Image<Out> out(static_cast<int>(image.width()), static_cast<int>(image.height()));
+  const std::size_t width = image.width(), height = image.height(), step = image.step();  // accessors are not inlined
+  geometry::Image<Out> out(static_cast<int>(width), static_cast<int>(height));
   Out* target = out.pixels.data();
-  for (std::size_t row = 0; row < image.height(); ++row) {
-    const std::uint8_t* bytes = image.data().data() + row * image.step();
-    for (std::size_t column = 0; column < image.width(); ++column, bytes += bytes_per_pixel) *target++ = convert(bytes);
+  for (std::size_t row = 0; row < height; ++row) {
+    const std::uint8_t* bytes = image.data().data() + row * step;
+    for (std::size_t column = 0; column < width; ++column, bytes += bytes_per_pixel) *target++ = convert(bytes);
   }
   return out;
 }

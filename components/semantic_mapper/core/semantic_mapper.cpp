@@ -22,6 +22,11 @@ constexpr int kMaxBlocksPerEnlargedEdge = 8;
 
 bool is_near(const Pose& T_map_a) { return T_map_a.translation().norm() <= kMaxDistance_m; }
 
+/// At which the frame has put its votes into the map.
+Eigen::Vector3d position_of_keyframe(const StoredFrame& frame) {
+  return frame.T_map_camera * frame.T_keyframe_camera.inverse().translation();
+}
+
 bool is_equal(const Pose& a, const Pose& b) { return a.matrix() == b.matrix(); }
 
 const MapperConfig& validated(const MapperConfig& config) {
@@ -58,7 +63,14 @@ SemanticMapper::SemanticMapper(const MapperConfig& config, mapping::VoxelMap bas
       provisional_(config.band, config.resolution_m) {
   if (map_.resolution_m() != config.resolution_m)
     throw std::runtime_error("mapper: the map to resume has voxels of another size");
+  if (config.stakes_model) stakes_.emplace(*config.stakes_model, config.resolution_m);
   mark_all_changed();
+}
+
+const MapStakes* SemanticMapper::stakes() {
+  if (!stakes_) return nullptr;
+  stakes_->update(map_);
+  return &*stakes_;
 }
 
 IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
@@ -79,6 +91,7 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   mapping::FrameVotes votes = votes_of(input.frame, T_map_camera, input.drift);
   map_.add(votes);
   mark_changed(votes);
+  if (stakes_) stakes_->add(stored.keyframe_id, position_of_keyframe(stored), votes);
   p_map_robot_ = T_map_camera.translation();
   ++frames_integrated_;
   if (config_.re_anchor) store(std::move(stored), input.frame, votes);
@@ -180,7 +193,9 @@ bool SemanticMapper::move_frame(std::size_t index) {
   const mapping::Drift drift = is_whole_now ? mapping::Drift{} : frames_[index].drift;
   mapping::FrameVotes come = votes_of(*samples, wanted, drift);
   if (!store_.replace_votes(index, come)) return false;
+  if (stakes_) stakes_->subtract(frames_[index].keyframe_id, position_of_keyframe(frames_[index]), *gone);
   frames_[index].T_map_camera = wanted;
+  if (stakes_) stakes_->add(frames_[index].keyframe_id, position_of_keyframe(frames_[index]), come);
   frames_[index].drift = drift;
   frames_[index].work = samples->samples() + come.hit_count() + come.miss_count();
   if (provisional_.contains(index)) provisional_.set(index, votes_of(*samples, wanted));

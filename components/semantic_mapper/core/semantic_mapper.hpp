@@ -20,6 +20,7 @@
 #include "common/mapping/wire/tile_codec.hpp"
 #include "common/time/time.hpp"
 #include "semantic_mapper/core/frame_store.hpp"
+#include "semantic_mapper/core/map_stakes.hpp"
 #include "semantic_mapper/core/provisional_area.hpp"
 
 namespace lapis::semantic_mapper {
@@ -34,6 +35,8 @@ struct MapperConfig {
   bool re_anchor = true;
   FrameStoreConfig stored_frames;
   mapping::HeightBand band = {};  ///< of the provisional area
+  /// By which stakes() knows what is occupied; nothing: they are not kept.
+  std::optional<mapping::SensorModel> stakes_model = std::nullopt;
 };
 
 /// A camera frame and where it was taken: T_map_camera = T_map_keyframe * T_keyframe_camera. The pose graph may move
@@ -125,6 +128,9 @@ class SemanticMapper {
   std::uint64_t provisional_changes() const { return provisional_.changes(); }
 
   const mapping::VoxelMap& map() const { return map_; }
+  /// What of the map hangs on which key-frame, if MapperConfig::stakes_model asks for it. Of frames that stay where
+  /// they were first put, too.
+  const MapStakes* stakes();
   /// Samples of a stored frame; nothing when it was let go (FrameStore).
   std::optional<mapping::CompactFrame> stored_frame(std::size_t index) { return store_.frame(index); }
   const FrameStore& store() const { return store_; }
@@ -191,6 +197,7 @@ class SemanticMapper {
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> waiting_;  ///< frames, by key-frames that drift
   std::unordered_set<std::size_t> corrected_;  ///< frames that have waited and can come in whole
   ProvisionalArea provisional_;                ///< of the frames of both
+  std::optional<MapStakes> stakes_;
   std::size_t frames_in_part_ = 0;
 
   std::unordered_set<mapping::TileIndex, mapping::GridIndexHash> changed_tiles_;

@@ -118,6 +118,7 @@ TEST(SemanticMapper, EqualsBuildFromRecordsAtEveryInstantAndFromScratchAfterFlus
     config.resolution_m = seed % 4 == 3 ? 0.1 : 0.25;
     config.stored_frames.memory_mb = seed % 3 == 0 ? 0 : 100;
     config.stored_frames.spill_dir = testing::TempDir();
+    if (seed % 5 == 0) config.stakes_model.emplace();
     SemanticMapper mapper(config);
     const std::vector<KeyframePose> last = drive_with_corrections(mapper, seed);
     EXPECT_GT(mapper.flush(), 0u);
@@ -134,6 +135,10 @@ TEST(SemanticMapper, EqualsBuildFromRecordsAtEveryInstantAndFromScratchAfterFlus
     }
     ASSERT_EQ(mapper.map(), scratch.map()) << seed;
     EXPECT_EQ(mapper.flush(), 0u);
+    ASSERT_EQ(mapper.stakes() != nullptr, config.stakes_model.has_value());
+    if (!config.stakes_model) continue;
+    EXPECT_GT(mapper.stakes()->stakes().size(), 4u);
+    EXPECT_EQ(mapper.stakes()->stakes(), scratch.stakes()->stakes()) << seed;
   }
 }
 

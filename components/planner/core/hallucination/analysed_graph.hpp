@@ -7,15 +7,11 @@
 #include <vector>
 
 #include "common/geometry/se3.hpp"
+#include "planner/core/spectral/keyframe.hpp"
 #include "planner/core/spectral/laplacian_factor.hpp"
 #include "planner/core/spectral/sparsification.hpp"
 
 namespace lapis::planner {
-
-struct Keyframe {
-  std::uint64_t id = 0;
-  geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< camera optical frame
-};
 
 /// A radian of turning counts as so many metres of path: a view changes by both.
 inline constexpr double kMetresPerRadian = 0.5;

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -22,22 +23,35 @@ class MipMap {
   /// Size of level 0 [texels].
   int width() const { return finest_->width; }
   int height() const { return finest_->height; }
-  /// What a bilinear sample mixes.
+  /// What N bilinear samples mix.
+  template <std::size_t N>
   struct Neighbours {
-    std::array<std::uint32_t, 4> texels;  ///< the bytes of each in one word; row by row
-    std::uint32_t right, down;            ///< weights of the second column and row, in 1/256
+    std::array<std::array<std::uint32_t, N>, 4> texels;  ///< the bytes of each in one word; row by row
+    std::array<std::uint32_t, N> right, down;            ///< weights of the second column and row, in 1/256
   };
-  /// At a coordinate that repeats with period 1; (0, 0) is the lower left corner. Weights are in fixed point, so the
-  /// same on every machine.
-  Neighbours neighbours(int level_index, float x, float y) const {
+  /// At coordinates that repeat with period 1; (0, 0) is the lower left corner. Weights are in fixed point, so the same
+  /// on every machine. In loops over samples, so that a compiler can take several at once.
+  template <std::size_t N>
+  Neighbours<N> neighbours(int level_index, const std::array<float, N>& x, const std::array<float, N>& y) const {
     const TextureImage& image = level(level_index);
-    // The subtraction of the floor keeps huge coordinates in range; rounding may still give exactly 1.
-    const Pair u = pair(std::min(x - std::floor(x), 0.999999F), image.width);
-    const Pair v = pair(std::min(1.0F - (y - std::floor(y)), 0.999999F), image.height);
-    const auto texel = [&image](int column, int row) { return std::bit_cast<std::uint32_t>(image(column, row)); };
-    return {{texel(u.first, v.first), texel(u.second, v.first), texel(u.first, v.second), texel(u.second, v.second)},
-            u.weight,
-            v.weight};
+    Neighbours<N> out;
+    std::array<std::array<int, N>, 4> index;
+    for (std::size_t i = 0; i < N; ++i) {
+      // The subtraction of the floor keeps huge coordinates in range; rounding may still give exactly 1.
+      const Pair u = pair(std::min(x[i] - std::floor(x[i]), 0.999999F), image.width);
+      const Pair v = pair(std::min(1.0F - (y[i] - std::floor(y[i])), 0.999999F), image.height);
+      index[0][i] = v.first * image.width + u.first;
+      index[1][i] = v.first * image.width + u.second;
+      index[2][i] = v.second * image.width + u.first;
+      index[3][i] = v.second * image.width + u.second;
+      out.right[i] = u.weight;
+      out.down[i] = v.weight;
+    }
+    for (std::size_t k = 0; k < 4; ++k) {
+      for (std::size_t i = 0; i < N; ++i)
+        out.texels[k][i] = std::bit_cast<std::uint32_t>(image.pixels[static_cast<std::size_t>(index[k][i])]);
+    }
+    return out;
   }
 
  private:

@@ -34,6 +34,7 @@ static_assert(sizeof(Facet) == 64);
 
 using Floats = std::array<float, kSize>;
 using Words = std::array<std::uint32_t, kSize>;
+using Levels = std::array<int, kSize>;
 
 /// The product of two channels over 255, rounded, without a division.
 std::uint32_t scaled(std::uint32_t a, std::uint32_t b) {
@@ -53,14 +54,24 @@ Facet nothing() {
   return facet;
 }
 
-using Met = std::array<const Facet*, kSize>;
+/// What the rays of a packet met. `kOne`: all of them the same, as most often, so that loops over rays have nothing to
+/// gather.
+template <bool kOne>
+struct Met {
+  std::array<const Facet*, kOne ? 1 : kSize> facets;
+  const Facet& operator[](std::size_t ray) const { return *facets[kOne ? 0 : ray]; }
+};
+
+/// The pixel of a packet's first ray.
+struct Corner {
+  int column, row;
+};
 
 /// What a packet's colours are made of. Channels are bytes of words.
 struct Look {
   Words color;
-  Words light;                  // 0 to 255
-  std::array<Words, 4> texels;  // to be mixed, row by row
-  Words right, down;            // weights of the second column and row, in 1/256
+  Words light;  // 0 to 255
+  MipMap::Neighbours<kSize> texture;
 };
 
 }  // namespace
@@ -90,18 +101,24 @@ struct Renderer::Implementation {
           mesh.texture_coordinates.empty() ? Eigen::Vector2f::Zero() : mesh.texture_coordinates[v];
     }
     if (material.texture >= 0) {
-      const auto& texture = textures[static_cast<std::size_t>(material.texture)];
       const auto& t = facet.texture_coordinates;
-      const float texels = area(t[1] - t[0], t[2] - t[0]) * static_cast<float>(texture.width() * texture.height());
+      const float texels =
+          area(t[1] - t[0], t[2] - t[0]) * static_cast<float>(texture(facet).width() * texture(facet).height());
       facet.texels_per_m = std::sqrt(texels / std::max(cross.norm(), 1e-12F));
     }
     return facet;
   }
 
-  void store(int column, int row, const RayPacket& rays, const HitPacket& hits, float pixel,
+  const MipMap& texture(const Facet& facet) const { return textures[static_cast<std::size_t>(facet.texture)]; }
+  void store(const Corner& corner, const RayPacket& rays, const HitPacket& hits, float pixel,
              RenderedFrame& frame) const;
-  Words shade(const Met& met, const HitPacket& hits, const Floats& cosines, float pixel) const;
-  void sample(const Met& met, const HitPacket& hits, const Floats& texels_per_pixel, Look& look) const;
+  template <bool kOne>
+  void store(const Met<kOne>& met, const Corner& corner, const RayPacket& rays, const HitPacket& hits, float pixel,
+             RenderedFrame& frame) const;
+  template <bool kOne>
+  Words shade(const Met<kOne>& met, const HitPacket& hits, const Floats& cosines, float pixel) const;
+  template <bool kOne>
+  MipMap::Neighbours<kSize> sample(const Met<kOne>& met, const HitPacket& hits, const Floats& texels_per_pixel) const;
 };
 
 Renderer::Renderer(const Scene& scene, const SceneRaycaster& raycaster, const std::vector<std::uint8_t>& light,
@@ -163,10 +180,11 @@ class PixelRays {
 };
 
 /// |cos| of the angles between rays and surface normals.
-Floats cosines_of(const Met& met, const RayPacket& rays) {
+template <bool kOne>
+Floats cosines_of(const Met<kOne>& met, const RayPacket& rays) {
   Floats cosines;
   for (std::size_t i = 0; i < kSize; ++i) {
-    const Eigen::Vector3f& normal = met[i]->normal;
+    const Eigen::Vector3f& normal = met[i].normal;
     cosines[i] = normal.x() * rays.x[i] + (normal.y() * rays.y[i] + normal.z() * rays.z[i]);
   }
   for (std::size_t i = 0; i < kSize; ++i) {
@@ -205,9 +223,10 @@ Words mixed(const Look& look) {
   for (unsigned shift = 0; shift < 24; shift += 8) {
     for (std::size_t i = 0; i < kSize; ++i) {
       const auto channel = [&](const Words& words) { return (words[i] >> shift) & 255U; };
-      const std::uint32_t right = look.right[i], down = look.down[i];
-      const std::uint32_t upper = channel(look.texels[0]) * (256 - right) + channel(look.texels[1]) * right;
-      const std::uint32_t lower = channel(look.texels[2]) * (256 - right) + channel(look.texels[3]) * right;
+      const auto& texels = look.texture.texels;
+      const std::uint32_t right = look.texture.right[i], down = look.texture.down[i];
+      const std::uint32_t upper = channel(texels[0]) * (256 - right) + channel(texels[1]) * right;
+      const std::uint32_t lower = channel(texels[2]) * (256 - right) + channel(texels[3]) * right;
       const std::uint32_t texture = (upper * (256 - down) + lower * down + (1U << 15U)) >> 16U;
       out[i] |= scaled(scaled(channel(look.color), texture), look.light[i]) << shift;
     }
@@ -215,61 +234,116 @@ Words mixed(const Look& look) {
   return out;
 }
 
+/// Colours of hits, without texture and light.
+template <bool kOne>
+Words plain_colors(const Met<kOne>& met, const HitPacket& hits) {
+  Words out;
+  if (const auto& [a, b, c] = met[0].colors; kOne && a == b && a == c) {
+    out.fill(word(a.r, a.g, a.b));
+    return out;
+  }
+  for (std::size_t i = 0; i < kSize; ++i) out[i] = plain_color(met[i], hits, i);
+  return out;
+}
+
+/// Levels of the textures: the binary logarithm, rounded.
+Levels levels_of(const Floats& texels_per_pixel) {
+  Levels levels;
+  for (std::size_t i = 0; i < kSize; ++i)
+    levels[i] = static_cast<int>(std::bit_cast<std::uint32_t>(texels_per_pixel[i] * 1.4142136F) >> 23U) - 127;
+  return levels;
+}
+
+bool are_equal(const Levels& levels) {
+  unsigned difference = 0;
+  for (const int level : levels) difference |= static_cast<unsigned>(level ^ levels[0]);
+  return difference == 0;
+}
+
+MipMap::Neighbours<kSize> white() {
+  MipMap::Neighbours<kSize> out{};
+  for (Words& texels : out.texels) texels.fill(0xFFFFFFU);
+  return out;
+}
+
 }  // namespace
 
 /// Looks up the texels; without a texture they are white.
-void Renderer::Implementation::sample(const Met& met, const HitPacket& hits, const Floats& texels_per_pixel,
-                                      Look& look) const {
+template <bool kOne>
+MipMap::Neighbours<kSize> Renderer::Implementation::sample(const Met<kOne>& met, const HitPacket& hits,
+                                                           const Floats& texels_per_pixel) const {
+  if (kOne && met[0].texture < 0) return white();
+  const Levels levels = levels_of(texels_per_pixel);
+  Floats x, y;
   for (std::size_t i = 0; i < kSize; ++i) {
-    constexpr std::uint32_t kWhite = 0xFFFFFFU;
-    MipMap::Neighbours around{{kWhite, kWhite, kWhite, kWhite}, 0, 0};
-    if (met[i]->texture >= 0) {
-      const MipMap& texture = textures[static_cast<std::size_t>(met[i]->texture)];
-      // The level is the binary logarithm, rounded.
-      const int exponent =
-          static_cast<int>(std::bit_cast<std::uint32_t>(texels_per_pixel[i] * 1.4142136F) >> 23U) - 127;
-      const auto& [a, b, c] = met[i]->texture_coordinates;
-      around = texture.neighbours(std::clamp(exponent, 0, texture.levels() - 1), blend(hits, i, a.x(), b.x(), c.x()),
-                                  blend(hits, i, a.y(), b.y(), c.y()));
-    }
-    for (std::size_t k = 0; k < 4; ++k) look.texels[k][i] = around.texels[k];
-    look.right[i] = around.right;
-    look.down[i] = around.down;
+    const auto& [a, b, c] = met[i].texture_coordinates;
+    x[i] = blend(hits, i, a.x(), b.x(), c.x());
+    y[i] = blend(hits, i, a.y(), b.y(), c.y());
   }
+  const auto level = [&](const MipMap& map, std::size_t i) { return std::clamp(levels[i], 0, map.levels() - 1); };
+  if (kOne && are_equal(levels)) return texture(met[0]).neighbours(level(texture(met[0]), 0), x, y);
+  MipMap::Neighbours<kSize> out = white();
+  for (std::size_t i = 0; i < kSize; ++i) {
+    if (met[i].texture < 0) continue;
+    const MipMap& map = texture(met[i]);
+    const auto one = map.neighbours<1>(level(map, i), {x[i]}, {y[i]});
+    for (std::size_t k = 0; k < 4; ++k) out.texels[k][i] = one.texels[k][0];
+    out.right[i] = one.right[0];
+    out.down[i] = one.down[0];
+  }
+  return out;
 }
 
-Words Renderer::Implementation::shade(const Met& met, const HitPacket& hits, const Floats& cosines, float pixel) const {
+template <bool kOne>
+Words Renderer::Implementation::shade(const Met<kOne>& met, const HitPacket& hits, const Floats& cosines,
+                                      float pixel) const {
   Look look;
   Floats texels_per_pixel;
   for (std::size_t i = 0; i < kSize; ++i) {
     // Between the footprint's short side and its long one, which is 1 / cosine times as long.
-    texels_per_pixel[i] = met[i]->texels_per_m * (hits.distance[i] * pixel) / std::sqrt(std::max(cosines[i], 0.05F));
+    texels_per_pixel[i] = met[i].texels_per_m * (hits.distance[i] * pixel) / std::sqrt(std::max(cosines[i], 0.05F));
   }
   for (std::size_t i = 0; i < kSize; ++i) {
-    const auto& [a, b, c] = met[i]->light;
-    look.light[i] = static_cast<std::uint32_t>(blend(hits, i, a, b, c));
-    look.color[i] = plain_color(*met[i], hits, i);
+    const auto& [a, b, c] = met[i].light;
+    look.light[i] = static_cast<std::uint32_t>(static_cast<int>(blend(hits, i, a, b, c)));
   }
-  sample(met, hits, texels_per_pixel, look);
+  look.color = plain_colors(met, hits);
+  look.texture = sample(met, hits, texels_per_pixel);
   return mixed(look);
 }
 
 /// What the hits of a packet say, as far as its pixels lie in the image.
-void Renderer::Implementation::store(int column, int row, const RayPacket& rays, const HitPacket& hits, float pixel,
+void Renderer::Implementation::store(const Corner& corner, const RayPacket& rays, const HitPacket& hits, float pixel,
                                      RenderedFrame& frame) const {
-  Met met;
-  for (std::size_t i = 0; i < kSize; ++i) met[i] = &facets[std::min<std::size_t>(hits.triangle[i], facets.size() - 1)];
+  std::uint32_t difference = 0;
+  for (const std::uint32_t triangle : hits.triangle) difference |= triangle ^ hits.triangle[0];
+  const auto facet = [&](std::size_t i) { return &facets[std::min<std::size_t>(hits.triangle[i], facets.size() - 1)]; };
+  if (difference == 0) return store(Met<true>{{facet(0)}}, corner, rays, hits, pixel, frame);
+  Met<false> met;
+  for (std::size_t i = 0; i < kSize; ++i) met.facets[i] = facet(i);
+  store(met, corner, rays, hits, pixel, frame);
+}
+
+template <bool kOne>
+void Renderer::Implementation::store(const Met<kOne>& met, const Corner& corner, const RayPacket& rays,
+                                     const HitPacket& hits, float pixel, RenderedFrame& frame) const {
   const Floats cosines = cosines_of(met, rays);
-  Words colors{};
-  if (!frame.color.empty()) colors = shade(met, hits, cosines, pixel);
-  for (std::size_t i = 0; i < kSize; ++i) {
-    const int x = column + static_cast<int>(i % kColumns), y = row + static_cast<int>(i / kColumns);
-    if (x >= frame.depth.width || y >= frame.depth.height) continue;
-    frame.depth(x, y) = hits.distance[i];
-    frame.labels(x, y) = met[i]->class_id;
-    frame.instances(x, y) = met[i]->instance_id;
-    frame.cosines(x, y) = cosines[i];
-    if (!frame.color.empty()) frame.color(x, y) = pixel_of(colors[i]);
+  const bool has_color = !frame.color.empty();
+  const Words colors = has_color ? shade(met, hits, cosines, pixel) : Words{};
+  const int columns = std::min(kColumns, frame.depth.width - corner.column);
+  const int rows = std::min(kRows, frame.depth.height - corner.row);
+  for (int row = 0; row < rows; ++row) {
+    const auto first = static_cast<std::size_t>(corner.row + row) * static_cast<std::size_t>(frame.depth.width) +
+                       static_cast<std::size_t>(corner.column);
+    for (int column = 0; column < columns; ++column) {
+      const std::size_t pixel_index = first + static_cast<std::size_t>(column);
+      const auto i = static_cast<std::size_t>(row * kColumns + column);
+      frame.depth.pixels[pixel_index] = hits.distance[i];
+      frame.labels.pixels[pixel_index] = met[i].class_id;
+      frame.instances.pixels[pixel_index] = met[i].instance_id;
+      frame.cosines.pixels[pixel_index] = cosines[i];
+      if (has_color) frame.color.pixels[pixel_index] = pixel_of(colors[i]);
+    }
   }
 }
 
@@ -286,7 +360,7 @@ RenderedFrame Renderer::render(const geometry::PinholeCamera& camera, const geom
       for (int column = 0; column < camera.width; column += kColumns) {
         const RayPacket rays = rays_of(column, row);
         self.raycaster.cast(rays, kFarthest_m, hits);
-        self.store(column, row, rays, hits, pixel, frame);
+        self.store({column, row}, rays, hits, pixel, frame);
       }
     }
   };

@@ -1,7 +1,6 @@
 #include "controller/core/local_map.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 #include <set>
@@ -20,12 +19,22 @@ constexpr double kFoot_m = 0.07;       // by so much wider may be what is below 
 constexpr double kFootHeight_m = 0.2;  // what was seen from here down has shown its foot
 constexpr double kStands_m_s = 0.03, kStands_rad_s = 0.05;  // poses of a robot that stands differ by less
 
-mapping::VoxelIndex voxel_of(const Eigen::Vector2d& p_map, double height_m) {
-  const auto index = [](double metres) { return static_cast<std::int32_t>(std::floor(metres / kEdge_m)); };
-  return {index(p_map.x()), index(p_map.y()), index(height_m)};
+/// Of a voxel, along any axis.
+std::int32_t index_of(double metres) { return static_cast<std::int32_t>(std::floor(metres / kEdge_m)); }
+double center_of(std::int32_t index) { return (index + 0.5) * kEdge_m; }
+
+Eigen::Vector2d center_of(const PointColumn& column) { return {center_of(column.x), center_of(column.y)}; }
+/// Of the column in which a point lies.
+Eigen::Vector2d center_of_column(const Eigen::Vector2d& p_map) {
+  return {center_of(index_of(p_map.x())), center_of(index_of(p_map.y()))};
 }
 
-Eigen::Vector2d center_of(const mapping::VoxelIndex& v) { return {(v.x + 0.5) * kEdge_m, (v.y + 0.5) * kEdge_m}; }
+const auto is_before = [](const auto& a, const auto& b) {
+  return std::pair(a.p_map.x(), a.p_map.y()) < std::pair(b.p_map.x(), b.p_map.y());
+};
+
+/// What is kept is within a distance of the robot; the corners of a wide image may be three times as far.
+int reach_cells(double kept_m) { return static_cast<int>(std::ceil(4.0 * kept_m / kEdge_m)); }
 
 /// True when a depth image sees nothing at, or in front of, this point of the optical frame; false, too, when it does
 /// not know.
@@ -56,6 +65,8 @@ std::int8_t Grid::at(const Eigen::Vector2d& p_map) const {
                static_cast<std::size_t>(cell.x())];
 }
 
+LocalMap::LocalMap(const LocalMapConfig& config) : config_(config), points_(reach_cells(kept_m())) {}
+
 void LocalMap::add(const DepthView& view, const PlanarPose& T_map_base, time::Time stamp, bool has_path) {
   pass_time(T_map_base, stamp, has_path);
   forget(T_map_base);
@@ -77,34 +88,37 @@ void LocalMap::pass_time(const PlanarPose& T_map_base, time::Time stamp, bool ha
 }
 
 void LocalMap::move_points(const PlanarPose& T_new_old) {
-  Points moved;
-  for (const auto& [voxel, point] : points_) {
-    Point& there =
-        moved.try_emplace(voxel_of(T_new_old * center_of(voxel), (voxel.z + 0.5) * kEdge_m), point).first->second;
-    if (point.seen_s > there.seen_s) there = point;
+  RollingColumns moved(reach_cells(kept_m()));
+  for (const PointColumn& column : points_.columns()) {
+    const Eigen::Vector2d p_new = T_new_old * center_of(column);
+    for (const ColumnPoint& point : column.points) {
+      ColumnPoint& there = moved.at(index_of(p_new.x()), index_of(p_new.y()), point.z);
+      if (std::pair(point.seen_s, -point.misses) > std::pair(there.seen_s, -there.misses)) there = point;
+    }
   }
   points_ = std::move(moved);
   last_.reset();
 }
 
 void LocalMap::forget(const PlanarPose& T_map_base) {
-  const double kept_m = config_.range_m + 1.0;
-  std::erase_if(points_, [&](const auto& entry) {
-    const auto& [voxel, point] = entry;
-    const bool is_old = time_s_ - point.seen_s > config_.memory_s;
-    return is_old || (center_of(voxel) - T_map_base.translation()).norm() > kept_m;
+  points_.keep_if([&](PointColumn& column) {
+    std::erase_if(column.points, [&](const ColumnPoint& point) { return time_s_ - point.seen_s > config_.memory_s; });
+    return (center_of(column) - T_map_base.translation()).norm() <= kept_m();
   });
 }
 
 void LocalMap::look_through(const DepthView& view, const PlanarPose& T_map_base) {
   const PlanarPose T_base_map = T_map_base.inverse();
   const geometry::Pose T_camera_base = view.T_base_camera.inverse();
-  for (auto& [voxel, point] : points_) {
-    const Eigen::Vector2d p_base = T_base_map * center_of(voxel);
-    const Eigen::Vector3d p_camera = T_camera_base * Eigen::Vector3d(p_base.x(), p_base.y(), (voxel.z + 0.5) * kEdge_m);
-    if (looks_through(view, p_camera)) ++point.misses;
-  }
-  std::erase_if(points_, [this](const auto& entry) { return entry.second.misses >= config_.misses_to_clear; });
+  points_.keep_if([&](PointColumn& column) {
+    const Eigen::Vector2d p_base = T_base_map * center_of(column);
+    std::erase_if(column.points, [&](ColumnPoint& point) {
+      if (looks_through(view, T_camera_base * Eigen::Vector3d(p_base.x(), p_base.y(), center_of(point.z))))
+        ++point.misses;
+      return point.misses >= config_.misses_to_clear;
+    });
+    return true;
+  });
 }
 
 void LocalMap::add_hits(const DepthView& view, const PlanarPose& T_map_base) {
@@ -114,24 +128,25 @@ void LocalMap::add_hits(const DepthView& view, const PlanarPose& T_map_base) {
       if (depth_m < kNearest_m || depth_m > config_.range_m) continue;
       const Eigen::Vector3d p_base = view.T_base_camera * view.camera.unproject(column, row, depth_m);
       if (p_base.z() < config_.min_height_m || p_base.z() > config_.max_height_m) continue;
-      points_[voxel_of(T_map_base * p_base.head<2>(), p_base.z())] = {time_s_, 0};
+      const Eigen::Vector2d p_map = T_map_base * p_base.head<2>();
+      ColumnPoint& point = points_.at(index_of(p_map.x()), index_of(p_map.y()), index_of(p_base.z()));
+      point.seen_s = time_s_;
+      point.misses = 0;
     }
   }
 }
 
 /// Within a distance of a place; each column once, by x and then y.
 std::vector<LocalMap::Column> LocalMap::columns_near(const Eigen::Vector2d& p_map, double distance_m) const {
-  std::vector<std::array<std::int32_t, 3>> cells;
-  for (const auto& [voxel, point] : points_) {
-    if ((center_of(voxel) - p_map).squaredNorm() <= distance_m * distance_m)
-      cells.push_back({voxel.x, voxel.y, voxel.z});
-  }
-  std::sort(cells.begin(), cells.end());
-  const auto is_same_column = [](const auto& a, const auto& b) { return a[0] == b[0] && a[1] == b[1]; };
-  cells.erase(std::unique(cells.begin(), cells.end(), is_same_column), cells.end());  // the lowest stays
   std::vector<Column> columns;
-  columns.reserve(cells.size());
-  for (const auto& [x, y, z] : cells) columns.push_back({center_of({x, y, 0}), z * kEdge_m});
+  for (const PointColumn& column : points_.columns()) {
+    const Eigen::Vector2d center = center_of(column);
+    if ((center - p_map).squaredNorm() > distance_m * distance_m) continue;
+    const auto is_lower = [](const ColumnPoint& a, const ColumnPoint& b) { return a.z < b.z; };
+    const auto lowest = std::min_element(column.points.begin(), column.points.end(), is_lower);
+    columns.push_back({center, lowest->z * kEdge_m});
+  }
+  std::sort(columns.begin(), columns.end(), is_before);
   return columns;
 }
 
@@ -157,13 +172,10 @@ void LocalMap::add_unseen_feet(const Column& column, const std::vector<Column>& 
   const double shown_m = std::max(kFootHeight_m, config_.min_height_m + 2.0 * kEdge_m);  // what is lower is not kept
   if (column.lowest_m < shown_m) return;
   const double behind_m = (T_base_map * column.p_map).norm() + 0.5 * kFoot_m;
-  const auto is_before = [](const Column& a, const Column& b) {
-    return std::pair(a.p_map.x(), a.p_map.y()) < std::pair(b.p_map.x(), b.p_map.y());
-  };
   for (const int quarter : {0, 1, 2, 3}) {
     const Eigen::Vector2d aside = Eigen::Rotation2Dd(0.5 * std::numbers::pi * quarter) * Eigen::Vector2d(kFoot_m, 0.0);
     const Eigen::Vector2d p_map = column.p_map + aside, p_base = T_base_map * p_map;
-    const Column there{center_of(voxel_of(p_map, 0.0)), 0.0};
+    const Column there{center_of_column(p_map), 0.0};
     const bool is_taken = std::binary_search(columns.begin(), columns.end(), there, is_before);
     if (p_base.norm() < behind_m && !is_taken) points.push_back(p_base);
   }

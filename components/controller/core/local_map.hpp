@@ -2,15 +2,14 @@
 
 #include <cstdint>
 #include <optional>
-#include <unordered_map>
 #include <vector>
 
 #include "common/geometry/image.hpp"
 #include "common/geometry/pinhole_camera.hpp"
 #include "common/geometry/se3.hpp"
-#include "common/mapping/model/voxel_index.hpp"
 #include "common/time/time.hpp"
 #include "controller/core/planar.hpp"
+#include "controller/core/rolling_columns.hpp"
 
 namespace lapis::controller {
 
@@ -56,7 +55,7 @@ struct Surroundings {
 /// while because the camera does not see its feet; and beyond them the mapper's grids.
 class LocalMap {
  public:
-  explicit LocalMap(const LocalMapConfig& config) : config_(config) {}
+  explicit LocalMap(const LocalMapConfig& config);
 
   /// @param has_path a robot that stands without one forgets nothing: what is below its image is still there when it is
   /// sent on. With one, what it waits for may have gone unseen.
@@ -73,10 +72,6 @@ class LocalMap {
   bool is_known_free(const Eigen::Vector2d& p_map) const;
 
  private:
-  struct Point {
-    double seen_s = 0.0;  ///< time that counts of the last hit
-    int misses = 0;       ///< images that looked through it since
-  };
   struct Look {
     PlanarPose T_map_base;
     time::Time stamp;
@@ -86,12 +81,12 @@ class LocalMap {
     Eigen::Vector2d p_map;
     double lowest_m;  ///< above base_link
   };
-  using Points = std::unordered_map<mapping::VoxelIndex, Point, mapping::GridIndexHash>;
 
   void pass_time(const PlanarPose& T_map_base, time::Time stamp, bool has_path);
+  void forget(const PlanarPose& T_map_base);
   void look_through(const DepthView& view, const PlanarPose& T_map_base);
   void add_hits(const DepthView& view, const PlanarPose& T_map_base);
-  void forget(const PlanarPose& T_map_base);
+  double kept_m() const { return config_.range_m + 1.0; }
   std::vector<Column> columns_near(const Eigen::Vector2d& p_map, double distance_m) const;
   void add_unseen_feet(const Column& column, const std::vector<Column>& columns, const PlanarPose& T_base_map,
                        std::vector<Eigen::Vector2d>& points) const;
@@ -99,7 +94,7 @@ class LocalMap {
                     const std::vector<Column>& columns, std::vector<Eigen::Vector2d>& points) const;
 
   LocalMapConfig config_;
-  Points points_;
+  RollingColumns points_;
   std::optional<Look> last_;
   double time_s_ = 0.0;  // that counts so far
   Grid plan_;

@@ -16,7 +16,7 @@ struct SensorModel {
   double miss_gain = 0.4;       ///< m: log-odds loss of "occupied" by a miss
   double label_accuracy = 0.7;  ///< a: probability that a label is right, above 1/class_count
   double prior_occupied = 0.2;  ///< P0 of a voxel that was never observed
-  int class_count = 40;         ///< C, in [1, 65535]
+  int class_count = 40;         ///< C
   /// Prior share of each class given occupied, size C and sum 1; empty = uniform.
   std::vector<double> class_priors;
   /// The paper's own increments (psi = 1, phi = -0.1 for other classes and for misses) instead of those derived from

@@ -9,7 +9,7 @@ namespace lapis::mapping {
 
 struct IntegrationConfig {
   double min_range_m = 0.2;      ///< measurements nearer than this say nothing
-  double max_range_m = 5.0;      ///< Euclidean; returns beyond carve free space up to here, in [0.5, 20]
+  double max_range_m = 5.0;      ///< Euclidean; returns beyond carve free space up to here
   double min_height_m = -100.0;  ///< voxels whose centre is lower (z of the map frame) get no votes
   double max_height_m = 100.0;   ///< voxels whose centre is higher get no votes; above min_height_m
   /// A voxel gets a miss only if the ray leaves it at least so far before the measured surface.

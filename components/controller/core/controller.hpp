@@ -16,18 +16,18 @@ struct ControllerConfig {
   FanConfig fan;
   LocalMapConfig local_map;
   WatchdogConfig watchdog;
-  double look_ahead_m = 1.0;           ///< on the planner's path, in [0.2, 5]
-  double slow_within_m = 0.4;          ///< nearer to obstacles than this the robot slows down, in [0, 5]
-  double slowest_share = 0.4;          ///< of the full speed, beside an obstacle, in [0.05, 1]
-  double goal_tolerance_m = 0.15;      ///< in [0.01, 2]
-  double heading_tolerance_rad = 0.1;  ///< in [0.01, 3.2]
-  double patience_s = 1.0;             ///< without a free path before the robot tries to recover, in [0, 60]
-  double back_up_m = 0.3;              ///< in [0, 2]
-  double back_up_speed_m_s = 0.15;     ///< in [0.01, 1]
-  double recovery_turn_rad = 1.6;      ///< in [0, 3]
-  double progress_timeout_s = 6.0;     ///< in [1, 600]
-  double look_around_rad_s = 0.3;      ///< rate of a turn on the spot: slow, or images blur; in [0.05, 2]
-  double weak_turn_rad_s = 0.55;       ///< any turn's, at most, while views are weak, in [0.05, 10]
+  double look_ahead_m = 1.0;   ///< on the planner's path
+  double slow_within_m = 0.4;  ///< nearer to obstacles than this the robot slows down
+  double slowest_share = 0.4;  ///< of the full speed, beside an obstacle
+  double goal_tolerance_m = 0.15;
+  double heading_tolerance_rad = 0.1;
+  double patience_s = 1.0;  ///< without a free path before the robot tries to recover
+  double back_up_m = 0.3;
+  double back_up_speed_m_s = 0.15;
+  double recovery_turn_rad = 1.6;
+  double progress_timeout_s = 6.0;
+  double look_around_rad_s = 0.3;  ///< rate of a turn on the spot: slow, or images blur
+  double weak_turn_rad_s = 0.55;   ///< any turn's, at most, while views are weak
 };
 
 /// Points in base_link.

@@ -14,12 +14,12 @@
 namespace lapis::controller {
 
 struct LocalMapConfig {
-  double range_m = 4.0;       ///< of depth, and of what is kept around the robot, in [0.5, 20]
-  double min_height_m = 0.1;  ///< above base_link: what is lower can be driven over, in [-1, 10]
-  double max_height_m = 1.2;  ///< what is higher is passed under, in [-1, 10]
-  double memory_s = 60.0;     ///< what was seen longer ago is forgotten, in [0.1, 600]
-  int stride = 4;             ///< every stride-th pixel of every stride-th row is used, in [1, 32]
-  int misses_to_clear = 3;    ///< images that must look through an obstacle before it is gone, in [1, 100]
+  double range_m = 4.0;       ///< of depth, and of what is kept around the robot
+  double min_height_m = 0.1;  ///< above base_link: what is lower can be driven over
+  double max_height_m = 1.2;  ///< what is higher is passed under
+  double memory_s = 60.0;     ///< what was seen longer ago is forgotten
+  int stride = 4;             ///< every stride-th pixel of every stride-th row is used
+  int misses_to_clear = 3;    ///< images that must look through an obstacle before it is gone
 };
 
 /// A depth image and where its camera sits on the robot.

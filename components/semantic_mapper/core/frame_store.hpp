@@ -13,7 +13,7 @@
 namespace lapis::semantic_mapper {
 
 struct FrameStoreConfig {
-  int memory_mb = 1024;                ///< of packed frames and votes; the oldest beyond go to disk, in [0, 1000000]
+  int memory_mb = 1024;                ///< of packed frames and votes; the oldest beyond go to disk
   std::string spill_dir = "/var/tmp";  ///< folder of the unnamed file for them
 };
 

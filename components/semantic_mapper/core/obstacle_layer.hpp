@@ -14,8 +14,8 @@
 namespace lapis::semantic_mapper {
 
 struct ObstacleConfig {
-  double window_s = 10.0;   ///< what was seen longer ago is forgotten, in [0.1, 600]
-  int misses_to_clear = 3;  ///< frames that must look through an obstacle before it is gone, in [1, 100]
+  double window_s = 10.0;   ///< what was seen longer ago is forgotten
+  int misses_to_clear = 3;  ///< frames that must look through an obstacle before it is gone
 };
 
 /// What stands in the way now, beside a map that takes the world to be static: newest evidence wins. A voxel of the

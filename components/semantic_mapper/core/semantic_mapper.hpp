@@ -26,8 +26,8 @@
 namespace lapis::semantic_mapper {
 
 struct MapperConfig {
-  double resolution_m = mapping::kDefaultResolution_m;  ///< edge of a voxel, in [0.02, 0.5]
-  double tile_edge_m = mapping::kDefaultTileEdge_m;     ///< least edge of a tile, in [0.1, 6.4]; see enlarge_tiles
+  double resolution_m = mapping::kDefaultResolution_m;  ///< edge of a voxel
+  double tile_edge_m = mapping::kDefaultTileEdge_m;     ///< least edge of a tile; see enlarge_tiles
   mapping::IntegrationConfig integration;
   /// A frame is moved when a point at its median depth is off by more than this, in [0, 10] voxels.
   double re_anchor_threshold_voxels = 0.2;

@@ -17,7 +17,7 @@ struct DecisionConfig : ProposalConfig {
   /// What each of these would choose among the same candidates is reported, too.
   std::vector<std::shared_ptr<const Method>> compared_methods;
   GraphConfig graph;
-  double node_spacing_m = 1.0;      ///< between hallucinated key-frames, in [0.2, 10]
+  double node_spacing_m = 1.0;      ///< between hallucinated key-frames
   double sigma_limit_voxels = 0.5;  ///< of the position at a path's end: what is more exact is of no use; in (0, 10]
   /// The information of a view from a position with sigma s counts 1 / (1 + (s / this)^2) [m]; 0: all of it.
   double information_discount_sigma_m = 0.0;

@@ -18,20 +18,20 @@ namespace lapis::planner {
 struct ExplorerConfig {
   GoalMemoryConfig memory = {};
   PathConfig path = {};
-  double replan_period_s = 1.0;     ///< between decisions while a goal is being driven to; 0: none; in [0, 60]
-  double goal_tolerance_m = 0.3;    ///< in [0.05, 2]
-  double goal_tolerance_rad = 0.3;  ///< in [0.05, 3.2]
-  double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed, in [1, 600]
-  double slowest_m_s = 0.15;        ///< a path that takes longer than at this speed has failed, in [0.01, 5]
+  double replan_period_s = 1.0;  ///< between decisions while a goal is being driven to; 0: none
+  double goal_tolerance_m = 0.3;
+  double goal_tolerance_rad = 0.3;
+  double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed
+  double slowest_m_s = 0.15;        ///< a path that takes longer than at this speed has failed
   Allowance stall = {};             ///< without seeing anything new before a goal has failed
-  double settle_s = 1.5;            ///< after arriving, until the map shows whether the view has failed, in [0, 60]
-  double max_drift_m = 0.5;         ///< sigma of the position by odometry alone at a path's end, in [0, 100]
-  double lost_timeout_s = 60.0;     ///< without a pose, exploration has failed, in [1, 3600]
-  double path_spacing_m = 0.1;      ///< between poses of the path, in [0.02, 1]
-  int confirmations = 3;         ///< looks around, a full turn in all, that find nothing before it is over, in [2, 12]
-  double patience_s = 20.0;      ///< for obstacles that may go away before it is over, in [0, 600]
-  double max_left_share = 0.02;  ///< Leftover::share_to_blame with which it is over all the same, in [0, 1]
-  bool returns_home = false;     ///< when nothing is left
+  double settle_s = 1.5;            ///< after arriving, until the map shows whether the view has failed
+  double max_drift_m = 0.5;         ///< sigma of the position by odometry alone at a path's end
+  double lost_timeout_s = 60.0;     ///< without a pose, exploration has failed
+  double path_spacing_m = 0.1;      ///< between poses of the path
+  int confirmations = 3;            ///< looks around, a full turn in all, that find nothing before it is over
+  double patience_s = 20.0;         ///< for obstacles that may go away before it is over
+  double max_left_share = 0.02;     ///< Leftover::share_to_blame with which it is over all the same
+  bool returns_home = false;        ///< when nothing is left
 };
 
 enum class Tracking { kTracking, kDeadReckoning, kLost };

@@ -12,9 +12,9 @@
 namespace lapis::planner {
 
 struct GoalMemoryConfig {
-  double radius_m = 0.75;  ///< what lies nearer to each other is one target, in [0.1, 10]
-  double expiry_s = 30.0;  ///< time for which a target that failed is left alone, in [0, 3600]
-  int max_failures = 3;    ///< after so many it is left alone for good, in [1, 100]
+  double radius_m = 0.75;  ///< what lies nearer to each other is one target
+  double expiry_s = 30.0;  ///< time for which a target that failed is left alone
+  int max_failures = 3;    ///< after so many it is left alone for good
 };
 
 /// How a target failed.

@@ -22,7 +22,7 @@ double path_between(const geometry::Pose& a, const geometry::Pose& b);
 struct GraphConfig {
   Criterion criterion = Criterion::kD;  ///< of the graph, and of its edges' weights
   Sparsifier sparsifier = Sparsifier::kNone;
-  int max_edges = 10'000;  ///< what the sparsifier leaves of a larger graph, in [1, 10^7]
+  int max_edges = 10'000;  ///< what the sparsifier leaves of a larger graph
 };
 
 struct LoopClosure {

@@ -13,11 +13,11 @@ struct HallucinationConfig {
   /// Landmarks seen again of which a loop closure is impossible (or fewer), and as sure as it gets (or more); its
   /// probability is linear in between. 1 <= impossible < certain.
   int impossible_landmarks = 10, certain_landmarks = 100;
-  double max_probability = 0.6;     ///< of a loop closure, however many landmarks are seen again, in [0.05, 1]
-  double min_loop_path_m = 5.0;     ///< path_between() along the graph; nearer key-frames make no loop; in [0, 100]
-  double place_radius_m = 2.0;      ///< key-frames nearer to each other are one place, in [0.1, 20]
-  double revisit_spacing_m = 20.0;  ///< path after a loop closure before its place counts again, in [0, 1000]
-  int max_places = 6;               ///< of a path; the most probable ones; in [1, 8]
+  double max_probability = 0.6;     ///< of a loop closure, however many landmarks are seen again
+  double min_loop_path_m = 5.0;     ///< path_between() along the graph; nearer key-frames make no loop
+  double place_radius_m = 2.0;      ///< key-frames nearer to each other are one place
+  double revisit_spacing_m = 20.0;  ///< path after a loop closure before its place counts again
+  int max_places = 6;               ///< of a path; the most probable ones
   double loop_weight = 0.0;         ///< of a loop's edge, in weights of a metre of odometry; 0: as in the graph
 };
 

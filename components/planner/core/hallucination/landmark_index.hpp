@@ -19,7 +19,7 @@ struct CovisibilityConfig {
   double max_range_m = 5.0;            ///< of landmarks from the camera, in (0, 20]
   double max_viewing_angle_rad = 0.7;  ///< between the directions from which a landmark was and would be seen, (0, pi]
   double max_range_ratio = 2.0;        ///< between the distances, either way: descriptors bear so much scale; [1, 10]
-  double min_visibility = 0.5;         ///< probability that the ray to a landmark is free, in [0, 1]
+  double min_visibility = 0.5;         ///< probability that the ray to a landmark is free
 };
 
 /// Landmarks that a camera would see and that an old key-frame has seen.

@@ -5,7 +5,7 @@
 namespace lapis::planner {
 
 struct JointConfig {
-  double beta = 1.0;  ///< what a nat about the trajectory counts against one about the map, in [0, 100]
+  double beta = 1.0;  ///< what a nat about the trajectory counts against one about the map
 };
 
 /// (MI + beta d / 2 expected change of the log-determinant by loops) / cost, all in nats; d are the degrees of freedom

@@ -12,8 +12,8 @@
 namespace lapis::planner {
 
 struct FrontierConfig {
-  double max_extent_m = 2.0;  ///< diagonal of a frontier's box; longer ones are split; in [0.5, 50]
-  int representatives = 3;    ///< cells that stand for all of them, in [1, 16]
+  double max_extent_m = 2.0;  ///< diagonal of a frontier's box; longer ones are split
+  int representatives = 3;    ///< cells that stand for all of them
 };
 
 /// A piece of the border between free and unknown space.

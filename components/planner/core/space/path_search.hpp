@@ -10,11 +10,11 @@
 namespace lapis::planner {
 
 struct PathConfig {
-  double comfort_m = 0.5;        ///< clearance from which on nearness costs nothing, in [0.1, 5]; <= max_clearance_m
-  double nearness_weight = 2.0;  ///< a metre at the least clearance costs 1 + this, in [0, 100]
-  double escape_m = 1.5;         ///< the robot may leave a place that is not traversable within this, in [0, 2]
-  double max_detour = 1.5;       ///< an alternative's length over that of the best path, in [1, 5]
-  double min_apart_m = 1.0;      ///< an alternative is so far from every other path somewhere, in [0.1, 20]
+  double comfort_m = 0.5;        ///< clearance from which on nearness costs nothing; <= max_clearance_m
+  double nearness_weight = 2.0;  ///< a metre at the least clearance costs 1 + this
+  double escape_m = 1.5;         ///< the robot may leave a place that is not traversable within this
+  double max_detour = 1.5;       ///< an alternative's length over that of the best path
+  double min_apart_m = 1.0;      ///< an alternative is so far from every other path somewhere
 };
 
 /// Cost of a metre in a cell: 1 + nearness_weight * n^2, n from 1 at the least clearance to 0 at comfort_m.

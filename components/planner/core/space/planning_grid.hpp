@@ -18,11 +18,11 @@ namespace lapis::planner {
 
 struct GridConfig {
   mapping::HeightBand band;          ///< what the robot can run into
-  double bottom_m = 0.25;            ///< lowest part of the band, which must have been seen in free cells, in [0, 10]
-  double footprint_radius_m = 0.20;  ///< of the robot's disc, in [0.05, 2]
-  double margin_m = 0.05;            ///< kept besides, in [0, 1]
-  double max_clearance_m = 1.0;      ///< distances are known up to here, in [0.1, 5]
-  double obstacle_expiry_s = 10.0;   ///< an obstacle that no grid shows any more is forgotten, in [0.1, 600]
+  double bottom_m = 0.25;            ///< lowest part of the band, which must have been seen in free cells
+  double footprint_radius_m = 0.20;  ///< of the robot's disc
+  double margin_m = 0.05;            ///< kept besides
+  double max_clearance_m = 1.0;      ///< distances are known up to here
+  double obstacle_expiry_s = 10.0;   ///< an obstacle that no grid shows any more is forgotten
 };
 
 /// Occupancy by cell, row by row from the lower left corner; axes parallel to those of the map frame.

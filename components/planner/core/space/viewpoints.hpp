@@ -12,10 +12,10 @@
 namespace lapis::planner {
 
 struct ViewpointConfig {
-  double min_distance_m = 0.5;  ///< from the cell of the frontier that is looked at, in [0, 10]
-  double max_distance_m = 2.0;  ///< above min_distance_m; below the sensor's range; in [0.25, 20]
-  int max_per_frontier = 8;     ///< in [1, 64]
-  bool nearest_first = false;   ///< to what is looked at; false: drawn at random
+  double min_distance_m = 0.5;  ///< from the cell of the frontier that is looked at
+  double max_distance_m = 2.0;  ///< above min_distance_m; below the sensor's range
+  int max_per_frontier = 8;
+  bool nearest_first = false;  ///< to what is looked at; false: drawn at random
   std::int64_t seed = 1;
 };
 

@@ -12,10 +12,10 @@
 namespace lapis::planner {
 
 struct TareConfig {
-  double horizon_m = 4.0;     ///< half the edge of the local area around the robot, in [1, 20]
-  double lattice_m = 0.5;     ///< between viewpoints, in [0.1, 2]
-  double range_m = 3.0;       ///< to which a view covers frontiers, in [0.5, 20]
-  double min_reward_m = 0.5;  ///< of frontier that a viewpoint has to cover besides the others, in [0.05, 10]
+  double horizon_m = 4.0;     ///< half the edge of the local area around the robot
+  double lattice_m = 0.5;     ///< between viewpoints
+  double range_m = 3.0;       ///< to which a view covers frontiers
+  double min_reward_m = 0.5;  ///< of frontier that a viewpoint has to cover besides the others
   std::int64_t seed = 1;
 };
 

@@ -26,6 +26,7 @@ ESTIMATE = "trajectory_estimate.txt"
 TRUTH = "trajectory_ground_truth.txt"
 DECISIONS = "decisions.csv"
 BLUE, ORANGE, GREY = "#1565c0", "#e65100", "#9e9e9e"
+OTHER_METHODS = (("s", BLUE), ("D", "#6a1b9a"), ("^", "#2e7d32"), ("v", "#c62828"), ("p", "#00838f"))
 TIERS = {"vision": "#66bb6a", "surfaces": "#42a5f5", "odometry": "#ffb300", "none": "#d32f2f"}  # frames.csv
 PLANNER_STATES = {"EXPLORING": "#aed581", "RECOVERING": "#ffb300", "RETURNING": "#90caf9", "PAUSED": "#ce93d8", "IDLE": "#eeeeee",
                   "DONE": "#2e7d32", "GAVE_UP": "#e65100", "FAILED": "#d32f2f"}
@@ -299,7 +300,8 @@ def draw_candidates(axes, rows, count, shade, path):
         axes.annotate(str(i + 1), (x[i], y[i]), xytext=(4, 4), textcoords="offset points", fontsize=8)
     others = [column for column in rows[0] if column.startswith(CHOSEN_BY)]
     rings = [("is_chosen", "o", ORANGE, "chosen")]
-    rings += [(column, "s", BLUE, f"{column.removeprefix(CHOSEN_BY)} would choose") for column in others]
+    rings += [(column, marker, colour, f"{column.removeprefix(CHOSEN_BY)} would choose")
+              for column, (marker, colour) in zip(others, itertools.cycle(OTHER_METHODS))]
     for size, (column, marker, colour, name) in zip(itertools.count(15, 4), rings):
         chosen = [i for i, row in enumerate(rows) if row[column] == "1"]
         if chosen:

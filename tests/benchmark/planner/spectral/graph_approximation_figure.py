@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Draws what lapis_planner_graph_approximation --csv wrote: a loop's worth by the Laplacian and by the whole information.
 
 usage: graph_approximation_figure.py CSV_FILE PNG_FILE

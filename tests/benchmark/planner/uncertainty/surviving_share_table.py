@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """Judges what lapis_surviving_share --rows wrote: the share of a map that survives, predicted and true.
 
 usage: surviving_share_table.py [--tuning CSV_FILE] [--column predicted|predicted_wide] [--figure PNG_FILE] CSV_FILE

@@ -1,6 +1,7 @@
 #include "evaluator/core/map/plain_fusion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <stdexcept>
 
 namespace lapis::evaluator {
@@ -10,14 +11,15 @@ constexpr int kBits = 21;
 constexpr std::int64_t kOffset = std::int64_t{1} << (kBits - 1);
 constexpr std::uint64_t kMask = (std::uint64_t{1} << kBits) - 1;
 
-std::int64_t floor_to_int(double value) {
-  const auto truncated = static_cast<std::int64_t>(value);
+std::int32_t floor_to_int(double value) {
+  const auto truncated = static_cast<std::int32_t>(value);
   return truncated - (value < static_cast<double>(truncated) ? 1 : 0);
 }
 
-std::uint64_t pack(const Eigen::Vector3d& p_voxels) {
-  const auto part = [](double v) { return static_cast<std::uint64_t>(floor_to_int(v) + kOffset); };
-  return (part(p_voxels.x()) << (2 * kBits)) | (part(p_voxels.y()) << kBits) | part(p_voxels.z());
+/// The indices are within kMaxVoxelIndex.
+std::uint64_t pack(std::int32_t x, std::int32_t y, std::int32_t z) {
+  const auto part = [](std::int32_t i) { return static_cast<std::uint64_t>(i + kOffset); };
+  return (part(x) << (2 * kBits)) | (part(y) << kBits) | part(z);
 }
 
 VoxelIndex unpack(std::uint64_t key) {
@@ -49,6 +51,17 @@ std::vector<double> column_rays(const geometry::PinholeCamera& camera) {
   return rays;
 }
 
+/// Coordinate along one axis of the voxels that the pixels of a row lie in.
+/// @param origin, row_ray, column_ray that coordinate of the camera, and of rays [voxels]
+void locate(const float* depth_m, const std::vector<double>& ray_x, double origin, double row_ray, double column_ray,
+            std::vector<std::int32_t>& indices) {
+  constexpr double kFarAway = 1e9;  // far beyond any range
+  for (std::size_t u = 0; u < ray_x.size(); ++u) {
+    const double coordinate = origin + static_cast<double>(depth_m[u]) * (row_ray + column_ray * ray_x[u]);
+    indices[u] = floor_to_int(std::clamp(coordinate, -kFarAway, kFarAway));
+  }
+}
+
 }  // namespace
 
 PlainFusion::PlainFusion(const PlainFusionConfig& config) : config_(config) {
@@ -70,18 +83,21 @@ void PlainFusion::add(const geometry::PinholeCamera& camera, const geometry::Dep
   const double min_squared = config_.min_range_m * config_.min_range_m;
   const double max_squared = config_.max_range_m * config_.max_range_m;
   const std::vector<double> ray_x = column_rays(camera);
+  std::array<std::vector<std::int32_t>, 3> indices;
+  for (auto& of_axis : indices) of_axis.resize(ray_x.size());
   Run run;
   for (int v = 0; v < camera.height; ++v) {
     const double y = (v - camera.cy) / camera.fy;
     const Eigen::Vector3d row_ray = R.col(1) * y + R.col(2);
-    for (int u = 0; u < camera.width; ++u) {
-      const double z = depth(u, v);
-      const double x = ray_x[static_cast<std::size_t>(u)];
+    const float* depth_m = &depth(0, v);
+    for (int axis = 0; axis < 3; ++axis)
+      locate(depth_m, ray_x, t[axis], row_ray[axis], R(axis, 0), indices[static_cast<std::size_t>(axis)]);
+    for (std::size_t u = 0; u < ray_x.size(); ++u) {
+      const double z = depth_m[u], x = ray_x[u];
       const double range_squared = z * z * (1.0 + x * x + y * y);
       if (!(z > 0.0 && range_squared >= min_squared && range_squared <= max_squared)) continue;
-      const Eigen::Vector3d p = t + z * (row_ray + R.col(0) * x);
-      const std::uint64_t key = pack(p);
-      const std::uint16_t label = labels.empty() ? std::uint16_t{0} : labels(u, v);
+      const std::uint64_t key = pack(indices[0][u], indices[1][u], indices[2][u]);
+      const std::uint16_t label = labels.empty() ? std::uint16_t{0} : labels(static_cast<int>(u), v);
       if (key != run.key || label != run.label) {
         count(run);
         run = {key, label, 0};

@@ -33,7 +33,8 @@ const auto is_before = [](const auto& a, const auto& b) {
   return std::pair(a.p_map.x(), a.p_map.y()) < std::pair(b.p_map.x(), b.p_map.y());
 };
 
-/// What is kept is within a distance of the robot; the corners of a wide image may be three times as far.
+/// What is kept is within a distance of the robot; what a wide image adds beyond it may take the place of what is kept
+/// on the other side, for the moment until it is forgotten.
 int reach_cells(double kept_m) { return static_cast<int>(std::ceil(4.0 * kept_m / kEdge_m)); }
 
 /// True when a depth image sees nothing at, or in front of, this point of the optical frame; false, too, when it does
@@ -112,11 +113,11 @@ void LocalMap::look_through(const DepthView& view, const PlanarPose& T_map_base)
   const geometry::Pose T_camera_base = view.T_base_camera.inverse();
   points_.keep_if([&](PointColumn& column) {
     const Eigen::Vector2d p_base = T_base_map * center_of(column);
-    std::erase_if(column.points, [&](ColumnPoint& point) {
+    for (ColumnPoint& point : column.points) {
       if (looks_through(view, T_camera_base * Eigen::Vector3d(p_base.x(), p_base.y(), center_of(point.z))))
         ++point.misses;
-      return point.misses >= config_.misses_to_clear;
-    });
+    }
+    std::erase_if(column.points, [&](const ColumnPoint& point) { return point.misses >= config_.misses_to_clear; });
     return true;
   });
 }

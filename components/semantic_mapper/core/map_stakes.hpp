@@ -25,7 +25,7 @@ using Stake = std::vector<std::int64_t>;
 /// How much of a map hangs on which key-frame: every occupied voxel counts one, split over the key-frames whose frames
 /// hit it by share of the weight of their votes. When the pose graph moves a key-frame, so much of the map moves with
 /// it; when it has the key-frame wrong, so much is wrong. Free space counts nothing. Times what a first look at a
-/// surface tells, this is the information W_i(r) of `docs/decisions/0050`. What an earlier run left in a map that is
+/// surface tells, this is what the map knows by that key-frame. What an earlier run left in a map that is
 /// resumed hangs on no key-frame.
 class MapStakes {
  public:
@@ -36,10 +36,11 @@ class MapStakes {
   void add(std::uint64_t keyframe, const Eigen::Vector3d& p_map_keyframe, const mapping::FrameVotes& votes);
   /// Votes that have gone; the position is the one with which they came.
   void subtract(std::uint64_t keyframe, const Eigen::Vector3d& p_map_keyframe, const mapping::FrameVotes& votes);
-  /// Brings the stakes up to date with the map, into and out of which the same votes have come and gone.
+  /// Brings the stakes up to date with the map, into and out of which the same votes have come and gone. To be called
+  /// now and then: until then every vote is remembered.
   void update(const mapping::VoxelMap& map);
 
-  /// By key-frame, as of the last update; none of them is zero altogether.
+  /// By key-frame, right after update(); none of them is zero altogether.
   const std::map<std::uint64_t, Stake>& stakes() const { return stakes_; }
 
  private:

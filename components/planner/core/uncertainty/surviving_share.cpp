@@ -7,7 +7,7 @@
 namespace lapis::planner {
 
 double surviving_share(double sigma_m, double edge_m) {
-  if (!(sigma_m > 0.0)) return 1.0;
+  if (sigma_m == 0.0) return 1.0;
   const double edges = edge_m / sigma_m;
   if (edges == 0.0) return 0.0;
   const double share = std::erf(edges / std::numbers::sqrt2) +

@@ -19,7 +19,7 @@ struct Survival {
   double sigma_m = 0.0;         ///< the same as predicted, along one axis
 };
 
-/// Chosen before any run of the calibration buildings, from the five graphs of the method's page.
+/// Chosen before any run of the calibration buildings.
 inline constexpr double kWideFactor = 1.3;
 
 /// @param truth T_map_camera of the graph's key-frames

@@ -117,12 +117,13 @@ class Journey {
 constexpr const char* kHeader =
     "scene,world,seed,t_s,keyframes,loops,path_m,voxels,actual,predicted,predicted_wide,common,ate_m,sigma_m";
 
-/// A row is flushed as soon as it is there.
+/// Rows are kept for whole runs only.
 class Rows {
  public:
   Rows(const std::string& file, std::string world) : world_(std::move(world)) {
     if (file.empty()) return;
-    for (std::ifstream known(file); known && std::getline(known, line_);) done_.insert(line_.substr(0, key_end(line_)));
+    std::ifstream known(file);
+    for (std::string line; std::getline(known, line);) done_.insert(line.substr(0, key_end(line)));
     const bool is_new = done_.empty();
     stream_.open(file, std::ios::app);
     if (!stream_) throw std::runtime_error(file + " cannot be written");
@@ -140,11 +141,14 @@ class Rows {
     std::printf("%s,%s\n", key(scene, seed).c_str(), text);
     std::fflush(stdout);
   }
-  /// Of a whole run.
+  /// What was added since belongs to a run that is whole.
   void keep() {
     if (stream_.is_open()) stream_ << waiting_ << std::flush;
     waiting_.clear();
   }
+
+  /// What was added belongs to a run that ended before its time.
+  void forget() { waiting_.clear(); }
 
  private:
   std::string key(const std::string& scene, int seed) const {
@@ -156,7 +160,7 @@ class Rows {
     return end;
   }
 
-  std::string world_, line_, waiting_;
+  std::string world_, waiting_;
   std::set<std::string> done_;
   std::ofstream stream_;
 };
@@ -165,6 +169,7 @@ void travel(const Options& options, const std::string& scene, Rows& rows) {
   auto [simulated, slam] = slam::benchmark::tour_config(options.overrides, options.worlds);
   simulated.scene = scene;
   simulated.seed = options.seed;
+  rows.forget();
   Journey journey(slam.method, geometry::T_base_camera(camera_mount(simulated.robot.camera)));
   double next_s = options.period_s, now_s = 0.0;
   try {
@@ -204,8 +209,9 @@ constexpr const char* kHelp =
     R"(Tours of simulated scenes through slam and mapper, without DDS. A row for every snapshot: how much of what the map
 knows of surfaces is still in the voxels where it belongs. actual: by the true errors of the key-frames; predicted: by
 the marginals of the pose graph; predicted_wide: with every sigma times 1.3; common: hits of occupied voxels that a map
-of the same frames at their true poses has in the same voxel, too. ate_m, sigma_m: error and predicted error of the
-key-frames, not aligned.)";
+of the same frames at their true poses has in the same voxel, too. ate_m: error of the key-frames' positions, not
+aligned; sigma_m: the predicted one, along one axis of the plane. A snapshot waits for optimisations under way and
+applies them, so that rows of other periods are those of other runs.)";
 
 }  // namespace
 }  // namespace lapis::planner::benchmark

@@ -11,6 +11,7 @@ square of predicted less true share. With --tuning, beside them the error of a p
 import argparse
 import collections
 import csv
+import itertools
 import math
 import sys
 
@@ -87,7 +88,7 @@ def draw(rows, name, file):
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt  # pylint: disable=import-outside-toplevel
     figure, axes = plt.subplots(figsize=(6, 6), layout="constrained")
-    for world, color in zip(sorted({row["world"] for row in rows}), ("#1565c0", "#e65100", "#2e7d32")):
+    for world, color in zip(sorted({row["world"] for row in rows}), itertools.cycle(("#1565c0", "#e65100", "#2e7d32"))):
         of_world = [row for row in rows if row["world"] == world]
         last = last_of_runs(of_world)
         axes.plot(column(of_world, name), column(of_world, "actual"), ".", color=color, markersize=4, alpha=0.5)

@@ -34,7 +34,7 @@ Information random_information(std::mt19937& random) {
   return 100.0 * (root * root.transpose() + Eigen::Matrix<double, 6, 6>::Identity());
 }
 
-/// Around a square, with loops; ids have gaps.
+/// Round and round, with loops; ids have gaps.
 Graph random_graph(int nodes, int loops) {
   std::mt19937 random(5);
   Graph graph;

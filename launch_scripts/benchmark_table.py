@@ -277,7 +277,10 @@ def write_csv(target, groups):
 def main():
     target, *sources = usage.arguments(__doc__, least=2)
     if target == "--rows":
-        _, rows = read_table(pathlib.Path(sources[0]))
+        table = pathlib.Path(sources[0])
+        if not table.is_file():
+            sys.exit(f"{table}: no such file")
+        _, rows = read_table(table)
         groups = runs_of_rows(wanted_of(rows, sources[1:]))
         if not groups:
             sys.exit(f"{sources[0]}: no such rows")

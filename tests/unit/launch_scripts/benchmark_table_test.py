@@ -104,6 +104,11 @@ class BenchmarkTableTest(unittest.TestCase):
         self.assertEqual(status, 0)
         self.assertEqual(joined, [row | {"hardest push m/s": "-"} for row in rows])
 
+    def test_rows_of_a_file_that_is_not_there(self):
+        missing = self.folder / "none.csv"
+        result = subprocess.run([sys.executable, "-B", SCRIPT, "--rows", missing], capture_output=True, text=True)
+        self.assertEqual((result.returncode, result.stderr), (1, f"{missing}: no such file\n"))
+
     def test_what_is_no_table_is_refused(self):
         other = self.folder / "other.csv"
         other.write_text("scene,method\n1,2\n")

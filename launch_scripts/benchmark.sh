@@ -7,7 +7,7 @@ source "$(dirname "$0")/lib.sh"
 usage() {
   cat <<'TEXT'
 usage: benchmark.sh [--scenes NAME[:S],...] [--methods METHOD,...] [--runs N] [--out DIR] [--world FILE]
-                    [--table FILE] [--jobs N] [--no-preset] [--set KEY=VALUE]...
+                    [--table FILE] [--jobs N] [--then HOW] [--no-preset] [--set KEY=VALUE]...
 
 Runs every scene (bundled names, generated buildings, or files) with every method and seeds 1 to N, and prints a table with all runs, those
 that failed included, and their medians. DIR has the same as runs.csv, box plots and the explored share over time as
@@ -27,7 +27,7 @@ benchmark that was interrupted continues where it was.
                          stay. launch_scripts/benchmark_table.py --rows FILE prints it
   --jobs N               runs that go side by side, default 1; each has a DDS domain of its own, from ROS_DOMAIN_ID
                          (or 0) on
-  --no-preset, --set KEY=VALUE  as for explore.sh and replay.sh
+  --then HOW, --no-preset, --set KEY=VALUE  as for explore.sh and replay.sh
 Real-time factors are those of a machine that has nothing else to do: the table names the load it found. Exit status:
 0 all runs succeeded, 1 a run failed (it is in the table as FAILED, and is repeated the next time), 2 bad options, or
 programs that change while they run, 130 and 143 interrupted.
@@ -35,11 +35,11 @@ TEXT
 }
 
 scenes=apartment:300,large_building:600 methods=tour runs=5 out=$repository/out/benchmark table="" jobs=1
-preset=() settings=() settings_text="" worlds=() world_text="" world_hashes=()
+exploration=() settings=() settings_text="" worlds=() world_text="" world_hashes=()
 while [ $# -gt 0 ]; do
   case $1 in
     -h | --help) usage && exit 0 ;;
-    --scenes | --methods | --runs | --out | --world | --table | --jobs | --set)
+    --scenes | --methods | --runs | --out | --world | --table | --jobs | --then | --set)
       [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;&
     --scenes) scenes=$2 && shift ;;
     --methods) methods=$2 && shift ;;
@@ -52,7 +52,8 @@ while [ $# -gt 0 ]; do
       world_hashes+=("$(sha256sum 2>/dev/null <"$2" | cut -c 1-16)") || die "--world $2: no file that can be read"
       worlds+=(--world "$2") world_text+="${world_text:+ }$(basename "$2" .yaml)" && shift ;;
     --table) table=$2 && shift ;;
-    --no-preset) preset=(--no-preset) settings_text+="${settings_text:+ }--no-preset" ;;
+    --then) exploration+=(--then "$2") settings_text+="${settings_text:+ }--then $2" && shift ;;
+    --no-preset) exploration+=(--no-preset) settings_text+="${settings_text:+ }--no-preset" ;;
     --set) settings+=(--set "$2") settings_text+="${settings_text:+ }$2" && shift ;;
     *) die "unknown option $1 (see --help)" ;;
   esac
@@ -89,7 +90,7 @@ entries_of() {
 
 # benchmark SCENE SECONDS METHOD: all seeds. Only programs that take part are in the identity.
 benchmark() {
-  local scene=$1 method=$3 name seed folder id identity hashes=("${world_hashes[@]}") command=(explore.sh --method "$3" --duration "$2" "${preset[@]}")
+  local scene=$1 method=$3 name seed folder id identity hashes=("${world_hashes[@]}") command=(explore.sh --method "$3" --duration "$2" "${exploration[@]}")
   local programs=(simulator slam semantic_mapper planner controller evaluator supervisor)
   [ "$method" != tour ] || command=(replay.sh) programs=(simulator slam semantic_mapper evaluator supervisor)
   name=$(basename "$scene" .yaml)

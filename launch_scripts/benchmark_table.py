@@ -122,7 +122,8 @@ class FolderRun(Run):
             return "FAILED"
         if self.metrics["exit_reason"] == "lost":
             return "lost"
-        names = {"DONE": "done", "GAVE_UP": "gave up", "FAILED": "planner failed", None: "completed"}
+        names = {"DONE": "done", "GAVE_UP": "gave up", "FAILED": "planner failed", None: "completed",
+                 "CONSOLIDATING": "done"}
         return names.get(self.metrics["planner_state"], "time up")
 
     def _find(self, file, pattern):

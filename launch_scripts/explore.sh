@@ -7,7 +7,7 @@ source "$(dirname "$0")/lib.sh"
 usage() {
   cat <<'TEXT'
 usage: explore.sh [--scene NAME|DIR] [--method METHOD] [--duration S] [--seed N] [--out DIR] [--robot FILE]...
-                  [--world FILE]... [--no-preset] [--freerun] [--restart] [--set KEY=VALUE]...
+                  [--world FILE]... [--then HOW] [--no-preset] [--freerun] [--restart] [--set KEY=VALUE]...
 
 Lets the robot explore a simulated building until nothing reachable is left or the time is up, and leaves a run folder
 with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figures.
@@ -18,6 +18,8 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
                    fixed_n or joint (components/planner/README.md); with the settings of config/methods/METHOD,
                    where there is such a folder
   --no-preset      without these settings: the method's utility alone
+  --then HOW       the run lasts for --duration, and when nothing is left before that the robot stands (none), or drives
+                   through old places, so that loops are closed: the nearest, random ones, or the best by method lapis
   --duration S     simulated seconds after which the run ends; default: 300 (large_building needs 600)
   --seed N         of the simulator: start, noise, jitter of furniture; default: 1
   --out DIR        run folder; default: out/<name of scene>_<method>_<seed>
@@ -37,7 +39,7 @@ TEXT
 command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" has_preset=1 options=()
 while [ $# -gt 0 ]; do
   case $1 in
-    --scene | --method | --duration | --seed | --out | --robot | --world | --set)
+    --scene | --method | --duration | --seed | --out | --robot | --world | --then | --set)
       [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;
   esac
   case $1 in
@@ -48,6 +50,7 @@ while [ $# -gt 0 ]; do
     --seed) seed=$2 && shift ;;
     --out) out=$2 && shift ;;
     --robot | --world) options+=(--config "$2") && shift ;;
+    --then) options+=(--set "planner.then=$2" --set simulator.ends_when_explored=false) && shift ;;
     --no-preset) has_preset=0 ;;
     --freerun) options+=(--variant freerun) ;;
     --restart) options+=(--restart) ;;

@@ -14,6 +14,7 @@ std::string state_name(const lapis_msgs::msg::PlannerStatus& status) {
     case STATE_DONE: return "DONE";
     case STATE_GAVE_UP: return "GAVE_UP";
     case STATE_FAILED: return "FAILED";
+    case STATE_CONSOLIDATING: return "CONSOLIDATING";
     default: return "UNKNOWN";
   }
 }

@@ -29,7 +29,7 @@ BLUE, ORANGE, GREY = "#1565c0", "#e65100", "#9e9e9e"
 OTHER_METHODS = (("s", BLUE), ("D", "#6a1b9a"), ("^", "#2e7d32"), ("v", "#c62828"), ("p", "#00838f"))
 TIERS = {"vision": "#66bb6a", "surfaces": "#42a5f5", "odometry": "#ffb300", "none": "#d32f2f"}  # frames.csv
 PLANNER_STATES = {"EXPLORING": "#aed581", "RECOVERING": "#ffb300", "RETURNING": "#90caf9", "PAUSED": "#ce93d8", "IDLE": "#eeeeee",
-                  "DONE": "#2e7d32", "GAVE_UP": "#e65100", "FAILED": "#d32f2f"}
+                  "CONSOLIDATING": "#4db6ac", "DONE": "#2e7d32", "GAVE_UP": "#e65100", "FAILED": "#d32f2f"}
 LEAST_SHOWN_M = 1e-3  # on a logarithmic axis
 HEAD_ROOM_M = 0.5  # what lies higher above the camera (ceilings) would hide the rooms
 DECISION_BARS = (("utility", "utility"), ("path_information_nats", "information\nof the path\n[nat]"),

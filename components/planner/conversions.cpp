@@ -233,6 +233,7 @@ std::uint8_t to_message(State state) {
     case State::kDone: return STATE_DONE;
     case State::kGaveUp: return STATE_GAVE_UP;
     case State::kFailed: return STATE_FAILED;
+    case State::kConsolidating: return STATE_CONSOLIDATING;
   }
   return STATE_FAILED;
 }

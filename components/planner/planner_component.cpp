@@ -62,6 +62,8 @@ config::Rules PlannerComponent::rules(const Config& config) {
           {comfort_m > robot.radius_m + grid.margin_m,
            "planner.path.comfort_m has to be more than robot.radius_m and planner.grid.margin_m together"},
           {comfort_m <= grid.max_clearance_m, "planner.path.comfort_m has to be at most planner.grid.max_clearance_m"},
+          {config.then == "none" || !config.explorer.returns_home,
+           "planner.then and planner.returns_home exclude each other"},
           {config.record_situations_every == 0 || !config.output_dir.empty(),
            "planner.record_situations_every needs planner.output_dir"}};
 }
@@ -239,10 +241,10 @@ void PlannerComponent::take_decision(bool waits) {
   context_.status().value("decisions", decisions_);
   if (!decision.problem.empty()) drop("pose graph", decision.problem);
   const bool is_taken = explorer_.take(decision, report());
-  candidates_.publish(to_message(decision, decisions_, config_.method, header()));
+  candidates_.publish(to_message(decision, decisions_, deciding_method_, header()));
   const Decision* driven = is_taken && decision.chosen ? &decision : nullptr;
   const auto ended = ledger_.note(driven, surroundings_->information_nats(), last_robot_, stamp_);
-  if (log_ && !log_->write(decision, ended, decisions_, config_.method, stamp_)) {
+  if (log_ && !log_->write(decision, ended, decisions_, deciding_method_, stamp_)) {
     spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, DecisionLog::kFile);
     log_.reset();
   }
@@ -332,6 +334,8 @@ void PlannerComponent::begin_decision() {
   input.robot = *robot_;
   input.memory = explorer_.memory(stamp_);
   input.config = config_.decision;
+  deciding_method_ = is_consolidating() ? "then_" + config_.then : config_.method;
+  if (is_consolidating()) input.config.method = config_.consolidation;
   input.knowledge = knowledge_;
   const bool has_edges = graph_ && graph_->session == session_ && !graph_->edges.empty();
   if (has_edges && versions_of_graph() != known_graph_) {
@@ -340,7 +344,7 @@ void PlannerComponent::begin_decision() {
     if (landmarks_.state() && landmarks_.state()->session == graph_->session) input.landmarks = landmarks_.tiles();
     known_graph_ = versions_of_graph();
   }
-  if (config_.record_situations_every > 0) record(input);
+  if (config_.record_situations_every > 0 && !is_consolidating()) record(input);
   worker_.start(std::move(input), frames_ + static_cast<std::uint64_t>(config_.decision_latency_frames));
 }
 

@@ -65,6 +65,7 @@ class PlannerComponent {
   void update_provisional_area();
   Report report() const;
   std::string reason() const;
+  bool is_consolidating() const { return explorer_.state() == State::kConsolidating; }
   GraphVersions versions_of_graph() const;
   void begin_decision();
   void record(const DecisionInput& input);
@@ -114,7 +115,8 @@ class PlannerComponent {
   PathLedger ledger_;
   DecisionWorker worker_;
   std::optional<DecisionLog> log_;
-  Decision decision_;  // the last one
+  Decision decision_;           // the last one
+  std::string deciding_method_;  // of it, or of the one that is being made
   std::uint64_t decisions_ = 0, shown_decision_ = 0;
   std::size_t marker_readers_ = 0;
   double decision_time_s_ = 0.0;

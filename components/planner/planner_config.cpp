@@ -1,5 +1,7 @@
 #include "planner/planner_config.hpp"
 
+#include "planner/core/methods/consolidation.hpp"
+
 namespace lapis::planner {
 namespace {
 
@@ -27,6 +29,12 @@ std::vector<std::string> all_methods() {
   return names;
 }
 
+std::vector<std::string> all_consolidations() {
+  std::vector<std::string> names = consolidation_names();
+  names.insert(names.begin(), "none");
+  return names;
+}
+
 std::vector<std::string> comparable_methods() {
   std::vector<std::string> names = method_names();
   std::erase_if(names, [](const std::string& name) { return make_method(name)->has_own_candidates(); });
@@ -38,6 +46,8 @@ PlannerComponentConfig completed(PlannerComponentConfig config) {
   config.decision.compared_methods.clear();
   for (const std::string& name : config.compared_methods)
     config.decision.compared_methods.push_back(make_method(name, config.methods));
+  config.consolidation = make_consolidation(config.then, config.methods);
+  config.explorer.consolidates = config.consolidation != nullptr;
   config.surroundings.ray.measure = measure_of(config.measure);
   config.decision.graph.criterion = criterion_of(config.criterion);
   config.decision.graph.sparsifier = sparsifier_of(config.sparsifier);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,7 @@ namespace lapis::planner {
 /// The process's configuration; what has names there is in `decision` after completed().
 struct PlannerComponentConfig {
   std::string method = "lapis";
+  std::string then = "none";
   std::string measure = "semantic";
   std::string criterion = "d";
   std::string sparsifier = "none";
@@ -21,6 +23,7 @@ struct PlannerComponentConfig {
   MethodsConfig methods;
   std::vector<std::string> compared_methods;
   DecisionConfig decision;
+  std::shared_ptr<const Method> consolidation;  ///< null: none
   ExplorerConfig explorer;
   int view_columns = 64, view_rows = 36;
   int decision_latency_frames = 3;
@@ -32,6 +35,8 @@ struct PlannerComponentConfig {
 
 /// "lapis", which stands for one of the others, and all of these.
 std::vector<std::string> all_methods();
+/// "none", and by what old places may be chosen when nothing is left to explore.
+std::vector<std::string> all_consolidations();
 /// Those that choose among the candidates of any method: TARE compares the stops of its own tour only.
 std::vector<std::string> comparable_methods();
 
@@ -205,6 +210,9 @@ template <class Field>
 void describe(Field& field, PlannerComponentConfig& c) {
   field("method", c.method, config::one_of(all_methods(), "see Method in components/planner/README.md"),
         "what decides between paths");
+  field("then", c.then, config::one_of(all_consolidations()),
+        "when nothing is left: the mission is over, or the robot drives through old places, so that loops are closed: the "
+        "nearest, any, or the best by method lapis");
   field("measure", c.measure, config::one_of({"semantic", "shannon", "csqmi"}),
         "information of the map: about space and classes, or about space alone (README)");
   field("autostart", c.autostart, config::anything(), "explore at once; false: wait for /planner/start");

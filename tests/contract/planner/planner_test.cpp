@@ -160,6 +160,19 @@ TEST_F(PlannerContract, GoesHomeAtTheEndWhenAskedTo) {
   EXPECT_LT((peers.position - Eigen::Vector2d(2, 2)).norm(), 0.31);
 }
 
+TEST_F(PlannerContract, ConsolidatesWhenNothingIsLeft) {
+  peers.drives = true;
+  ASSERT_TRUE(start({"then=nearest"})) << planner->log();
+  peers.draw(kClosedRoom);
+  ASSERT_TRUE(ticks_until([this] { return state() == STATE_CONSOLIDATING; }, 20.0)) << reason() << planner->log();
+  EXPECT_THAT(reason(), HasSubstr("nothing is left that can be reached"));
+}
+
+TEST_F(PlannerContract, CannotConsolidateAndGoHome) {
+  ASSERT_FALSE(start({"then=nearest", "returns_home=true"}));
+  EXPECT_THAT(planner->log(), HasSubstr("planner.then and planner.returns_home exclude each other"));
+}
+
 // Services -----------------------------------------------------------------------------------------------------------
 
 class PlannerServices : public PlannerContract {

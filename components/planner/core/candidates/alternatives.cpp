@@ -1,67 +1,25 @@
 #include "planner/core/candidates/alternatives.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <utility>
 
+#include "planner/core/candidates/old_places.hpp"
 #include "planner/core/space/alternative_paths.hpp"
-#include "planner/core/space/line.hpp"
 #include "planner/core/space/path_planner.hpp"
 
 namespace lapis::planner {
 namespace {
 
 constexpr std::size_t kMostRevisits = 5;  // of a decision, the nearest
-constexpr double kPass_m = 0.75;          // path past an old place, in its direction
 constexpr double kSameHeading_rad = 0.5;
-constexpr double kLikely = 0.5;  // probability of a loop closure at the place itself
-
-// Where the robot stood when it made an old key-frame that shares many landmarks with others.
-struct OldPlace {
-  Pose2 pose;
-  Cell cell;
-};
-
-OldPlace place_of(const Situation& s, const Keyframe& keyframe) {
-  const geometry::Pose T_map_base = keyframe.T_map_camera * s.T_base_camera.inverse();
-  const Eigen::Vector3d forward = T_map_base.linear().col(0);
-  const Eigen::Vector2d p = T_map_base.translation().head<2>();
-  return {{p, std::atan2(forward.y(), forward.x())}, s.grid.cell_of(p)};
-}
-
-// That can be reached; the one with the most such landmarks first, others not beside it.
-std::vector<OldPlace> old_places(const ProposalInput& in) {
-  const Situation& s = in.situation;
-  const HallucinationConfig& config = in.config.hallucination;
-  std::vector<std::pair<int, int>> ranked;  // less landmarks, node
-  for (int node = 0; node < s.graph->factor.node_count(); ++node) {
-    const int landmarks = s.landmarks->shared_landmarks(node);
-    const bool is_old = s.graph->path_from_newest_m[static_cast<std::size_t>(node)] >= config.min_loop_path_m;
-    if (is_old && loop_probability(landmarks, config) >= kLikely) ranked.emplace_back(-landmarks, node);
-  }
-  std::sort(ranked.begin(), ranked.end());
-  std::vector<OldPlace> places;
-  for (const auto& entry : ranked) {
-    const OldPlace place = place_of(s, s.graph->keyframes[static_cast<std::size_t>(entry.second)]);
-    const bool is_new = std::none_of(places.begin(), places.end(), [&](const OldPlace& other) {
-      return (other.pose.p_map - place.pose.p_map).norm() < config.place_radius_m;
-    });
-    if (is_new && s.grid.is_traversable(place.cell) && in.tree.cost_m(place.cell)) places.push_back(place);
-  }
-  return places;
-}
 
 bool passes(const std::vector<Pose2>& path, const Pose2& pose, double apart_m) {
   return std::any_of(path.begin(), path.end(), [&](const Pose2& on_path) {
     return (on_path.p_map - pose.p_map).norm() < apart_m &&
            turn_between(on_path.yaw_rad, pose.yaw_rad) < kSameHeading_rad;
   });
-}
-
-bool is_open_line(const PlanningGrid& grid, Cell from, Cell to) {
-  return walk_line(from, to, [&](Cell c, double) { return grid.is_traversable(c); });
 }
 
 /// The path to a candidate's goal past the first old place that is not too far off: through it and on in its direction,
@@ -74,9 +32,8 @@ std::optional<Path> path_past(const ProposalInput& in, const std::vector<OldPlac
   const CostTree from_goal = grow_cost_tree(grid, config, {grid.cell_of(candidate.goal.p_map)});
   for (const OldPlace& place : places) {
     if (passes(candidate.path, place.pose, config.min_apart_m)) continue;
-    const Eigen::Vector2d heading(std::cos(place.pose.yaw_rad), std::sin(place.pose.yaw_rad));
-    const Cell beyond = grid.cell_of(place.pose.p_map + kPass_m * heading);
-    if (!is_open_line(grid, place.cell, beyond) || !from_goal.cost_m(beyond)) continue;
+    const Cell beyond = cell_beyond(grid, place);
+    if (beyond == place.cell || !from_goal.cost_m(beyond)) continue;
     Path path = straightened(grid, config, in.tree.path_to(place.cell));
     std::vector<Cell> back = from_goal.path_to(beyond);
     std::reverse(back.begin(), back.end());
@@ -145,11 +102,10 @@ void add_alternatives_and_revisits(const ProposalInput& in, bool with_revisits, 
   const bool is_driven_back = adrift && adrift->sigma_m > adrift->budget_m;
   const bool may_revisit = with_revisits && in.config.revisit_sigma_m > 0.0 && !is_driven_back;
   if (in.config.alternatives == 0 && !may_revisit) return;
-  std::vector<OldPlace> places;
-  if (s.graph != nullptr && s.landmarks != nullptr) places = old_places(in);
+  const std::vector<OldPlace> places = old_places(in);
   if (in.config.alternatives > 0) add_alternatives(in, places, candidates);
   if (may_revisit && !places.empty() && position_sigma_m(*s.graph) > in.config.revisit_sigma_m)
-    add_revisits(in, std::move(places), candidates);
+    add_revisits(in, places, candidates);
 }
 
 }  // namespace lapis::planner

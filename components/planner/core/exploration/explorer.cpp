@@ -12,6 +12,7 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kTurnTolerance_rad = 0.3;     // of a turn on the spot
+constexpr double kRestPeriod_s = 5.0;          // between decisions while there is no old place to drive to
 constexpr double kHomePeriod_s = 1.0;          // between paths home, where decisions have no period
 constexpr double kLeastDecisionTime_s = 0.5;   // from one decision to the next, whatever happens
 constexpr double kBlindPatience_s = 2.0;       // without a pose, before it looks around for it
@@ -54,7 +55,9 @@ Explorer::Explorer(const ExplorerConfig& config) : config_(config), setbacks_(co
 
 void Explorer::start() {
   if (!std::holds_alternative<Exploring>(mission_)) drop_goal();
-  if (std::holds_alternative<Idle>(mission_) || std::holds_alternative<Ended>(mission_)) setbacks_.begin_anew();
+  const bool is_anew = std::holds_alternative<Idle>(mission_) || std::holds_alternative<Ended>(mission_) ||
+                       std::holds_alternative<Consolidating>(mission_);
+  if (is_anew) setbacks_.begin_anew();
   progress_.begin_anew();
   blind_since_.reset();
   enter(Exploring{}, home_ ? "started" : "waits for slam's first pose");
@@ -82,6 +85,8 @@ void Explorer::return_home() {
     returning = *already;
   } else if (const auto* ended = std::get_if<Ended>(&mission_); ended != nullptr && ended->how == State::kGaveUp) {
     returning.then = *ended;
+  } else if (const auto* consolidating = std::get_if<Consolidating>(&mission_)) {
+    returning.then = consolidating->exploration;
   }
   enter(returning, "asked to return");
 }
@@ -98,6 +103,7 @@ void Explorer::forget_map() {
   chosen_at_.reset();
   if (std::holds_alternative<Recovering>(mission_)) resume("slam has begun another map");
   if (auto* exploring = std::get_if<Exploring>(&mission_)) *exploring = {};
+  if (std::holds_alternative<Consolidating>(mission_)) enter(Exploring{}, "slam has begun another map");
   if (std::holds_alternative<Returning>(mission_)) fail("the map in which it started is gone");
 }
 
@@ -126,7 +132,7 @@ void Explorer::drop_goal() {
 
 bool Explorer::is_active() const {
   return std::holds_alternative<Exploring>(mission_) || std::holds_alternative<Returning>(mission_) ||
-         std::holds_alternative<Recovering>(mission_);
+         std::holds_alternative<Consolidating>(mission_) || std::holds_alternative<Recovering>(mission_);
 }
 
 bool Explorer::step(const Report& report, Surroundings* surroundings) {
@@ -153,6 +159,8 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
   surroundings->mark_driven(report.robot->p_map);
   surroundings->set_blocked(setbacks_.blocked_places(is_adrift_, report.now));
   if (auto* exploring = std::get_if<Exploring>(&mission_)) return explore(*exploring, report, *surroundings);
+  if (auto* consolidating = std::get_if<Consolidating>(&mission_))
+    return consolidate(*consolidating, report, *surroundings);
   go_home(std::get<Returning>(mission_), report, *surroundings);
   return false;
 }
@@ -206,6 +214,18 @@ bool Explorer::explore(Exploring& exploring, const Report& report, Surroundings&
          (is_due(report.now, config_.replan_period_s) || !is_path_free(path_, *report.robot, surroundings.grid()));
 }
 
+/// An old place is visited once, reached or not, before all are visited again.
+bool Explorer::consolidate(Consolidating& consolidating, const Report& report, Surroundings& surroundings) {
+  const bool may_decide = is_due(report.now, consolidating.rests ? kRestPeriod_s : kLeastDecisionTime_s);
+  if (!goal_) return may_decide;
+  if (!is_at(*goal_, *report.robot) && !is_stopped(report, surroundings))
+    return may_decide && !is_path_free(path_, *report.robot, surroundings.grid());
+  setbacks_.note_visit(*goal_->target_map);
+  consolidating.has_visited = true;
+  drop_goal();
+  return may_decide;
+}
+
 /// It has been reached, or has failed. To go to and fro, or after what is never seen, has to end whatever a method
 /// promises itself of it.
 bool Explorer::ends_goal(const Report& report, Surroundings& surroundings) {
@@ -218,6 +238,11 @@ bool Explorer::ends_goal(const Report& report, Surroundings& surroundings) {
     reason_ = "nothing new was seen for long";
     return true;
   }
+  return is_stopped(report, surroundings);
+}
+
+/// The goal is not reached for what is in the way.
+bool Explorer::is_stopped(const Report& report, Surroundings& surroundings) {
   const bool is_late = goal_->deadline && report.now > *goal_->deadline;
   if (!report.is_blocked && !is_late && !stands_still(report)) return false;
   if (goal_->target_map) note_blocked(report, surroundings);  // nothing is in the way of a turn
@@ -319,19 +344,38 @@ std::optional<Adrift> Explorer::adrift(const Exploring& exploring) const {
 
 bool Explorer::take(const Decision& decision, const Report& report) {
   auto* exploring = std::get_if<Exploring>(&mission_);
-  if (exploring == nullptr || (goal_ && report.is_blocked)) return false;
-  const time::Time now = report.now;
-  decided_at_ = chosen_at_ = now;
-  note_vanished(decision, now);
-  if (decision.chosen) {
-    exploring->empty_decisions = 0;
-    exploring->nothing_since.reset();
-    if (is_of_frontier(decision.candidates[*decision.chosen].kind)) exploring->looks_at_gaps = false;
-    follow(decision, now);
+  auto* consolidating = std::get_if<Consolidating>(&mission_);
+  if ((exploring == nullptr && consolidating == nullptr) || (goal_ && report.is_blocked)) return false;
+  decided_at_ = chosen_at_ = report.now;
+  if (exploring != nullptr) {
+    go_on(*exploring, decision, report);
   } else {
-    end_or_look_around(*exploring, decision, report);
+    go_on(*consolidating, decision, report.now);
   }
   return true;
+}
+
+void Explorer::go_on(Exploring& exploring, const Decision& decision, const Report& report) {
+  note_vanished(decision, report.now);
+  if (!decision.chosen) return end_or_look_around(exploring, decision, report);
+  exploring.empty_decisions = 0;
+  exploring.nothing_since.reset();
+  if (is_of_frontier(decision.candidates[*decision.chosen].kind)) exploring.looks_at_gaps = false;
+  follow(decision, report.now);
+}
+
+/// When all old places have been visited, another round begins; when there are none, the robot rests.
+void Explorer::go_on(Consolidating& consolidating, const Decision& decision, time::Time now) {
+  consolidating.rests = !decision.chosen && !consolidating.has_visited;
+  if (decision.chosen) {
+    follow(decision, now);
+  } else {
+    drop_goal();
+    setbacks_.forget_visits();
+    reason_ = consolidating.rests ? "no old place can be driven to" : "old places are visited once more";
+    consolidating.has_visited = false;
+  }
+  reason_ += "; " + consolidating.exploration.why;
 }
 
 /// Goes elsewhere, though what it drove to is there still.
@@ -404,7 +448,9 @@ void Explorer::end(const Leftover& leftover) {
   const Ended ended{has_given_up ? State::kGaveUp : State::kDone,
                     (has_given_up ? "what is left was tried in vain" : "nothing is left that can be reached") +
                         (left.empty() ? "" : "; " + left)};
-  if (config_.returns_home) {
+  if (config_.consolidates) {
+    enter(Consolidating{ended}, ended.why);
+  } else if (config_.returns_home) {
     enter(Returning{ended}, ended.why);
   } else {
     enter(ended, ended.why);
@@ -433,6 +479,7 @@ void Explorer::recover(const Report& report) {
     Recovering recovering{{}, report.now};
     if (const auto* exploring = std::get_if<Exploring>(&mission_)) recovering.interrupted = *exploring;
     if (const auto* returning = std::get_if<Returning>(&mission_)) recovering.interrupted = *returning;
+    if (const auto* consolidating = std::get_if<Consolidating>(&mission_)) recovering.interrupted = *consolidating;
     enter(std::move(recovering), "slam is lost");
   }
   if ((report.now - std::get<Recovering>(mission_).lost_at).seconds() > config_.lost_timeout_s) {

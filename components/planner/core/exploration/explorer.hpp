@@ -32,6 +32,7 @@ struct ExplorerConfig {
   double patience_s = 20.0;         ///< for obstacles that may go away before it is over
   double max_left_share = 0.02;     ///< Leftover::share_to_blame with which it is over all the same
   bool returns_home = false;        ///< when nothing is left
+  bool consolidates = false;        ///< when nothing is left, for ever
 };
 
 enum class Tracking { kTracking, kDeadReckoning, kLost };
@@ -100,7 +101,11 @@ class Explorer {
   void await_first_pose(time::Time now);
   void look_for_pose(time::Time now);
   bool explore(Exploring& exploring, const Report& report, Surroundings& surroundings);
+  bool consolidate(Consolidating& consolidating, const Report& report, Surroundings& surroundings);
   bool ends_goal(const Report& report, Surroundings& surroundings);
+  bool is_stopped(const Report& report, Surroundings& surroundings);
+  void go_on(Exploring& exploring, const Decision& decision, const Report& report);
+  void go_on(Consolidating& consolidating, const Decision& decision, time::Time now);
   void follow(const Decision& decision, time::Time now);
   bool is_detour(const Decision& decision) const;
   void set_deadline(const Candidate& chosen, bool is_detour, time::Time now);

@@ -17,6 +17,7 @@ enum class State {
   kDone,        ///< nothing is left that can be reached, or it has returned
   kGaveUp,      ///< the same, but frontiers are left that geometry does not excuse; the reason says which
   kFailed,      ///< needs help; the reason says why
+  kConsolidating,  ///< nothing is left to explore: drives through old places, so that loops are closed
 };
 
 struct Idle {};
@@ -41,13 +42,19 @@ struct Returning {
   Ended then;  ///< when it has arrived
 };
 
+struct Consolidating {
+  Ended exploration;         ///< how that ended
+  bool has_visited = false;  ///< an old place since all of them were to be visited
+  bool rests = false;        ///< there is none to drive to
+};
+
 struct Recovering {
-  std::variant<Exploring, Returning> interrupted;
+  std::variant<Exploring, Returning, Consolidating> interrupted;
   time::Time lost_at;  ///< when slam lost its pose
 };
 
 /// What the mission does, with what only that needs to know.
-using MissionState = std::variant<Idle, Exploring, Paused, Recovering, Returning, Ended>;
+using MissionState = std::variant<Idle, Exploring, Paused, Recovering, Returning, Consolidating, Ended>;
 
 inline State state_of(const MissionState& mission) {
   struct Names {
@@ -56,6 +63,7 @@ inline State state_of(const MissionState& mission) {
     State operator()(const Paused&) const { return State::kPaused; }
     State operator()(const Recovering&) const { return State::kRecovering; }
     State operator()(const Returning&) const { return State::kReturning; }
+    State operator()(const Consolidating&) const { return State::kConsolidating; }
     State operator()(const Ended& ended) const { return ended.how; }
   };
   return std::visit(Names{}, mission);

@@ -256,6 +256,7 @@ TEST(PlannerConversions, EveryStateHasItsNumber) {
   EXPECT_EQ(to_message(State::kReturning), STATE_RETURNING);
   EXPECT_EQ(to_message(State::kDone), STATE_DONE);
   EXPECT_EQ(to_message(State::kGaveUp), STATE_GAVE_UP);
+  EXPECT_EQ(to_message(State::kConsolidating), STATE_CONSOLIDATING);
   EXPECT_EQ(to_message(State::kFailed), STATE_FAILED);
 }
 

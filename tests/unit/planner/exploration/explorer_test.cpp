@@ -1,5 +1,6 @@
 #include "planner/core/exploration/explorer.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -8,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "planner/core/methods/consolidation.hpp"
 #include "tests/unit/planner/exploration/walk_world.hpp"
 
 namespace lapis::planner {
@@ -450,6 +452,82 @@ TEST(Explorer, ComesAsNearToHomeAsItMay) {
   EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
   EXPECT_THAT(world.explorer.reason(), ::testing::StartsWith("is back where it started"));
   EXPECT_LT((world.robot.p_map - home.p_map).norm(), 1.0);
+}
+
+/// Until nothing is left to explore, and then for some time.
+WalkWorld consolidating_world(const char* by) {
+  WalkWorld world(closed(kThreeRooms), {.consolidates = true});
+  world.explorer.start();
+  while (world.explorer.state() == State::kExploring && world.now.seconds() < 400.0) world.tick();
+  world.decision_config.method = make_consolidation(by);
+  return world;
+}
+
+TEST(Explorer, DrivesThroughOldPlacesWhenNothingIsLeft) {
+  for (const char* by : {"nearest", "random", "lapis"}) {
+    WalkWorld world = consolidating_world(by);
+    ASSERT_EQ(world.explorer.state(), State::kConsolidating) << world.explorer.reason();
+    std::vector<Eigen::Vector2d> goals;
+    const double end_s = world.now.seconds() + 200.0;
+    for (double moved_s = world.now.seconds(); world.now.seconds() < end_s; world.tick()) {
+      const auto goal = world.explorer.memory(world.now).goal;
+      if (goal) moved_s = world.now.seconds();
+      ASSERT_LT(world.now.seconds() - moved_s, 6.0) << by << ": " << world.explorer.reason();
+      if (goal && (goals.empty() || goals.back() != goal->p_map)) goals.push_back(goal->p_map);
+    }
+    EXPECT_EQ(world.explorer.state(), State::kConsolidating);
+    EXPECT_THAT(world.explorer.reason(), HasSubstr("; nothing is left that can be reached"));
+    const auto again = std::find(goals.begin() + 1, goals.end(), goals.front());
+    ASSERT_GT(again - goals.begin(), 3) << by << ": places, each once";
+    EXPECT_NE(again, goals.end()) << by << ": and then another round";
+  }
+}
+
+TEST(Explorer, RestsWhereThereIsNoOldPlace) {
+  WalkWorld world({"#####", "#...#", "#.R.#", "#...#", "#####"}, {.consolidates = true});
+  world.explorer.start();
+  while (world.explorer.state() == State::kExploring && world.now.seconds() < 100.0) world.tick();
+  world.decision_config.method = make_consolidation("nearest");
+  const int before = world.decisions;
+  for (int i = 0; i < 300; ++i) world.tick();
+  EXPECT_EQ(world.explorer.state(), State::kConsolidating);
+  EXPECT_EQ(world.explorer.reason(), "no old place can be driven to; nothing is left that can be reached");
+  EXPECT_TRUE(world.explorer.path().empty());
+  EXPECT_LT(world.decisions - before, 15) << "in a minute: the map may change";
+}
+
+TEST(Explorer, ConsolidatesOnWhenSlamIsBackAndExploresAMapThatIsNew) {
+  WalkWorld world = consolidating_world("nearest");
+  world.tracking = Tracking::kLost;
+  world.tick();
+  EXPECT_EQ(world.explorer.state(), State::kRecovering);
+  world.tracking = Tracking::kTracking;
+  world.tick();
+  EXPECT_EQ(world.explorer.state(), State::kConsolidating);
+  world.explorer.forget_map();
+  EXPECT_EQ(world.explorer.state(), State::kExploring);
+}
+
+TEST(Explorer, LeavesAnOldPlaceThatIsBlocked) {
+  WalkWorld world = consolidating_world("nearest");
+  while (world.explorer.path().empty()) world.tick();
+  const Eigen::Vector2d first = world.explorer.memory(world.now).goal->p_map;
+  const auto failures = world.explorer.failures();
+  world.is_blocked = true;
+  world.tick();
+  world.is_blocked = false;
+  EXPECT_EQ(world.explorer.failures(), failures + 1);
+  for (int i = 0; i < 20 && !world.explorer.memory(world.now).goal; ++i) world.tick();
+  ASSERT_TRUE(world.explorer.memory(world.now).goal);
+  EXPECT_GT((world.explorer.memory(world.now).goal->p_map - first).norm(), 0.5);
+}
+
+TEST(Explorer, IsToldToReturnWhileItConsolidates) {
+  WalkWorld world = consolidating_world("nearest");
+  world.explorer.return_home();
+  EXPECT_EQ(world.explorer.state(), State::kReturning);
+  world.run(60.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
 }
 
 TEST(Explorer, PlacesOfAMapThatIsGoneAreForgotten) {

@@ -115,7 +115,7 @@ class PlannerComponent {
   PathLedger ledger_;
   DecisionWorker worker_;
   std::optional<DecisionLog> log_;
-  Decision decision_;           // the last one
+  Decision decision_;            // the last one
   std::string deciding_method_;  // of it, or of the one that is being made
   std::uint64_t decisions_ = 0, shown_decision_ = 0;
   std::size_t marker_readers_ = 0;

@@ -211,8 +211,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("method", c.method, config::one_of(all_methods(), "see Method in components/planner/README.md"),
         "what decides between paths");
   field("then", c.then, config::one_of(all_consolidations()),
-        "when nothing is left: the mission is over, or the robot drives through old places, so that loops are closed: the "
-        "nearest, any, or the best by method lapis");
+        "old places to drive through when nothing is left to explore, so that loops are closed; none: it is over");
   field("measure", c.measure, config::one_of({"semantic", "shannon", "csqmi"}),
         "information of the map: about space and classes, or about space alone (README)");
   field("autostart", c.autostart, config::anything(), "explore at once; false: wait for /planner/start");

@@ -168,11 +168,6 @@ TEST_F(PlannerContract, ConsolidatesWhenNothingIsLeft) {
   EXPECT_THAT(reason(), HasSubstr("nothing is left that can be reached"));
 }
 
-TEST_F(PlannerContract, CannotConsolidateAndGoHome) {
-  ASSERT_FALSE(start({"then=nearest", "returns_home=true"}));
-  EXPECT_THAT(planner->log(), HasSubstr("planner.then and planner.returns_home exclude each other"));
-}
-
 // Services -----------------------------------------------------------------------------------------------------------
 
 class PlannerServices : public PlannerContract {

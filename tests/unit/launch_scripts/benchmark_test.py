@@ -165,6 +165,7 @@ class BenchmarkTest(unittest.TestCase):
             (both, lambda: (self.folder / "config/robot.yaml").write_text("robot: {}\n")),
             (both, lambda: world.write_text("noisy: 2\n")),
             (both, lambda: options.extend(["--set", "slam.x=1"])),
+            (nearest, lambda: options.extend(["--then", "none"])),
         ]
         seen, expected = set(), 0
         for index, (wanted, change) in enumerate(changes):

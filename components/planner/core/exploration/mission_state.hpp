@@ -9,14 +9,14 @@
 namespace lapis::planner {
 
 enum class State {
-  kIdle,        ///< nobody has asked for anything
-  kExploring,   ///< drives to frontiers
-  kPaused,      ///< stands still until it is started again
-  kRecovering,  ///< slam has no pose: looks around
-  kReturning,   ///< drives to where it started
-  kDone,        ///< nothing is left that can be reached, or it has returned
-  kGaveUp,      ///< the same, but frontiers are left that geometry does not excuse; the reason says which
-  kFailed,      ///< needs help; the reason says why
+  kIdle,           ///< nobody has asked for anything
+  kExploring,      ///< drives to frontiers
+  kPaused,         ///< stands still until it is started again
+  kRecovering,     ///< slam has no pose: looks around
+  kReturning,      ///< drives to where it started
+  kDone,           ///< nothing is left that can be reached, or it has returned
+  kGaveUp,         ///< the same, but frontiers are left that geometry does not excuse; the reason says which
+  kFailed,         ///< needs help; the reason says why
   kConsolidating,  ///< nothing is left to explore: drives through old places, so that loops are closed
 };
 

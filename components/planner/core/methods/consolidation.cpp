@@ -18,7 +18,7 @@ class RandomPlace : public Method {
     constexpr double kGrain_m = 0.25;
     const auto number = [](double m) { return static_cast<std::uint32_t>(std::lround(m / kGrain_m)); };
     std::seed_seq seed{number(candidate.target_map.x()), number(candidate.target_map.y())};
-    return 1.0 + std::mt19937(seed)();
+    return 1.0 + static_cast<double>(std::mt19937(seed)());
   }
 };
 

@@ -348,14 +348,14 @@ bool Explorer::take(const Decision& decision, const Report& report) {
   if ((exploring == nullptr && consolidating == nullptr) || (goal_ && report.is_blocked)) return false;
   decided_at_ = chosen_at_ = report.now;
   if (exploring != nullptr) {
-    go_on(*exploring, decision, report);
+    act_on(*exploring, decision, report);
   } else {
-    go_on(*consolidating, decision, report.now);
+    act_on(*consolidating, decision, report.now);
   }
   return true;
 }
 
-void Explorer::go_on(Exploring& exploring, const Decision& decision, const Report& report) {
+void Explorer::act_on(Exploring& exploring, const Decision& decision, const Report& report) {
   note_vanished(decision, report.now);
   if (!decision.chosen) return end_or_look_around(exploring, decision, report);
   exploring.empty_decisions = 0;
@@ -365,7 +365,7 @@ void Explorer::go_on(Exploring& exploring, const Decision& decision, const Repor
 }
 
 /// When all old places have been visited, another round begins; when there are none, the robot rests.
-void Explorer::go_on(Consolidating& consolidating, const Decision& decision, time::Time now) {
+void Explorer::act_on(Consolidating& consolidating, const Decision& decision, time::Time now) {
   consolidating.rests = !decision.chosen && !consolidating.has_visited;
   if (decision.chosen) {
     follow(decision, now);

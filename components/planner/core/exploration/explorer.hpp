@@ -104,8 +104,8 @@ class Explorer {
   bool consolidate(Consolidating& consolidating, const Report& report, Surroundings& surroundings);
   bool ends_goal(const Report& report, Surroundings& surroundings);
   bool is_stopped(const Report& report, Surroundings& surroundings);
-  void go_on(Exploring& exploring, const Decision& decision, const Report& report);
-  void go_on(Consolidating& consolidating, const Decision& decision, time::Time now);
+  void act_on(Exploring& exploring, const Decision& decision, const Report& report);
+  void act_on(Consolidating& consolidating, const Decision& decision, time::Time now);
   void follow(const Decision& decision, time::Time now);
   bool is_detour(const Decision& decision) const;
   void set_deadline(const Candidate& chosen, bool is_detour, time::Time now);

@@ -27,14 +27,15 @@ benchmark that was interrupted continues where it was.
                          stay. launch_scripts/benchmark_table.py --rows FILE prints it
   --jobs N               runs that go side by side, default 1; each has a DDS domain of its own, from ROS_DOMAIN_ID
                          (or 0) on
-  --then HOW, --no-preset, --set KEY=VALUE  as for explore.sh and replay.sh
+  --then HOW, --no-preset  as for explore.sh; the tour has no use for them
+  --set KEY=VALUE        as for explore.sh and replay.sh
 Real-time factors are those of a machine that has nothing else to do: the table names the load it found. Exit status:
 0 all runs succeeded, 1 a run failed (it is in the table as FAILED, and is repeated the next time), 2 bad options, or
 programs that change while they run, 130 and 143 interrupted.
 TEXT
 }
 
-scenes=apartment:300,large_building:600 methods=tour runs=5 out=$repository/out/benchmark table="" jobs=1
+scenes=apartment:300,large_building:600 methods=tour runs=5 out=$repository/out/benchmark table="" jobs=1 afterwards=none
 exploration=() settings=() settings_text="" worlds=() world_text="" world_hashes=()
 while [ $# -gt 0 ]; do
   case $1 in
@@ -52,7 +53,8 @@ while [ $# -gt 0 ]; do
       world_hashes+=("$(sha256sum 2>/dev/null <"$2" | cut -c 1-16)") || die "--world $2: no file that can be read"
       worlds+=(--world "$2") world_text+="${world_text:+ }$(basename "$2" .yaml)" && shift ;;
     --table) table=$2 && shift ;;
-    --then) exploration+=(--then "$2") settings_text+="${settings_text:+ }--then $2" && shift ;;
+    --then)
+      afterwards=$2 exploration+=(--then "$2") settings_text+="${settings_text:+ }--then $2" && shift ;;
     --no-preset) exploration+=(--no-preset) settings_text+="${settings_text:+ }--no-preset" ;;
     --set) settings+=(--set "$2") settings_text+="${settings_text:+ }$2" && shift ;;
     *) die "unknown option $1 (see --help)" ;;
@@ -63,7 +65,7 @@ first_domain=${ROS_DOMAIN_ID:-0}
 [ $((first_domain + jobs)) -le 102 ] || die "--jobs $jobs: DDS domains from $first_domain on, but the last one is 101"
 require_build
 for method in ${methods//,/ }; do # bad set-up shows before hours of work
-  [ "$method" = tour ] || "$bin/lapis_planner" --set "planner.method=$method" --check-config >/dev/null || exit 2
+  [ "$method" = tour ] || "$bin/lapis_planner" --set "planner.method=$method" --set "planner.then=$afterwards" --check-config >/dev/null || exit 2
 done
 export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
 lock_folder "$out"

@@ -122,8 +122,9 @@ class FolderRun(Run):
             return "FAILED"
         if self.metrics["exit_reason"] == "lost":
             return "lost"
-        names = {"DONE": "done", "GAVE_UP": "gave up", "FAILED": "planner failed", None: "completed",
-                 "CONSOLIDATING": "done"}
+        names = {"DONE": "done", "GAVE_UP": "gave up", "FAILED": "planner failed", None: "completed"}
+        if self.metrics["planner_state"] == "CONSOLIDATING":  # the planner's reason says how exploration ended
+            return "gave up" if "what is left was tried in vain" in self.metrics["planner_reason"] else "done"
         return names.get(self.metrics["planner_state"], "time up")
 
     def _find(self, file, pattern):

@@ -36,7 +36,7 @@ too, everything up to there is in DIR, but for the figures.
 TEXT
 }
 
-command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" has_preset=1 options=()
+command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" afterwards="" has_preset=1 options=()
 while [ $# -gt 0 ]; do
   case $1 in
     --scene | --method | --duration | --seed | --out | --robot | --world | --then | --set)
@@ -50,7 +50,7 @@ while [ $# -gt 0 ]; do
     --seed) seed=$2 && shift ;;
     --out) out=$2 && shift ;;
     --robot | --world) options+=(--config "$2") && shift ;;
-    --then) options+=(--set "planner.then=$2" --set simulator.ends_when_explored=false) && shift ;;
+    --then) afterwards=$2 && options+=(--set "planner.then=$2" --set simulator.ends_when_explored=false) && shift ;;
     --no-preset) has_preset=0 ;;
     --freerun) options+=(--variant freerun) ;;
     --restart) options+=(--restart) ;;
@@ -59,6 +59,7 @@ while [ $# -gt 0 ]; do
   esac
   shift
 done
+[ -z "$afterwards" ] || [[ ! $duration =~ ^0*\.?0*$ ]] || die "--then without an end: give a --duration"
 require_build
 for preset in "$repository/config/methods/$method"/*.yaml; do
   if [ $has_preset -eq 1 ] && [ -f "$preset" ]; then options=(--config "$preset" "${options[@]}"); fi

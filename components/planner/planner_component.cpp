@@ -240,7 +240,7 @@ void PlannerComponent::take_decision(bool waits) {
   ++decisions_;
   context_.status().value("decisions", decisions_);
   if (!decision.problem.empty()) drop("pose graph", decision.problem);
-  const bool is_taken = explorer_.take(decision, report());
+  const bool is_taken = deciding_method_ == method_of_state() && explorer_.take(decision, report());
   candidates_.publish(to_message(decision, decisions_, deciding_method_, header()));
   const Decision* driven = is_taken && decision.chosen ? &decision : nullptr;
   const auto ended = ledger_.note(driven, surroundings_->information_nats(), last_robot_, stamp_);
@@ -321,6 +321,10 @@ std::string PlannerComponent::reason() const {
   return is_lacking ? explorer_.reason() + "; slam: " + slam_reason_ : explorer_.reason();
 }
 
+std::string PlannerComponent::method_of_state() const {
+  return is_consolidating() ? "then_" + config_.then : config_.method;
+}
+
 PlannerComponent::GraphVersions PlannerComponent::versions_of_graph() const {
   const auto landmarks = landmarks_.state().value_or(mapping::LandmarkState{});
   return {graph_->session, graph_->version, landmarks.session, landmarks.graph_version};
@@ -334,7 +338,7 @@ void PlannerComponent::begin_decision() {
   input.robot = *robot_;
   input.memory = explorer_.memory(stamp_);
   input.config = config_.decision;
-  deciding_method_ = is_consolidating() ? "then_" + config_.then : config_.method;
+  deciding_method_ = method_of_state();
   if (is_consolidating()) input.config.method = config_.consolidation;
   input.knowledge = knowledge_;
   const bool has_edges = graph_ && graph_->session == session_ && !graph_->edges.empty();
@@ -344,7 +348,7 @@ void PlannerComponent::begin_decision() {
     if (landmarks_.state() && landmarks_.state()->session == graph_->session) input.landmarks = landmarks_.tiles();
     known_graph_ = versions_of_graph();
   }
-  if (config_.record_situations_every > 0 && !is_consolidating()) record(input);
+  if (config_.record_situations_every > 0) record(input);
   worker_.start(std::move(input), frames_ + static_cast<std::uint64_t>(config_.decision_latency_frames));
 }
 
@@ -353,7 +357,8 @@ void PlannerComponent::record(const DecisionInput& input) {
   if (input.graph)
     recorded_graph_ = {input.graph->keyframes, input.graph->edges, input.position_variance_m2, input.landmarks};
   const std::uint64_t number = decisions_ + 1;
-  if (number % static_cast<std::uint64_t>(config_.record_situations_every) != 0) return;
+  const bool is_wanted = number % static_cast<std::uint64_t>(config_.record_situations_every) == 0;
+  if (!is_wanted || is_consolidating()) return;  // replay knows no old places that have been visited
   const mapping::MapState &shown = *surroundings_state_, &newest = *map_.state();
   if (shown.epoch != newest.epoch || shown.version != newest.version) return;  // of a map that cannot be read yet
   const RecordedSituation situation{

@@ -65,6 +65,7 @@ class PlannerComponent {
   void update_provisional_area();
   Report report() const;
   std::string reason() const;
+  std::string method_of_state() const;
   bool is_consolidating() const { return explorer_.state() == State::kConsolidating; }
   GraphVersions versions_of_graph() const;
   void begin_decision();

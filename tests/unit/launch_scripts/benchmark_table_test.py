@@ -58,6 +58,14 @@ class BenchmarkTableTest(unittest.TestCase):
         self.assertEqual([row["hardest push m/s"] for row in rows], ["0.25"] * 4)
         self.assertEqual([row["commit"] for row in rows], ["abc123"] * 3 + ["-"])
 
+    def test_what_consolidates_at_the_end_is_done_or_has_given_up(self):
+        reasons = ("revisits an old place; nothing is left that can be reached",
+                   "revisits an old place; what is left was tried in vain; frontiers left: 2.0 m: left alone for now")
+        _, rows = self.table("runs.csv", *(self.run_folder(f"flat/lapis/seed_{seed}", planner_state="CONSOLIDATING",
+                                                           planner_reason=reason)
+                                           for seed, reason in enumerate(reasons, start=1)))
+        self.assertEqual([row["outcome"] for row in rows[:2]], ["done", "gave up"])
+
     def test_a_run_that_failed_is_reported_and_is_in_no_median(self):
         status, rows = self.table("runs.csv", self.run_folder("flat/tare/seed_1"),
                                   self.run_folder("flat/tare/seed_2", has_succeeded=False, explored_share=0.1))

@@ -102,7 +102,7 @@ void add_alternatives_and_revisits(const ProposalInput& in, bool with_revisits, 
   const bool is_driven_back = adrift && adrift->sigma_m > adrift->budget_m;
   const bool may_revisit = with_revisits && in.config.revisit_sigma_m > 0.0 && !is_driven_back;
   if (in.config.alternatives == 0 && !may_revisit) return;
-  const std::vector<OldPlace> places = old_places(in);
+  const std::vector<OldPlace> places = old_places(in, in.config.hallucination);
   if (in.config.alternatives > 0) add_alternatives(in, places, candidates);
   if (may_revisit && !places.empty() && position_sigma_m(*s.graph) > in.config.revisit_sigma_m)
     add_revisits(in, places, candidates);

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "planner/core/space/line.hpp"
@@ -12,6 +11,7 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kPass_m = 0.75;  // path past an old place, in its direction
+constexpr double kAtGoal_m = 0.5;
 constexpr double kLikely = 0.5;   // probability of a loop closure at the place itself
 
 OldPlace place_of(const Situation& s, const Keyframe& keyframe) {
@@ -43,10 +43,9 @@ Candidate candidate_through(const ProposalInput& in, const OldPlace& place) {
 
 }  // namespace
 
-std::vector<OldPlace> old_places(const ProposalInput& in) {
+std::vector<OldPlace> old_places(const ProposalInput& in, const HallucinationConfig& config) {
   const Situation& s = in.situation;
   if (s.graph == nullptr || s.landmarks == nullptr) return {};
-  const HallucinationConfig& config = in.config.hallucination;
   std::vector<std::pair<int, int>> ranked;  // less landmarks, node
   for (int node = 0; node < s.graph->factor.node_count(); ++node) {
     const int landmarks = s.landmarks->shared_landmarks(node);
@@ -72,10 +71,17 @@ Cell cell_beyond(const PlanningGrid& grid, const OldPlace& place) {
 }
 
 std::vector<Candidate> propose_old_places(const ProposalInput& in) {
+  const HallucinationConfig rules;
   std::vector<Candidate> candidates;
-  for (const OldPlace& place : old_places(in)) {
-    Candidate& candidate = candidates.emplace_back(candidate_through(in, place));
-    candidate.rejection = why_left_alone(in.memory.old_places, candidate.target_map, std::nullopt, in.memory.radius_m);
+  for (const OldPlace& place : old_places(in, rules)) {
+    Candidate candidate = candidate_through(in, place);
+    if ((candidate.goal.p_map - in.situation.robot.p_map).norm() < kAtGoal_m) continue;
+    const auto& visited = in.memory.visited_places;
+    const bool is_visited = std::any_of(visited.begin(), visited.end(), [&](const Eigen::Vector2d& p_map) {
+      return (p_map - candidate.target_map).norm() < rules.place_radius_m;
+    });
+    if (is_visited) candidate.rejection = Rejection::kLeftAlone;
+    candidates.push_back(std::move(candidate));
   }
   return candidates;
 }

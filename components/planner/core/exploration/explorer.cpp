@@ -53,6 +53,11 @@ std::vector<Pose2> turns_on_the_spot(bool is_to_the_left) {
 
 Explorer::Explorer(const ExplorerConfig& config) : config_(config), setbacks_(config.memory), progress_(config.stall) {}
 
+std::string Explorer::reason() const {
+  const auto* consolidating = std::get_if<Consolidating>(&mission_);
+  return consolidating != nullptr ? reason_ + "; " + consolidating->exploration.why : reason_;
+}
+
 void Explorer::start() {
   if (!std::holds_alternative<Exploring>(mission_)) drop_goal();
   const bool is_anew = std::holds_alternative<Idle>(mission_) || std::holds_alternative<Ended>(mission_) ||
@@ -78,16 +83,7 @@ bool Explorer::pause() {
 void Explorer::return_home() {
   drop_goal();
   Returning returning;
-  if (const auto* recovering = std::get_if<Recovering>(&mission_);
-      recovering != nullptr && std::holds_alternative<Returning>(recovering->interrupted)) {
-    returning = std::get<Returning>(recovering->interrupted);
-  } else if (const auto* already = std::get_if<Returning>(&mission_)) {
-    returning = *already;
-  } else if (const auto* ended = std::get_if<Ended>(&mission_); ended != nullptr && ended->how == State::kGaveUp) {
-    returning.then = *ended;
-  } else if (const auto* consolidating = std::get_if<Consolidating>(&mission_)) {
-    returning.then = consolidating->exploration;
-  }
+  if (const Ended* outcome = outcome_of(mission_)) returning.then = *outcome;
   enter(returning, "asked to return");
 }
 
@@ -214,16 +210,21 @@ bool Explorer::explore(Exploring& exploring, const Report& report, Surroundings&
          (is_due(report.now, config_.replan_period_s) || !is_path_free(path_, *report.robot, surroundings.grid()));
 }
 
-/// An old place is visited once, reached or not, before all are visited again.
-bool Explorer::consolidate(Consolidating& consolidating, const Report& report, Surroundings& surroundings) {
-  const bool may_decide = is_due(report.now, consolidating.rests ? kRestPeriod_s : kLeastDecisionTime_s);
+bool Explorer::consolidate(const Consolidating& consolidating, const Report& report, Surroundings& surroundings) {
+  const double period_s = consolidating.rests ? kRestPeriod_s : kLeastDecisionTime_s;
+  const bool may_decide = !chosen_at_ || (report.now - *chosen_at_).seconds() >= period_s;
   if (!goal_) return may_decide;
   if (!is_at(*goal_, *report.robot) && !is_stopped(report, surroundings))
     return may_decide && !is_path_free(path_, *report.robot, surroundings.grid());
-  setbacks_.note_visit(*goal_->target_map);
-  consolidating.has_visited = true;
-  drop_goal();
+  end_visit();
   return may_decide;
+}
+
+/// An old place is visited once, reached or not, before all are visited again.
+void Explorer::end_visit() {
+  auto* consolidating = std::get_if<Consolidating>(&mission_);
+  if (consolidating != nullptr && goal_) consolidating->visited.push_back(*goal_->target_map);
+  drop_goal();
 }
 
 /// It has been reached, or has failed. To go to and fro, or after what is never seen, has to end whatever a method
@@ -285,10 +286,12 @@ void Explorer::note_vanished(const Decision& decision, time::Time now) {
   if (!is_there) setbacks_.await({*goal_->target_map, robot_.p_map}, now, config_.memory.expiry_s);
 }
 
-/// Of a turn on the spot the heading is what counts, however little it does elsewhere.
+/// Of a turn on the spot, and of a view that is to be had again, the heading is what counts, however little it does
+/// elsewhere.
 bool Explorer::is_at(const Goal& goal, const Pose2& robot) const {
+  const bool is_heading_loose = goal.target_map && goal.kind != CandidateKind::kRevisit;
   const double tolerance_rad =
-      goal.target_map ? config_.goal_tolerance_rad : std::min(config_.goal_tolerance_rad, kTurnTolerance_rad);
+      is_heading_loose ? config_.goal_tolerance_rad : std::min(config_.goal_tolerance_rad, kTurnTolerance_rad);
   return distance(robot, goal.pose) <= config_.goal_tolerance_m &&
          turn_between(robot.yaw_rad, goal.pose.yaw_rad) <= tolerance_rad;
 }
@@ -325,6 +328,7 @@ Memory Explorer::memory(time::Time now) const {
     if (!exploring.looks_again) memory.left_alone.push_back({target_map});
   }
   memory.looks_at_gaps = exploring.looks_at_gaps;
+  if (const auto* consolidating = std::get_if<Consolidating>(&mission_)) memory.visited_places = consolidating->visited;
   if (goal_) {
     memory.goal = goal_->pose;
     memory.turns_to = goal_->turns_to;
@@ -364,18 +368,14 @@ void Explorer::act_on(Exploring& exploring, const Decision& decision, const Repo
   follow(decision, report.now);
 }
 
-/// When all old places have been visited, another round begins; when there are none, the robot rests.
+/// When all old places that can be driven to have been visited, another round begins; when there are none, the robot
+/// rests.
 void Explorer::act_on(Consolidating& consolidating, const Decision& decision, time::Time now) {
-  consolidating.rests = !decision.chosen && !consolidating.has_visited;
-  if (decision.chosen) {
-    follow(decision, now);
-  } else {
-    drop_goal();
-    setbacks_.forget_visits();
-    reason_ = consolidating.rests ? "no old place can be driven to" : "old places are visited once more";
-    consolidating.has_visited = false;
-  }
-  reason_ += "; " + consolidating.exploration.why;
+  consolidating.rests = decision.candidates.empty();
+  if (decision.chosen) return follow(decision, now);
+  drop_goal();
+  if (!consolidating.rests) consolidating.visited.clear();
+  reason_ = consolidating.rests ? "no old place can be driven to" : "old places are visited once more";
 }
 
 /// Goes elsewhere, though what it drove to is there still.
@@ -449,7 +449,7 @@ void Explorer::end(const Leftover& leftover) {
                     (has_given_up ? "what is left was tried in vain" : "nothing is left that can be reached") +
                         (left.empty() ? "" : "; " + left)};
   if (config_.consolidates) {
-    enter(Consolidating{ended}, ended.why);
+    enter(Consolidating{ended}, "old places are visited");
   } else if (config_.returns_home) {
     enter(Returning{ended}, ended.why);
   } else {
@@ -475,7 +475,7 @@ void Explorer::recover(const Report& report) {
   }
   if (!std::holds_alternative<Recovering>(mission_)) {
     note_loss(report.now);
-    drop_goal();
+    end_visit();
     Recovering recovering{{}, report.now};
     if (const auto* exploring = std::get_if<Exploring>(&mission_)) recovering.interrupted = *exploring;
     if (const auto* returning = std::get_if<Returning>(&mission_)) recovering.interrupted = *returning;

@@ -69,7 +69,8 @@ class Explorer {
   bool take(const Decision& decision, const Report& report);
 
   State state() const { return state_of(mission_); }
-  const std::string& reason() const { return reason_; }
+  /// While it consolidates, also how exploration ended.
+  std::string reason() const;
   /// To the current goal; empty: stand still.
   const std::vector<Pose2>& path() const { return path_; }
   /// The path is not of the map: it turns on the spot, through headings relative to the one that the robot has now.
@@ -97,11 +98,12 @@ class Explorer {
   void resume(std::string reason);
   void set_path(std::vector<Pose2> path, bool is_turn = false);
   void drop_goal();
+  void end_visit();
   void note_pose(const Report& report);
   void await_first_pose(time::Time now);
   void look_for_pose(time::Time now);
   bool explore(Exploring& exploring, const Report& report, Surroundings& surroundings);
-  bool consolidate(Consolidating& consolidating, const Report& report, Surroundings& surroundings);
+  bool consolidate(const Consolidating& consolidating, const Report& report, Surroundings& surroundings);
   bool ends_goal(const Report& report, Surroundings& surroundings);
   bool is_stopped(const Report& report, Surroundings& surroundings);
   void act_on(Exploring& exploring, const Decision& decision, const Report& report);

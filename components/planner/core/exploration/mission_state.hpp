@@ -3,6 +3,9 @@
 #include <optional>
 #include <string>
 #include <variant>
+#include <vector>
+
+#include <Eigen/Core>
 
 #include "common/time/time.hpp"
 
@@ -43,9 +46,9 @@ struct Returning {
 };
 
 struct Consolidating {
-  Ended exploration;         ///< how that ended
-  bool has_visited = false;  ///< an old place since all of them were to be visited
-  bool rests = false;        ///< there is none to drive to
+  Ended exploration;                          ///< how that ended
+  std::vector<Eigen::Vector2d> visited = {};  ///< old places, since all of them were to be visited [m, map]
+  bool rests = false;                         ///< there is none to drive to
 };
 
 struct Recovering {
@@ -55,6 +58,18 @@ struct Recovering {
 
 /// What the mission does, with what only that needs to know.
 using MissionState = std::variant<Idle, Exploring, Paused, Recovering, Returning, Consolidating, Ended>;
+
+/// How exploration has ended, where that is to be said when the robot has returned; else null.
+inline const Ended* outcome_of(const MissionState& mission) {
+  const auto outcome_in = [](const auto& states) -> const Ended* {
+    if (const auto* returning = std::get_if<Returning>(&states)) return &returning->then;
+    if (const auto* consolidating = std::get_if<Consolidating>(&states)) return &consolidating->exploration;
+    return nullptr;
+  };
+  if (const auto* recovering = std::get_if<Recovering>(&mission)) return outcome_in(recovering->interrupted);
+  if (const auto* ended = std::get_if<Ended>(&mission)) return ended->how == State::kGaveUp ? ended : nullptr;
+  return outcome_in(mission);
+}
 
 inline State state_of(const MissionState& mission) {
   struct Names {

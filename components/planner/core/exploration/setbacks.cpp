@@ -29,7 +29,6 @@ void Setbacks::begin_anew() {
   blocked_.clear();
   failed_views_.forgive();
   taken_views_.clear();
-  visited_.clear();
   losses_.clear();
 }
 
@@ -87,7 +86,6 @@ Memory Setbacks::memory(bool is_adrift, time::Time now) const {
   Memory memory;
   memory.left_alone = targets_.left_alone(now, is_adrift);
   memory.old_places = old_places_.left_alone(now, is_adrift);
-  memory.old_places.insert(memory.old_places.end(), visited_.begin(), visited_.end());
   memory.gap_places = gap_places_.left_alone(now, is_adrift);
   memory.failed_views = failed_views_.all();
   memory.taken_views = taken_views_;

@@ -30,9 +30,6 @@ class Setbacks {
   void note_view(const Pose2& taken) { taken_views_.push_back(taken); }
   /// An old place was revisited: not for ever.
   void note_revisit(const Eigen::Vector2d& target_map, bool is_adrift, time::Time now);
-  /// An old place needs no more visits until all have been visited.
-  void note_visit(const Eigen::Vector2d& target_map) { visited_.push_back({target_map}); }
-  void forget_visits() { visited_.clear(); }
   /// The goal was not reached. A place that cannot be had, of an old key-frame or for a view of gaps, says nothing of a
   /// frontier beside it.
   void note_failure(CandidateKind kind, const Eigen::Vector2d& target_map, const Pose2& goal, bool is_adrift,
@@ -61,7 +58,6 @@ class Setbacks {
   GoalMemory blocked_;     ///< places on the path
   FailedViews failed_views_;
   std::vector<Pose2> taken_views_;       ///< of gaps
-  std::vector<LeftAlone> visited_;       ///< old places
   std::vector<Eigen::Vector2d> losses_;  ///< targets on the way to which slam stopped tracking [m, map]
   std::uint64_t count_ = 0;
 };

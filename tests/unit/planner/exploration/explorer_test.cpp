@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -473,34 +474,48 @@ WalkWorld consolidating_world(const char* by) {
   return world;
 }
 
+/// In the order in which they are driven to, until all have been.
+std::vector<Eigen::Vector2d> places_of_a_round(WalkWorld& world) {
+  std::vector<Eigen::Vector2d> places;
+  const double end_s = world.now.seconds() + 300.0;
+  while (world.now.seconds() < end_s && !world.explorer.reason().starts_with("old places are visited once more")) {
+    world.tick();
+    const auto goal = world.explorer.memory(world.now).goal;
+    if (goal && (places.empty() || (places.back() - goal->p_map).norm() > 0.5)) places.push_back(goal->p_map);
+  }
+  return places;
+}
+
 TEST(Explorer, DrivesThroughOldPlacesWhenNothingIsLeft) {
+  std::set<std::pair<double, double>> seconds;  // places
   for (const char* by : {"nearest", "random", "lapis"}) {
     WalkWorld world = consolidating_world(by);
     ASSERT_EQ(world.explorer.state(), State::kConsolidating) << world.explorer.reason();
-    std::vector<Eigen::Vector2d> places;
-    const auto is_new = [&](const Eigen::Vector2d& p) {
-      return std::none_of(places.begin(), places.end(), [&](const auto& other) { return (other - p).norm() < 0.5; });
-    };
-    const double end_s = world.now.seconds() + 300.0;
-    while (world.now.seconds() < end_s && !world.explorer.reason().starts_with("old places are visited once more")) {
-      world.tick();
-      const auto goal = world.explorer.memory(world.now).goal;
-      if (goal && is_new(goal->p_map)) places.push_back(goal->p_map);
+    const auto failures = world.explorer.failures();
+    const double before_m = world.travelled_m;
+    const auto places = places_of_a_round(world);
+    EXPECT_EQ(world.explorer.reason(), "old places are visited once more; nothing is left that can be reached") << by;
+    ASSERT_GT(places.size(), 3U) << by << ": one after the other";
+    EXPECT_GT(world.travelled_m, before_m + 10.0) << by;
+    EXPECT_EQ(world.explorer.failures(), failures) << by;
+    for (std::size_t i = 0; i < places.size(); ++i) {
+      for (std::size_t k = i + 1; k < places.size(); ++k)
+        EXPECT_GT((places[i] - places[k]).norm(), 0.5) << by << ": each once, " << i << " and " << k;
     }
-    EXPECT_THAT(world.explorer.reason(), HasSubstr("once more; nothing is left that can be reached")) << by;
-    EXPECT_GT(places.size(), 3U) << by << ": one after the other";
+    seconds.insert({places[1].x(), places[1].y()});
     for (int i = 0; i < 50 && world.explorer.path().empty(); ++i) world.tick();
     EXPECT_FALSE(world.explorer.path().empty()) << by << ": another round";
     EXPECT_EQ(world.explorer.state(), State::kConsolidating);
   }
+  EXPECT_GT(seconds.size(), 1U) << "they do not all choose alike";
 }
 
-TEST(Explorer, RestsWhereThereIsNoOldPlace) {
-  WalkWorld world(closed(kThreeRooms), {.consolidates = true});
-  world.decision_config.hallucination.min_loop_path_m = 1000.0;
+TEST(Explorer, RestsWhereThereIsNoOtherOldPlace) {
+  WalkWorld world({"#####", "#...#", "#.R.#", "#...#", "#####"}, {.consolidates = true});
   world.explorer.start();
-  while (world.explorer.state() == State::kExploring && world.now.seconds() < 400.0) world.tick();
+  while (world.explorer.state() == State::kExploring && world.now.seconds() < 100.0) world.tick();
   world.decision_config.method = make_consolidation("nearest");
+  for (int i = 0; i < 50; ++i) world.tick();
   const int before = world.decisions;
   for (int i = 0; i < 300; ++i) world.tick();
   EXPECT_EQ(world.explorer.state(), State::kConsolidating);
@@ -509,38 +524,59 @@ TEST(Explorer, RestsWhereThereIsNoOldPlace) {
   EXPECT_LT(world.decisions - before, 15) << "in a minute: the map may change";
 }
 
-TEST(Explorer, ConsolidatesOnWhenSlamIsBackAndExploresAMapThatIsNew) {
+/// Drives to an old place.
+WalkWorld visiting_world() {
   WalkWorld world = consolidating_world("nearest");
+  for (int i = 0; i < 50 && world.explorer.path().empty(); ++i) world.tick();
+  return world;
+}
+
+TEST(Explorer, AfterALossItConsolidatesElsewhereAndExploresAMapThatIsNew) {
+  WalkWorld world = visiting_world();
+  const auto first = world.explorer.memory(world.now).goal;
+  ASSERT_TRUE(first);
   world.tracking = Tracking::kLost;
   world.tick();
   EXPECT_EQ(world.explorer.state(), State::kRecovering);
   world.tracking = Tracking::kTracking;
-  world.tick();
+  for (int i = 0; i < 20 && world.explorer.path().empty(); ++i) world.tick();
   EXPECT_EQ(world.explorer.state(), State::kConsolidating);
+  ASSERT_TRUE(world.explorer.memory(world.now).goal);
+  EXPECT_GT((world.explorer.memory(world.now).goal->p_map - first->p_map).norm(), 0.5) << "not where slam was lost";
   world.explorer.forget_map();
   EXPECT_EQ(world.explorer.state(), State::kExploring);
+  EXPECT_TRUE(world.explorer.memory(world.now).visited_places.empty());
 }
 
 TEST(Explorer, LeavesAnOldPlaceThatIsBlocked) {
-  WalkWorld world = consolidating_world("nearest");
-  while (world.explorer.path().empty()) world.tick();
-  const Eigen::Vector2d first = world.explorer.memory(world.now).goal->p_map;
+  WalkWorld world = visiting_world();
+  const auto first = world.explorer.memory(world.now).goal;
+  ASSERT_TRUE(first);
   const auto failures = world.explorer.failures();
   world.is_blocked = true;
   world.tick();
   world.is_blocked = false;
   EXPECT_EQ(world.explorer.failures(), failures + 1);
+  EXPECT_EQ(world.explorer.reason(), "the path was blocked; nothing is left that can be reached");
   for (int i = 0; i < 20 && !world.explorer.memory(world.now).goal; ++i) world.tick();
   ASSERT_TRUE(world.explorer.memory(world.now).goal);
-  EXPECT_GT((world.explorer.memory(world.now).goal->p_map - first).norm(), 0.5);
+  EXPECT_GT((world.explorer.memory(world.now).goal->p_map - first->p_map).norm(), 0.5);
 }
 
-TEST(Explorer, IsToldToReturnWhileItConsolidates) {
-  WalkWorld world = consolidating_world("nearest");
-  world.explorer.return_home();
-  EXPECT_EQ(world.explorer.state(), State::kReturning);
-  world.run(60.0);
-  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+TEST(Explorer, ObeysWhileItConsolidates) {
+  WalkWorld world = visiting_world();
+  EXPECT_TRUE(world.explorer.pause());
+  EXPECT_TRUE(world.explorer.path().empty());
+  world.explorer.start();
+  EXPECT_EQ(world.explorer.state(), State::kExploring);
+  WalkWorld lost = visiting_world();
+  lost.tracking = Tracking::kLost;
+  lost.tick();
+  lost.explorer.return_home();
+  lost.tracking = Tracking::kTracking;
+  lost.run(60.0);
+  EXPECT_EQ(lost.explorer.state(), State::kDone);
+  EXPECT_EQ(lost.explorer.reason(), "is back where it started; nothing is left that can be reached");
 }
 
 TEST(Explorer, PlacesOfAMapThatIsGoneAreForgotten) {

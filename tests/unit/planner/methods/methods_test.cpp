@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include "planner/core/methods/consolidation.hpp"
+
 namespace lapis::planner {
 namespace {
 
@@ -82,6 +84,27 @@ TEST(Methods, LoopsAreWorthSomethingToThoseWithAGraphInTheirUtility) {
 TEST(Methods, LapisIsOneOfThem) {
   EXPECT_EQ(utility(*make_method("lapis"), kValue), utility(*make_method("joint"), kValue));
   EXPECT_EQ(make_method(""), nullptr);
+}
+
+Candidate place_at(double x_m, double cost_m) {
+  Candidate candidate;
+  candidate.target_map = {x_m, 1.0};
+  candidate.value.cost_m = cost_m;
+  candidate.value.path_information = 3.0;
+  return candidate;
+}
+
+TEST(Methods, OldPlacesAreChosenByCostByChanceOrByLapis) {
+  for (const std::string& name : consolidation_names()) ASSERT_TRUE(make_consolidation(name)) << name;
+  EXPECT_FALSE(make_consolidation("none"));
+  EXPECT_FALSE(make_consolidation("mi_only"));
+  const auto nearest = make_consolidation("nearest"), random = make_consolidation("random");
+  EXPECT_GT(nearest->utility(place_at(1.0, 2.0)), nearest->utility(place_at(1.0, 3.0)));
+  EXPECT_EQ(random->utility(place_at(1.0, 2.0)), random->utility(place_at(1.0, 3.0)));
+  EXPECT_NE(random->utility(place_at(1.0, 2.0)), random->utility(place_at(2.0, 2.0)));
+  const Candidate any = place_at(1.0, 2.0);
+  EXPECT_EQ(make_consolidation("lapis")->utility(any), make_method("lapis")->utility(any));
+  EXPECT_EQ(make_consolidation("lapis")->asks(), make_method("lapis")->asks());
 }
 
 }  // namespace

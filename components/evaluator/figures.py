@@ -335,6 +335,7 @@ def draw_decision(run):
     try:
         rows, count = shown_decision(table)
         number, method, time_s = rows[0]["decision"], rows[0]["method"], float(rows[0]["time_s"])
+        explanation = next((row["explanation"] for row in rows if row.get("explanation")), "")  # older files have none
         bars = [bar for bar in DECISION_BARS if any(row[bar[0]] for row in rows)]  # not what the method does not ask for
         figure, (plan, *panels) = plt.subplots(1, 1 + len(bars), figsize=(13, 6.5),
                                                gridspec_kw={"width_ratios": [5] + [1] * len(bars)})
@@ -352,7 +353,7 @@ def draw_decision(run):
                 bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False)
     finish_plan(plan, "", has_map=points is not None)
     figure.suptitle(f"Decision {number} at {time_s:.1f} s by method {method}, the one with most candidates; "
-                    "the map is that of the run's end")
+                    "the map is that of the run's end\n" + explanation, fontsize=10)
     figure.tight_layout()
     return figure
 

@@ -14,7 +14,7 @@ DecisionLog::DecisionLog(const std::string& path, const std::vector<std::string>
   file_ << "decision,time_s,method,candidate,kind,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
            "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
            "unknown_share,"
-           "utility,ended_kind,ended_s,ended_cost_m,ended_promised_nats,ended_driven_nats,ended_gained_nats,"
+           "utility,explanation,ended_kind,ended_s,ended_cost_m,ended_promised_nats,ended_driven_nats,ended_gained_nats,"
            "is_chosen,";
   for (const std::string& method : compared_methods) file_ << "is_chosen_by_" << method << ',';
   for (const double prior : compared_priors) file_ << "is_chosen_with_prior_" << prior << ',';
@@ -32,6 +32,8 @@ bool DecisionLog::write(const Decision& decision, const std::optional<DrivenPath
           << c.goal.yaw_rad << ',' << c.value.cost_m << ',';
     write_value(c, decision.known);
     file_ << c.utility << ',';
+    if (decision.chosen == i) file_ << std::quoted(decision.explanation, '"', '"');
+    file_ << ',';
     write_ended();
     file_ << (decision.chosen == i) << ',';
     for (const auto& chosen : decision.by_compared_methods) file_ << (chosen == i) << ',';

@@ -243,6 +243,7 @@ void PlannerComponent::take_decision(bool waits) {
   const bool is_taken = deciding_method_ == method_of_state() && explorer_.take(decision, report());
   candidates_.publish(to_message(decision, decisions_, deciding_method_, header()));
   const Decision* driven = is_taken && decision.chosen ? &decision : nullptr;
+  if (driven != nullptr) driven_by_ = decision.explanation;
   const auto ended = ledger_.note(driven, surroundings_->information_nats(), last_robot_, stamp_);
   if (log_ && !log_->write(decision, ended, decisions_, deciding_method_, stamp_)) {
     spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, DecisionLog::kFile);
@@ -319,6 +320,12 @@ Report PlannerComponent::report() const {
 std::string PlannerComponent::reason() const {
   const bool is_lacking = tracking_ == Tracking::kLost && !slam_reason_.empty();
   return is_lacking ? explorer_.reason() + "; slam: " + slam_reason_ : explorer_.reason();
+}
+
+/// The same and, while it drives to a goal, by what that was chosen.
+std::string PlannerComponent::reason_with_choice() const {
+  const bool has_goal = explorer_.has_goal() && !driven_by_.empty();
+  return has_goal ? reason() + " (" + driven_by_ + ")" : reason();
 }
 
 std::string PlannerComponent::method_of_state() const {
@@ -410,7 +417,7 @@ void PlannerComponent::publish_status() {
   lapis_msgs::msg::PlannerStatus message;
   message.header(header());
   message.state(to_message(explorer_.state()));
-  message.reason(reason());
+  message.reason(reason_with_choice());
   message.explored_volume_m3(surroundings_ ? surroundings_->explored_volume_m3() : 0.0);
   message.decision_time_s(decision_time_s_);
   message.decisions(decisions_);

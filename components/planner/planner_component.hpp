@@ -65,6 +65,7 @@ class PlannerComponent {
   void update_provisional_area();
   Report report() const;
   std::string reason() const;
+  std::string reason_with_choice() const;
   std::string method_of_state() const;
   bool is_consolidating() const { return explorer_.state() == State::kConsolidating; }
   GraphVersions versions_of_graph() const;
@@ -117,6 +118,7 @@ class PlannerComponent {
   DecisionWorker worker_;
   std::optional<DecisionLog> log_;
   Decision decision_;            // the last one
+  std::string driven_by_;        // explanation of the choice that is being driven to
   std::string deciding_method_;  // of it, or of the one that is being made
   std::uint64_t decisions_ = 0, shown_decision_ = 0;
   std::size_t marker_readers_ = 0;

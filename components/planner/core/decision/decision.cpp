@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <utility>
 
+#include "planner/core/decision/explanation.hpp"
 #include "planner/core/decision/first_turn.hpp"
 #include "planner/core/space/path_planner.hpp"
 
@@ -248,6 +249,7 @@ Decision decide(const Situation& situation, const Memory& memory, const Decision
     const Candidate& chosen = decision.candidates[*decision.chosen];
     const int side = is_current_goal(chosen, memory) ? memory.turns_to : 0;
     decision.first_turn_rad = first_turn(situation, first_heading(chosen), side, config.hallucination.covisibility);
+    decision.explanation = explain(decision.candidates, *decision.chosen, config.method->asks());
     decision.promised = promise_along(situation, chosen, decision.first_turn_rad);
   } else {
     decision.leftover = leftover_of(situation, decision.candidates);

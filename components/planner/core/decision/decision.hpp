@@ -43,6 +43,7 @@ struct PromisedView {
 struct Decision {
   std::vector<Candidate> candidates;   ///< at least one for each frontier
   std::optional<std::size_t> chosen;   ///< index; nothing when none can be driven to
+  std::string explanation;             ///< of the choice, see explain(); empty when there is none
   std::vector<PromisedView> promised;  ///< along the chosen path, from where the robot is
   std::vector<double> first_turn_rad;  ///< headings to turn through before the chosen path; empty: the short way
   Leftover leftover;                   ///< when none can

@@ -73,6 +73,8 @@ class Explorer {
   std::string reason() const;
   /// To the current goal; empty: stand still.
   const std::vector<Pose2>& path() const { return path_; }
+  /// Somebody has chosen where it drives to.
+  bool has_goal() const { return goal_ && goal_->target_map; }
   /// The path is not of the map: it turns on the spot, through headings relative to the one that the robot has now.
   bool is_turn() const { return is_turn_; }
   /// Goals so far that were not reached, or looked at in vain.

@@ -100,6 +100,8 @@ def print_table(rows):
 
 def check(options):
     file = pathlib.Path(options.file)
+    if file.is_dir():
+        sys.exit(f"{file} is a folder; wanted is a CSV file")
     if not file.absolute().parent.is_dir():
         sys.exit(f"{file}: there is no folder {file.absolute().parent}; make it first")
     rows, wanted = read_rows(file), []

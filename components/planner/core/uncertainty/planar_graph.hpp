@@ -22,8 +22,8 @@ class PlanarGraph {
   /// The part that hangs together with the newest key-frame; node i is keyframes()[i].
   /// @param keyframes by ascending id
   /// @param edges information in the tangent (translation, rotation) of a right perturbation at `to`, 6x6
-  /// The error says that an edge has no weight or names a key-frame that is not there, that there are fewer than two
-  /// connected key-frames, or that the matrix is singular to rounding.
+  /// The error says that an edge has no weight, has no information of a pose, or names a key-frame that is not there,
+  /// that there are fewer than two connected key-frames, or that the matrix is singular to rounding.
   static std::variant<PlanarGraph, GraphError> make(std::span<const Keyframe> keyframes,
                                                     std::span<const KeyframeEdge> edges);
 

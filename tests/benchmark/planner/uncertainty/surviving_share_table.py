@@ -17,12 +17,20 @@ import sys
 
 import numpy as np
 
+COLUMNS = {"scene", "world", "seed", "path_m", "actual", "predicted", "predicted_wide", "common"}
+
 
 def read_rows(file):
-    with open(file, newline="", encoding="utf-8") as stream:
-        rows = list(csv.DictReader(stream))
+    try:
+        with open(file, newline="", encoding="utf-8") as stream:
+            rows = list(csv.DictReader(stream))
+    except OSError as error:
+        sys.exit(f"{file}: {error.strerror}")
     if not rows:
         sys.exit(f"{file}: no rows")
+    missing = COLUMNS - set(rows[0])
+    if missing:
+        sys.exit(f"{file}: not written by lapis_surviving_share --rows, the column {min(missing)} is not there")
     return rows
 
 

@@ -60,7 +60,7 @@ Decision decision() {
   chosen.utility = 11.5;
   decision.candidates[1].frontier = 18;
   decision.candidates[1].rejection = Rejection::kUnreachable;
-  decision.explanation = "frontier 4 is best";
+  decision.explanation = "frontier 4: best, by far";
   decision.chosen = 0;
   return decision;
 }
@@ -104,7 +104,7 @@ TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
                                                     {"d_optimality", "7.5"},
                                                     {"unknown_share", "0.125"},
                                                     {"utility", "11.5"},
-                                                    {"explanation", "\"frontier 4 is best\""},
+                                                    {"explanation", "frontier 4: best, by far"},
                                                     {"ended_kind", "revisit"},
                                                     {"ended_s", "2.5"},
                                                     {"ended_cost_m", "4.25"},

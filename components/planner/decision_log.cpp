@@ -13,9 +13,8 @@ DecisionLog::DecisionLog(const std::string& path, const std::vector<std::string>
   file_.open(path);
   file_ << "decision,time_s,method,candidate,kind,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
            "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
-           "unknown_share,"
-           "utility,explanation,ended_kind,ended_s,ended_cost_m,ended_promised_nats,ended_driven_nats,ended_gained_nats,"
-           "is_chosen,";
+           "unknown_share,utility,explanation,ended_kind,ended_s,ended_cost_m,ended_promised_nats,ended_driven_nats,"
+           "ended_gained_nats,is_chosen,";
   for (const std::string& method : compared_methods) file_ << "is_chosen_by_" << method << ',';
   for (const double prior : compared_priors) file_ << "is_chosen_with_prior_" << prior << ',';
   file_ << "rejection\n";

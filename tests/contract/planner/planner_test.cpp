@@ -27,8 +27,9 @@ std::string read(const std::filesystem::path& file) {
 TEST_F(PlannerContract, DrivesToTheFrontierInTheDoor) {
   get_going();
   EXPECT_EQ(state(), STATE_EXPLORING);
-  EXPECT_THAT(reason(), testing::MatchesRegex("drives to frontier ([0-9]+) \\(frontier [0-9]+: [0-9]+ nats, loops with [0-9.]+ "
-                                              "old places for [0-9.]+ m, [0-9.e+]+; .*\\)"));
+  EXPECT_THAT(reason(),
+              testing::MatchesRegex("drives to frontier ([0-9]+) \\(frontier [0-9]+: [0-9]+ nats, loops with [0-9.]+ "
+                                    "old places for [0-9.]+ m, [0-9.e+]+; .*\\)"));
   EXPECT_GT(statuses.back().explored_volume_m3(), 20.0);
   EXPECT_EQ(paths.back().header().stamp(), messages::to_message(peers.stamp));
   const auto& first = paths.back().poses().front().pose().position();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kPass_m = 0.75;  // path past an old place, in its direction
 constexpr double kAtGoal_m = 0.5;
-constexpr double kLikely = 0.5;   // probability of a loop closure at the place itself
+constexpr double kLikely = 0.5;  // probability of a loop closure at the place itself
 
 OldPlace place_of(const Situation& s, const Keyframe& keyframe) {
   const geometry::Pose T_map_base = keyframe.T_map_camera * s.T_base_camera.inverse();

@@ -20,8 +20,8 @@ std::vector<OldPlace> old_places(const ProposalInput& in, const HallucinationCon
 /// saw; the place itself when something stands there.
 Cell cell_beyond(const PlanningGrid& grid, const OldPlace& place);
 
-/// Drives through every old place but the one at which the robot stands, at its heading; those near Memory::visited_places
-/// are rejected. What is a place is the same for all methods, whatever they hallucinate.
+/// Drives through every old place but the one at which the robot stands, at its heading; those near
+/// Memory::visited_places are rejected. What is a place is the same for all methods, whatever they hallucinate.
 std::vector<Candidate> propose_old_places(const ProposalInput& in);
 
 }  // namespace lapis::planner

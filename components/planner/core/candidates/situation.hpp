@@ -37,10 +37,10 @@ struct Adrift {
 
 /// What is not to be driven to, and what is being driven to.
 struct Memory {
-  std::vector<LeftAlone> left_alone;  ///< frontiers near these
-  std::vector<LeftAlone> old_places;  ///< of key-frames, not to be driven to
+  std::vector<LeftAlone> left_alone;            ///< frontiers near these
+  std::vector<LeftAlone> old_places;            ///< of key-frames, not to be driven to
   std::vector<Eigen::Vector2d> visited_places;  ///< of key-frames, not to be driven through again [m, map]
-  std::vector<LeftAlone> gap_places;  ///< for views of gaps, not to be driven to
+  std::vector<LeftAlone> gap_places;            ///< for views of gaps, not to be driven to
   std::vector<FailedView> failed_views;
   std::vector<Pose2> taken_views;  ///< of gaps: not to be taken again
   bool looks_at_gaps = false;      ///< when no frontier can be driven to

@@ -14,7 +14,7 @@ std::string text(const char* format, Values... values) {
 }
 
 std::string place_of(const Candidate& candidate) {
-  const std::string frontier = "frontier " + std::to_string(candidate.frontier);
+  std::string frontier = "frontier " + std::to_string(candidate.frontier);
   switch (candidate.kind) {
     case CandidateKind::kAlternative: return frontier + " by another path";
     case CandidateKind::kCloserLook: return "a closer look at " + frontier;

@@ -12,6 +12,7 @@ import json
 import math
 import os
 import sys
+import textwrap
 from pathlib import Path
 
 import matplotlib
@@ -24,7 +25,7 @@ from matplotlib.collections import LineCollection  # noqa: E402
 
 ESTIMATE = "trajectory_estimate.txt"
 TRUTH = "trajectory_ground_truth.txt"
-DECISIONS = "decisions.csv"
+DECISIONS, DECISION_PLAN = "decisions.csv", "decision.json"
 BLUE, ORANGE, GREY = "#1565c0", "#e65100", "#9e9e9e"
 OTHER_METHODS = (("s", BLUE), ("D", "#6a1b9a"), ("^", "#2e7d32"), ("v", "#c62828"), ("p", "#00838f"))
 TIERS = {"vision": "#66bb6a", "surfaces": "#42a5f5", "odometry": "#ffb300", "none": "#d32f2f"}  # frames.csv
@@ -273,17 +274,41 @@ def draw_pose_graph(run):
     return figure
 
 
-def shown_decision(rows):
-    """Rows of the decision with most candidates that were not rejected, these first and the best of them foremost, and
-    their number; of several such decisions, the one nearest to the middle of the run."""
-    decisions = collections.defaultdict(list)
-    for row in rows:
-        decisions[int(row["decision"])].append(row)
-    accepted = {number: sum(not row["rejection"] for row in of) for number, of in decisions.items()}
-    middle = (min(decisions) + max(decisions)) / 2
-    chosen = min(decisions, key=lambda number: (-accepted[number], abs(number - middle), number))
-    of = sorted(decisions[chosen], key=lambda row: (bool(row["rejection"]), -float(row["utility"])))
-    return of, accepted[chosen]
+def read_decision_plan(run):
+    """What the planner knew at the decision with most candidates; None where it left no such file, as it did before."""
+    path = run / DECISION_PLAN
+    try:
+        return json.loads(path.read_text()) if path.is_file() else None
+    except ValueError as error:
+        raise MissingInput(f"{path.name} is damaged ({error})") from error
+
+
+def shown_decision(rows, number):
+    """Rows of a decision, those that were not rejected first and the best of them foremost, and their number."""
+    of = [row for row in rows if int(row["decision"]) == number]
+    of.sort(key=lambda row: (bool(row["rejection"]), -float(row["utility"])))
+    return of, sum(not row["rejection"] for row in of)
+
+
+def with_most_candidates(rows):
+    """Number of the first decision with most candidates that were not rejected."""
+    accepted = collections.Counter(int(row["decision"]) for row in rows if not row["rejection"])
+    return accepted.most_common(1)[0][0] if accepted else int(rows[0]["decision"])
+
+
+def draw_floor_plan(axes, plan):
+    """Free, occupied and unknown cells, and frontiers, as they were then; returns what the legend says of them."""
+    rows = plan["plan"]["rows"]
+    if not rows:
+        return []
+    shades = {" ": 0.85, ".": 1.0, "#": 0.35}
+    x, y = plan["plan"]["lower_left_m"]
+    cell = plan["resolution_m"]
+    axes.imshow([[shades[c] for c in row] for row in rows], cmap="gray", vmin=0, vmax=1, origin="lower", zorder=0,
+                extent=(x, x + cell * len(rows[0]), y, y + cell * len(rows)))
+    cells = np.array([cell for frontier in plan["frontiers"] for cell in frontier["cells_m"]]).reshape(-1, 2)
+    frontiers, = axes.plot(*cells.T, "s", color="#ffcc80", markersize=3, zorder=1)
+    return [(frontiers, "frontiers")]
 
 
 def draw_candidates(axes, rows, count, shade, path):
@@ -331,29 +356,32 @@ def draw_decision(run):
     if not table:
         raise MissingInput(f"{DECISIONS} holds no decision")
     stamps, positions, _ = read_trajectory(run / ESTIMATE)
-    points = read_map(run / "map.ply")
+    plan_of_then = read_decision_plan(run)
     try:
-        rows, count = shown_decision(table)
+        rows, count = shown_decision(table, plan_of_then["decision"] if plan_of_then else with_most_candidates(table))
         number, method, time_s = rows[0]["decision"], rows[0]["method"], float(rows[0]["time_s"])
         explanation = next((row["explanation"] for row in rows if row.get("explanation")), "")  # older files have none
         bars = [bar for bar in DECISION_BARS if any(row[bar[0]] for row in rows)]  # not what the method does not ask for
         figure, (plan, *panels) = plt.subplots(1, 1 + len(bars), figsize=(13, 6.5),
                                                gridspec_kw={"width_ratios": [5] + [1] * len(bars)})
-        if points is not None:
-            draw_map(plan, points, positions[:, 2].mean() + HEAD_ROOM_M, paleness=0.7)
+        shade = plt.get_cmap("viridis")(np.linspace(0.95, 0.05, count))
+        entries = []
+        if plan_of_then:
+            entries = draw_floor_plan(plan, plan_of_then)
+            for row, colour in zip(rows, shade):
+                plan.plot(*np.array(plan_of_then["paths_m"][int(row["candidate"])]).reshape(-1, 2).T, color=colour, linewidth=1.2)
         gone = positions[stamps <= time_s]
         driven, = plan.plot(*gone[:, :2].T, color="black", linewidth=1.0)
         robot, = plan.plot(*gone[-1:, :2].T, "*", color="black", markersize=13)
-        shade = plt.get_cmap("viridis")(np.linspace(0.95, 0.05, count))
-        entries = draw_candidates(plan, rows, count, shade, path)
+        entries += draw_candidates(plan, rows, count, shade, path)
         draw_bars(panels, bars, rows, count, shade, path)
-    except (KeyError, TypeError, ValueError) as error:
-        raise MissingInput(f"{path.name} is damaged ({error})") from error
+    except (KeyError, IndexError, TypeError, ValueError) as error:
+        raise MissingInput(f"{path.name} or {DECISION_PLAN} is damaged ({error})") from error
     plan.legend(*zip((driven, "path until then"), (robot, "robot"), *entries), loc="upper center",
                 bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False)
-    finish_plan(plan, "", has_map=points is not None)
-    figure.suptitle(f"Decision {number} at {time_s:.1f} s by method {method}, the one with most candidates; "
-                    "the map is that of the run's end\n" + explanation, fontsize=10)
+    finish_plan(plan, "", has_map=bool(plan_of_then))
+    figure.suptitle(f"Decision {number} at {time_s:.1f} s by method {method}, the one with most candidates, with the map of then\n"
+                    + textwrap.fill(explanation, 140), fontsize=10)
     figure.tight_layout()
     return figure
 

@@ -79,6 +79,7 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
     files::require_writable_folder(config_.output_dir, "planner.output_dir");
     log_.emplace((std::filesystem::path(config_.output_dir) / DecisionLog::kFile).string(), config_.compared_methods,
                  config_.surroundings.compared_priors);
+    plan_.emplace((std::filesystem::path(config_.output_dir) / DecisionPlan::kFile).string());
   }
   if (config_.record_situations_every > 0)
     files::require_writable_folder((std::filesystem::path(config_.output_dir) / kSituations).string(),
@@ -244,11 +245,18 @@ void PlannerComponent::take_decision(bool waits) {
   candidates_.publish(to_message(decision, decisions_, deciding_method_, header()));
   const Decision* driven = is_taken && decision.chosen ? &decision : nullptr;
   if (driven != nullptr) driven_by_ = decision.explanation;
-  const auto ended = ledger_.note(driven, surroundings_->information_nats(), last_robot_, stamp_);
+  write_down(decision, ledger_.note(driven, surroundings_->information_nats(), last_robot_, stamp_));
+}
+
+void PlannerComponent::write_down(const Decision& decision, const std::optional<DrivenPath>& ended) {
   if (log_ && !log_->write(decision, ended, decisions_, deciding_method_, stamp_)) {
     spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, DecisionLog::kFile);
     log_.reset();
   }
+  const auto problem = plan_ ? plan_->write(decision, *surroundings_, decisions_) : std::nullopt;
+  if (!problem) return;
+  spdlog::error("{}; exploration continues without it", *problem);
+  plan_.reset();
 }
 
 /// Takes over what has changed. Not while a decision reads it.

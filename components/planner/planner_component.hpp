@@ -14,6 +14,7 @@
 #include "planner/conversions.hpp"
 #include "planner/core/replay/situation_file.hpp"
 #include "planner/decision_log.hpp"
+#include "planner/decision_plan.hpp"
 #include "planner/decision_worker.hpp"
 #include "planner/planner_config.hpp"
 
@@ -58,6 +59,7 @@ class PlannerComponent {
 
   void work(const runtime::Cycle& cycle);
   void take_decision(bool waits);
+  void write_down(const Decision& decision, const std::optional<DrivenPath>& ended);
   void refresh();
   bool is_map_readable();
   void update_map();
@@ -117,6 +119,7 @@ class PlannerComponent {
   PathLedger ledger_;
   DecisionWorker worker_;
   std::optional<DecisionLog> log_;
+  std::optional<DecisionPlan> plan_;
   Decision decision_;            // the last one
   std::string driven_by_;        // explanation of the choice that is being driven to
   std::string deciding_method_;  // of it, or of the one that is being made

@@ -240,7 +240,7 @@ void describe(Field& field, PlannerComponentConfig& c) {
         "instead of the prior of the mapper's sensor model: decisions.csv says what would have been chosen with each");
   field("decision_latency_frames", c.decision_latency_frames, config::in_range(1, 100),
         "from the frame that a decision is made from to the one at which it takes effect");
-  field("output_dir", c.output_dir, config::anything(), "folder for decisions.csv; empty: none");
+  field("output_dir", c.output_dir, config::anything(), "folder for decisions.csv and decision.json; empty: none");
   field("record_situations_every", c.record_situations_every, config::in_range(0, 1'000'000),
         "so many decisions what one is made from goes to situations/ in output_dir, for --replay; 0: never");
 }

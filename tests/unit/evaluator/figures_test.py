@@ -66,6 +66,14 @@ def write_frames(path, tier=lambda i: "vision" if i < 100 else "odometry"):
     path.write_text("time_s,tier,path_length_m,position_sigma_m,position_error_m\n" + "\n".join(rows) + "\n")
 
 
+def write_plan(path, decision):
+    """A room of 4 by 3 cells with a frontier, and as many paths as decision 2 has candidates."""
+    path.write_text(json.dumps({
+        "decision": decision, "robot_m": [0.0, 0.0], "resolution_m": 0.25, "frontiers": [{"id": 1, "cells_m": [[0.1, 0.1]]}],
+        "plan": {"lower_left_m": [-0.5, -0.5], "rows": ["####", "#..#", "#. #"]},
+        "paths_m": [[[0.0, 0.0], [float(c), 2.0]] for c in range(3)] + [[]]}))
+
+
 def write_decisions(path):
     """Decision 2 has most candidates, one of which is rejected, but decision 1 has as many that are not."""
     header = "decision,time_s,method,candidate,x_m,y_m,yaw_rad,cost_m,path_information_nats,d_optimality,utility," \
@@ -200,6 +208,28 @@ class Figures(unittest.TestCase):
         figure = the_module().draw_decision(self.run_folder)
         self.assertEqual([axes.get_title() for axes in figure.axes[1:]], ["utility", "cost [m]"])
         the_module().plt.close(figure)
+
+    def test_a_decision_is_shown_with_what_was_known_then(self):
+        figures = the_module()
+
+        def title_and_plan():
+            figure = figures.draw_decision(self.run_folder)
+            figures.plt.close(figure)
+            images = figure.axes[0].get_images()
+            return figure._suptitle.get_text().split()[1], [image.get_array().shape for image in images], figure.axes[0].lines
+
+        number, images, lines = title_and_plan()
+        self.assertEqual((number, images), ("1", []))  # a folder from before the file
+        write_plan(self.run_folder / "decision.json", 2)
+        number, images, more_lines = title_and_plan()
+        self.assertEqual((number, images), ("2", [(3, 4)]))
+        self.assertEqual(len(more_lines), len(lines) + 1 + 3 + 1)  # frontiers, paths, the rejected candidate
+        write_plan(self.run_folder / "decision.json", 99)
+        with self.assertRaisesRegex(figures.MissingInput, "decision.json is damaged"):
+            figures.draw_decision(self.run_folder)
+        (self.run_folder / "decision.json").write_text("{")
+        with self.assertRaisesRegex(figures.MissingInput, "decision.json is damaged"):
+            figures.draw_decision(self.run_folder)
 
     def test_a_run_without_a_planner_has_no_figure_of_a_decision(self):
         (self.run_folder / "decisions.csv").unlink()

@@ -46,7 +46,7 @@ struct Memory {
   bool looks_at_gaps = false;      ///< when no frontier can be driven to
   double radius_m = 0.75;          ///< what lies nearer to such places is meant, too
   std::optional<Pose2> goal;       ///< current one
-  int turns_to = 0;                ///< before the path there, the longer way round: 1 to the left, -1 to the right
+  int turns_to = 0;                ///< a turn the longer way round has begun: 1 to the left, -1 to the right
   std::optional<Adrift> adrift;    ///< nothing while slam tracks
 
   bool operator==(const Memory&) const = default;

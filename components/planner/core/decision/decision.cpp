@@ -247,8 +247,8 @@ Decision decide(const Situation& situation, const Memory& memory, const Decision
   Decision decision = choose(situation, proposals, memory, config);
   if (decision.chosen) {
     const Candidate& chosen = decision.candidates[*decision.chosen];
-    const int side = is_current_goal(chosen, memory) ? memory.turns_to : 0;
-    decision.first_turn_rad = first_turn(situation, first_heading(chosen), side, config.hallucination.covisibility);
+    decision.first_turn_rad =
+        first_turn(situation, first_heading(chosen), memory.turns_to, config.hallucination.covisibility);
     decision.explanation = explain(decision.candidates, *decision.chosen, config.method->asks());
     decision.promised = promise_along(situation, chosen, decision.first_turn_rad);
   } else {

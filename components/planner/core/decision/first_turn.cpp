@@ -39,8 +39,8 @@ std::vector<double> first_turn(const Situation& situation, double heading_rad, i
   const double shorter_rad = std::remainder(heading_rad - situation.robot.yaw_rad, 2.0 * std::numbers::pi);
   if (situation.landmarks == nullptr || std::abs(shorter_rad) < kLeast_rad) return {};
   const double longer_rad = shorter_rad - std::copysign(2.0 * std::numbers::pi, shorter_rad);
+  if (side != 0) return headings_through(situation.robot.yaw_rad, side * longer_rad > 0.0 ? longer_rad : shorter_rad);
   std::vector<double> longer = headings_through(situation.robot.yaw_rad, longer_rad);
-  if (side * longer_rad > 0.0) return longer;
   const bool is_better = !keeps_landmarks(situation, headings_through(situation.robot.yaw_rad, shorter_rad), config) &&
                          keeps_landmarks(situation, longer, config);
   return is_better ? longer : std::vector<double>{};

@@ -87,6 +87,8 @@ class PlanningGrid {
   std::int8_t state(Cell c) const { return state_.at(c); }
   /// The same by the map alone.
   std::int8_t mapped_state(Cell c) const { return mapped_.at(c); }
+  /// All cells of a state() other than kUnknown; sorted.
+  std::vector<Cell> cells_in(std::int8_t state) const { return state_.cells_with(state); }
   /// Distance to the nearest occupied cell, at most max_clearance_m() [m].
   double clearance_m(Cell c) const;
   /// True when an obstacle stands where the map says that it is free: it may go away.

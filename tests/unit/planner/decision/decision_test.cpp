@@ -412,8 +412,18 @@ TEST(Decide, TurnsTheWayRoundThatKeepsLandmarksInView) {
   const LandmarkIndex none({}, graph, 0.25);
   explorer.landmarks = &none;
   EXPECT_TRUE(turn(-2.8).empty()) << "either way leads past blank views";
-  EXPECT_FALSE(turn(-2.8, 1).empty()) << "it has begun to turn to the left";
-  EXPECT_TRUE(turn(-2.8, -1).empty());
+  ASSERT_FALSE(turn(-2.8, 1).empty()) << "it has begun to turn to the left";
+  EXPECT_NEAR(turn(-2.8, 1).back(), 2.0 * std::numbers::pi - 2.8, 1e-9);
+  ASSERT_FALSE(turn(-2.8, -1).empty()) << "it has begun to turn to the right, which is shorter by now";
+  EXPECT_NEAR(turn(-2.8, -1).back(), -2.8, 1e-9);
+  EXPECT_TRUE(turn(-1.0, 1).empty()) << "a short turn is left";
+  explorer.robot.yaw_rad = 0.4;
+  Memory memory;
+  memory.goal = Pose2{{-5.0, 0.0}, 0.0};
+  memory.turns_to = -1;
+  const std::vector<double> resumed = explorer.choose(memory).first_turn_rad;
+  ASSERT_FALSE(resumed.empty());
+  EXPECT_LT(resumed.front(), 0.4) << "whatever the goal was";
 }
 
 // Before slam has two key-frames, and when its graph cannot be judged.

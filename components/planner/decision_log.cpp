@@ -14,7 +14,7 @@ DecisionLog::DecisionLog(const std::string& path, const std::vector<std::string>
   file_ << "decision,time_s,method,candidate,kind,frontier,x_m,y_m,yaw_rad,cost_m,path_information_nats,"
            "goal_information_nats,places,loop_gain,fixed_n_change,end_sigma_without_loops_m,end_sigma_m,d_optimality,"
            "unknown_share,utility,explanation,ended_kind,ended_s,ended_cost_m,ended_promised_nats,ended_driven_nats,"
-           "ended_gained_nats,is_chosen,";
+           "ended_gained_nats,ended_promised_loop_gain,ended_loop_gain,is_chosen,";
   for (const std::string& method : compared_methods) file_ << "is_chosen_by_" << method << ',';
   for (const double prior : compared_priors) file_ << "is_chosen_with_prior_" << prior << ',';
   file_ << "rejection\n";
@@ -64,8 +64,12 @@ void DecisionLog::write_ended() {
   if (ended_) {
     file_ << name_of(ended_->kind) << ',' << (ended_->end - ended_->begin).seconds() << ',' << ended_->cost_m << ','
           << ended_->promised_nats << ',' << ended_->driven_nats << ',' << ended_->gained_nats << ',';
+    if (ended_->promised_loop_gain) file_ << *ended_->promised_loop_gain;
+    file_ << ',';
+    if (ended_->loop_gain) file_ << *ended_->loop_gain;
+    file_ << ',';
   } else {
-    file_ << ",,,,,,";
+    file_ << ",,,,,,,,";
   }
   ended_.reset();
 }

@@ -245,7 +245,8 @@ void PlannerComponent::take_decision(bool waits) {
   candidates_.publish(to_message(decision, decisions_, deciding_method_, header()));
   const Decision* driven = is_taken && decision.chosen ? &decision : nullptr;
   if (driven != nullptr) driven_by_ = decision.explanation;
-  write_down(decision, ledger_.note(driven, surroundings_->information_nats(), last_robot_, stamp_));
+  const Learnt learnt{surroundings_->information_nats(), knowledge_ ? &knowledge_->graph : nullptr};
+  write_down(decision, ledger_.note(driven, learnt, last_robot_, stamp_));
 }
 
 void PlannerComponent::write_down(const Decision& decision, const std::optional<DrivenPath>& ended) {

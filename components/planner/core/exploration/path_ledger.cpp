@@ -36,12 +36,12 @@ double promised_up_to(const std::vector<PromisedView>& views, const Pose2& robot
 
 }  // namespace
 
-std::optional<DrivenPath> PathLedger::note(const Decision* decision, double map_nats, const Pose2& robot,
+std::optional<DrivenPath> PathLedger::note(const Decision* decision, const Learnt& learnt, const Pose2& robot,
                                            time::Time now) {
   const bool continues = path_ && decision != nullptr && is_same(decision->candidates[*decision->chosen].goal);
   if (continues) return std::nullopt;
-  const auto ended = end(map_nats, robot, now);
-  if (decision != nullptr) begin(*decision, map_nats, now);
+  const auto ended = end(learnt, robot, now);
+  if (decision != nullptr) begin(*decision, learnt, now);
   return ended;
 }
 
@@ -49,7 +49,7 @@ bool PathLedger::is_same(const Pose2& goal) const {
   return (goal.p_map - goal_.p_map).norm() <= radius_m_ && turn_between(goal.yaw_rad, goal_.yaw_rad) <= kSameView_rad;
 }
 
-void PathLedger::begin(const Decision& decision, double map_nats, time::Time now) {
+void PathLedger::begin(const Decision& decision, const Learnt& learnt, time::Time now) {
   const Candidate& chosen = decision.candidates[*decision.chosen];
   path_.emplace();
   path_->begin = now;
@@ -58,15 +58,21 @@ void PathLedger::begin(const Decision& decision, double map_nats, time::Time now
   promised_ = decision.promised;
   path_->promised_nats = promised_.empty() ? 0.0 : promised_.back().nats;
   goal_ = chosen.goal;
-  nats_at_begin_ = map_nats;
+  nats_at_begin_ = learnt.map_nats;
+  loops_at_begin_.clear();
+  if (!decision.known.spectrum || learnt.graph == nullptr) return;
+  path_->promised_loop_gain = chosen.gain.loop_gain;
+  loops_at_begin_ = names_of_loops(*learnt.graph);
 }
 
-std::optional<DrivenPath> PathLedger::end(double map_nats, const Pose2& robot, time::Time now) {
+std::optional<DrivenPath> PathLedger::end(const Learnt& learnt, const Pose2& robot, time::Time now) {
   std::optional<DrivenPath> ended = std::exchange(path_, std::nullopt);
   if (!ended) return ended;
   ended->end = now;
   ended->driven_nats = promised_up_to(promised_, robot);
-  ended->gained_nats = map_nats - nats_at_begin_;
+  ended->gained_nats = learnt.map_nats - nats_at_begin_;
+  if (ended->promised_loop_gain && learnt.graph != nullptr)
+    ended->loop_gain = gain_of_new_loops(*learnt.graph, loops_at_begin_);
   return ended;
 }
 

@@ -138,8 +138,9 @@ std::variant<ExpectedGain, GraphError> expect_gain(const AnalysedGraph& graph, c
     const double probability = probability_of(closed, path.places);
     if (probability == 0.0) continue;
     const double with = variance(closed);
-    const double worth = saturated(gain.loop_gain(closed), without, with, sigma_limit_m * sigma_limit_m);
-    expected.saturated_loop_gain += probability * worth;
+    const double loop_gain = gain.loop_gain(closed);
+    expected.loop_gain += probability * loop_gain;
+    expected.saturated_loop_gain += probability * saturated(loop_gain, without, with, sigma_limit_m * sigma_limit_m);
     expected.fixed_n_change += probability * gain.fixed_n_change(closed);
     expected.end_sigma_m += probability * std::sqrt(with);
   }

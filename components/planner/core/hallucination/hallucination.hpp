@@ -54,6 +54,7 @@ struct ExpectedGain {
   double fixed_n_change = 0.0;
   double end_sigma_without_loops_m = 0.0;  ///< of the position at the path's end, each axis
   double end_sigma_m = 0.0;                ///< the same, expected
+  double loop_gain = 0.0;                  ///< of the log-determinant by loops, all of it
 };
 
 /// @param sigma_limit_m what is more exact than this is of no use to the map, > 0. The error names a wrong edge.

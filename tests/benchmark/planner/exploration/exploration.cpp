@@ -178,7 +178,7 @@ class Course {
   }
 
   void note_choice(const Decision* driven) {
-    const auto ended = ledger_.note(driven, surroundings_.information_nats(), pose(), now());
+    const auto ended = ledger_.note(driven, {surroundings_.information_nats()}, pose(), now());
     if (ended) exploration_.paths.push_back(*ended);
   }
 

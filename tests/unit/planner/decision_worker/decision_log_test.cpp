@@ -66,8 +66,15 @@ Decision decision() {
 }
 
 DrivenPath driven_path() {
-  return {
-      time::Time::from_seconds(1.0), time::Time::from_seconds(3.5), CandidateKind::kRevisit, 4.25, 100.5, 80.5, 90.5};
+  return {time::Time::from_seconds(1.0),
+          time::Time::from_seconds(3.5),
+          CandidateKind::kRevisit,
+          4.25,
+          100.5,
+          80.5,
+          90.5,
+          12.5,
+          13.5};
 }
 
 class DecisionLogTest : public ::testing::Test {
@@ -111,11 +118,13 @@ TEST_F(DecisionLogTest, HasARowForEveryCandidateUnderTheRightHeadings) {
                                                     {"ended_promised_nats", "100.5"},
                                                     {"ended_driven_nats", "80.5"},
                                                     {"ended_gained_nats", "90.5"},
+                                                    {"ended_promised_loop_gain", "12.5"},
+                                                    {"ended_loop_gain", "13.5"},
                                                     {"is_chosen", "1"},
                                                     {"rejection", ""}};
   EXPECT_EQ(chosen, expected);
   const auto ended = std::find(rows[0].begin(), rows[0].end(), "ended_kind") - rows[0].begin();
-  for (std::ptrdiff_t i = ended; i < ended + 6; ++i) EXPECT_EQ(rows[2][static_cast<std::size_t>(i)], "") << i;
+  for (std::ptrdiff_t i = ended; i < ended + 8; ++i) EXPECT_EQ(rows[2][static_cast<std::size_t>(i)], "") << i;
 }
 
 TEST_F(DecisionLogTest, RejectionIsTheLastColumn) {

@@ -147,6 +147,8 @@ TEST(ExpectGain, LoopsBeyondTheLimitAreWorthNothing) {
   };
   const double all = gain_at(kNoLimit_m);
   const auto expected = std::get<ExpectedGain>(expect_gain(graph, path, kNoLimit_m));
+  EXPECT_DOUBLE_EQ(expected.loop_gain, all);
+  EXPECT_DOUBLE_EQ(std::get<ExpectedGain>(expect_gain(graph, path, expected.end_sigma_without_loops_m)).loop_gain, all);
   EXPECT_EQ(gain_at(expected.end_sigma_without_loops_m), 0.0) << "the end is sure enough without";
   // Of the logarithm of the variance, the part above the limit counts.
   const double probability = path.places[0].probability;

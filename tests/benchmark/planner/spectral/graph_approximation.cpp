@@ -39,6 +39,18 @@ std::string name_of(const std::filesystem::path& file) {
   return file.stem() == "pose_graph" ? file.parent_path().filename().string() : file.stem().string();
 }
 
+void compare(const std::string& file, std::ofstream& csv) {
+  const auto comparison = test::compare_with_full_information(read(file));
+  write(csv, name_of(file), "growth", comparison.growth);
+  write(csv, name_of(file), "loop", comparison.loops);
+  std::vector<double> ratios;
+  for (const auto& loop : comparison.loops) ratios.push_back(loop.full / loop.laplacian);
+  std::sort(ratios.begin(), ratios.end());
+  std::printf("| %s | %d | %zu | %.3f | %.3f | %.2f |\n", name_of(file).c_str(), comparison.nodes,
+              comparison.loops.size(), rank_correlation(comparison.loops), rank_correlation(comparison.growth),
+              ratios.empty() ? 0.0 : ratios[ratios.size() / 2]);
+}
+
 int run(int argc, char** argv) {
   std::vector<std::string> files;
   std::string csv_file;
@@ -54,19 +66,17 @@ int run(int argc, char** argv) {
   std::printf(
       "| graph | key-frames | loops | Spearman over loops | over growth | full over Laplacian, median of loops |\n"
       "| --- | --- | --- | --- | --- | --- |\n");
+  bool are_complete = true;
   for (const std::string& file : files) {
-    const auto comparison = test::compare_with_full_information(read(file));
-    write(csv, name_of(file), "growth", comparison.growth);
-    write(csv, name_of(file), "loop", comparison.loops);
-    std::vector<double> ratios;
-    for (const auto& loop : comparison.loops) ratios.push_back(loop.full / loop.laplacian);
-    std::sort(ratios.begin(), ratios.end());
-    std::printf("| %s | %d | %zu | %.3f | %.3f | %.2f |\n", name_of(file).c_str(), comparison.nodes,
-                comparison.loops.size(), rank_correlation(comparison.loops), rank_correlation(comparison.growth),
-                ratios.empty() ? 0.0 : ratios[ratios.size() / 2]);
+    try {
+      compare(file, csv);
+    } catch (const std::exception& error) {
+      std::printf("| %s | %s | | | | |\n", name_of(file).c_str(), error.what());
+      are_complete = false;
+    }
   }
   if (!csv_file.empty() && !csv.flush()) throw std::runtime_error(csv_file + " cannot be written");
-  return 0;
+  return are_complete ? 0 : 1;
 }
 
 }  // namespace

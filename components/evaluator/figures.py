@@ -311,6 +311,13 @@ def draw_floor_plan(axes, plan):
     return [(frontiers, "frontiers")]
 
 
+def draw_paths(axes, plan, rows, shade):
+    """To the candidates that were not rejected, by rank."""
+    for row, colour in zip(rows, shade):
+        corners = np.array(plan["paths_m"][int(row["candidate"])]).reshape(-1, 2)
+        axes.plot(*corners.T, color=colour, linewidth=1.2)
+
+
 def draw_candidates(axes, rows, count, shade, path):
     """Candidates from above, numbered by rank; returns what the legend says of them."""
     x, y, yaw = (numbers(rows, name, path) for name in ("x_m", "y_m", "yaw_rad"))
@@ -368,8 +375,7 @@ def draw_decision(run):
         entries = []
         if plan_of_then:
             entries = draw_floor_plan(plan, plan_of_then)
-            for row, colour in zip(rows, shade):
-                plan.plot(*np.array(plan_of_then["paths_m"][int(row["candidate"])]).reshape(-1, 2).T, color=colour, linewidth=1.2)
+            draw_paths(plan, plan_of_then, rows, shade)
         gone = positions[stamps <= time_s]
         driven, = plan.plot(*gone[:, :2].T, color="black", linewidth=1.0)
         robot, = plan.plot(*gone[-1:, :2].T, "*", color="black", markersize=13)
@@ -380,7 +386,8 @@ def draw_decision(run):
     plan.legend(*zip((driven, "path until then"), (robot, "robot"), *entries), loc="upper center",
                 bbox_to_anchor=(0.5, -0.1), ncols=3, frameon=False)
     finish_plan(plan, "", has_map=bool(plan_of_then))
-    figure.suptitle(f"Decision {number} at {time_s:.1f} s by method {method}, the one with most candidates, with the map of then\n"
+    map_of_then = ", with the map of then" if plan_of_then else ""
+    figure.suptitle(f"Decision {number} at {time_s:.1f} s by method {method}, the one with most candidates{map_of_then}\n"
                     + textwrap.fill(explanation, 140), fontsize=10)
     figure.tight_layout()
     return figure

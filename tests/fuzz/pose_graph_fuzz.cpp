@@ -6,6 +6,7 @@
 
 #include "fuzz_files.hpp"
 #include "slam/core/files/pose_graph_file.hpp"
+#include "slam/core/graph/graph_marginals.hpp"
 #include "slam/core/graph/pose_graph_initialization.hpp"
 #include "slam/core/graph/pose_graph_optimizer.hpp"
 
@@ -35,9 +36,9 @@ void optimize(PoseGraphSnapshot graph, bool is_robust) {
   const OptimizerReport report = optimize_pose_graph({5, 1e-6, is_robust}, graph);
   require(std::isfinite(report.initial_chi2) && std::isfinite(report.final_chi2));
   require_valid(graph);
-  for (const auto& covariance : node_covariances(graph, {graph.nodes.back().id}, report.weights)) {
-    require(!covariance || covariance->allFinite());
-  }
+  const GraphMarginals marginals = graph_marginals(graph, report.weights);
+  for (const auto& covariance : marginals.covariances) require(!covariance || covariance->allFinite());
+  for (const auto& covariance : marginals.with_newest) require(covariance.allFinite());
 }
 
 }  // namespace

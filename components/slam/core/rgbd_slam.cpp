@@ -8,7 +8,9 @@
 
 #include "slam/core/frame/noise_model.hpp"
 #include "slam/core/front_end/front_end.hpp"
-#include "slam/core/graph/graph_worker.hpp"
+#include "slam/core/graph/due_result.hpp"
+#include "slam/core/graph/graph_correction.hpp"
+#include "slam/core/graph/graph_marginals.hpp"
 #include "slam/core/graph/slam_graph.hpp"
 #include "slam/core/loops/loop_detector.hpp"
 #include "slam/core/mapping/map_builder.hpp"
@@ -19,6 +21,9 @@ namespace {
 
 using geometry::Matrix6d;
 using geometry::Pose;
+
+// Key-frames after which the graph is analysed anew.
+constexpr std::size_t kAnalysedTogether = 10;
 
 template <class Pixel>
 bool has_size(const geometry::Image<Pixel>& image, const geometry::PinholeCamera& camera) {
@@ -84,7 +89,7 @@ class RgbdSlam::Implementation {
   // map moves, a fixed number of frames later.
   TrackingResult process(const RgbdFrame& input) {
     ++frame_count_;
-    if (const auto correction = worker_.take(frame_count_)) correct(*correction);
+    take_results(frame_count_);
     if (const auto fault = find_fault(input, config_.noise)) return without_vision(input.stamp, *fault);
     const Frame frame = make_frame(input, extractor_, config_.noise);
     FrameOutcome outcome = map_.empty() ? front_end_.begin(known(), frame) : front_end_.locate(known(), frame);
@@ -96,6 +101,7 @@ class RgbdSlam::Implementation {
       front_end_.enter_keyframe(map_, id);
       ++version_;
       become_keyframe(id, result);
+      analyse();
     }
     if (outcome.ends_drift) request_optimization();
     if (outcome.seen || result.is_keyframe) {
@@ -112,7 +118,9 @@ class RgbdSlam::Implementation {
   }
 
   void settle() {
-    while (const auto correction = worker_.take(std::numeric_limits<std::uint64_t>::max())) correct(*correction);
+    do {
+      take_results(std::numeric_limits<std::uint64_t>::max());
+    } while (optimization_.is_busy());
   }
 
   std::optional<Pose> odometry_at(time::Time stamp) const { return motion_.odometry_at(stamp); }
@@ -145,10 +153,26 @@ class RgbdSlam::Implementation {
     optimize();
   }
 
+  std::uint64_t due() const { return frame_count_ + static_cast<std::uint64_t>(config_.loop.latency_frames); }
+
   void optimize() {
-    if (!must_optimize_ || worker_.is_busy()) return;
+    if (!must_optimize_ || optimization_.is_busy()) return;
     must_optimize_ = false;
-    worker_.start(pose_graph(), frame_count_ + static_cast<std::uint64_t>(config_.loop.latency_frames));
+    optimization_.start(due(), [graph = pose_graph()] { return correct_graph(graph); });
+  }
+
+  // Between optimisations, too, all edges say how well the newest key-frames are known.
+  void analyse() {
+    if (optimization_.is_busy() || analysis_.is_busy()) return;
+    if (map_.keyframes().size() < graph_.analysed() + kAnalysedTogether) return;
+    analysis_.start(due(),
+                    [graph = pose_graph(), weights = graph_.weights()] { return graph_marginals(graph, weights); });
+  }
+
+  // An analysis that is under way began before the optimisation that is, and is due before it.
+  void take_results(std::uint64_t frame) {
+    if (const auto marginals = analysis_.take(frame)) graph_.learn(map_, *marginals);
+    if (const auto correction = optimization_.take(frame)) correct(*correction);
   }
 
   void correct(const GraphCorrection& correction) {
@@ -176,7 +200,8 @@ class RgbdSlam::Implementation {
   SlamGraph graph_;
   MapBuilder builder_;
   LoopDetector loops_;
-  GraphWorker worker_;
+  DueResult<GraphCorrection> optimization_;
+  DueResult<GraphMarginals> analysis_;
   std::optional<time::Time> last_loop_;
   bool must_optimize_ = false;  // there are edges that no optimisation knows
   std::uint64_t frame_count_ = 0;

@@ -16,7 +16,7 @@ namespace lapis::slam::benchmark {
 double nees(const geometry::Pose& estimate, const geometry::Pose& truth, const geometry::Matrix6d& information,
             double floor = 0.0);
 
-/// NEES per degree of freedom of the edges of pose graphs, by what measured them.
+/// NEES per degree of freedom of the edges of pose graphs, by what measured them, and of poses in the map.
 class EdgeHonesty {
  public:
   /// `least_information`: what slam gives directions that an edge leaves open; ten times as much counts as known.
@@ -25,8 +25,10 @@ class EdgeHonesty {
 
   /// `truth`: T_map_camera of all nodes, by stamp.
   void add(const PoseGraphSnapshot& graph, const std::map<std::int64_t, geometry::Pose>& truth);
+  /// The camera in the map, as slam publishes it.
+  void add_pose(const geometry::Pose& T_map_camera, const geometry::Pose& truth, const geometry::Matrix6d& covariance);
   void add(const EdgeHonesty& other);
-  /// A line for each kind of edges that there are.
+  /// A line for each kind of edges and poses that there are.
   void print(const std::string& indent) const;
 
  private:
@@ -34,6 +36,8 @@ class EdgeHonesty {
     double nees, freedoms;
   };
   void add(const PoseGraphEdge& edge, const geometry::Pose& T_from_to_true);
+  double nees_in_plane(const geometry::Pose& estimate, const geometry::Pose& truth,
+                       const geometry::Matrix6d& covariance) const;
 
   geometry::Pose T_base_camera_;
   double floor_;

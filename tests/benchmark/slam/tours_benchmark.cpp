@@ -47,6 +47,12 @@ struct View {
   std::vector<Eigen::Vector3d> points;  // in the camera
 };
 
+// A pose as published.
+struct Told {
+  geometry::Pose T_map_camera, truth;
+  geometry::Matrix6d covariance;
+};
+
 struct Run {
   int frames = 0, tracked = 0;
   std::map<std::string, int> frames_by_source;
@@ -59,6 +65,7 @@ struct Run {
   std::vector<View> views;  // of the key-frames
   LoopSummary loops;
   std::size_t landmarks = 0;
+  std::vector<Told> told;  // of the frames that became key-frames
 };
 
 double cpu_ms() {
@@ -190,6 +197,7 @@ Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, cons
     if (result.is_keyframe) run.views.push_back(make_view(tour_frame.frame, T_map_true));
     if (!is_tracked) return;
     ++run.tracked;
+    if (result.is_keyframe && run.tracked > 1) run.told.push_back({T_map_camera, T_map_true, result.map_covariance});
     run.online_errors_m.push_back((T_map_camera.translation() - T_map_true.translation()).norm());
     run.last = result;
     run.T_last_true = T_map_true;
@@ -263,6 +271,7 @@ void print_row(const std::string& scene, int seed, const Run& run) {
 EdgeHonesty honesty_of(const Run& run, const geometry::CameraMount& mount, const PoseGraphConfig& config) {
   EdgeHonesty honesty(T_base_camera(mount), config.min_information);
   honesty.add(run.graph, run.truth);
+  for (const auto& [T_map_camera, truth, covariance] : run.told) honesty.add_pose(T_map_camera, truth, covariance);
   return honesty;
 }
 

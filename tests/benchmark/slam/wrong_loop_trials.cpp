@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "slam/core/graph/graph_worker.hpp"
+#include "slam/core/graph/graph_correction.hpp"
 #include "slam/core/graph/pose_graph_initialization.hpp"
 #include "tests/unit/slam/wrong_loops.hpp"
 
@@ -18,9 +18,7 @@ struct Trial {
 
 // Edges from `first_wrong` on are wrong loops.
 Trial correct(PoseGraphSnapshot graph, std::size_t first_wrong, const std::vector<Eigen::Vector3d>& truth) {
-  GraphWorker worker;
-  worker.start(graph, 0);
-  const GraphCorrection correction = worker.take(0).value();
+  const GraphCorrection correction = correct_graph(graph);
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) graph.nodes[i].T_map_camera = correction.T_map_camera[i];
   Trial trial;
   trial.error_m = test::trajectory_error_m(graph, truth);

@@ -4,10 +4,12 @@
 #include <Eigen/Cholesky>
 #include <Eigen/LU>
 #include <numbers>
+#include <optional>
 #include <random>
 #include <stdexcept>
 
 #include "slam/core/graph/block_cholesky.hpp"
+#include "slam/core/graph/graph_marginals.hpp"
 #include "slam/core/graph/pose_graph_initialization.hpp"
 #include "slam/core/graph/pose_graph_space.hpp"
 
@@ -223,31 +225,40 @@ TEST(PoseGraphOptimizer, FindsTheOptimumOfDenseBruteForce) {
   }
 }
 
-TEST(PoseGraphOptimizer, CovarianceIsTheInverseOfTheDenseInformation) {
-  Eigen::MatrixXd H;
-  const PoseGraphSnapshot graph = brute_force(make_graph(8, 5, false, 0.3, 7), &H);
-  const Eigen::MatrixXd covariance = H.bottomRightCorner(42, 42).inverse();
-  std::vector<std::uint64_t> ids;
-  for (const PoseGraphNode& node : graph.nodes) ids.push_back(node.id);
-  const auto all = node_covariances(graph, ids);
-  ASSERT_TRUE(all[0]);
-  EXPECT_EQ(*all[0], Matrix6d::Zero());
-  for (Eigen::Index i = 1; i < 8; ++i) {
-    const auto& one = all[static_cast<std::size_t>(i)];
-    ASSERT_TRUE(one);
-    EXPECT_TRUE(one->isApprox(covariance.block<6, 6>(6 * (i - 1), 6 * (i - 1)), 1e-5));
-    EXPECT_TRUE(node_covariance(graph, ids[static_cast<std::size_t>(i)])->isApprox(*one, 1e-9));
+TEST(GraphMarginals, AreBlocksOfTheInverseOfTheDenseInformation) {
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    Eigen::MatrixXd H;
+    const PoseGraphSnapshot graph = brute_force(make_graph(12, static_cast<int>(3 * seed), false, 0.3, seed), &H);
+    const Eigen::MatrixXd covariance = H.bottomRightCorner(66, 66).inverse();
+    const GraphMarginals marginals = graph_marginals(graph);
+    ASSERT_EQ(marginals.covariances.size(), 12U);
+    EXPECT_EQ(marginals.covariances[0], Matrix6d::Zero());
+    for (Eigen::Index i = 1; i < 12; ++i) {
+      const auto& one = marginals.covariances[static_cast<std::size_t>(i)];
+      ASSERT_TRUE(one);
+      EXPECT_TRUE(one->isApprox(covariance.block<6, 6>(6 * (i - 1), 6 * (i - 1)), 1e-5));
+      EXPECT_TRUE(marginals.with_newest[static_cast<std::size_t>(i)].isApprox(
+          covariance.block<6, 6>(6 * (i - 1), 60), 1e-5));
+    }
+    EXPECT_TRUE(marginals.with_newest[11].isApprox(*marginals.covariances[11], 1e-9))
+        << "two ways to the same block: the selected inverse and a solution";
   }
-  EXPECT_FALSE(node_covariance(graph, 999));
 }
 
-TEST(PoseGraphOptimizer, CovarianceNeedsWeightedEdges) {
+std::optional<Matrix6d> covariance_of(const PoseGraphSnapshot& graph, std::size_t node,
+                                      const std::vector<double>& weights = {}) {
+  return graph_marginals(graph, weights).covariances[node];
+}
+
+TEST(GraphMarginals, NeedWeightedEdges) {
   PoseGraphSnapshot graph = make_graph(4, 0, false, 0.0, 8);
   const Matrix6d of_one_edge = graph.edges[0].information.inverse();
-  EXPECT_TRUE(node_covariance(graph, 13)->isApprox(of_one_edge, 1e-9));
-  EXPECT_TRUE(node_covariance(graph, 13, {0.5, 1.0, 1.0})->isApprox(2.0 * of_one_edge, 1e-9));
-  EXPECT_FALSE(node_covariance(graph, 33, {1.0, 0.0, 1.0}));
-  EXPECT_TRUE(node_covariance(graph, 13, {1.0, 0.0, 1.0})->isApprox(of_one_edge, 1e-9));
+  EXPECT_TRUE(covariance_of(graph, 1)->isApprox(of_one_edge, 1e-9));
+  EXPECT_TRUE(covariance_of(graph, 1, {0.5, 1.0, 1.0})->isApprox(2.0 * of_one_edge, 1e-9));
+  EXPECT_FALSE(covariance_of(graph, 3, {1.0, 0.0, 1.0}));
+  EXPECT_TRUE(covariance_of(graph, 1, {1.0, 0.0, 1.0})->isApprox(of_one_edge, 1e-9));
+  EXPECT_TRUE(graph_marginals(graph, {1.0, 0.0, 1.0}).with_newest[1].isZero());
+  EXPECT_TRUE(graph_marginals({}).covariances.empty());
 }
 
 TEST(PoseGraphOptimizer, EveryPartKeepsItsFirstNode) {
@@ -259,8 +270,8 @@ TEST(PoseGraphOptimizer, EveryPartKeepsItsFirstNode) {
   EXPECT_TRUE(graph.nodes[0].T_map_camera.isApprox(before.nodes[0].T_map_camera, 0.0));
   EXPECT_TRUE(graph.nodes[6].T_map_camera.isApprox(before.nodes[6].T_map_camera, 0.0));
   EXPECT_GT(distance(graph.nodes[5].T_map_camera, before.nodes[5].T_map_camera), 1e-6);
-  EXPECT_TRUE(node_covariance(graph, 53));
-  EXPECT_FALSE(node_covariance(graph, 73));
+  EXPECT_TRUE(covariance_of(graph, 5));
+  EXPECT_FALSE(covariance_of(graph, 7));
 }
 
 TEST(PoseGraphOptimizer, RefusesEdgesWithoutNodes) {
@@ -281,7 +292,7 @@ TEST(PoseGraphOptimizer, EdgesWithoutInformationDoNoHarm) {
   for (std::size_t i = 0; i < graph.nodes.size(); ++i) {
     EXPECT_LT(distance(graph.nodes[i].T_map_camera, before.nodes[i].T_map_camera), 1e-9);
   }
-  EXPECT_FALSE(node_covariance(graph, 13));
+  EXPECT_FALSE(covariance_of(graph, 1));
 }
 
 TEST(PoseGraphOptimizer, SameInputSameBytes) {

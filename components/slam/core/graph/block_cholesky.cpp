@@ -180,4 +180,44 @@ Eigen::MatrixXd BlockCholesky::solve(const Eigen::MatrixXd& right) const {
   return ordered;
 }
 
+std::vector<Eigen::MatrixXd> BlockCholesky::inverse_diagonal() const {
+  std::vector<Eigen::MatrixXd> result(position_.size());
+  if (result.empty()) return result;
+  cholmod_factor* factor = cholmod_copy_factor(cholmod_->factor, &cholmod_->common);
+  const bool is_simplicial =
+      factor != nullptr && cholmod_change_factor(CHOLMOD_REAL, 1, 0, 1, 1, factor, &cholmod_->common) != 0;
+  if (!is_simplicial) throw std::bad_alloc();
+  const std::vector<Eigen::MatrixXd> ordered = slam::inverse_diagonal(block_factor(*factor));
+  const auto* order = static_cast<const int*>(factor->Perm);  // CHOLMOD's own, on top of ours
+  std::vector<std::size_t> place(position_.size());
+  for (std::size_t i = 0; i < place.size(); ++i) {
+    place[static_cast<std::size_t>(order[i * static_cast<std::size_t>(block_size_)] / block_size_)] = i;
+  }
+  cholmod_free_factor(&factor, &cholmod_->common);
+  for (std::size_t i = 0; i < result.size(); ++i) result[i] = ordered[place[static_cast<std::size_t>(position_[i])]];
+  return result;
+}
+
+// CHOLMOD's order is a post-order of the elimination tree: it keeps the rows of a block together, so that the rows of a
+// block's first column, from its own diagonal block on, are whole blocks.
+BlockFactor BlockCholesky::block_factor(const cholmod_factor_struct& factor) const {
+  const auto *begin = static_cast<const int*>(factor.p), *rows = static_cast<const int*>(factor.i),
+             *count = static_cast<const int*>(factor.nz);
+  const auto* values = static_cast<const double*>(factor.x);
+  BlockFactor result{block_size_, {0}, {}, {}};
+  for (int first = 0; first < static_cast<int>(factor.n); first += block_size_) {
+    const int blocks = count[first] / block_size_;
+    for (int block = 0; block < blocks; ++block) {
+      result.rows.push_back(rows[begin[first] + block * block_size_] / block_size_);
+      for (int c = 0; c < block_size_; ++c) {
+        // Column c of the diagonal block has no rows above its own.
+        const double* column = values + begin[first + c] + block * block_size_ - c;
+        for (int r = 0; r < block_size_; ++r) result.values.push_back(block == 0 && r < c ? 0.0 : column[r]);
+      }
+    }
+    result.begin.push_back(static_cast<int>(result.rows.size()));
+  }
+  return result;
+}
+
 }  // namespace lapis::slam

@@ -7,6 +7,10 @@
 
 #include <Eigen/Core>
 
+#include "slam/core/graph/selected_inverse.hpp"
+
+struct cholmod_factor_struct;
+
 namespace lapis::slam {
 
 /// Off-diagonal block of a symmetric matrix of blocks: (row, column), either order.
@@ -54,6 +58,8 @@ class BlockCholesky {
   bool factorize(double damping);
   /// Columns in the order of the blocks. After a successful factorize.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
+  /// Diagonal blocks of the inverse. After a successful factorize.
+  std::vector<Eigen::MatrixXd> inverse_diagonal() const;
 
  private:
   struct Slot {
@@ -65,6 +71,7 @@ class BlockCholesky {
 
   void lay_out(const std::vector<BlockPair>& sorted);
   Slot slot_of(const std::vector<BlockPair>& sorted, BlockPair place) const;
+  BlockFactor block_factor(const cholmod_factor_struct& factor) const;
 
   int block_size_ = 0;
   std::vector<int> position_;  // in the elimination order, by block

@@ -10,8 +10,6 @@
 namespace lapis::slam {
 namespace {
 
-using geometry::Matrix6d;
-
 constexpr double kLeastDamping = 1e-7, kFirstDamping = 1e-5, kLittleDamping = 3e-6, kMostDamping = 1e12;
 // Least squares whose only purpose is to see what does not fit.
 constexpr int kLookIterations = 10;
@@ -199,14 +197,6 @@ double total_chi2(const PoseGraphSnapshot& graph, double most) {
   return sum;
 }
 
-// The same covariance, from the axes of the map to those of the pose.
-Matrix6d in_axes_of(const geometry::Pose& T, const Matrix6d& covariance) {
-  Matrix6d R = Matrix6d::Zero();
-  R.topLeftCorner<3, 3>() = R.bottomRightCorner<3, 3>() = T.linear();
-  const Matrix6d result = R.transpose() * covariance * R;
-  return 0.5 * (result + result.transpose());
-}
-
 }  // namespace
 
 OptimizerReport optimize_pose_graph(const OptimizerOptions& options, PoseGraphSnapshot& graph) {
@@ -215,50 +205,6 @@ OptimizerReport optimize_pose_graph(const OptimizerOptions& options, PoseGraphSn
 
 double pose_graph_chi2(const PoseGraphSnapshot& graph, double most) {
   return graph.is_planar ? total_chi2<PlanarPoses>(graph, most) : total_chi2<SpatialPoses>(graph, most);
-}
-
-std::vector<std::optional<Matrix6d>> node_covariances(const PoseGraphSnapshot& graph,
-                                                      const std::vector<std::uint64_t>& ids,
-                                                      const std::vector<double>& weights) {
-  PoseGraphSnapshot weighted = graph;
-  if (!weights.empty()) {
-    weighted.edges.clear();
-    for (std::size_t i = 0; i < weights.size(); ++i) {
-      if (!(weights[i] > 0.0)) continue;
-      weighted.edges.push_back(graph.edges[i]);
-      weighted.edges.back().information *= weights[i];
-    }
-  }
-  const NodePlaces places(weighted);
-  const PoseGraphTopology topology = pose_graph_topology(weighted);
-  std::vector<std::optional<Matrix6d>> result(ids.size());
-  std::vector<std::size_t> wanted, nodes;  // in ids; in the graph
-  std::vector<int> free_nodes;
-  for (std::size_t i = 0; i < ids.size(); ++i) {
-    const auto place = places.find(ids[i]);
-    if (!place || topology.part[*place] != 0) continue;
-    if (*place == 0) {
-      result[i] = Matrix6d::Zero();
-      continue;
-    }
-    wanted.push_back(i);
-    nodes.push_back(*place);
-    free_nodes.push_back(topology.free[*place]);
-  }
-  if (wanted.empty()) return result;
-  PoseGraphProblem<SpatialPoses> problem(topology, weighted);
-  problem.linearize(PoseGraphProblem<SpatialPoses>::poses_of(weighted), std::vector(weighted.edges.size(), 1.0));
-  const auto columns = problem.inverse_columns(free_nodes);
-  for (std::size_t k = 0; columns && k < wanted.size(); ++k) {
-    const Matrix6d in_map = columns->block<6, 6>(6 * free_nodes[k], 6 * static_cast<int>(k));
-    result[wanted[k]] = in_axes_of(weighted.nodes[nodes[k]].T_map_camera, in_map);
-  }
-  return result;
-}
-
-std::optional<Matrix6d> node_covariance(const PoseGraphSnapshot& graph, std::uint64_t id,
-                                        const std::vector<double>& weights) {
-  return node_covariances(graph, {id}, weights).front();
 }
 
 }  // namespace lapis::slam

@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <limits>
-#include <optional>
 #include <vector>
 
 #include "slam/core/graph/pose_graph.hpp"
@@ -36,14 +35,5 @@ OptimizerReport optimize_pose_graph(const OptimizerOptions& options, PoseGraphSn
 
 /// Sum of e' Omega e over all edges, as above, where none counts for more than `most`.
 double pose_graph_chi2(const PoseGraphSnapshot& graph, double most = std::numeric_limits<double>::infinity());
-
-/// Covariance of poses relative to the graph's first node, in the tangent of a right perturbation (translation,
-/// rotation) [m^2, rad^2], from the graph's information at its poses and the edges' weights (none: all 1). One
-/// factorisation for all. Nothing for a node that is unknown or that no weighted edges join with the first one.
-std::vector<std::optional<geometry::Matrix6d>> node_covariances(const PoseGraphSnapshot& graph,
-                                                                const std::vector<std::uint64_t>& ids,
-                                                                const std::vector<double>& weights = {});
-std::optional<geometry::Matrix6d> node_covariance(const PoseGraphSnapshot& graph, std::uint64_t id,
-                                                  const std::vector<double>& weights = {});
 
 }  // namespace lapis::slam

@@ -140,6 +140,12 @@ std::optional<Eigen::MatrixXd> PoseGraphProblem<Space>::inverse_columns(const st
   return equations_->solve(right);
 }
 
+template <class Space>
+std::optional<std::vector<Eigen::MatrixXd>> PoseGraphProblem<Space>::inverse_diagonal() {
+  if (!equations_->factorize(0.0)) return std::nullopt;
+  return equations_->inverse_diagonal();
+}
+
 // Edges of a shortest path, by breadth-first search.
 template <class Space>
 std::vector<std::size_t> PoseGraphProblem<Space>::path(std::size_t from, std::size_t to,

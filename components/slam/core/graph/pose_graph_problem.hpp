@@ -36,6 +36,8 @@ class PoseGraphProblem {
   double predicted_decrease(const Eigen::VectorXd& step) const { return -gradient_.dot(step); }
   /// Inverse of the linearised equations' matrix, columns of these free nodes only; nothing where it has none.
   std::optional<Eigen::MatrixXd> inverse_columns(const std::vector<int>& free_nodes);
+  /// The same, its diagonal blocks only, by free node.
+  std::optional<std::vector<Eigen::MatrixXd>> inverse_diagonal();
 
   /// chi2 of an edge that has no part in the poses, if they are as uncertain as the shortest path of edges with weight
   /// between its ends: a bound from below, as other paths only help. 0 without a path.

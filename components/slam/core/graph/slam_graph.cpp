@@ -85,47 +85,69 @@ Matrix6d SlamGraph::chain_covariance(const Map& map, KeyframeId from, KeyframeId
   return move * of_from * move.transpose() + of_to;
 }
 
+// T_from_newest = (T_from exp(f))^-1 T_newest exp(n), with f and n as the marginals know them together.
+Matrix6d SlamGraph::covariance_to_newest_analysed(const Map& map, KeyframeId from) const {
+  const KeyframeId newest = with_newest_.size() - 1;
+  const Matrix6d move = geometry::adjoint(map.keyframe(newest).T_map_camera.inverse() * map.keyframe(from).T_map_camera);
+  const Matrix6d mixed = move * with_newest_[static_cast<std::size_t>(from)];
+  return move * covariance(from) * move.transpose() + covariance(newest) - mixed - mixed.transpose();
+}
+
 Matrix6d SlamGraph::relative_covariance(const Map& map, KeyframeId from, KeyframeId to) const {
+  if (from > to) {
+    const Matrix6d move = geometry::adjoint(map.keyframe(to).T_map_camera.inverse() * map.keyframe(from).T_map_camera);
+    return move * relative_covariance(map, to, from) * move.transpose();
+  }
   const Matrix6d chain = chain_covariance(map, from, to);
-  const Matrix6d move = geometry::adjoint(map.keyframe(to).T_map_camera.inverse() * map.keyframe(from).T_map_camera);
-  const Matrix6d apart = move * covariance(from) * move.transpose() + covariance(to);
-  return largest_sigma(apart, 0) < largest_sigma(chain, 0) ? apart : chain;
+  if (from >= with_newest_.size()) return chain;
+  const KeyframeId newest = with_newest_.size() - 1;
+  const Pose T_newest_to = map.keyframe(newest).T_map_camera.inverse() * map.keyframe(to).T_map_camera;
+  const Matrix6d whole =
+      compound_covariance(covariance_to_newest_analysed(map, from), T_newest_to, chain_covariance(map, newest, to));
+  return largest_sigma(whole, 0) < largest_sigma(chain, 0) ? whole : chain;
 }
 
 void SlamGraph::apply(const GraphCorrection& correction, Map& map) {
-  // What a loop that is removed has made sure of is not known any more, also where no new covariance comes.
-  const auto is_out = [&](std::size_t i) {
-    return i < correction.weights.size() && edges_[i].type == EdgeType::kLoopClosure &&
-           correction.weights[i] < kLeastWeight;
-  };
-  bool has_removed = false;
-  for (std::size_t i = 0; i < edges_.size(); ++i) has_removed = has_removed || is_out(i);
   std::vector<Pose> moves;  // of each key-frame, in the map
-  for (const Keyframe& keyframe : map.keyframes()) {
-    const auto i = static_cast<std::size_t>(keyframe.id);
+  for (std::size_t i = 0; i < map.keyframes().size(); ++i) {
     const bool is_known = i < correction.T_map_camera.size();
     moves.push_back(is_known ? Pose(correction.T_map_camera[i] * correction.T_map_before[i].inverse())
                              : moves[static_cast<std::size_t>(parents_[i].id)]);
-    if (is_known && correction.covariances[i]) {
-      covariances_[i] = *correction.covariances[i];
-    } else if (i > 0 && (!is_known || has_removed)) {
-      const Parent& parent = parents_[i];
-      const Pose T_parent_keyframe = map.keyframe(parent.id).T_map_camera.inverse() * keyframe.T_map_camera;
-      covariances_[i] = compound_covariance(covariance(parent.id), T_parent_keyframe, parent.covariance);
-    }
   }
   map.move(moves);
   std::vector<PoseGraphEdge> kept;
+  weights_.clear();
   for (std::size_t i = 0; i < edges_.size(); ++i) {
     const bool is_known = i < correction.weights.size();
-    if (is_out(i)) {
+    if (is_known && edges_[i].type == EdgeType::kLoopClosure && correction.weights[i] < kLeastWeight) {
       ++loops_removed_;
       continue;
     }
     kept.push_back(edges_[i]);
-    if (is_known) hold_circle(edges_[i]);
+    if (!is_known) continue;
+    weights_.push_back(correction.weights[i]);
+    hold_circle(edges_[i]);
   }
   edges_ = std::move(kept);
+  learn(map, correction.marginals);
+}
+
+void SlamGraph::learn(const Map& map, const GraphMarginals& marginals) {
+  with_newest_ = marginals.with_newest;
+  for (std::size_t i = 1; i < covariances_.size(); ++i) {
+    const bool is_known = i < marginals.covariances.size() && marginals.covariances[i];
+    const Parent& parent = parents_[i];
+    const Pose T_parent_keyframe =
+        map.keyframe(parent.id).T_map_camera.inverse() * map.keyframe(static_cast<KeyframeId>(i)).T_map_camera;
+    covariances_[i] = is_known ? *marginals.covariances[i]
+                               : compound_covariance(covariance(parent.id), T_parent_keyframe, parent.covariance);
+  }
+}
+
+std::vector<double> SlamGraph::weights() const {
+  std::vector<double> result = weights_;
+  result.resize(edges_.size(), 1.0);
+  return result;
 }
 
 bool SlamGraph::are_apart(KeyframeId a, KeyframeId b) const {

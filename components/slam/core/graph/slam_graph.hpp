@@ -1,24 +1,16 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
+#include "slam/core/graph/graph_correction.hpp"
+#include "slam/core/graph/graph_marginals.hpp"
 #include "slam/core/graph/pose_graph.hpp"
 #include "slam/core/map/keyframe_link.hpp"
 #include "slam/core/map/map.hpp"
 #include "slam/core/motion/motion_model.hpp"
 
 namespace lapis::slam {
-
-/// What an optimisation of the pose graph made of it.
-struct GraphCorrection {
-  std::vector<geometry::Pose> T_map_camera;  ///< of each key-frame that the optimisation knew
-  std::vector<geometry::Pose> T_map_before;  ///< the same, when it began
-  std::vector<std::optional<geometry::Matrix6d>>
-      covariances;              ///< the same, relative to the first key-frame; none: as it was
-  std::vector<double> weights;  ///< of each edge that it knew, 0 = an outlier
-};
 
 /// Edges between the key-frames of a map, and what follows from them: how well each pose is known. Every key-frame but
 /// the first has a parent, the older key-frame that its pose was found from; so the graph is connected.
@@ -42,14 +34,20 @@ class SlamGraph {
   void follow(const Map& map, const std::vector<KeyframeId>& moved);
   /// Covariance of T_from_to by the parents' edges alone, as if no loop were closed: an upper bound.
   geometry::Matrix6d chain_covariance(const Map& map, KeyframeId from, KeyframeId to) const;
-  /// Covariance of T_from_to: of the parents' edges alone, or of both key-frames in the map as if they were
-  /// independent, whichever is surer of the position. Loops that are closed make the second one small.
+  /// Covariance of T_from_to: of the parents' edges alone, or of all edges of the graph as the last marginals knew it and
+  /// the parents' edges from the newest key-frame that they knew; whichever is surer of the position.
   geometry::Matrix6d relative_covariance(const Map& map, KeyframeId from, KeyframeId to) const;
   /// Moves key-frames and landmarks of the map; younger key-frames follow their parents. Edges that turned out to be
   /// outliers are removed.
   void apply(const GraphCorrection& correction, Map& map);
+  /// Of a snapshot of this graph, with its weights; younger key-frames are known by what they hang on.
+  void learn(const Map& map, const GraphMarginals& marginals);
+  /// How many key-frames, the oldest ones, the last marginals knew.
+  std::size_t analysed() const { return with_newest_.size(); }
 
   const std::vector<PoseGraphEdge>& edges() const { return edges_; }
+  /// Of the edges, by the last correction, in (0, 1]: odometry that loops contradict counts for less.
+  std::vector<double> weights() const;
   const std::vector<geometry::Matrix6d>& covariances() const { return covariances_; }
   std::size_t count(EdgeType type) const;
   /// Whether the key-frame hangs on odometry alone: no vision or surface ties it to another one, and no optimisation
@@ -75,11 +73,14 @@ class SlamGraph {
     bool has_child = false;  // by vision or surfaces
   };
   void hold_circle(const PoseGraphEdge& edge);
+  geometry::Matrix6d covariance_to_newest_analysed(const Map& map, KeyframeId from) const;
 
   std::vector<PoseGraphEdge> edges_;
+  std::vector<double> weights_;  // of the edges that the last correction knew
   std::vector<KeyframeLink> links_;
   std::vector<Parent> parents_;                  // of each key-frame; the first is its own
   std::vector<geometry::Matrix6d> covariances_;  // of each key-frame's pose in the map
+  std::vector<geometry::Matrix6d> with_newest_;  // of each key-frame with the newest one that marginals knew
   std::size_t loops_removed_ = 0;
 };
 

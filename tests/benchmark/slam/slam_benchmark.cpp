@@ -1,8 +1,12 @@
+#include <numbers>
 #include <random>
+
+#include <Eigen/Cholesky>
 
 #include <benchmark/benchmark.h>
 #include <opencv2/core.hpp>
 
+#include "slam/core/graph/graph_marginals.hpp"
 #include "slam/core/loops/place_index.hpp"
 #include "slam/core/mapping/bundle_adjuster.hpp"
 #include "slam/core/rgbd_slam.hpp"
@@ -81,10 +85,51 @@ void place_query(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(index.query(query, index.size(), 3));
 }
 
+// Laps of 200 key-frames, each with an edge of vision and one of odometry to the one before, and every tenth with a loop
+// to the lap before.
+PoseGraphSnapshot laps(std::uint64_t keyframes) {
+  constexpr std::uint64_t kLap = 200;
+  PoseGraphSnapshot graph;
+  const geometry::Matrix6d information = 1e4 * geometry::Matrix6d::Identity();
+  const auto add_edge = [&](std::uint64_t from, std::uint64_t to, EdgeType type) {
+    const geometry::Pose T_from_to = graph.nodes[from].T_map_camera.inverse() * graph.nodes[to].T_map_camera;
+    graph.edges.push_back({from, to, type, T_from_to, information});
+  };
+  for (std::uint64_t id = 0; id < keyframes; ++id) {
+    geometry::Pose T = geometry::Pose::Identity();
+    T.rotate(Eigen::AngleAxisd(2.0 * std::numbers::pi * static_cast<double>(id) / kLap, Eigen::Vector3d::UnitY()));
+    T.translation() = 8.0 * T.linear().col(2);
+    graph.nodes.push_back({id, {}, T});
+    if (id > 0) add_edge(id - 1, id, EdgeType::kOdometry);
+    if (id > 0) add_edge(id - 1, id, EdgeType::kWheelOdometry);
+    if (id >= kLap && id % 10 == 0) add_edge(id - kLap, id, EdgeType::kLoopClosure);
+  }
+  return graph;
+}
+
+void marginals(benchmark::State& state) {
+  const PoseGraphSnapshot graph = laps(static_cast<std::uint64_t>(state.range(0)));
+  for (auto _ : state) benchmark::DoNotOptimize(graph_marginals(graph));
+}
+
+// What marginals() would cost without the graph's sparsity: a matrix of the same size.
+void dense_inverse(benchmark::State& state) {
+  const auto size = static_cast<Eigen::Index>(6 * state.range(0));
+  const Eigen::MatrixXd matrix =
+      Eigen::MatrixXd::Random(size, size).selfadjointView<Eigen::Lower>().toDenseMatrix() +
+      static_cast<double>(size) * Eigen::MatrixXd::Identity(size, size);
+  for (auto _ : state) {
+    const Eigen::MatrixXd inverse = matrix.llt().solve(Eigen::MatrixXd::Identity(size, size));
+    benchmark::DoNotOptimize(inverse.data());
+  }
+}
+
 BENCHMARK(extract_features)->Name("extract_features/640x360")->Unit(benchmark::kMillisecond);
 BENCHMARK(track_frame)->Name("track_60_frames/640x360")->Unit(benchmark::kMillisecond);
 BENCHMARK(place_query)->Name("place_query")->Arg(1000)->Arg(5000)->Unit(benchmark::kMillisecond);
 BENCHMARK(local_bundle)->Name("local_bundle")->Args({6, 300})->Args({10, 1000})->Unit(benchmark::kMillisecond);
+BENCHMARK(marginals)->Arg(300)->Arg(1000)->Arg(10000)->Unit(benchmark::kMillisecond);
+BENCHMARK(dense_inverse)->Arg(300)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 }  // namespace lapis::slam

@@ -40,6 +40,8 @@ COLUMNS = {  # of the table: format, and what it shows of metrics.json and simul
     "IoU 8": ("{:.3f}", lambda m: m["iou_top8_mean"]),
     "ideal map error cm": ("{:.1f}", lambda m: 100 * m["ideal_map_error_mean_m"]),
     "ideal IoU 8": ("{:.3f}", lambda m: m["ideal_iou_top8_mean"]),
+    "full map error cm": ("{:.1f}", lambda m: 100 * m["full_map_error_mean_m"]),
+    "full IoU 8": ("{:.3f}", lambda m: m["full_iou_top8_mean"]),
     "loops": ("{:.0f}", lambda m: m["loop_closures"]),
     "lost s": ("{:.1f}", lambda m: m["lost_time_s"]),
     "vision %": ("{:.1f}", lambda m: 100 * m["tier_vision_share"]),

@@ -130,20 +130,25 @@ void MapJudge::write_to(RunMetrics& m, bool has_reference) const {
   m.explored_share = coverage(truth_->mesh, estimate).explored_share;
   if (truth_->with_margin) m.explored_share_with_margin = coverage(*truth_->with_margin, estimate).explored_share;
   m.mesh_map = map_figures(truth_->mesh.occupied, estimate.occupied, names, classes);
-  if (const auto ideal = load_ideal()) m.ideal_map = map_figures(*ideal, estimate.occupied, names, classes);
+  const auto figures_by = [&](const std::string& file) {
+    const auto exact = load_exact(file);
+    return exact ? map_figures(*exact, estimate.occupied, names, classes) : MapFigures{};
+  };
+  m.ideal_map = figures_by("ideal.lapis");
+  m.full_map = figures_by("full.lapis");
 }
 
-/// Occupied voxels of the map without noise, which the simulator writes at its end. None, with a warning, when it was
-/// not built as the map was.
-std::optional<LabelledVoxels> MapJudge::load_ideal() const {
-  const std::string file = (truth_folder_ / "ideal.lapis").string();
+/// Occupied voxels of a map without noise, which the simulator has written. None, with a warning, when it was not built
+/// as the map was.
+std::optional<LabelledVoxels> MapJudge::load_exact(const std::string& name) const {
+  const std::string file = (truth_folder_ / name).string();
   if (!std::filesystem::exists(file)) return std::nullopt;
   std::string problem;
-  const auto ideal = mapping::load_map(file, problem);
-  if (ideal) problem = unlike(*ideal, *description_);
-  if (problem.empty()) return to_known_space(ideal->map, mapping::BeliefReader(ideal->sensor_model)).occupied;
-  spdlog::warn("no figures against the ideal map: {}",
-               ideal ? file + " was not built as the map: " + problem : problem);
+  const auto exact = mapping::load_map(file, problem);
+  if (exact) problem = unlike(*exact, *description_);
+  if (problem.empty()) return to_known_space(exact->map, mapping::BeliefReader(exact->sensor_model)).occupied;
+  spdlog::warn("no figures against {}: {}", name,
+               exact ? file + " was not built as the map: " + problem : problem);
   return std::nullopt;
 }
 

@@ -62,7 +62,7 @@ class MapJudge {
   bool is_map_known() const { return description_ && mirror_.map() != nullptr; }
   mapping::BeliefReader belief_reader() const { return mapping::BeliefReader(description_->sensor_model); }
   bool is_comparable(const KnownSpace& map) const;
-  std::optional<LabelledVoxels> load_ideal() const;
+  std::optional<LabelledVoxels> load_exact(const std::string& name) const;
 
   std::filesystem::path truth_folder_;
   std::optional<mapping::MapDescription> description_;

@@ -5,9 +5,14 @@
 #include <numbers>
 
 #include "common/config/yaml.hpp"
+#include "common/files/atomic_file.hpp"
+#include "common/files/crc32.hpp"
+#include "common/files/kept_files.hpp"
+#include "simulator/core/full_map.hpp"
 #include "simulator/core/truth/truth_files.hpp"
 #include "simulator/core/truth/voxel_truth.hpp"
 #include "simulator/core/views.hpp"
+#include "simulator/set_up.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -28,6 +33,39 @@ std::string number(double value) {
 std::string exact(double value) {
   char text[40];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+/// full.lapis, from the user's cache where it was made before.
+void write_full_truth(const World& world, const geometry::Pose& T_world_base, const SimulatorConfig& config,
+                      const mapping::MapDescription& map, const std::filesystem::path& folder,
+                      const std::stop_token& cancelled) {
+  constexpr const char* kExtension = ".lapis";
+  constexpr std::uintmax_t kKept_bytes = 256U << 20U;
+  const FullMapConfig full{map.resolution_m,
+                           mapping::of_reference(map.frames),
+                           pinhole_camera(config.robot.camera),
+                           camera_mount(config.robot.camera),
+                           config.robot.radius_m,
+                           cancelled};
+  const std::string text = made_of(world, T_world_base, full);
+  const auto target = folder / "full.lapis", cache = cache_folder("full_maps");
+  const auto name = std::to_string(files::crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));
+  const auto kept = cache / (name + kExtension);
+  if (const auto bytes = cache.empty() ? std::nullopt : read_full_map(kept, text)) {
+    if (const auto problem = files::replace_file(target.string(), *bytes)) throw std::runtime_error(*problem);
+    return;
+  }
+  const IdealMap made = make_full_map(world, T_world_base, full);
+  if (cancelled.stop_requested()) return;
+  write_full_map(target, world.scene(), made, text);
+  if (cache.empty()) return;
+  std::error_code ignored;  // without it the next run takes longer
+  std::filesystem::create_directories(cache, ignored);
+  std::string problem;
+  if (const auto bytes = files::read_file(target.string(), problem)) {
+    static_cast<void>(files::replace_file(kept.string(), *bytes));
+  }
+  files::keep_newest(cache, kExtension, kKept_bytes);
 }
 
 std::string hexadecimal(std::uint64_t value) {
@@ -85,11 +123,12 @@ void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const
             frame.ideal_depth, frame.ideal_labels);
 }
 
-void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config, double resolution_m,
-                 const std::filesystem::path& folder, const std::stop_token& cancelled) {
+void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config,
+                 const mapping::MapDescription& map, const std::filesystem::path& folder,
+                 const std::stop_token& cancelled) {
   TruthConfig truth;
   truth.cancelled = cancelled;
-  truth.resolution_m = resolution_m;
+  truth.resolution_m = map.resolution_m;
   truth.sensing_range_m = config.robot.sensing_range_m;
   truth.robot_radius_m = config.robot.radius_m;
   truth.margin_m = config.planner_margin_m;
@@ -99,6 +138,7 @@ void write_truth(const World& world, const StartPose& start, const SimulatorConf
   const auto T = T_world_start(world, start);
   const auto volumes = make_voxel_truth(world.scene(), world.raycaster(), world.nav_map(), T, truth);
   if (!cancelled.stop_requested()) write_scene_truth(folder, world.scene(), world.nav_map(), T, volumes);
+  if (config.full_map) write_full_truth(world, T, config, map, folder, cancelled);
 }
 
 }  // namespace lapis::simulator

@@ -43,9 +43,10 @@ mapping::MapDescription default_map(const SimulatorConfig& config);
 void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const StartPose& start,
             const SimulatorConfig& config);
 /// Writes the ground truth of a scene, as far as it does not depend on the run's path, into a folder whose parent
-/// exists; nothing when it is cancelled before it is complete.
+/// exists, for a map with these voxels and frames; nothing when it is cancelled before it is complete.
 /// @throws std::runtime_error naming the file that cannot be written
-void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config, double resolution_m,
-                 const std::filesystem::path& folder, const std::stop_token& cancelled = {});
+void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config,
+                 const mapping::MapDescription& map, const std::filesystem::path& folder,
+                 const std::stop_token& cancelled = {});
 
 }  // namespace lapis::simulator

@@ -49,14 +49,8 @@ Scene build(const SceneSpec& spec, const SimulatorConfig& config) {
   return build_scene(spec, furniture_from(catalog), options);
 }
 
-/// Where baked light is kept: the configured folder, else lapis/light in the user's cache folder; empty without one.
 fs::path light_folder(const SimulatorConfig& config) {
-  if (!config.world.light_folder.empty()) return config.world.light_folder;
-  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0') {
-    return fs::path(cache) / "lapis/light";
-  }
-  const char* home = std::getenv("HOME");
-  return home != nullptr && *home != '\0' ? fs::path(home) / ".cache/lapis/light" : fs::path();
+  return config.world.light_folder.empty() ? cache_folder("light") : fs::path(config.world.light_folder);
 }
 
 fs::path usual_labels() { return config_folder() / "labels" / "mpcat40.yaml"; }
@@ -104,6 +98,14 @@ SensorConfig sensor_config(const SimulatorConfig& config) {
 }
 
 }  // namespace
+
+fs::path cache_folder(const std::string& name) {
+  if (const char* cache = std::getenv("XDG_CACHE_HOME"); cache != nullptr && *cache != '\0') {
+    return fs::path(cache) / "lapis" / name;
+  }
+  const char* home = std::getenv("HOME");
+  return home != nullptr && *home != '\0' ? fs::path(home) / ".cache/lapis" / name : fs::path();
+}
 
 fs::path config_folder() {
   const fs::path bin = fs::read_symlink("/proc/self/exe").parent_path();

@@ -22,6 +22,9 @@ namespace lapis::simulator {
 /// @throws std::runtime_error when there is none.
 std::filesystem::path config_folder();
 
+/// Where things of a kind are kept between runs: lapis/NAME in the user's cache folder; empty without one.
+std::filesystem::path cache_folder(const std::string& name);
+
 /// Names of the bundled scenes, sorted.
 std::vector<std::string> bundled_scenes();
 

@@ -294,16 +294,16 @@ void SimulatorComponent::report_progress(bool is_last) {
 void SimulatorComponent::begin_truth() {
   if (map_) run_->keep_ideal_map(map_->resolution_m, map_->frames);
   if (std::exchange(has_truth_begun_, true)) return;
-  const double resolution_m = map_.value_or(default_map(config_)).resolution_m;
+  const mapping::MapDescription map = map_.value_or(default_map(config_));
   if (!map_)
-    spdlog::warn("no mapper is there: no ideal.lapis is made, and mesh.lapis has voxels of {} m", resolution_m);
-  make_truth(resolution_m);
+    spdlog::warn("no mapper is there: no ideal.lapis is made, and mesh.lapis has voxels of {} m", map.resolution_m);
+  make_truth(map);
 }
 
 /// The ground truth of the scene, in a thread of its own: the run does not wait for it.
-void SimulatorComponent::make_truth(double resolution_m) {
-  truth_ = std::async(std::launch::async, [this, resolution_m] {
-    write_truth(world_, start_, config_, resolution_m, truth_folder(config_), truth_cancelled_.get_token());
+void SimulatorComponent::make_truth(const mapping::MapDescription& map) {
+  truth_ = std::async(std::launch::async, [this, map] {
+    write_truth(world_, start_, config_, map, truth_folder(config_), truth_cancelled_.get_token());
   });
 }
 

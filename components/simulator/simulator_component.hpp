@@ -53,7 +53,7 @@ class SimulatorComponent {
   void publish_contact();
   void report_progress(bool is_last);
   void begin_truth();
-  void make_truth(double resolution_m);
+  void make_truth(const mapping::MapDescription& map);
   void await_truth();
   void fail(const std::string& reason);
   void write_files();

@@ -52,6 +52,7 @@ struct SimulatorConfig {
   int render_threads = 1;
   bool imu = false;
   double planner_margin_m = 0.05;
+  bool full_map = false;
   SceneConfig world;
   NoiseConfig noise;
   WheelConfig wheels;
@@ -138,6 +139,9 @@ void describe(Field& field, SimulatorConfig& c) {
   field("planner_margin_m", c.planner_margin_m, config::in_range(0.0, 1.0),
         "that a planner keeps around the robot (planner.grid.margin_m): ground truth says what can be seen then, too "
         "[m]");
+  field("full_map", c.full_map, config::anything(),
+        "ground truth has a map of the whole building, too, from frames without noise (full.lapis): the paper's "
+        "reference. It is made once for a building and start, and kept in the user's cache folder");
   field("world", c.world);
   field("noise", c.noise);
   field("wheels", c.wheels);

@@ -58,7 +58,9 @@ int write_ground_truth(const SimulatorConfig& config) {
   make_folder(config.truth_dir);
   for (const auto& [name, resolution_m] : {std::pair{"0.25", 0.25}, {"0.10", 0.10}, {"0.05", 0.05}}) {
     const auto folder = std::filesystem::path(config.truth_dir) / name;
-    write_truth(world, start, config, resolution_m, folder);
+    mapping::MapDescription map = default_map(config);
+    map.resolution_m = resolution_m;
+    write_truth(world, start, config, map, folder);
     std::cout << folder.string() << '\n' << std::flush;
   }
   return 0;

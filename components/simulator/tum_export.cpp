@@ -78,7 +78,7 @@ int export_tum(const SimulatorConfig& config) {
   TumWriter writer(config.export_dir, world.scene(), config.robot.camera);
   const auto truth = std::filesystem::path(config.export_dir) / "ground_truth";
   const mapping::MapDescription map = default_map(config);
-  write_truth(world, start, config, map.resolution_m, truth);
+  write_truth(world, start, config, map, truth);
   IdealMap ideal(map.resolution_m, map.frames);
   const geometry::Pose T_base_camera = geometry::T_base_camera(camera_mount(config.robot.camera));
   std::optional<DriveCommand> command;

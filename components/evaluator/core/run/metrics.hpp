@@ -56,6 +56,7 @@ struct RunMetrics {
   std::optional<double> ate_per_metre;
   MapFigures map;                                ///< reference: the run's own frames at true poses
   MapFigures ideal_map;                          ///< reference: its frames rendered again without noise, at true poses
+  MapFigures full_map;                           ///< reference: the whole building, without noise, at true poses
   MapFigures mesh_map;                           ///< reference: the scene's labelled voxels in line of sight
   std::optional<double> reference_fusion_share;  ///< share of the plain fusion's voxels that the reference map has
   std::optional<double> explored_volume_m3;

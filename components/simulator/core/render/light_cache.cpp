@@ -1,6 +1,5 @@
 #include "simulator/core/render/light_cache.hpp"
 
-#include <algorithm>
 #include <cstring>
 #include <optional>
 #include <span>
@@ -9,6 +8,7 @@
 
 #include "common/files/atomic_file.hpp"
 #include "common/files/crc32.hpp"
+#include "common/files/kept_files.hpp"
 
 namespace lapis::simulator {
 namespace {
@@ -103,29 +103,6 @@ std::optional<std::vector<std::uint8_t>> read_light(const std::string& file, std
   return bytes;
 }
 
-struct KeptFile {
-  fs::path path;
-  fs::file_time_type written;
-  std::uintmax_t bytes = 0;
-};
-
-/// Removes the oldest files of light beyond kKept_bytes. Others may do the same meanwhile: what fails is left.
-void prune(const fs::path& folder) {
-  std::error_code problem;
-  std::vector<KeptFile> files;
-  for (const auto& entry : fs::directory_iterator(folder, problem)) {
-    if (entry.path().extension() != kExtension) continue;
-    const KeptFile file{entry.path(), entry.last_write_time(problem), entry.file_size(problem)};
-    if (!problem) files.push_back(file);
-  }
-  std::sort(files.begin(), files.end(), [](const auto& a, const auto& b) { return a.written > b.written; });
-  std::uintmax_t sum = 0;
-  for (const KeptFile& file : files) {
-    sum += file.bytes;
-    if (sum > kKept_bytes) fs::remove(file.path, problem);
-  }
-}
-
 /// What the light depends on.
 std::uint64_t light_key(const Scene& scene, const SceneRaycaster& raycaster) {
   Hash hash;
@@ -170,7 +147,7 @@ std::vector<std::uint8_t> cached_light(const Scene& scene, const SceneRaycaster&
   const std::uint32_t checksum = files::crc32(light);
   std::memcpy(bytes.data() + light.size(), &checksum, kChecksumBytes);
   static_cast<void>(files::replace_file(file, bytes));  // without it the next start takes longer
-  prune(folder);
+  files::keep_newest(folder, kExtension, kKept_bytes);
   return light;
 }
 

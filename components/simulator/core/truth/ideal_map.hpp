@@ -8,8 +8,7 @@
 
 namespace lapis::simulator {
 
-/// The map that the mapper would make of a run if depth and labels were exact and every pose true: the paper's
-/// reference.
+/// The map that the mapper would make of a run if depth and labels were exact and every pose true.
 class IdealMap {
  public:
   /// As the mapper builds its map, but for the kernel of "bki".

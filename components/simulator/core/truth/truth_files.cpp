@@ -17,11 +17,15 @@ namespace {
 
 using nlohmann::ordered_json;
 
+constexpr const char* kMadeOf = "made_of";
+
 void save(const std::filesystem::path& file, const Scene& scene, const mapping::VoxelMap& map,
-          const std::string& source, const std::optional<mapping::FrameSettings>& frames = std::nullopt) {
+          const std::string& source, const std::optional<mapping::FrameSettings>& frames = std::nullopt,
+          const std::string& made_of = "") {
   mapping::SensorModel model;
   model.class_count = std::max<int>(scene.labels.max_id(), 1);
-  const mapping::MapFile content{map, model, scene.labels, {{"scene", scene.name}, {"source", source}}, frames};
+  mapping::MapFile content{map, model, scene.labels, {{"scene", scene.name}, {"source", source}}, frames};
+  if (!made_of.empty()) content.provenance[kMadeOf] = made_of;
   if (const auto problem = mapping::save_map(file.string(), content)) throw std::runtime_error(*problem);
 }
 
@@ -89,6 +93,20 @@ void write_scene_truth(const std::filesystem::path& folder, const Scene& scene, 
 
 void write_ideal_map(const std::filesystem::path& folder, const Scene& scene, const IdealMap& ideal) {
   save(folder / "ideal.lapis", scene, ideal.map(), "frames without noise at true poses", ideal.frame_settings());
+}
+
+void write_full_map(const std::filesystem::path& file, const Scene& scene, const IdealMap& full,
+                    const std::string& made_of) {
+  save(file, scene, full.map(), "frames without noise from all over the building", full.frame_settings(), made_of);
+}
+
+std::optional<std::vector<std::uint8_t>> read_full_map(const std::filesystem::path& file, const std::string& made_of) {
+  std::string problem;
+  auto bytes = files::read_file(file.string(), problem);
+  const auto map = bytes ? mapping::decode_map(*bytes, problem) : std::nullopt;
+  if (!map) return std::nullopt;
+  const auto note = map->provenance.find(kMadeOf);
+  return note != map->provenance.end() && note->second == made_of ? bytes : std::nullopt;
 }
 
 }  // namespace lapis::simulator

@@ -1,6 +1,10 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
 
 #include "common/geometry/se3.hpp"
 #include "simulator/core/robot/nav_map.hpp"
@@ -20,5 +24,13 @@ void write_scene_truth(const std::filesystem::path& folder, const Scene& scene, 
 /// Writes ideal.lapis, of the frames so far.
 /// @throws std::runtime_error naming the file that cannot be written.
 void write_ideal_map(const std::filesystem::path& folder, const Scene& scene, const IdealMap& ideal);
+
+/// Writes a map of the whole building, with all that it depends on among its notes.
+/// @throws std::runtime_error naming the file that cannot be written.
+void write_full_map(const std::filesystem::path& file, const Scene& scene, const IdealMap& full,
+                    const std::string& made_of);
+
+/// The bytes of a file that write_full_map wrote of something made of the same; none of any other.
+std::optional<std::vector<std::uint8_t>> read_full_map(const std::filesystem::path& file, const std::string& made_of);
 
 }  // namespace lapis::simulator

@@ -147,8 +147,7 @@ std::optional<LabelledVoxels> MapJudge::load_exact(const std::string& name) cons
   const auto exact = mapping::load_map(file, problem);
   if (exact) problem = unlike(*exact, *description_);
   if (problem.empty()) return to_known_space(exact->map, mapping::BeliefReader(exact->sensor_model)).occupied;
-  spdlog::warn("no figures against {}: {}", name,
-               exact ? file + " was not built as the map: " + problem : problem);
+  spdlog::warn("no figures against {}: {}", name, exact ? file + " was not built as the map: " + problem : problem);
   return std::nullopt;
 }
 

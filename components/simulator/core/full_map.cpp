@@ -12,9 +12,9 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kPlaceSpacing_m = 1.0;     // of the places
-constexpr double kOverlapping = 0.75;  // of the field of view: turn from a view to the next
-constexpr int kVersion = 1;            // to be raised when other views or other code give another map
+constexpr double kPlaceSpacing_m = 1.0;  // of the places
+constexpr double kOverlapping = 0.75;    // of the field of view: turn from a view to the next
+constexpr int kVersion = 1;              // to be raised when other views or other code give another map
 
 int views_all_round(const geometry::PinholeCamera& camera) {
   const double field_rad = 2.0 * std::atan(0.5 * camera.width / camera.fx);
@@ -48,9 +48,9 @@ std::string made_of(const World& world, const geometry::Pose& T_world_base, cons
        << ", start " << T_world_base.matrix().reshaped().transpose() << ", radius_m " << config.robot_radius_m
        << ", camera " << camera.width << ' ' << camera.height << ' ' << camera.fx << ' ' << camera.fy << ' '
        << camera.cx << ' ' << camera.cy << ", mount " << config.mount.height_m << ' ' << config.mount.pitch_down_rad
-       << ", voxels " << config.resolution_m << ", frames " << integration.min_range_m << ' '
-       << integration.max_range_m << ' ' << integration.min_height_m << ' ' << integration.max_height_m << ' '
-       << integration.end_margin_voxels << ' ' << integration.depth_noise_per_m << ' ' << stride;
+       << ", voxels " << config.resolution_m << ", frames " << integration.min_range_m << ' ' << integration.max_range_m
+       << ' ' << integration.min_height_m << ' ' << integration.max_height_m << ' ' << integration.end_margin_voxels
+       << ' ' << integration.depth_noise_per_m << ' ' << stride;
   return text.str();
 }
 

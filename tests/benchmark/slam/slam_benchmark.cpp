@@ -85,8 +85,8 @@ void place_query(benchmark::State& state) {
   for (auto _ : state) benchmark::DoNotOptimize(index.query(query, index.size(), 3));
 }
 
-// Laps of 200 key-frames, each with an edge of vision and one of odometry to the one before, and every tenth with a loop
-// to the lap before.
+// Laps of 200 key-frames, each with an edge of vision and one of odometry to the one before, and every tenth with a
+// loop to the lap before.
 PoseGraphSnapshot laps(std::uint64_t keyframes) {
   constexpr std::uint64_t kLap = 200;
   PoseGraphSnapshot graph;
@@ -115,9 +115,8 @@ void marginals(benchmark::State& state) {
 // What marginals() would cost without the graph's sparsity: a matrix of the same size.
 void dense_inverse(benchmark::State& state) {
   const auto size = static_cast<Eigen::Index>(6 * state.range(0));
-  const Eigen::MatrixXd matrix =
-      Eigen::MatrixXd::Random(size, size).selfadjointView<Eigen::Lower>().toDenseMatrix() +
-      static_cast<double>(size) * Eigen::MatrixXd::Identity(size, size);
+  const Eigen::MatrixXd matrix = Eigen::MatrixXd::Random(size, size).selfadjointView<Eigen::Lower>().toDenseMatrix() +
+                                 static_cast<double>(size) * Eigen::MatrixXd::Identity(size, size);
   for (auto _ : state) {
     const Eigen::MatrixXd inverse = matrix.llt().solve(Eigen::MatrixXd::Identity(size, size));
     benchmark::DoNotOptimize(inverse.data());

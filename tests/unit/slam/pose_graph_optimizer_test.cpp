@@ -237,8 +237,8 @@ TEST(GraphMarginals, AreBlocksOfTheInverseOfTheDenseInformation) {
       const auto& one = marginals.covariances[static_cast<std::size_t>(i)];
       ASSERT_TRUE(one);
       EXPECT_TRUE(one->isApprox(covariance.block<6, 6>(6 * (i - 1), 6 * (i - 1)), 1e-5));
-      EXPECT_TRUE(marginals.with_newest[static_cast<std::size_t>(i)].isApprox(
-          covariance.block<6, 6>(6 * (i - 1), 60), 1e-5));
+      EXPECT_TRUE(
+          marginals.with_newest[static_cast<std::size_t>(i)].isApprox(covariance.block<6, 6>(6 * (i - 1), 60), 1e-5));
     }
     EXPECT_TRUE(marginals.with_newest[11].isApprox(*marginals.covariances[11], 1e-9))
         << "two ways to the same block: the selected inverse and a solution";

@@ -132,7 +132,7 @@ TEST_F(DriftingStretchTest, WhatARemovedLoopHasMadeSureOfIsForgotten) {
   const std::vector<Matrix6d> of_chain = graph_.covariances();
   graph_.add_edge(edge(4, 6, EdgeType::kLoopClosure));
   optimise();
-  for (const KeyframeId id : {5, 6}) {
+  for (const KeyframeId id : {KeyframeId{5}, KeyframeId{6}}) {
     EXPECT_LT(graph_.covariance(id).trace(), 0.9 * of_chain[static_cast<std::size_t>(id)].trace()) << "the loop stays";
   }
   optimise(0.0);

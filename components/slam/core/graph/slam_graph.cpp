@@ -88,7 +88,8 @@ Matrix6d SlamGraph::chain_covariance(const Map& map, KeyframeId from, KeyframeId
 // T_from_newest = (T_from exp(f))^-1 T_newest exp(n), with f and n as the marginals know them together.
 Matrix6d SlamGraph::covariance_to_newest_analysed(const Map& map, KeyframeId from) const {
   const KeyframeId newest = with_newest_.size() - 1;
-  const Matrix6d move = geometry::adjoint(map.keyframe(newest).T_map_camera.inverse() * map.keyframe(from).T_map_camera);
+  const Matrix6d move =
+      geometry::adjoint(map.keyframe(newest).T_map_camera.inverse() * map.keyframe(from).T_map_camera);
   const Matrix6d mixed = move * with_newest_[static_cast<std::size_t>(from)];
   return move * covariance(from) * move.transpose() + covariance(newest) - mixed - mixed.transpose();
 }
@@ -98,11 +99,11 @@ Matrix6d SlamGraph::relative_covariance(const Map& map, KeyframeId from, Keyfram
     const Matrix6d move = geometry::adjoint(map.keyframe(to).T_map_camera.inverse() * map.keyframe(from).T_map_camera);
     return move * relative_covariance(map, to, from) * move.transpose();
   }
-  const Matrix6d chain = chain_covariance(map, from, to);
+  Matrix6d chain = chain_covariance(map, from, to);
   if (from >= with_newest_.size()) return chain;
   const KeyframeId newest = with_newest_.size() - 1;
   const Pose T_newest_to = map.keyframe(newest).T_map_camera.inverse() * map.keyframe(to).T_map_camera;
-  const Matrix6d whole =
+  Matrix6d whole =
       compound_covariance(covariance_to_newest_analysed(map, from), T_newest_to, chain_covariance(map, newest, to));
   return largest_sigma(whole, 0) < largest_sigma(chain, 0) ? whole : chain;
 }

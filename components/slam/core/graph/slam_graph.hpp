@@ -34,8 +34,8 @@ class SlamGraph {
   void follow(const Map& map, const std::vector<KeyframeId>& moved);
   /// Covariance of T_from_to by the parents' edges alone, as if no loop were closed: an upper bound.
   geometry::Matrix6d chain_covariance(const Map& map, KeyframeId from, KeyframeId to) const;
-  /// Covariance of T_from_to: of the parents' edges alone, or of all edges of the graph as the last marginals knew it and
-  /// the parents' edges from the newest key-frame that they knew; whichever is surer of the position.
+  /// Covariance of T_from_to: of the parents' edges alone, or of all edges of the graph as the last marginals knew it
+  /// and the parents' edges from the newest key-frame that they knew; whichever is surer of the position.
   geometry::Matrix6d relative_covariance(const Map& map, KeyframeId from, KeyframeId to) const;
   /// Moves key-frames and landmarks of the map; younger key-frames follow their parents. Edges that turned out to be
   /// outliers are removed.

@@ -1,0 +1,87 @@
+"""What experiment.sh does; see its --help."""
+
+import argparse
+import os
+import pathlib
+import sys
+
+from benchmark_table import id_of, read_table
+from experiments import tables
+from experiments.protocol import REPOSITORY, ProtocolError, hash_of_sources, read_protocol, run_id, runs_of
+from experiments.runs import Experiment
+
+
+def parse():
+    parser = argparse.ArgumentParser(prog="experiment.sh")
+    parser.add_argument("protocol")
+    parser.add_argument("--out", type=pathlib.Path)
+    parser.add_argument("--results", type=pathlib.Path)
+    parser.add_argument("--jobs", type=int, default=1)
+    parser.add_argument("--table", action="store_true")
+    parser.add_argument("--power", action="store_true")
+    parser.add_argument("--repeat-failed", action="store_true")
+    parser.add_argument("--keys", default="")
+    options = parser.parse_args()
+    if options.jobs < 1:
+        fail("--jobs: wanted is a number of at least 1")
+    return options
+
+
+def fail(text):
+    print(f"experiment.sh: {text}", file=sys.stderr)
+    sys.exit(2)
+
+
+def newer_source():
+    """A source that no program knows yet; None if there is none."""
+    programs = pathlib.Path(os.environ.get("LAPIS_BIN", REPOSITORY / "build/release/bin"))
+    built = max(program.stat().st_mtime for program in programs.glob("lapis_*"))
+    for folder in ("common", "components", "idl"):
+        for file in (REPOSITORY / folder).rglob("*"):
+            if file.suffix in (".cpp", ".hpp", ".idl") and file.stat().st_mtime > built:
+                return file
+    return None
+
+
+def wanted_rows(rows, runs, keys):
+    if keys:
+        return [row for row in rows if any(row["key"].startswith(key) for key in keys)]
+    ids = {run_id(run) for run in runs}
+    return [row for row in rows if id_of(row) in ids]
+
+
+def play(protocol, runs, rows, options):
+    """How many runs failed."""
+    if source := newer_source():
+        raise ProtocolError(f"{source} is newer than the programs: build them first, for rows say which sources made them")
+    known = {id_of(row): row["outcome"] for row in read_table(rows)[1]}
+    todo = [run for run in runs if run_id(run) not in known or
+            options.repeat_failed and known[run_id(run)] == "FAILED"]
+    print(f"{protocol['name']}: {len(runs)} runs, {len(runs) - len(todo)} of them have a row", flush=True)
+    out = options.out or REPOSITORY / "out" / "experiments" / protocol["name"]
+    experiment = Experiment(protocol, todo, rows, out, options.jobs)
+    experiment.play()
+    return experiment.failures
+
+
+def main():
+    options = parse()
+    failures = 0
+    try:
+        protocol = read_protocol(options.protocol)
+        runs = runs_of(protocol, hash_of_sources())
+        rows = (options.results or REPOSITORY / "docs" / "results" / protocol["name"]) / "rows.csv"
+        if options.power:
+            tables.print_power(protocol, len({(run.scene, run.seed) for run in runs}))
+            return 0
+        if not options.table:
+            failures = play(protocol, runs, rows, options)
+    except ProtocolError as problem:
+        fail(problem)
+    keys = [key for key in options.keys.split(",") if key]
+    tables.print_tables(protocol, wanted_rows(read_table(rows)[1], runs, keys), rows.parent, len(runs))
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

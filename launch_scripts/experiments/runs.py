@@ -1,0 +1,92 @@
+"""Plays the runs of an experiment, several side by side, and keeps a row of each."""
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+
+import benchmark_rows
+from experiments.protocol import REPOSITORY, ProtocolError, run_id
+
+SCRIPTS = REPOSITORY / "launch_scripts"
+LAST_DOMAIN = 101
+
+
+def text_of_duration(seconds):
+    return f"{seconds // 3600:.0f} h {seconds % 3600 // 60:.0f} min" if seconds >= 3600 else f"{seconds / 60:.0f} min"
+
+
+class Experiment:
+    """The runs that have no row yet, some of them under way."""
+
+    def __init__(self, protocol, todo, rows, out, jobs):
+        self.protocol, self.todo, self.rows, self.out, self.jobs = protocol, list(todo), rows, out, jobs
+        self.settings = " ".join(f"{key}={value}" for key, value in protocol["settings"].items())
+        self.first_domain = int(os.environ.get("ROS_DOMAIN_ID", "0"))
+        self.cores = sorted(os.sched_getaffinity(0))
+        self.under_way = {}  # by place: run, process, when it began
+        self.count, self.failures, self.played_s, self.spent_s = len(self.todo), 0, 0.0, 0.0
+        if self.first_domain + self.jobs - 1 > LAST_DOMAIN:
+            raise ProtocolError(f"--jobs {jobs}: DDS domains from {self.first_domain} on, but the last one is {LAST_DOMAIN}")
+        if self.jobs > len(self.cores):
+            raise ProtocolError(f"--jobs {jobs}: there are {len(self.cores)} cores")
+
+    def folder(self, run):
+        return self.out / run.scene / re.sub(r"[^A-Za-z0-9_+-]", "_", run.label) / f"seed_{run.seed}"
+
+    def begin(self, place, run):
+        folder = self.folder(run)
+        folder.parent.mkdir(parents=True, exist_ok=True)
+        for name in ("identity", "metrics.json"):
+            (folder / name).unlink(missing_ok=True)
+        command = ["taskset", "-c", str(self.cores[place]), str(SCRIPTS / "explore.sh"), "--scene", run.scene, "--seed",
+                   run.seed, "--out", str(folder), *run.arguments]
+        with open(f"{folder}.log", "w", encoding="utf-8") as log:
+            process = subprocess.Popen(  # pylint: disable=consider-using-with
+                command, stdout=log, stderr=subprocess.STDOUT,
+                env=os.environ | {"ROS_DOMAIN_ID": str(self.first_domain + place)})
+        self.under_way[place] = run, process, time.monotonic()
+
+    def end(self, place):
+        run, process, began = self.under_way.pop(place)
+        folder = self.folder(run)
+        if process.returncode in (130, 143, -signal.SIGINT, -signal.SIGTERM):
+            self.interrupt(process.returncode if process.returncode > 0 else 128 - process.returncode)
+        if process.returncode == 0:
+            (folder / "identity").write_text(run_id(run) + "\n", encoding="utf-8")
+        else:
+            self.failures += 1
+        self.rows.parent.mkdir(parents=True, exist_ok=True)
+        benchmark_rows.add(self.rows, folder, run_id(run), self.protocol["world"] or "", self.settings)
+        self.played_s += run.duration_s
+        self.spent_s += time.monotonic() - began
+        self.report(run, process.returncode)
+
+    def report(self, run, status):
+        waiting = self.todo + [other for other, _, _ in self.under_way.values()]
+        left_s = sum(other.duration_s for other in waiting) * self.spent_s / self.played_s / self.jobs
+        outcome = "done" if status == 0 else f"FAILED, status {status}, log {self.folder(run)}.log"
+        failed = f", {self.failures} failed" if self.failures else ""
+        print(f"[{self.count - len(waiting)}/{self.count}] {run.scene}, {run.label}, seed {run.seed}: {outcome}{failed}; "
+              f"about {text_of_duration(left_s)} left", flush=True)
+
+    def interrupt(self, status):
+        """What is under way ends in order, and has no row."""
+        for _, process, _ in self.under_way.values():
+            process.terminate()
+        for _, process, _ in self.under_way.values():
+            process.wait()
+        sys.exit(status)
+
+    def play(self):
+        for name in (signal.SIGINT, signal.SIGTERM):
+            signal.signal(name, lambda number, _: self.interrupt(128 + number))
+        while self.todo or self.under_way:
+            for place in range(self.jobs):
+                if place not in self.under_way and self.todo:
+                    self.begin(place, self.todo.pop(0))
+            time.sleep(0.2)
+            for place in [place for place, (_, process, _) in self.under_way.items() if process.poll() is not None]:
+                self.end(place)

@@ -22,11 +22,13 @@ OF_PROCESSES = ("cpu_ms_per_frame", "peak_rss_mb")  # in metrics.json
 
 def figures_of(metrics):
     """Columns and values: all of metrics.json but what the run is of, which has labels of its own, what is a sentence, and
-    IoU by class."""
+    IoU by class, of which only that of the building's most frequent classes with the whole building is there."""
     figures = {}
     for key, value in metrics.items():
         if key in OF_PROCESSES:
             figures |= {f"{key}.{process}": figure for process, figure in (value or {}).items()}
+        elif key == "full_iou_by_class":
+            figures |= {f"full_iou.{name}": of["iou"] for name, of in (value or {}).items() if of["top8"]}
         elif key not in ("run", "planner_reason") and not key.endswith("iou_by_class"):
             figures[key] = value
     return figures

@@ -6,7 +6,7 @@ import pathlib
 import sys
 
 from benchmark_table import id_of, read_table
-from experiments import tables
+from experiments import figures, report, tables
 from experiments.protocol import REPOSITORY, ProtocolError, hash_of_sources, read_protocol, run_id, runs_of
 from experiments.runs import Experiment
 
@@ -79,7 +79,12 @@ def main():
     except ProtocolError as problem:
         fail(problem)
     keys = [key for key in options.keys.split(",") if key]
-    tables.print_tables(protocol, wanted_rows(read_table(rows)[1], runs, keys), rows.parent, len(runs))
+    found = wanted_rows(read_table(rows)[1], runs, keys)
+    tables.print_tables(protocol, found, rows.parent, len(runs))
+    if found:
+        figures.draw(protocol, found, rows.parent)
+        report.write(protocol, options.protocol, found, len(runs), rows.parent)
+        print(f"report: {rows.parent / 'report.md'}")
     return 1 if failures else 0
 
 

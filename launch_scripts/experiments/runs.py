@@ -1,5 +1,6 @@
 """Plays the runs of an experiment, several side by side, and keeps a row of each."""
 
+import csv
 import os
 import re
 import signal
@@ -12,6 +13,8 @@ from experiments.protocol import REPOSITORY, ProtocolError, run_id
 
 SCRIPTS = REPOSITORY / "launch_scripts"
 LAST_DOMAIN = 101
+TIMELINE = ("time_s", "path_length_m", "explored_volume_m3", "explored_share", "position_error_m")
+TIMELINE_STEP = 5  # its lines are a second apart
 
 
 def text_of_duration(seconds):
@@ -60,9 +63,27 @@ class Experiment:
             self.failures += 1
         self.rows.parent.mkdir(parents=True, exist_ok=True)
         benchmark_rows.add(self.rows, folder, run_id(run), self.protocol["world"] or "", self.settings)
+        self.keep_timeline(run, folder)
         self.played_s += run.duration_s
         self.spent_s += time.monotonic() - began
         self.report(run, process.returncode)
+
+    def keep_timeline(self, run, folder):
+        """Every few seconds of it, beside the rows."""
+        try:
+            with (folder / "timeline.csv").open(newline="", encoding="utf-8") as stream:
+                lines = list(csv.DictReader(stream))
+        except OSError:
+            return
+        target = self.rows.parent / "timelines" / f"{run.key}_{run.scene}_{run.seed}.csv"
+        target.parent.mkdir(exist_ok=True)
+        kept = [line for i, line in enumerate(lines) if i % TIMELINE_STEP == 0 or i == len(lines) - 1]
+        part = target.with_suffix(".part")
+        with part.open("w", newline="", encoding="utf-8") as stream:
+            writer = csv.DictWriter(stream, TIMELINE, extrasaction="ignore", lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(kept)
+        part.replace(target)
 
     def report(self, run, status):
         waiting = self.todo + [other for other, _, _ in self.under_way.values()]

@@ -1,9 +1,12 @@
 """Tables and tests of experiment.sh, from rows: failures rank last, pairs are runs of the same building and seed."""
 
+import collections
 import csv
 import math
 
 import numpy as np
+
+Result = collections.namedtuple("Result", "test pairs effect low high better p")
 
 LARGER_IS_BETTER = ("explored", "iou", "tracked", "completed")
 RESAMPLES = 10000
@@ -139,23 +142,39 @@ def effect_text(test, value):
     return f"{factor * value:+.{digits}f}"
 
 
-def test_rows(protocol, rows):
-    """Cells of the table of tests."""
-    results = []
+def results_of(protocol, rows):
+    """Of each test that has two pairs or more."""
+    found = []
     for test in protocol["tests"]:
         a, b = pairs_of(by_pair(protocol, rows, test["figure"]), test["method"], test["against"])
-        results.append((test, effects(a, b, is_ratio(test))))
-    usable = [(test, found) for test, found in results if len(found) >= 2]
-    corrected = holm([wilcoxon(found) for _, found in usable])
-    table = []
-    for (test, found), p in zip(usable, corrected):
-        low, high = bootstrap(lambda x: quantile(x, 0.5), found)
+        if len(a) >= 2:
+            found.append((test, effects(a, b, is_ratio(test))))
+    corrected = holm([wilcoxon(of_pairs) for _, of_pairs in found])
+    results = []
+    for (test, of_pairs), p in zip(found, corrected):
+        low, high = bootstrap(lambda x: quantile(x, 0.5), of_pairs)
         sign = -1 if is_larger_better(test["figure"]) else 1
-        better = int(np.sum(sign * found < 0))
-        expected = test.get("ratio", test.get("difference"))
-        table.append([name_of(test["figure"])[0], test["method"], test["against"], str(len(found)),
-                      effect_text(test, quantile(found, 0.5)), f"{effect_text(test, low)} to {effect_text(test, high)}",
-                      f"{better} of {len(found)}", f"{p:.4f}", "-" if expected is None else str(expected)])
+        results.append(Result(test, len(of_pairs), quantile(of_pairs, 0.5), low, high, int(np.sum(sign * of_pairs < 0)), p))
+    return results
+
+
+def expected_of(test):
+    """As an effect; None when the protocol does not say."""
+    if "ratio" in test:
+        return math.log(test["ratio"])
+    return test.get("difference")
+
+
+def test_rows(protocol, rows):
+    """Cells of the table of tests."""
+    table = []
+    for result in results_of(protocol, rows):
+        test, expected = result.test, expected_of(result.test)
+        table.append([name_of(test["figure"])[0], test["method"], test["against"], str(result.pairs),
+                      effect_text(test, result.effect),
+                      f"{effect_text(test, result.low)} to {effect_text(test, result.high)}",
+                      f"{result.better} of {result.pairs}", f"{result.p:.4f}",
+                      "-" if expected is None else effect_text(test, expected)])
     return table
 
 

@@ -67,6 +67,26 @@ class ExperimentTest(PretendedPrograms):
         for name in ("tables.md", "tables.tex", "tables_1.csv"):
             self.assertTrue((self.table.parent / name).stat().st_size, name)
 
+    def test_figures_and_a_report_stand_beside_the_rows(self):
+        self.order(more={"keyframe_ate_se3_rmse_m": 0.01, "explored_share": 0.9, "full_iou_by_class": {
+            "wall": {"iou": 0.5, "top8": True}, "sink": {"iou": 0.1, "top8": False}}})
+        self.protocol.write_text(PROTOCOL + "tests: [{figure: keyframe_ate_se3_rmse_m, method: lapis, against: near, ratio: 0.6}]\n"
+                                 "conditions: [{figure: explored_share, method: lapis, against: near, least_ratio: 0.97}]\n")
+        self.experiment()
+        for name in ("runs", "classes"):
+            for extension in ("png", "pdf", "svg"):
+                self.assertTrue((self.table.parent / f"figures/{name}.{extension}").stat().st_size, name)
+        report = (self.table.parent / "report.md").read_text()
+        self.assertIn("lapis has 1.00 times that of near (median of 3 pairs; 90 % interval 1.00 to 1.00), and is better in 0. "
+                      "p = 1.0000 after Holm's correction: no difference is shown. Expected was 0.60, outside", report)
+        self.assertIn("it holds", report)
+        self.assertNotIn("Not complete", report)
+        self.assertEqual(self.rows()[0]["full_iou.wall"], "0.5")
+        self.assertNotIn("full_iou.sink", self.rows()[0])
+        before = {file: file.read_bytes() for file in self.table.parent.rglob("*") if file.is_file()}
+        self.experiment("--table")
+        self.assertEqual({file: file.read_bytes() for file in before}, before)
+
     def test_what_has_a_row_is_not_played_again_and_gives_the_same_table(self):
         self.experiment()
         before = (self.table.parent / "tables.md").read_text()

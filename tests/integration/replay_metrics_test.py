@@ -17,10 +17,11 @@ MEASURED = ("exit_reason", "frames_total", "frames_tracked", "tier_vision_share"
             "run")
 OF_LABELS = ("iou_top8_mean", "iou_mean", "iou_by_class")
 OF_GROUND_TRUTH = ("explored_share", "explored_share_with_margin", "stalled_share",
-                   *(f"{prefix}_{key}" for prefix in ("ideal", "full", "mesh")
+                   *(f"{prefix}_{key}" for prefix in ("ideal", "mesh")
                      for key in ("map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m", *OF_LABELS)))
 NOT_MEASURED = ("ate_at_80_m", "time_to_80_s", "time_to_90_s", "failures", "collisions", "planner_state",
-                "planner_reason", "decisions", "decision_time_p50_s", "decision_time_p95_s")
+                "planner_reason", "decisions", "decision_time_p50_s", "decision_time_p95_s",
+                *(f"full_{key}" for key in ("map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m", *OF_LABELS)))
 SHORT_S = 12  # more than a metre
 
 

@@ -10,10 +10,10 @@ usage: experiment.sh PROTOCOL.yaml [--out DIR] [--results DIR] [--jobs N] [--tab
                      [--keys KEY,...]
 
 Runs every method of a protocol in every building, all methods of a building before the next, and prints tables with
-paired tests; beside the rows are these as Markdown, CSV and LaTeX, figures, and a report. Each run is a row of rows.csv in docs/results/NAME as soon as it has ended, with a key (hash of the sources
-and of the configuration that its results depend on); what has a row of the same key is not repeated, so that an
-interrupted experiment goes on where its rows end, on another machine, too. A run that fails or is killed is a row, too,
-and counts as a failure.
+paired tests; beside the rows are these as Markdown, CSV and LaTeX, figures, and a report. Each run is a row of rows.csv
+in docs/results/NAME as soon as it has ended, with a key (hash of the sources and of the configuration that its results
+depend on). What has a row of the same key is not repeated: an experiment resumes where its rows end, on another
+machine, too. A run that fails or is killed is a row, too, and counts as a failure.
 
   --out DIR        run folders; default: out/experiments/NAME
   --results DIR    rows and tables; default: docs/results/NAME

@@ -41,12 +41,9 @@ void write_full_truth(const World& world, const geometry::Pose& T_world_base, co
                       const std::stop_token& cancelled) {
   constexpr const char* kExtension = ".lapis";
   constexpr std::uintmax_t kKept_bytes = 256U << 20U;
-  const FullMapConfig full{map.resolution_m,
-                           mapping::of_reference(map.frames),
-                           pinhole_camera(config.robot.camera),
-                           camera_mount(config.robot.camera),
-                           config.robot.radius_m,
-                           cancelled};
+  const FullMapConfig full{
+      map.resolution_m,      map.frames, pinhole_camera(config.robot.camera), camera_mount(config.robot.camera),
+      config.robot.radius_m, cancelled};
   const std::string text = made_of(world, T_world_base, full);
   const auto target = folder / "full.lapis", cache = cache_folder("full_maps");
   const auto name = std::to_string(files::crc32({reinterpret_cast<const std::uint8_t*>(text.data()), text.size()}));

@@ -6,9 +6,13 @@ import pathlib
 import sys
 
 from benchmark_table import id_of, read_table
-from experiments import figures, report, tables
-from experiments.protocol import REPOSITORY, ProtocolError, hash_of_sources, read_protocol, run_id, runs_of
-from experiments.runs import Experiment
+
+try:
+    from experiments import figures, report, tables
+    from experiments.protocol import REPOSITORY, ProtocolError, hash_of_sources, read_protocol, run_id, runs_of
+    from experiments.runs import Experiment
+except ModuleNotFoundError as missing:
+    sys.exit(f"experiment.sh: no Python module {missing.name}; launch_scripts/setup.sh --dev installs what is needed")
 
 
 def parse():
@@ -80,6 +84,9 @@ def main():
         fail(problem)
     keys = [key for key in options.keys.split(",") if key]
     found = wanted_rows(read_table(rows)[1], runs, keys)
+    for figure in protocol["figures"]:
+        if found and not any(row.get(figure) for row in found):
+            print(f"experiment.sh: no row has the figure {figure}", file=sys.stderr)
     tables.print_tables(protocol, found, rows.parent, len(runs))
     if found:
         figures.draw(protocol, found, rows.parent)

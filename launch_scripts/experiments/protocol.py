@@ -5,9 +5,11 @@ import hashlib
 import pathlib
 import re
 
+import yaml
+
 REPOSITORY = pathlib.Path(__file__).resolve().parent.parent.parent
-SOURCES = ("common", "components", "idl", "cmake", "CMakeLists.txt", "CMakePresets.json", "config/robot.yaml",
-           "config/run.yaml", "config/systems", "config/scenes", "config/labels")
+SOURCES = ("common", "components", "idl", "CMakeLists.txt", "CMakePresets.json", "config/robot.yaml",
+           "config/run.yaml", "config/systems", "config/scenes", "config/labels", "launch_scripts/explore.sh", "launch_scripts/lib.sh")
 
 Run = collections.namedtuple("Run", "scene duration_s label seed key arguments")
 
@@ -22,6 +24,8 @@ KEYS = {"name", "title", "world", "buildings", "seeds", "methods", "settings", "
 OF_LISTS = {"buildings": ({"names", "duration_s"}, set()),
             "tests": ({"figure", "method", "against"}, {"ratio", "difference", "deviation"}),
             "conditions": ({"figure", "method", "against", "least_ratio"}, set())}
+OF_KINDS = {"buildings": list, "seeds": list, "settings": dict, "failed_below": dict, "figures": list, "tests": list,
+            "conditions": list}
 OF_METHODS = {"method", "then", "settings"}
 
 
@@ -31,7 +35,6 @@ class ProtocolError(Exception):
 
 def read_protocol(file):
     """The protocol with all its keys; what is missing has its default."""
-    import yaml  # pylint: disable=import-outside-toplevel  (the message says which package has it)
     try:
         content = yaml.safe_load(pathlib.Path(file).read_text(encoding="utf-8"))
     except (OSError, yaml.YAMLError) as problem:
@@ -54,6 +57,9 @@ def problem_of(protocol):
         return f"{min(missing)} is missing"
     if not re.fullmatch(r"[a-z0-9_]+", str(protocol["name"])):
         return "name: wanted are small letters, digits and _"
+    for name, kind in OF_KINDS.items():
+        if not isinstance(protocol[name], kind):
+            return f"{name}: wanted is a {'list' if kind is list else 'mapping of keys to values'}"
     if not isinstance(protocol["methods"], dict) or not protocol["methods"]:
         return "methods: wanted are labels with {method: ...}"
     for label, method in protocol["methods"].items():
@@ -64,6 +70,8 @@ def problem_of(protocol):
             if not isinstance(entry, dict) or needed - set(entry) or set(entry) - needed - possible:
                 return f"{name}[{i}]: wanted are {', '.join(sorted(needed))}" + (
                     f"; possible {', '.join(sorted(possible))}" if possible else "")
+            if "duration_s" in entry and not (isinstance(entry["duration_s"], (int, float)) and entry["duration_s"] > 0):
+                return f"{name}[{i}].duration_s: wanted is a number above 0"
             for role in {"method", "against"} & set(entry):
                 if entry[role] not in protocol["methods"]:
                     return f"{name}[{i}]: {role} {entry[role]} is not among the methods"
@@ -72,9 +80,9 @@ def problem_of(protocol):
 
 def scenes_of(names):
     """flat_[1-3] written out."""
-    match = re.fullmatch(r"(.*)\[(\d+)-(\d+)\](.*)", names)
+    match = re.fullmatch(r"(.*)\[(\d+)-(\d+)\](.*)", str(names))
     if not match:
-        return [names]
+        return [str(names)]
     before, first, last, after = match.groups()
     return [f"{before}{number}{after}" for number in range(int(first), int(last) + 1)]
 
@@ -102,6 +110,11 @@ def world_file(protocol):
     return file
 
 
+def setting_of(key, value):
+    """As --set has it."""
+    return f"{key}={str(value).lower() if isinstance(value, bool) else value}"
+
+
 def arguments_of(protocol, building, method):
     """Of explore.sh, but for scene, seed and folder."""
     arguments = ["--method", method["method"], "--duration", str(building["duration_s"])]
@@ -110,8 +123,7 @@ def arguments_of(protocol, building, method):
     if world := world_file(protocol):
         arguments += ["--world", str(world)]
     for key, value in (protocol["settings"] | method.get("settings", {})).items():
-        text = str(value).lower() if isinstance(value, bool) else str(value)
-        arguments += ["--set", f"{key}={text}"]
+        arguments += ["--set", setting_of(key, value)]
     return arguments
 
 

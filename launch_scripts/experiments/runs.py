@@ -9,7 +9,7 @@ import sys
 import time
 
 import benchmark_rows
-from experiments.protocol import REPOSITORY, ProtocolError, run_id
+from experiments.protocol import REPOSITORY, ProtocolError, run_id, setting_of
 
 SCRIPTS = REPOSITORY / "launch_scripts"
 LAST_DOMAIN = 101
@@ -26,7 +26,7 @@ class Experiment:
 
     def __init__(self, protocol, todo, rows, out, jobs):
         self.protocol, self.todo, self.rows, self.out, self.jobs = protocol, list(todo), rows, out, jobs
-        self.settings = " ".join(f"{key}={value}" for key, value in protocol["settings"].items())
+        self.settings = " ".join(setting_of(*setting) for setting in protocol["settings"].items())
         self.first_domain = int(os.environ.get("ROS_DOMAIN_ID", "0"))
         self.cores = sorted(os.sched_getaffinity(0))
         self.under_way = {}  # by place: run, process, when it began

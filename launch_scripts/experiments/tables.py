@@ -5,6 +5,7 @@ import csv
 import math
 
 import numpy as np
+from scipy import stats
 
 Result = collections.namedtuple("Result", "test pairs effect low high better p")
 
@@ -109,7 +110,6 @@ def effects(a, b, is_ratio):
 def wilcoxon(differences):
     """Two-sided p of Wilcoxon's signed ranks; pairs without a difference share their signs (Pratt). Infinite differences
     have the highest rank."""
-    from scipy import stats  # pylint: disable=import-outside-toplevel  (other tables need none)
     differences = np.array(differences, dtype=float)
     finite = np.abs(differences[np.isfinite(differences)])
     largest = 2.0 * (finite.max() if finite.size else 1.0) + 1.0

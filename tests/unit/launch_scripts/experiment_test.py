@@ -34,7 +34,6 @@ class ExperimentTest(PretendedPrograms):
         super().setUp()
         (self.folder / "CMakeLists.txt").write_text("of all\n")
         (self.folder / "CMakePresets.json").write_text("{}\n")
-        (self.folder / "cmake").mkdir()
         self.protocol = self.folder / "trial.yaml"
         self.protocol.write_text(PROTOCOL)
         self.table = self.folder / "docs/results/trial/rows.csv"
@@ -129,6 +128,10 @@ class ExperimentTest(PretendedPrograms):
         self.assertEqual(self.experiment("--repeat-failed")[1], ["flat_1/lapis/1", "flat_2/nearest/1"])
         self.assertNotIn("FAILED", [row["outcome"] for row in self.rows()])
 
+    def test_a_figure_that_no_run_has_is_named(self):
+        self.protocol.write_text(PROTOCOL.replace("[lost_time_s]", "[lost_time]"))
+        self.assertIn("no row has the figure lost_time\n", self.experiment()[0])
+
     def test_an_interrupted_run_has_no_row_and_what_it_started_ends(self):
         self.order(slow=["flat_1/nearest/1"])
         with subprocess.Popen(self.command(), env=self.environment(), stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
@@ -144,7 +147,8 @@ class ExperimentTest(PretendedPrograms):
                               (PROTOCOL.replace("method: lapis", "mehtod: lapis"), "methods.lapis"),
                               (PROTOCOL + "tests: [{figure: x, method: lapis, against: none}]\n", "against none"),
                               (PROTOCOL.replace("duration_s: 40", "seconds: 40"), "buildings[1]"),
-                              (PROTOCOL + "world: mars\n", "mars.yaml"), ("a: [", "trial.yaml")):
+                              (PROTOCOL.replace("duration_s: 40", "duration_s: soon"), "buildings[1].duration_s"),
+                              (PROTOCOL + "seeds: 3\n", "seeds: wanted is a list"), (PROTOCOL + "world: mars\n", "mars.yaml"), ("a: [", "trial.yaml")):
             self.protocol.write_text(text)
             output, played = self.experiment(status=2)
             self.assertEqual(played, [])

@@ -45,17 +45,17 @@ GraphMarginals graph_marginals(const PoseGraphSnapshot& graph, const std::vector
   result.covariances[0] = Matrix6d::Zero();
   PoseGraphProblem<SpatialPoses> problem(topology, effective);
   problem.linearize(PoseGraphProblem<SpatialPoses>::poses_of(effective), std::vector(effective.edges.size(), 1.0));
-  const auto diagonal = problem.inverse_diagonal();
-  if (!diagonal) return result;
+  if (!problem.factorize()) return result;
+  const std::vector<Eigen::MatrixXd> diagonal = problem.inverse_diagonal();
   const auto is_free = [&](std::size_t i) { return i > 0 && topology.part[i] == 0; };
   const geometry::Pose& newest = graph.nodes.back().T_map_camera;
   const Eigen::MatrixXd column =
-      is_free(nodes - 1) ? *problem.inverse_columns({topology.free[nodes - 1]}) : Eigen::MatrixXd();
+      is_free(nodes - 1) ? problem.inverse_columns(topology.free[nodes - 1]) : Eigen::MatrixXd();
   for (std::size_t i = 1; i < nodes; ++i) {
     if (!is_free(i)) continue;
     const geometry::Pose& T = graph.nodes[i].T_map_camera;
     const int free = topology.free[i];
-    result.covariances[i] = symmetric(in_axes_of(T, T, (*diagonal)[static_cast<std::size_t>(free)]));
+    result.covariances[i] = symmetric(in_axes_of(T, T, diagonal[static_cast<std::size_t>(free)]));
     if (column.size() > 0) result.with_newest[i] = in_axes_of(T, newest, column.middleRows<6>(6 * free));
   }
   return result;

@@ -129,21 +129,10 @@ typename PoseGraphProblem<Space>::Poses PoseGraphProblem<Space>::moved(const Pos
 }
 
 template <class Space>
-std::optional<Eigen::MatrixXd> PoseGraphProblem<Space>::inverse_columns(const std::vector<int>& free_nodes) {
-  if (!equations_->factorize(0.0)) return std::nullopt;
-  Eigen::MatrixXd right =
-      Eigen::MatrixXd::Zero(Space::kDof * topology_.free_count, Space::kDof * std::ssize(free_nodes));
-  for (std::size_t i = 0; i < free_nodes.size(); ++i) {
-    right.template block<Space::kDof, Space::kDof>(Space::kDof * free_nodes[i], Space::kDof * static_cast<int>(i))
-        .setIdentity();
-  }
+Eigen::MatrixXd PoseGraphProblem<Space>::inverse_columns(int free_node) const {
+  Eigen::MatrixXd right = Eigen::MatrixXd::Zero(Space::kDof * topology_.free_count, Space::kDof);
+  right.template middleRows<Space::kDof>(Space::kDof * free_node).setIdentity();
   return equations_->solve(right);
-}
-
-template <class Space>
-std::optional<std::vector<Eigen::MatrixXd>> PoseGraphProblem<Space>::inverse_diagonal() {
-  if (!equations_->factorize(0.0)) return std::nullopt;
-  return equations_->inverse_diagonal();
 }
 
 // Edges of a shortest path, by breadth-first search.

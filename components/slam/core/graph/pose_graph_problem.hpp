@@ -34,10 +34,12 @@ class PoseGraphProblem {
   Poses moved(const Poses& poses, const Eigen::VectorXd& step) const;
   /// By how much chi2 falls with the undamped step if it were quadratic.
   double predicted_decrease(const Eigen::VectorXd& step) const { return -gradient_.dot(step); }
-  /// Inverse of the linearised equations' matrix, columns of these free nodes only; nothing where it has none.
-  std::optional<Eigen::MatrixXd> inverse_columns(const std::vector<int>& free_nodes);
-  /// The same, its diagonal blocks only, by free node.
-  std::optional<std::vector<Eigen::MatrixXd>> inverse_diagonal();
+  /// Factorises the linearised equations' matrix; false where it has no inverse.
+  bool factorize() { return equations_->factorize(0.0); }
+  /// Columns of the inverse that belong to a free node, and its diagonal blocks by free node. After a successful
+  /// factorize.
+  Eigen::MatrixXd inverse_columns(int free_node) const;
+  std::vector<Eigen::MatrixXd> inverse_diagonal() const { return equations_->inverse_diagonal(); }
 
   /// chi2 of an edge that has no part in the poses, if they are as uncertain as the shortest path of edges with weight
   /// between its ends: a bound from below, as other paths only help. 0 without a path.

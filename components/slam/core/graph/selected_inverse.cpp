@@ -3,8 +3,6 @@
 #include <cstddef>
 #include <stdexcept>
 
-#include <Eigen/LU>
-
 namespace lapis::slam {
 namespace {
 

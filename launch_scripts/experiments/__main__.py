@@ -1,7 +1,6 @@
 """What experiment.sh does; see its --help."""
 
 import argparse
-import os
 import pathlib
 import sys
 
@@ -10,7 +9,7 @@ from benchmark_table import id_of, read_table
 try:
     from experiments import figures, report, tables
     from experiments.protocol import REPOSITORY, ProtocolError, hash_of_sources, read_protocol, run_id, runs_of
-    from experiments.runs import Experiment
+    from experiments.runs import Experiment, programs
 except ModuleNotFoundError as missing:
     sys.exit(f"experiment.sh: no Python module {missing.name}; launch_scripts/setup.sh --dev installs what is needed")
 
@@ -38,8 +37,7 @@ def fail(text):
 
 def newer_source():
     """A source that no program knows yet; None if there is none."""
-    programs = pathlib.Path(os.environ.get("LAPIS_BIN", REPOSITORY / "build/release/bin"))
-    built = max(program.stat().st_mtime for program in programs.glob("lapis_*"))
+    built = max(program.stat().st_mtime for program in programs().glob("lapis_*"))
     for folder in ("common", "components", "idl"):
         for file in (REPOSITORY / folder).rglob("*"):
             if file.suffix in (".cpp", ".hpp", ".idl") and file.stat().st_mtime > built:
@@ -63,7 +61,7 @@ def play(protocol, runs, rows, options):
             options.repeat_failed and known[run_id(run)] == "FAILED"]
     print(f"{protocol['name']}: {len(runs)} runs, {len(runs) - len(todo)} of them have a row", flush=True)
     out = options.out or REPOSITORY / "out" / "experiments" / protocol["name"]
-    experiment = Experiment(protocol, todo, rows, out, options.jobs)
+    experiment = Experiment(protocol, todo, runs[0].scene, rows, out, options.jobs)
     experiment.play()
     return experiment.failures
 

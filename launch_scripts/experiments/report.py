@@ -4,10 +4,12 @@ import subprocess
 
 from experiments import tables
 from experiments.protocol import REPOSITORY
+from experiments.runs import in_file_name
 
 FIGURES = {"runs": "All runs: boxes from quartile to quartile, whiskers to the extremes.",
            "progress": "Explored share over time and over path: median, and the band of 80 % of the runs.",
            "classes": "IoU with the whole building by class: means of the runs."}
+MAPS = {"map_error": "Map by its error.", "beside_truth": "Explored map beside the building."}
 
 
 def commit_of(file):
@@ -32,6 +34,19 @@ def sentence_of(result):
     return text
 
 
+def maps_of(protocol, rows, figures):
+    """Those that there are of the first building, method by method."""
+    lines = []
+    for label in protocol["methods"]:
+        for row in rows:
+            for name, caption in MAPS.items():
+                file = figures / f"{name}_{row['scene']}_{in_file_name(label)}_{row['seed']}.png"
+                if row["method"] == label and file.is_file():
+                    caption_of_run = f"{caption} {row['scene']}, {label}, seed {row['seed']}."
+                    lines += [f"![{caption_of_run}](figures/{file.name})", "", caption_of_run, ""]
+    return lines
+
+
 def write(protocol, file, rows, wanted, folder):
     commits = sorted({row["commit"] for row in rows if row["commit"]})
     keys = sorted({row["key"] for row in rows})
@@ -50,5 +65,6 @@ def write(protocol, file, rows, wanted, folder):
     for name, caption in FIGURES.items():
         if (folder / "figures" / f"{name}.png").is_file():
             lines += [f"![{caption}](figures/{name}.png)", "", caption, ""]
+    lines += maps_of(protocol, rows, folder / "figures")
     lines.append(f"`launch_scripts/experiment.sh {file} --table` writes this page anew from the rows.")
     (folder / "report.md").write_text("\n".join(lines) + "\n", encoding="utf-8")

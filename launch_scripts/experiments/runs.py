@@ -2,7 +2,9 @@
 
 import csv
 import os
+import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -15,6 +17,15 @@ SCRIPTS = REPOSITORY / "launch_scripts"
 LAST_DOMAIN = 101
 TIMELINE = ("time_s", "path_length_m", "explored_volume_m3", "explored_share", "position_error_m")
 TIMELINE_STEP = 5  # its lines are a second apart
+FIGURES_OF_MAPS = ("map_error", "beside_truth")
+
+
+def programs():
+    return pathlib.Path(os.environ.get("LAPIS_BIN", REPOSITORY / "build/release/bin"))
+
+
+def in_file_name(label):
+    return re.sub(r"[^A-Za-z0-9_+-]", "_", label)
 
 
 def text_of_duration(seconds):
@@ -24,9 +35,10 @@ def text_of_duration(seconds):
 class Experiment:
     """The runs that have no row yet, some of them under way."""
 
-    def __init__(self, protocol, todo, rows, out, jobs):
+    def __init__(self, protocol, todo, shown, rows, out, jobs):
         self.protocol, self.todo, self.rows, self.out, self.jobs = protocol, list(todo), rows, out, jobs
         self.settings = " ".join(setting_of(*setting) for setting in protocol["settings"].items())
+        self.shown = shown  # the building whose maps are drawn
         self.first_domain = int(os.environ.get("ROS_DOMAIN_ID", "0"))
         self.cores = sorted(os.sched_getaffinity(0))
         self.under_way = {}  # by place: run, process, when it began
@@ -37,7 +49,7 @@ class Experiment:
             raise ProtocolError(f"--jobs {jobs}: there are {len(self.cores)} cores")
 
     def folder(self, run):
-        return self.out / run.scene / re.sub(r"[^A-Za-z0-9_+-]", "_", run.label) / f"seed_{run.seed}"
+        return self.out / run.scene / in_file_name(run.label) / f"seed_{run.seed}"
 
     def begin(self, place, run):
         folder = self.folder(run)
@@ -64,6 +76,8 @@ class Experiment:
         self.rows.parent.mkdir(parents=True, exist_ok=True)
         benchmark_rows.add(self.rows, folder, run_id(run), self.protocol["world"] or "", self.settings)
         self.keep_timeline(run, folder)
+        if process.returncode == 0 and run.scene == self.shown:
+            self.keep_maps(run, folder)
         self.played_s += run.duration_s
         self.spent_s += time.monotonic() - began
         self.report(run, process.returncode)
@@ -84,6 +98,16 @@ class Experiment:
             writer.writeheader()
             writer.writerows(kept)
         part.replace(target)
+
+    def keep_maps(self, run, folder):
+        """Its error, and the map beside the building, as figures."""
+        script = programs() / "lapis_evaluator_figures.py"
+        subprocess.run([script, folder, "--formats", "png", "pdf", "svg", "--only", *FIGURES_OF_MAPS], check=False)
+        target = self.rows.parent / "figures"
+        target.mkdir(exist_ok=True)
+        for file in (folder / "figures").glob("*"):
+            if file.stem in FIGURES_OF_MAPS:
+                shutil.copyfile(file, target / f"{file.stem}_{run.scene}_{in_file_name(run.label)}_{run.seed}{file.suffix}")
 
     def report(self, run, status):
         waiting = self.todo + [other for other, _, _ in self.under_way.values()]

@@ -49,7 +49,7 @@ tour: [[2.8, 1.2], [2.4, 1.8], [2, 1.2], [2.8, 1.2]]
 NO_FURNITURE = ("--set", "simulator.world.furniture_folder=/nowhere")  # simple shapes: the same on every machine
 # What a run folder has, and what of it is equal to the byte in a repeated run (docs/evaluation.md).
 FILES = ("trajectory_estimate.txt", "trajectory_ground_truth.txt", "keyframes.txt", "pose_graph.g2o", "slam.lapis",
-         "map.lapis", "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "frames.csv", "figures/map.png",
+         "map.lapis", "map.ot", "map.ply", "reference_map.lapis", "timeline.csv", "frames.csv", "figures/map.png", "figures/map_error.png", "figures/beside_truth.png",
          "figures/trajectory.png", "figures/pose_graph.png", "figures/coverage.png", "figures/errors.png",
          "figures/progress.png")
 FILES_OF_LABELS = ("figures/class_iou.png",)

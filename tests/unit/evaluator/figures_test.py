@@ -1,6 +1,8 @@
 #!/usr/bin/python3
-"""figures.py on made-up runs: all figures, and a clear word about each missing file."""
-import importlib.util
+"""Figures of made-up runs: all of them, and a clear word about each missing file."""
+import contextlib
+import importlib
+import io
 import json
 import math
 import shutil
@@ -8,13 +10,19 @@ import struct
 import subprocess
 import sys
 import tempfile
+import types
 import unittest
 from pathlib import Path
+from unittest import mock
+
+import numpy
 
 SCRIPT = Path(sys.argv.pop(1))
-ALL = {"map.png", "trajectory.png", "pose_graph.png", "coverage.png", "errors.png", "class_iou.png", "decision.png",
-       "progress.png"}
-FROM_ESTIMATE = {"map.png", "trajectory.png", "errors.png", "decision.png"}
+OF_MAP = {"map.png", "map_error.png", "beside_truth.png"}
+ALL = OF_MAP | {"trajectory.png", "pose_graph.png", "coverage.png", "errors.png", "class_iou.png", "decision.png",
+                "progress.png"}
+FROM_ESTIMATE = OF_MAP | {"trajectory.png", "errors.png", "decision.png"}
+sys.path.insert(0, str(SCRIPT.parent))
 
 
 def write_trajectory(path, drift):
@@ -84,17 +92,24 @@ def write_decisions(path):
     path.write_text("\n".join([header, *rows]) + "\n")
 
 
-def the_module():
-    description = importlib.util.spec_from_file_location("figures", SCRIPT)
-    figures = importlib.util.module_from_spec(description)
-    description.loader.exec_module(figures)
-    return figures
+def module(name):
+    return importlib.import_module(f"lapis_figures.{name}")
+
+
+def write_pretended_mapper(folder):
+    """A map file is converted to points by copying it."""
+    tool = folder / "lapis_semantic_mapper"
+    tool.write_text('#!/bin/sh\n[ "$1" = convert ] && cp "$2" "$3"\n')
+    tool.chmod(0o755)
 
 
 class Figures(unittest.TestCase):
     def setUp(self):
         self.run_folder = Path(tempfile.mkdtemp()) / "a_run"
         self.run_folder.mkdir()
+        write_pretended_mapper(self.run_folder.parent)
+        module("inputs").PROGRAMS = self.run_folder.parent
+        write_map(self.run_folder / "reference_map.lapis")
         write_trajectory(self.run_folder / "trajectory_estimate.txt", 1)
         write_trajectory(self.run_folder / "trajectory_ground_truth.txt", 0)
         write_map(self.run_folder / "map.ply")
@@ -107,9 +122,21 @@ class Figures(unittest.TestCase):
     def tearDown(self):
         shutil.rmtree(self.run_folder.parent)
 
-    def draw(self):
-        result = subprocess.run([sys.executable, SCRIPT, self.run_folder], capture_output=True, text=True, check=False)
-        self.assertNotIn("Traceback", result.stderr)
+    def draw_unsaved(self):
+        """The same, but names of figures are all that it leaves: writing them takes the most time."""
+        def touch(figure, folder, name, _):
+            module("style").plt.close(figure)
+            (folder / f"{name}.png").touch()
+
+        with mock.patch.object(importlib.import_module(SCRIPT.stem), "save", touch):
+            return self.draw()
+
+    def draw(self, *options):
+        """What the script returns, with what it said, and what it has drawn."""
+        errors = io.StringIO()
+        with mock.patch.object(sys, "argv", [str(SCRIPT), str(self.run_folder), *options]), \
+                contextlib.redirect_stderr(errors):
+            result = types.SimpleNamespace(returncode=importlib.import_module(SCRIPT.stem).main(), stderr=errors.getvalue())
         drawn = {p.name for p in (self.run_folder / "figures").glob("*")} if self.run_folder.is_dir() else set()
         return result, drawn
 
@@ -122,23 +149,50 @@ class Figures(unittest.TestCase):
             self.assertEqual((self.run_folder / "figures" / name).read_bytes(), before[name])
 
     def test_each_missing_file_is_named_and_the_rest_is_drawn(self):
-        for names, kept in ((("map.ply",), ALL - {"map.png"}),
+        for names, kept in ((("map.ply",), ALL - OF_MAP),
                             (("trajectory_estimate.txt",), ALL - FROM_ESTIMATE),
                             (("trajectory_ground_truth.txt", "metrics.json", "pose_graph.g2o", "timeline.csv"),
-                             {"map.png", "trajectory.png", "decision.png", "progress.png"}),
+                             OF_MAP | {"trajectory.png", "decision.png", "progress.png"}),
+                            (("reference_map.lapis",), {*ALL} - {"map_error.png", "beside_truth.png"}),
                             (("frames.csv",), ALL - {"progress.png"})):
             with self.subTest(names):
                 self.tearDown()
                 self.setUp()
                 for name in names:
                     (self.run_folder / name).unlink()
-                result, drawn = self.draw()
+                result, drawn = self.draw_unsaved()
                 self.assertEqual((result.returncode, drawn), (0, kept))
                 for name in names:
-                    self.assertIn(f"{name} is missing", result.stderr)
+                    self.assertRegex(result.stderr, f"{name} is missing|is missing, and so are .*{name}")
+
+    def test_formats_and_names_are_chosen(self):
+        result, drawn = self.draw("--only", "map", "coverage", "--formats", "svg", "pdf")
+        self.assertEqual((result.returncode, drawn), (0, {f"{name}.{ending}" for name in ("map", "coverage")
+                                                          for ending in ("svg", "pdf")}))
+
+    def test_the_error_of_a_voxel_is_its_distance_to_the_nearest_of_the_reference(self):
+        distances = module("against_truth").distances
+        reference = numpy.array([[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]])
+        positions = numpy.array([[0.0, 0.0, 0.0], [0.25, 0.25, 0.0], [0.75, 0.0, 0.0], [-0.5, 0.0, 0.0], [0.0, 0.0, 5.0]])
+        expected = [0.0, 0.25 * 2**0.5, 0.25, 0.5, 0.5]  # at most two cells
+        numpy.testing.assert_allclose(distances(positions, reference, 0.25), expected)
+        some = numpy.random.default_rng(1).integers(0, 12, (2, 60, 3)) * 0.25
+        exact = numpy.linalg.norm(some[0][:, None] - some[1][None], axis=2).min(axis=1)
+        numpy.testing.assert_allclose(distances(*some, 0.25), numpy.minimum(exact, 0.5))
+
+    def test_the_map_is_compared_with_the_whole_building_where_a_run_has_it(self):
+        (self.run_folder / "ground_truth").mkdir()
+        titles = []
+        figures = module("against_truth")
+        for name in ("ideal", "full"):
+            write_map(self.run_folder / f"ground_truth/{name}.lapis")
+            figure = figures.draw_map_error(self.run_folder)
+            titles.append(figure.axes[0].get_title().rpartition("reference: ")[2])
+            figures.plt.close(figure)
+        self.assertEqual(titles, ["the same frames without noise at true poses", "the whole building"])
 
     def test_pose_graph_counts_as_loops_what_the_metrics_call_loops(self):
-        figures = the_module()
+        figures = module("plans")
 
         def legend():
             figure = figures.draw_pose_graph(self.run_folder)
@@ -156,13 +210,13 @@ class Figures(unittest.TestCase):
 
     def test_stretches_of_a_tier_are_weighed_as_the_shares_are(self):
         seconds, tiers = [1.0, 2.0, 4.0, 4.5, 5.0], ["vision", "vision", "odometry", "none", "vision"]
-        self.assertEqual(the_module().stretches(seconds, tiers, 7.0), [
+        self.assertEqual(module("progress").stretches(seconds, tiers, 7.0), [
             ("none", 0.0, 1.0), ("vision", 1.0, 2.0), ("odometry", 2.0, 4.0), ("none", 4.0, 4.5), ("vision", 4.5, 5.0),
             ("none", 5.0, 7.0)])
-        self.assertEqual(the_module().stretches([0.0, 1.0], ["none", "none"], 1.0), [("none", 0.0, 1.0)])
+        self.assertEqual(module("progress").stretches([0.0, 1.0], ["none", "none"], 1.0), [("none", 0.0, 1.0)])
 
     def test_progress_says_what_held_the_pose_and_for_how_long(self):
-        figures = the_module()
+        figures = module("progress")
         write_frames(self.run_folder / "frames.csv", lambda i: "surfaces" if 0 < i < 50 else "vision")
         figure = figures.draw_progress(self.run_folder)
         texts = [text.get_text() for text in figure.axes[1].get_legend().get_texts()]
@@ -170,7 +224,7 @@ class Figures(unittest.TestCase):
         figures.plt.close(figure)
 
     def test_progress_names_stretches_without_it_and_what_the_planner_did(self):
-        figures = the_module()
+        figures = module("progress")
         figure = figures.draw_progress(self.run_folder)
         self.assertEqual([text.get_text() for text in figure.axes[0].texts], ["no progress\n30 s"])
         self.assertEqual([text.get_text() for text in figure.axes[2].get_legend().get_texts()], ["EXPLORING", "GAVE_UP"])
@@ -188,14 +242,14 @@ class Figures(unittest.TestCase):
 
     def test_progress_of_a_run_that_never_began_and_of_one_without_truth(self):
         write_frames(self.run_folder / "frames.csv", lambda i: "none")
-        self.assertEqual(self.draw()[1], ALL)
+        self.assertEqual(self.draw_unsaved()[1], ALL)
         rows = ["time_s,tier,path_length_m,position_sigma_m,position_error_m"]
         rows += [f"{i / 10},vision,,0.01," for i in range(200)]
         (self.run_folder / "frames.csv").write_text("\n".join(rows) + "\n")
-        figure = the_module().draw_progress(self.run_folder)
+        figure = module("progress").draw_progress(self.run_folder)
         self.assertIn("path by the estimate", figure.axes[0].get_ylabel())
         self.assertGreater(figure.axes[0].lines[0].get_ydata()[-1], 10.0)  # once round an ellipse with axes of 6 and 4 m
-        the_module().plt.close(figure)
+        module("style").plt.close(figure)
 
     def test_a_method_that_asks_for_nothing_has_no_bars_of_it(self):
         decisions = self.run_folder / "decisions.csv"
@@ -203,14 +257,14 @@ class Figures(unittest.TestCase):
         for row in rows[1:]:
             row[8] = row[9] = ""  # information and D-optimality
         decisions.write_text("\n".join(",".join(row[:12] + row[13:]) for row in rows) + "\n")  # nor is it compared
-        result, drawn = self.draw()
+        result, drawn = self.draw_unsaved()
         self.assertEqual((result.returncode, result.stderr, drawn), (0, "", ALL))
-        figure = the_module().draw_decision(self.run_folder)
+        figure = module("decision").draw_decision(self.run_folder)
         self.assertEqual([axes.get_title() for axes in figure.axes[1:]], ["utility", "cost [m]"])
-        the_module().plt.close(figure)
+        module("style").plt.close(figure)
 
     def test_a_decision_is_shown_with_what_was_known_then(self):
-        figures = the_module()
+        figures = module("decision")
 
         def title_and_plan():
             figure = figures.draw_decision(self.run_folder)
@@ -233,7 +287,7 @@ class Figures(unittest.TestCase):
 
     def test_a_run_without_a_planner_has_no_figure_of_a_decision(self):
         (self.run_folder / "decisions.csv").unlink()
-        result, drawn = self.draw()
+        result, drawn = self.draw_unsaved()
         self.assertEqual((result.returncode, result.stderr, drawn), (0, "", ALL - {"decision.png"}))
 
     def test_a_full_disk_leaves_no_part_of_a_figure(self):
@@ -242,14 +296,22 @@ class Figures(unittest.TestCase):
             (self.run_folder / f"figures/{name}.part").symlink_to("/dev/full")
         result, drawn = self.draw()
         self.assertEqual((result.returncode, drawn), (1, set()))
-        self.assertIn("map.png cannot be written: No space left on device", result.stderr)
+        self.assertIn("map cannot be written: No space left on device", result.stderr)
 
     def test_damaged_files_are_no_crash(self):
         for path in list(self.run_folder.iterdir()):
             path.write_bytes(path.read_bytes()[: path.stat().st_size // 2 - 3])
-        result, drawn = self.draw()
+        result, drawn = self.draw_unsaved()
         self.assertNotIn("class_iou.png", drawn)
         self.assertIn("metrics.json", result.stderr)
+
+    def test_as_a_program(self):
+        command = [sys.executable, SCRIPT, self.run_folder, "--only", "coverage"]
+        result = subprocess.run(command, capture_output=True, text=True, check=False)
+        self.assertEqual((result.returncode, result.stderr), (0, ""))
+        result = subprocess.run([*command, "--formats", "gif"], capture_output=True, text=True, check=False)
+        self.assertEqual(result.returncode, 2)
+        self.assertIn("invalid choice: 'gif'", result.stderr)
 
     def test_no_folder_and_nothing_to_draw(self):
         for path in self.run_folder.iterdir():

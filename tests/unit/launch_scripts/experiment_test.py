@@ -80,6 +80,9 @@ class ExperimentTest(PretendedPrograms):
                       "p = 1.0000 after Holm's correction: no difference is shown. Expected was 0.60, outside", report)
         self.assertIn("it holds", report)
         self.assertNotIn("Not complete", report)
+        self.assertEqual([line.rpartition("(")[2] for line in report.splitlines() if line.startswith("![") and "flat" in line],
+                         [f"figures/{name}_flat_1_{label}_1.png)" for label in ("lapis", "near")
+                          for name in ("map_error", "beside_truth")])
         self.assertEqual(self.rows()[0]["full_iou.wall"], "0.5")
         self.assertNotIn("full_iou.sink", self.rows()[0])
         before = {file: file.read_bytes() for file in self.table.parent.rglob("*") if file.is_file()}

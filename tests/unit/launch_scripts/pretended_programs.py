@@ -39,6 +39,11 @@ if status == 0:
         "run": {"scene": scene, "method": method, "seed": seed, "commit": facts.get("commit")}} | orders.get("more", {})))
 sys.exit(status)
 """
+# In place of the evaluator's script: draws nothing, but leaves the files.
+FIGURES = """#!/bin/sh
+mkdir -p "$1/figures"
+for name in map_error beside_truth; do echo a picture >"$1/figures/$name.png"; done
+"""
 
 
 class PretendedPrograms(unittest.TestCase):
@@ -54,6 +59,7 @@ class PretendedPrograms(unittest.TestCase):
         for program in PROGRAMS:
             self.script(f"bin/lapis_{program}", f"#!/bin/sh\n# {program}\n")
         self.script("bin/lapis_supervisor", SUPERVISOR)
+        self.script("bin/lapis_evaluator_figures.py", FIGURES)
         self.script("bin/git", "#!/bin/sh\necho 6007e82\n")  # which looks like a number
         for gate in ("gate", "gate_1", "gate_2"):
             os.mkfifo(self.folder / f"bin/{gate}")

@@ -11,12 +11,13 @@ import unittest
 
 REPOSITORY = pathlib.Path(sys.argv.pop(1))
 LONGEST_LINE = 160
+GENERATED = ("docs/results/", "docs/media/")  # reports, and what lapis_simulator --credits prints
 LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 
 def pages():
     listed = subprocess.run(["git", "ls-files", "-z", "*.md"], cwd=REPOSITORY, capture_output=True, text=True, check=True)
-    return [REPOSITORY / name for name in listed.stdout.split("\0") if name and not name.startswith("docs/results/")]
+    return [REPOSITORY / name for name in listed.stdout.split("\0") if name and not name.startswith(GENERATED)]
 
 
 def lines_of_text(text):

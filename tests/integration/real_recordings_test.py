@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""What only real recordings show: the accuracy in README.md of redwood_livingroom1 and aws_small_house_loop."""
+"""What only real recordings show: the accuracy in docs/results.md of redwood_livingroom1 and aws_small_house_loop."""
 import os
 from pathlib import Path
 

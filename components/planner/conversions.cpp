@@ -13,7 +13,7 @@ using visualization_msgs::msg::Marker;
 
 constexpr double kFarthest_m = 1e4;
 constexpr double kSameAngle_rad = 1e-6;
-constexpr double kGroundOffset_m = 0.05;  // markers just above the floor
+constexpr double kGroundOffset_m = 0.05;  // markers are just above the floor
 
 geometry_msgs::msg::Pose to_message(const Pose2& pose) {
   return messages::to_message(
@@ -94,7 +94,7 @@ geometry_msgs::msg::Point to_point(const Eigen::Vector3d& p_map) {
   return point;
 }
 
-/// Key-frames that the path would add to the pose graph.
+/// The key-frames that the chosen path would add to the pose graph.
 Marker keyframe_marker(const Candidate& chosen, const std_msgs::msg::Header& header) {
   Marker nodes = marker("hallucinated_keyframes", visualization_msgs::msg::Marker_Constants::SPHERE_LIST, 0, header);
   nodes.scale().x(0.12);
@@ -105,7 +105,7 @@ Marker keyframe_marker(const Candidate& chosen, const std_msgs::msg::Header& hea
   return nodes;
 }
 
-/// Loops that it may close; the less probable, the more transparent.
+/// The loops that the chosen path may close; the less probable a loop, the more transparent it is.
 Marker loop_marker(const Candidate& chosen, const std_msgs::msg::Header& header) {
   Marker loops = marker("hallucinated_loops", visualization_msgs::msg::Marker_Constants::LINE_LIST, 0, header);
   loops.scale().x(0.03);

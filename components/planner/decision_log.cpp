@@ -42,7 +42,7 @@ bool DecisionLog::write(const Decision& decision, const std::optional<DrivenPath
   return static_cast<bool>(file_.flush());
 }
 
-/// Empty: nobody asked for it.
+/// Columns of terms that no method asks for stay empty.
 void DecisionLog::write_value(const Candidate& candidate, const Asks& known) {
   const PathValue& value = candidate.value;
   if (known.path_information) file_ << value.path_information;

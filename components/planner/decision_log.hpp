@@ -10,17 +10,18 @@
 
 namespace lapis::planner {
 
-/// decisions.csv: a row for every candidate of every decision (docs/evaluation.md).
+/// Writes decisions.csv: a row for every candidate of every decision (docs/evaluation.md).
 class DecisionLog {
  public:
   static constexpr const char* kFile = "decisions.csv";
 
-  /// An older file of that name is set aside. Throws std::runtime_error when it cannot be written.
-  /// @param compared_methods, compared_priors what decisions are compared with; a column each
+  /// Renames an older file of that name. Throws std::runtime_error when the file cannot be written.
+  /// @param compared_methods, compared_priors get one column each
   explicit DecisionLog(const std::string& path, const std::vector<std::string>& compared_methods = {},
                        const std::vector<double>& compared_priors = {});
-  /// @param ended the path that this decision ends; its columns stand in the next row, the first of its decision
-  /// False when the disk refuses.
+  /// Returns false when the file cannot be written.
+  /// @param ended the path that this decision ends; its columns are filled in the next row, which is the first of the
+  /// decision
   bool write(const Decision& decision, const std::optional<DrivenPath>& ended, std::uint64_t id,
              const std::string& method, time::Time stamp);
 
@@ -29,7 +30,7 @@ class DecisionLog {
   void write_ended();
 
   std::ofstream file_;
-  std::optional<DrivenPath> ended_;  // not yet written
+  std::optional<DrivenPath> ended_;  // until it is written
 };
 
 }  // namespace lapis::planner

@@ -23,7 +23,7 @@ Json points(const Points& p_map) {
   return list;
 }
 
-/// Rows of characters from the lowest y on, around all cells that are known: free '.', occupied '#', else ' '.
+/// Rows of characters, the row with the lowest y first, around all known cells: '.' free, '#' occupied, ' ' unknown.
 Json floor_plan(const PlanningGrid& grid) {
   const std::vector<Cell> free = grid.cells_in(mapping::kFree), occupied = grid.cells_in(mapping::kOccupied);
   std::vector<Cell> known = free;

@@ -10,16 +10,17 @@
 
 namespace lapis::planner {
 
-/// decision.json: floor plan, frontiers and paths at the instant of one decision, that with most candidates that were
-/// judged; the figure of a decision is drawn from it (docs/evaluation.md).
+/// Writes decision.json: floor plan, frontiers and paths at the instant of the decision with the most judged
+/// candidates, from which the figure of a decision is drawn (docs/evaluation.md).
 class DecisionPlan {
  public:
   static constexpr const char* kFile = "decision.json";
 
-  /// An older file of that name is set aside. Throws std::runtime_error when it cannot be renamed.
+  /// Renames an older file of that name. Throws std::runtime_error when it cannot be renamed.
   explicit DecisionPlan(std::string path);
-  /// Replaces the file when more candidates were judged than ever before. Why it cannot be written, if so.
-  /// @param surroundings that the decision was made from
+  /// Replaces the file when more candidates were judged than in all decisions before. Returns why the file cannot be
+  /// written; otherwise nothing.
+  /// @param surroundings from which the decision was made
   [[nodiscard]] std::optional<std::string> write(const Decision& decision, const Surroundings& surroundings,
                                                  std::uint64_t id);
 

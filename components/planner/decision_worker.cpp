@@ -6,7 +6,7 @@
 namespace lapis::planner {
 namespace {
 
-/// The knowledge that is to be used, and why there is none.
+/// The knowledge for the decision and an empty string, or null and the reason.
 std::pair<std::shared_ptr<const GraphKnowledge>, std::string> renew(DecisionInput& input) {
   if (!input.graph) return {input.knowledge, ""};
   auto graph =

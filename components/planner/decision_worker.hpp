@@ -9,13 +9,13 @@
 
 namespace lapis::planner {
 
-/// What the pose graph and the landmarks of one version are good for.
+/// What decisions need from one version of the pose graph and the landmarks.
 struct GraphKnowledge {
   AnalysedGraph graph;
   LandmarkIndex landmarks;
 };
 
-/// What a decision is made from; nothing of it changes while one is being made.
+/// The input of a decision; it must not change while the decision is being made.
 struct DecisionInput {
   const Surroundings* surroundings = nullptr;
   const View* view = nullptr;
@@ -24,31 +24,32 @@ struct DecisionInput {
   Memory memory;
   DecisionConfig config;
   std::shared_ptr<const GraphKnowledge> knowledge;  ///< of an earlier decision
-  /// When the graph or the landmarks are newer than `knowledge`.
+  /// Set when the graph or the landmarks are newer than `knowledge`.
   std::optional<GraphMessage> graph;
-  double position_variance_m2 = 0.0;  ///< of each axis, as slam says; 0: it does not
+  double position_variance_m2 = 0.0;  ///< per axis, as slam publishes it; 0 when slam does not publish it
   std::map<mapping::TileIndex, mapping::LandmarkTile> landmarks;
 };
 
 struct DecisionOutput {
   Decision decision;
   std::shared_ptr<const GraphKnowledge> knowledge;
-  double time_s = 0.0;  ///< wall time that it took
+  double time_s = 0.0;  ///< wall-clock time of the decision
 };
 
-/// At once.
+/// Makes a decision in the calling thread.
 DecisionOutput make_decision(DecisionInput input);
 
-/// Makes decisions in a thread of its own. The result is due at a fixed frame, so that in lock-step, where who asks
-/// waits for it, runs are the same on fast and on slow machines.
+/// Makes decisions in a thread of its own. The result is due at a fixed frame. In lock-step the planner waits for it,
+/// so that runs are the same on fast and on slow machines.
 class DecisionWorker {
  public:
   bool is_busy() const { return result_.valid(); }
-  /// Begins; the result is due at frame number `due`. Not while busy. What the input points to must stay as it is.
+  /// Begins a decision whose result is due at frame number `due`. Must not be called while busy. What the input points
+  /// to must not change.
   void start(DecisionInput input, std::uint64_t due);
-  /// The result once it is due; nothing while it is late, unless that is waited for.
+  /// The result once it is due. If it is late: nothing, or the result after a wait when `waits`.
   std::optional<DecisionOutput> take(std::uint64_t frame, bool waits);
-  /// Waits for a decision that nobody wants any more.
+  /// Waits for a decision that is no longer wanted.
   void discard();
 
  private:

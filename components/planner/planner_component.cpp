@@ -24,7 +24,7 @@ namespace {
 
 constexpr double kFarewell_s = 1.0;
 constexpr time::Duration kLongestLead =
-    time::Duration::from_seconds(1.0);  // of what overtakes the first frame of a session
+    time::Duration::from_seconds(1.0);  // of messages that overtake the first frame of a session
 constexpr const char* kSituations = "situations";
 
 Tracking tracking_of(const lapis_msgs::msg::TrackedFrame& frame) {
@@ -42,7 +42,7 @@ void PlannerComponent::add_options(CLI::App& app, Config& config) {
 
 std::optional<int> PlannerComponent::run_tool(const Config& config) { return run_replay(config); }
 
-/// Without these the planner would find nothing to do, or loops everywhere.
+/// A configuration that breaks these rules would leave the planner nothing to do, or let it expect loops everywhere.
 config::Rules PlannerComponent::rules(const Config& config) {
   const ViewpointConfig& viewpoints = config.decision.viewpoints;
   const HallucinationConfig& hallucination = config.decision.hallucination;
@@ -124,7 +124,7 @@ void PlannerComponent::serve() {
   });
 }
 
-/// The counts of a map that cannot be read are worth nothing.
+/// Fails the component when the description is not valid, because the counts of the map cannot be read without it.
 void PlannerComponent::set_description(const lapis_msgs::msg::MapDescription& message) {
   auto description = messages::from_message(message);
   if (!description) return context_.fail(std::string(topics::kMapDescription.name) + ": " + description.reason);
@@ -165,9 +165,10 @@ void PlannerComponent::set_provisional_area(nav_msgs::msg::OccupancyGrid message
   provisional_area_ = std::move(message);
 }
 
-/// Nothing that is known is in the map frame of the new session, but for what has overtaken its first frame: messages
-/// of one instant come in any order. By their stamps: when slam begins anew at the frame at which it died, its own pose
-/// follows at once. The provisional area is published when it changes: before the first session there is no other one.
+/// Nothing that is known is in the map frame of the new session, except messages that have overtaken its first frame,
+/// because messages of one instant arrive in any order. These are recognised by their stamps. When slam restarts at the
+/// frame at which it stopped, an old pose is kept, too, but slam's new pose follows at once. The provisional area is
+/// published only when it changes; before the first session there is no other area, so it is kept.
 void PlannerComponent::begin_session(std::int64_t session, time::Time first_frame) {
   const auto is_of_session = [first_frame](time::Time stamp) {
     const time::Duration later = stamp - first_frame;
@@ -199,7 +200,7 @@ void PlannerComponent::note_frame(const Tracked& frame) {
   if (tracking_ == Tracking::kLost) robot_.reset();
 }
 
-/// Frames say it themselves, once there are any.
+/// Once there are frames, they contain the reason themselves.
 void PlannerComponent::note_slam(const lapis_msgs::msg::SlamStatus& message) {
   if (frames_ == 0) slam_reason_ = message.reason();
 }
@@ -230,7 +231,7 @@ void PlannerComponent::work(const runtime::Cycle& cycle) {
   publish();
 }
 
-/// Waits for a decision that is late in lock-step only: by the wall clock the robot would stop for want of a status.
+/// Waits for a late decision in lock-step only: in wall-clock time the robot would stop because no status arrives.
 void PlannerComponent::take_decision(bool waits) {
   auto output = worker_.take(frames_, waits);
   if (!output) return;
@@ -260,14 +261,14 @@ void PlannerComponent::write_down(const Decision& decision, const std::optional<
   plan_.reset();
 }
 
-/// Takes over what has changed. Not while a decision reads it.
+/// Applies what has changed. Must not be called while a decision reads it.
 void PlannerComponent::refresh() {
   if (is_map_readable()) update_map();
   if (surroundings_) update_obstacles();
   if (surroundings_) update_provisional_area();
 }
 
-/// True when what the mapper says of a map is said of the one that is there.
+/// True when the map is of the current session and the newest description belongs to it.
 bool PlannerComponent::is_map_readable() {
   if (map_.map() == nullptr || map_.state()->session != session_) return false;
   const mapping::MapState& state = *map_.state();
@@ -325,13 +326,13 @@ Report PlannerComponent::report() const {
   return {stamp_, robot_, tracking_, is_blocked_, drift_m_, is_map_behind};
 }
 
-/// Why it does what it does; without a pose, what slam lacks.
+/// Why the mission is in its state; without a pose, also what slam lacks.
 std::string PlannerComponent::reason() const {
   const bool is_lacking = tracking_ == Tracking::kLost && !slam_reason_.empty();
   return is_lacking ? explorer_.reason() + "; slam: " + slam_reason_ : explorer_.reason();
 }
 
-/// The same and, while it drives to a goal, by what that was chosen.
+/// reason(); while the robot drives to a goal, also why that goal was chosen.
 std::string PlannerComponent::reason_with_choice() const {
   const bool has_goal = explorer_.has_goal() && !driven_by_.empty();
   return has_goal ? reason() + " (" + driven_by_ + ")" : reason();
@@ -368,15 +369,15 @@ void PlannerComponent::begin_decision() {
   worker_.start(std::move(input), frames_ + static_cast<std::uint64_t>(config_.decision_latency_frames));
 }
 
-/// Before it is made: the map may be another one afterwards.
+/// Records before the decision is made, because the map may have changed afterwards.
 void PlannerComponent::record(const DecisionInput& input) {
   if (input.graph)
     recorded_graph_ = {input.graph->keyframes, input.graph->edges, input.position_variance_m2, input.landmarks};
   const std::uint64_t number = decisions_ + 1;
   const bool is_wanted = number % static_cast<std::uint64_t>(config_.record_situations_every) == 0;
-  if (!is_wanted || is_consolidating()) return;  // replay knows no old places that have been visited
+  if (!is_wanted || is_consolidating()) return;  // a recorded situation does not contain visited places
   const mapping::MapState &shown = *surroundings_state_, &newest = *map_.state();
-  if (shown.epoch != newest.epoch || shown.version != newest.version) return;  // of a map that cannot be read yet
+  if (shown.epoch != newest.epoch || shown.version != newest.version) return;  // the newest map cannot be read yet
   const RecordedSituation situation{
       {*map_.map(),
        surroundings_model_,
@@ -402,7 +403,7 @@ void PlannerComponent::publish() {
   publish_status();
 }
 
-/// Of each decision while somebody reads, and at once for who begins to.
+/// Publishes the markers of each decision while there are readers, and at once when a reader appears.
 void PlannerComponent::publish_markers() {
   const bool has_new_reader = markers_.matched() > std::exchange(marker_readers_, markers_.matched());
   const bool is_new = std::exchange(shown_decision_, decisions_) != decisions_;
@@ -410,12 +411,12 @@ void PlannerComponent::publish_markers() {
   markers_.publish(to_markers(surroundings_->frontiers(), surroundings_->grid(), decision_, header()));
 }
 
-/// With each frame: the controller stops for want of it.
+/// Publishes with each frame, because the controller stops when no status arrives.
 void PlannerComponent::publish_status() {
   const bool is_new_lack = frames_ == 0 && slam_reason_ != reported_lack_;
   const bool has_changed =
       is_new_lack || explorer_.state() != reported_state_ || explorer_.reason() != reported_reason_;
-  const bool has_decided = decisions_ != reported_decisions_;  // each decision's time is published
+  const bool has_decided = decisions_ != reported_decisions_;  // the time of each decision is published
   if (reported_at_ == stamp_ && !has_changed && !has_decided) return;
   if (has_changed) spdlog::info("{}", reason());
   reported_at_ = stamp_;
@@ -434,7 +435,7 @@ void PlannerComponent::publish_status() {
   status_.publish(message);
 }
 
-/// @param reason one of a few: each is a counter
+/// @param reason one of a few texts, because each is a counter
 void PlannerComponent::drop(const std::string& what, const std::string& reason) {
   context_.status().count(what + " dropped: " + reason);
   if (context_.rate_limit().pass(what + reason)) spdlog::warn("{} dropped: {}", what, reason);
@@ -444,7 +445,7 @@ std_msgs::msg::Header PlannerComponent::header(const std::string& frame) const {
   return messages::header(stamp_, frame);
 }
 
-/// The robot first: a decision may take long.
+/// Stops the robot first, because a decision may take long.
 void PlannerComponent::finish() {
   path_.publish(to_message(std::vector<Pose2>{}, header()));
   path_.wait_until_acknowledged(kFarewell_s);

@@ -40,7 +40,7 @@ class PlannerComponent {
 
  private:
   using Tracked = lapis_msgs::msg::TrackedFrame;
-  /// Session and version of the graph, then of the landmarks.
+  /// Session and version of the graph, then those of the landmarks.
   using GraphVersions = std::tuple<std::int64_t, std::uint64_t, std::int64_t, std::uint64_t>;
 
   void serve();
@@ -90,44 +90,46 @@ class PlannerComponent {
   dds::Publisher<visualization_msgs::msg::MarkerArray>& markers_;
   dds::Publisher<lapis_msgs::msg::PlannerStatus>& status_;
 
-  // What others say.
-  std::optional<mapping::MapDescription> description_;  // newest
+  // Input from other components.
+  std::optional<mapping::MapDescription> description_;  // the newest one
   mapping::MapMirror map_;
   mapping::LandmarkMirror landmarks_;
   std::optional<GraphMessage> graph_;
-  std::optional<nav_msgs::msg::OccupancyGrid> obstacles_, provisional_area_;  // newest, not yet taken over
+  std::optional<nav_msgs::msg::OccupancyGrid> obstacles_, provisional_area_;  // newest, not yet applied
   std::int64_t session_ = 0;                                                  // of slam
   std::uint64_t frames_ = 0;
   time::Time stamp_;  // of the newest frame
   Tracking tracking_ = Tracking::kLost;
-  double drift_m_ = 0.0;     // of its pose since slam tracked last
-  std::string slam_reason_;  // of the newest frame, before the first one of slam's status; empty while it tracks
+  double drift_m_ = 0.0;     // standard deviation of its position since slam tracked last
+  std::string slam_reason_;  // of the newest frame, or of slam's status before the first frame; empty while slam tracks
   std::optional<Pose2> robot_;
-  time::Time robot_stamp_;             // of that
-  Pose2 last_robot_;                   // also while slam has no pose
-  double position_variance_m2_ = 0.0;  // of robot_, each axis, as slam says; 0: it does not
+  time::Time robot_stamp_;             // of robot_
+  Pose2 last_robot_;                   // kept while slam has no pose
+  double position_variance_m2_ = 0.0;  // of robot_, per axis, as slam publishes it; 0 when it does not
   bool is_blocked_ = false;
 
-  // What the planner makes of it.
+  // State of the planner.
   std::optional<Surroundings> surroundings_;
   std::optional<mapping::MapState> surroundings_state_;
-  mapping::SensorModel surroundings_model_;  // by which the map was read
+  mapping::SensorModel surroundings_model_;  // with which surroundings_ reads the map
   std::shared_ptr<const GraphKnowledge> knowledge_;
-  GraphVersions known_graph_;                    // in knowledge_
-  std::optional<RecordedGraph> recorded_graph_;  // the same, where situations are recorded
+  GraphVersions known_graph_;                    // versions in knowledge_
+  std::optional<RecordedGraph> recorded_graph_;  // the same graph, when situations are recorded
   Explorer explorer_;
   PathLedger ledger_;
   DecisionWorker worker_;
   std::optional<DecisionLog> log_;
   std::optional<DecisionPlan> plan_;
   Decision decision_;            // the last one
-  std::string driven_by_;        // explanation of the choice that is being driven to
-  std::string deciding_method_;  // of it, or of the one that is being made
+  std::string driven_by_;        // explanation of the choice that the robot is driving to
+  std::string deciding_method_;  // method of the last decision, or of the one being made
   std::uint64_t decisions_ = 0, shown_decision_ = 0;
   std::size_t marker_readers_ = 0;
   double decision_time_s_ = 0.0;
-  std::optional<std::uint64_t> published_path_;  // the first one is empty: a controller may follow one from before
-  time::Time path_stamp_;                        // of the frame with which it was published
+  // Empty until a path is published. The first path is empty, because a controller may follow one from an earlier run
+  // of the planner.
+  std::optional<std::uint64_t> published_path_;
+  time::Time path_stamp_;  // time stamp of the frame with which the path was published
   std::optional<time::Time> reported_at_;
   State reported_state_ = State::kIdle;
   std::string reported_reason_, reported_lack_;

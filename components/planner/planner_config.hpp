@@ -11,7 +11,7 @@
 
 namespace lapis::planner {
 
-/// The process's configuration; what has names there is in `decision` after completed().
+/// The configuration of the process. completed() resolves choices that are given by name.
 struct PlannerComponentConfig {
   std::string method = "lapis";
   std::string then = "none";
@@ -23,26 +23,26 @@ struct PlannerComponentConfig {
   MethodsConfig methods;
   std::vector<std::string> compared_methods;
   DecisionConfig decision;
-  std::shared_ptr<const Method> consolidation;  ///< null: none
+  std::shared_ptr<const Method> consolidation;  ///< set by completed(); null: no consolidation
   ExplorerConfig explorer;
   int view_columns = 64, view_rows = 36;
   int decision_latency_frames = 3;
   std::string output_dir;
   int record_situations_every = 0;
-  std::string replay;  ///< a situation file; from the command line
+  std::string replay;  ///< a situation file, from the command line
   robot::RobotDescription robot;
 };
 
-/// "lapis", which stands for one of the others, and all of these.
+/// "lapis", which stands for one of the other names, and all other names.
 std::vector<std::string> all_methods();
-/// "none", and by what old places may be chosen when nothing is left to explore.
+/// "none", and the rules that choose old places when nothing is left to explore.
 std::vector<std::string> all_consolidations();
-/// Those that choose among the candidates of any method: TARE compares the stops of its own tour only.
+/// Methods that can judge the candidates of any other method; TARE judges only the stops of its own tour.
 std::vector<std::string> comparable_methods();
 
-/// With all that the core needs of the robot and of names.
+/// The configuration with everything that the core needs from the robot's description and from names.
 PlannerComponentConfig completed(PlannerComponentConfig config);
-/// The planner's views through the robot's camera.
+/// The rays of the planner's views through the robot's camera.
 ViewConfig view_config(const PlannerComponentConfig& config);
 
 template <class Field>
@@ -137,7 +137,7 @@ void describe(Field& field, GoalMemoryConfig& c) {
   field("max_failures", c.max_failures, config::in_range(1, 100), "after so many it is left alone for good");
 }
 
-/// What candidates there are, and what they are judged by.
+/// Keys that decide which candidates there are and how they are judged.
 template <class Field>
 void describe_decisions(Field& field, PlannerComponentConfig& c) {
   field("max_candidates", c.decision.max_candidates, config::in_range(1, 1000),
@@ -173,7 +173,7 @@ void describe_decisions(Field& field, PlannerComponentConfig& c) {
         "another goal must be so much better than the one being driven to");
 }
 
-/// Of the mission around decisions.
+/// Keys of the mission around decisions.
 template <class Field>
 void describe_mission(Field& field, PlannerComponentConfig& c) {
   field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.0, 60.0),

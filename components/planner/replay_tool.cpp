@@ -22,7 +22,7 @@ RecordedSituation read_situation(const std::string& file) {
   return std::move(*situation);
 }
 
-/// A dash for what the method does not ask for.
+/// The number, or a dash for terms that the method does not ask for.
 std::string number(bool is_known, double value, int digits) {
   char text[32];
   std::snprintf(text, sizeof text, "%.*f", digits, value);

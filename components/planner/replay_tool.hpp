@@ -8,12 +8,13 @@
 
 namespace lapis::planner {
 
-/// The decision with this configuration, which is completed(). Frontiers have other numbers than when it was recorded;
-/// between candidates that are worth the same the choice may be another.
+/// Makes a recorded decision again with this configuration, which has to be completed(). Frontiers have other ids than
+/// in the recorded run; of candidates with equal utility, another one may be chosen.
 Decision decide_again(const RecordedSituation& situation, const PlannerComponentConfig& config);
 
-/// With a situation to decide again: does so, prints the candidates, and writes replayed.csv, as decisions.csv, into
-/// planner.output_dir. Exit status; nothing without one.
+/// If --replay names a situation file: makes its decision again, prints the candidates, and writes them to
+/// replayed.csv, in the format of decisions.csv, in planner.output_dir. Returns the exit status, or nothing without
+/// such a file.
 std::optional<int> run_replay(const PlannerComponentConfig& config);
 
 }  // namespace lapis::planner

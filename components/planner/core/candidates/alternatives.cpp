@@ -12,7 +12,7 @@
 namespace lapis::planner {
 namespace {
 
-constexpr std::size_t kMostRevisits = 5;  // of a decision, the nearest
+constexpr std::size_t kMostRevisits = 5;  // of one decision: the nearest ones
 constexpr double kSameHeading_rad = 0.5;
 
 bool passes(const std::vector<Pose2>& path, const Pose2& pose, double apart_m) {
@@ -22,8 +22,8 @@ bool passes(const std::vector<Pose2>& path, const Pose2& pose, double apart_m) {
   });
 }
 
-/// The path to a candidate's goal past the first old place that is not too far off: through it and on in its direction,
-/// so that the camera sees what the key-frame saw.
+/// The path to a candidate's goal through the first old place whose detour is not too long. It passes the place in the
+/// direction of its key-frame, so that the camera sees what the key-frame saw.
 std::optional<Path> path_past(const ProposalInput& in, const std::vector<OldPlace>& places, const Candidate& candidate,
                               double direct_m) {
   if (places.empty()) return std::nullopt;
@@ -46,7 +46,8 @@ std::optional<Path> path_past(const ProposalInput& in, const std::vector<OldPlac
   return std::nullopt;
 }
 
-/// Other paths to a candidate's goal: around other obstacles, then past an old place.
+/// Other paths to a candidate's goal: around other obstacles, and then, if there are fewer than wanted, through an old
+/// place.
 void add_alternatives(const ProposalInput& in, const std::vector<OldPlace>& places, const Candidate& candidate,
                       std::vector<Candidate>& all) {
   const PlanningGrid& grid = in.situation.grid;
@@ -66,10 +67,10 @@ void add_alternatives(const ProposalInput& in, const std::vector<OldPlace>& plac
   }
 }
 
-/// To the nearest goal of every frontier that is still open.
+/// Other paths to the nearest open goal of every frontier.
 void add_alternatives(const ProposalInput& in, const std::vector<OldPlace>& places,
                       std::vector<Candidate>& candidates) {
-  std::map<std::uint32_t, std::size_t> nearest;  // by frontier
+  std::map<std::uint32_t, std::size_t> nearest;  // index of the nearest open candidate, by frontier
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!candidates[i].is_open() || candidates[i].frontier == 0) continue;
     const auto [known, is_new] = nearest.try_emplace(candidates[i].frontier, i);

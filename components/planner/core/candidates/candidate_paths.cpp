@@ -7,9 +7,9 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kSameGoal_m = 0.5;  // goals nearer to each other are one
+constexpr double kSameGoal_m = 0.5;  // goals that are nearer to each other count as the same goal
 
-// Turning at both ends of a path; corners in between are driven through.
+// Turning on the spot at both ends of a path [rad]. At the corners in between the robot turns while it drives.
 double turning(const Pose2& robot, const std::vector<Pose2>& path) {
   if (path.size() < 2) return turn_between(robot.yaw_rad, path.back().yaw_rad);
   return turn_between(robot.yaw_rad, path.front().yaw_rad) +

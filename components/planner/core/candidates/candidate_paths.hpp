@@ -10,21 +10,21 @@
 
 namespace lapis::planner {
 
-/// What candidates are proposed from.
+/// The input from which candidates are proposed.
 struct ProposalInput {
   const Situation& situation;
-  const CostTree& tree;  ///< from the robot's cell
+  const CostTree& tree;  ///< rooted at the robot's cell
   const Memory& memory;
   const ProposalConfig& config;
 };
 
-/// A candidate without a path, for a frontier that is not to be driven to.
+/// A candidate without a path, for a frontier that the robot must not or cannot drive to.
 Candidate rejected(const Frontier& frontier, Rejection reason);
-/// The best path to a viewpoint. @param frontier 0: a place
+/// The cheapest path to a viewpoint. @param frontier id; 0: the viewpoint does not belong to a frontier
 Candidate candidate_at(const ProposalInput& in, std::uint32_t frontier, const Viewpoint& viewpoint);
-/// Another path to the candidate's goal.
+/// Sets the path to the candidate's goal: corners, poses and cost. The path starts at the robot's position.
 void set_path(const ProposalInput& in, const Path& path, Candidate& candidate);
-/// The candidate is what is being driven to.
+/// True when the robot is driving to the candidate's goal, or to one within 0.5 m of it.
 bool is_current_goal(const Candidate& candidate, const Memory& memory);
 bool is_any_open(const std::vector<Candidate>& candidates);
 

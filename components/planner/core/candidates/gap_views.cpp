@@ -11,17 +11,17 @@ namespace lapis::planner {
 namespace {
 
 constexpr int kGapHeadings = 8;
-constexpr int kCoarseColumns = 16, kCoarseRows = 9;  // rays of a coarse image
-constexpr std::size_t kMostViews = 20;               // that are proposed
-constexpr std::size_t kMostLooks = 200;              // that are looked at more closely
-constexpr double kAhead_m = 1.0;                     // what is looked at, for who remembers targets
-constexpr double kOverhead_m = 2.0;                  // what a view costs besides its path
+constexpr int kCoarseColumns = 16, kCoarseRows = 9;  // number of rays of a coarse image
+constexpr std::size_t kMostViews = 20;               // views that are proposed
+constexpr std::size_t kMostLooks = 200;              // views whose information is computed with all rays
+constexpr double kAhead_m = 1.0;                     // distance of the target ahead, for memories of targets
+constexpr double kOverhead_m = 2.0;                  // cost of a view besides that of its path
 constexpr double kSameView_m = 0.5, kSameView_rad = 0.4;
 
-/// The place that can be reached next to the middle of each square.
+/// For each square of the floor, the reachable cell that is nearest to the middle of the square.
 std::vector<Cell> places(const PlanningGrid& grid, const CostTree& tree, double spacing_m) {
   const double edge_cells = std::max(1.0, spacing_m / grid.resolution_m());
-  std::map<Cell, std::pair<double, Cell>> nearest;  // by square: distance from its middle, place
+  std::map<Cell, std::pair<double, Cell>> nearest;  // by square: distance from its middle [squares], cell
   for (const Cell& c : tree.reached()) {
     if (!grid.is_traversable(c)) continue;
     const Eigen::Vector2d p = Eigen::Vector2d(c.x + 0.5, c.y + 0.5) / edge_cells;
@@ -41,7 +41,7 @@ std::vector<double> promises(const Situation& s, const View& view, const std::ve
   return path_information(s.field, view, std::span<const ViewPath>(paths));
 }
 
-/// The most information for the path first, but what is being driven to before all.
+/// Sorted by information per cost, the largest first; the current goal comes before all others.
 std::vector<Viewpoint> ranked(const Situation& s, const std::vector<Viewpoint>& viewpoints, const Memory& memory) {
   ViewConfig coarse = s.view.config();
   coarse.columns = kCoarseColumns;
@@ -59,7 +59,7 @@ std::vector<Viewpoint> ranked(const Situation& s, const std::vector<Viewpoint>& 
   return sorted;
 }
 
-/// Of the places that have not failed.
+/// All headings at all places, without places that have failed and views that were taken.
 std::vector<Viewpoint> all_views(const Situation& s, const CostTree& tree, const Memory& memory, double spacing_m) {
   std::vector<Viewpoint> views;
   for (const Cell& c : places(s.grid, tree, spacing_m)) {

@@ -9,15 +9,16 @@
 
 namespace lapis::planner {
 
-/// Views for what no frontier of the floor plan asks for: ceilings, what stands behind or above something, floors that
-/// were passed at the edge of an image. Of all places that can be reached, one for each square of GapConfig::spacing_m,
-/// and eight headings each, 20 of those that promise GapConfig::least_nats: the first ones by what a coarse image
-/// promises for the path to it. The target lies a metre ahead.
-/// @param tree from the robot's cell
+/// Views of unobserved voxels that no frontier of the floor plan shows: ceilings, the space behind or above objects,
+/// and floors at the edge of the images that the robot took when it passed. The views are one reachable place in each
+/// square of edge GapConfig::spacing_m, with eight headings each. They are ranked by the information of a coarse image
+/// per cost of the path; of the best 200, the first 20 that promise at least GapConfig::least_nats are returned. The
+/// target lies 1 m ahead.
+/// @param tree rooted at the robot's cell
 std::vector<Viewpoint> gap_views(const Situation& situation, const CostTree& tree, const Memory& memory,
                                  const GapConfig& config);
 
-/// The view has been taken, from about the same place in about the same direction.
+/// True when a view from about the same place in about the same direction is among `taken`.
 bool is_taken(const Pose2& view, std::span<const Pose2> taken);
 
 }  // namespace lapis::planner

@@ -10,9 +10,9 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kPass_m = 0.75;  // path past an old place, in its direction
+constexpr double kPass_m = 0.75;  // a path continues this far beyond an old place, in its direction
 constexpr double kAtGoal_m = 0.5;
-constexpr double kLikely = 0.5;  // probability of a loop closure at the place itself
+constexpr double kLikely = 0.5;  // least probability of a loop closure at the place itself
 
 OldPlace place_of(const Situation& s, const Keyframe& keyframe) {
   const geometry::Pose T_map_base = keyframe.T_map_camera * s.T_base_camera.inverse();
@@ -46,7 +46,7 @@ Candidate candidate_through(const ProposalInput& in, const OldPlace& place) {
 std::vector<OldPlace> old_places(const ProposalInput& in, const HallucinationConfig& config) {
   const Situation& s = in.situation;
   if (s.graph == nullptr || s.landmarks == nullptr) return {};
-  std::vector<std::pair<int, int>> ranked;  // less landmarks, node
+  std::vector<std::pair<int, int>> ranked;  // minus the number of shared landmarks, node
   for (int node = 0; node < s.graph->factor.node_count(); ++node) {
     const int landmarks = s.landmarks->shared_landmarks(node);
     const bool is_old = s.graph->path_from_newest_m[static_cast<std::size_t>(node)] >= config.min_loop_path_m;

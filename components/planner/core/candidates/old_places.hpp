@@ -6,22 +6,24 @@
 
 namespace lapis::planner {
 
-/// Where the robot stood when it made an old key-frame that shares many landmarks with others.
+/// The pose of the robot at an old key-frame that shares many landmarks with other key-frames.
 struct OldPlace {
   Pose2 pose;
   Cell cell;
 };
 
-/// That can be reached; the one with the most such landmarks first, others not beside it. None without a graph.
-/// @param config what is old, and how many landmarks a loop closure needs
+/// The old places that can be reached, the one with the most shared landmarks first. A place within
+/// HallucinationConfig::place_radius_m of one earlier in the list is left out. Empty when there is no pose graph.
+/// @param config decides which key-frames are old and how many landmarks a loop closure needs
 std::vector<OldPlace> old_places(const ProposalInput& in, const HallucinationConfig& config);
 
-/// A little farther in the direction in which the place was driven through, so that the camera sees what the key-frame
-/// saw; the place itself when something stands there.
+/// A cell 0.75 m beyond the place, in the direction in which the robot drove through it, so that the camera sees what
+/// the key-frame saw; the place itself when something is in the way.
 Cell cell_beyond(const PlanningGrid& grid, const OldPlace& place);
 
-/// Drives through every old place but the one at which the robot stands, at its heading; those near
-/// Memory::visited_places are rejected. What is a place is the same for all methods, whatever they hallucinate.
+/// Candidates that drive through every old place, at its heading, except the one at which the robot stands. Places near
+/// Memory::visited_places are rejected. Every method gets the same places: the default HallucinationConfig decides, not
+/// the configured one.
 std::vector<Candidate> propose_old_places(const ProposalInput& in);
 
 }  // namespace lapis::planner

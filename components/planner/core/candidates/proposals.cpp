@@ -11,9 +11,9 @@
 namespace lapis::planner {
 namespace {
 
-constexpr std::size_t kMostTracked = 5;  // of a decision, the newest
+constexpr std::size_t kMostTracked = 5;  // of one decision: the newest ones
 
-/// Frontiers that cannot be seen from anywhere, as the map is.
+/// Ids of frontiers that are hidden from every reachable place in the current map.
 std::set<std::uint32_t> hidden_ones(const std::vector<Candidate>& candidates) {
   std::set<std::uint32_t> hidden;
   for (const Candidate& candidate : candidates) {
@@ -22,8 +22,8 @@ std::set<std::uint32_t> hidden_ones(const std::vector<Candidate>& candidates) {
   return hidden;
 }
 
-/// @param hidden when nothing else is left, a frontier that is long enough need not be in sight: closer looks. Those
-/// of a hidden one may fail, it is hidden then.
+/// @param hidden set when no other candidate is left: frontiers that are long enough then need not be in sight (closer
+/// looks). A failed closer look at a frontier in `hidden` is rejected as kHidden, because the frontier was not seen.
 std::vector<Candidate> propose_frontiers(const ProposalInput& in,
                                          const std::optional<std::set<std::uint32_t>>& hidden = std::nullopt) {
   const auto& [s, tree, memory, config] = in;
@@ -49,7 +49,7 @@ std::vector<Candidate> propose_frontiers(const ProposalInput& in,
   return candidates;
 }
 
-/// Where slam tracked, it may again.
+/// Slam may track again where it tracked before.
 void add_tracked_places(const ProposalInput& in, std::vector<Candidate>& candidates) {
   const auto& [s, tree, memory, config] = in;
   if (!memory.adrift) return;
@@ -74,13 +74,14 @@ void add_gap_views(const ProposalInput& in, std::vector<Candidate>& candidates) 
 void reject_unsure_ones(const std::optional<Adrift>& adrift, std::vector<Candidate>& candidates) {
   if (!adrift) return;
   for (Candidate& candidate : candidates) {
-    const bool is_sure = adrift->sigma_m + adrift->growth * candidate.value.cost_m <= adrift->budget_m;  // never of NaN
+    // False when sigma_m is NaN.
+    const bool is_sure = adrift->sigma_m + adrift->growth * candidate.value.cost_m <= adrift->budget_m;
     if (candidate.is_open() && !is_sure) candidate.rejection = Rejection::kUnsure;
   }
 }
 
 void reject_far_ones(const ProposalInput& in, std::vector<Candidate>& candidates) {
-  std::vector<std::pair<int, double>> rank(candidates.size());  // place within the frontier, cost
+  std::vector<std::pair<int, double>> rank(candidates.size());  // rank within its frontier by cost, cost
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < candidates.size(); ++i) {
     if (!candidates[i].is_open()) continue;

@@ -11,7 +11,7 @@
 
 namespace lapis::planner {
 
-/// What a decision is made from. The graph and its landmarks are null before slam has two key-frames.
+/// The input of a decision. The graph and its landmarks are null until slam has two key-frames.
 struct Situation {
   const PlanningGrid& grid;
   const FrontierMap& frontiers;
@@ -21,38 +21,39 @@ struct Situation {
   const AnalysedGraph* graph = nullptr;
   const LandmarkIndex* landmarks = nullptr;
   Pose2 robot;
-  /// The field of the same map with other sensor models; what each of them would have chosen is reported, too.
+  /// Fields of the same map with other sensor models. Decisions report what the method would have chosen with each of
+  /// them.
   std::span<const InformationField> compared_fields = {};
 };
 
-/// Slam reckons by odometry alone, and the position becomes less sure with every metre.
+/// State of dead reckoning: slam has no visual tracking, and the position becomes less certain with every metre.
 struct Adrift {
-  double sigma_m = 0.0;             ///< of the position since slam tracked
-  double growth = 0.0;              ///< of sigma by cost of a path [m/m]
-  double budget_m = 0.5;            ///< of sigma at a path's end
-  std::vector<Pose2> tracked = {};  ///< where slam tracked, the newest first
+  double sigma_m = 0.0;             ///< standard deviation of the position since slam tracked last; may be NaN
+  double growth = 0.0;              ///< increase of the standard deviation per cost of a path [m/m]
+  double budget_m = 0.5;            ///< largest standard deviation at a path's end
+  std::vector<Pose2> tracked = {};  ///< poses at which slam tracked, the newest first
 
   bool operator==(const Adrift&) const = default;
 };
 
-/// What is not to be driven to, and what is being driven to.
+/// What decisions have to leave alone, and the current goal.
 struct Memory {
-  std::vector<LeftAlone> left_alone;            ///< frontiers near these
-  std::vector<LeftAlone> old_places;            ///< of key-frames, not to be driven to
-  std::vector<Eigen::Vector2d> visited_places;  ///< of key-frames, not to be driven through again [m, map]
-  std::vector<LeftAlone> gap_places;            ///< for views of gaps, not to be driven to
+  std::vector<LeftAlone> left_alone;            ///< targets of frontiers
+  std::vector<LeftAlone> old_places;            ///< old key-frames that the robot must not drive to
+  std::vector<Eigen::Vector2d> visited_places;  ///< old key-frames that the robot must not drive through again [m, map]
+  std::vector<LeftAlone> gap_places;            ///< places of views of gaps that the robot must not drive to
   std::vector<FailedView> failed_views;
-  std::vector<Pose2> taken_views;  ///< of gaps: not to be taken again
-  bool looks_at_gaps = false;      ///< when no frontier can be driven to
-  double radius_m = 0.75;          ///< what lies nearer to such places is meant, too
-  std::optional<Pose2> goal;       ///< current one
-  int turns_to = 0;                ///< a turn the longer way round has begun: 1 to the left, -1 to the right
-  std::optional<Adrift> adrift;    ///< nothing while slam tracks
+  std::vector<Pose2> taken_views;  ///< views of gaps that must not be taken again
+  bool looks_at_gaps = false;      ///< views of gaps are proposed when no frontier can be driven to
+  double radius_m = 0.75;          ///< what is nearer than this to a remembered place is treated like the place
+  std::optional<Pose2> goal;       ///< the goal that the robot is driving to
+  int turns_to = 0;                ///< direction of a turn the longer way that has begun: 1 left, -1 right; 0 none
+  std::optional<Adrift> adrift;    ///< empty while slam tracks
 
   bool operator==(const Memory&) const = default;
 };
 
-/// Pose of the camera of a robot that stands there, T_map_camera.
+/// Pose T_map_camera of the camera when the robot is at `robot`.
 geometry::Pose camera_at(const Situation& situation, const Pose2& robot);
 
 }  // namespace lapis::planner

@@ -13,8 +13,8 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kAway_m = 0.5;
-constexpr double kAround_m = 2.0;      // what is looked at: frontiers are that long
-constexpr double kTurnStep_rad = 0.6;  // between views while the robot turns: half of what a camera sees
+constexpr double kAround_m = 2.0;      // radius around the target; frontiers are about that long
+constexpr double kTurnStep_rad = 0.6;  // between views while the robot turns: half the field of view
 
 ViewPath views_along(const Situation& s, const std::vector<Pose2>& path) {
   ViewPath views;
@@ -30,13 +30,13 @@ std::vector<Candidate*> open_ones(std::vector<Candidate>& candidates) {
   return open;
 }
 
-/// Where the robot is when it looks, the first time in its first new heading.
+/// Poses of the views along the path, those of turns on the spot included; the robot's current view is not one of them.
 std::vector<Pose2> poses_of(const Situation& s, const Candidate& candidate) {
   return with_turns(candidate.path, s.robot.yaw_rad, kTurnStep_rad);
 }
 
-/// From what is in view already, which has more to tell to who goes on looking, and never discounted: it is what the
-/// map would gain.
+/// The promise begins with the current view, which has more to tell while the robot continues to look. It is never
+/// discounted: it is compared with what the map gains.
 std::vector<PromisedView> promise_along(const Situation& s, const Candidate& candidate,
                                         const std::vector<double>& first_turn_rad) {
   std::vector<Pose2> poses{s.robot};
@@ -49,7 +49,8 @@ std::vector<PromisedView> promise_along(const Situation& s, const Candidate& can
   return promised;
 }
 
-/// Towards where the path has led away; its first corner may be a cell beside the robot.
+/// The direction in which the path leads once it is kAway_m from the robot; its first corner may be a cell beside the
+/// robot.
 double first_heading(const Candidate& candidate) {
   const Eigen::Vector2d& robot_map = candidate.points.front();
   for (const Eigen::Vector2d& p_map : candidate.points) {
@@ -73,7 +74,7 @@ void add_information(const Situation& s, const Asks& asks, const std::vector<Can
   }
 }
 
-/// Of the cells within kAround_m, what nobody has seen.
+/// Share of the cells within kAround_m that are unknown.
 double unknown_share(const PlanningGrid& grid, const Eigen::Vector2d& center_map) {
   const Cell center = grid.cell_of(center_map);
   const int reach = static_cast<int>(kAround_m / grid.resolution_m());
@@ -90,11 +91,11 @@ double unknown_share(const PlanningGrid& grid, const Eigen::Vector2d& center_map
 
 std::vector<geometry::Pose> nodes_along(const Situation& s, const Candidate& candidate, double spacing_m) {
   std::vector<geometry::Pose> nodes = views_along(s, poses_along(candidate.points, spacing_m, candidate.goal.yaw_rad));
-  if (nodes.size() > 1) nodes.erase(nodes.begin());  // the robot is there already
+  if (nodes.size() > 1) nodes.erase(nodes.begin());  // the robot is already there
   return nodes;
 }
 
-// Empty, or what is wrong with the graph.
+// Adds what the pose graph would gain; returns what is wrong with the graph, or an empty string.
 std::string add_gain(const Situation& s, const DecisionConfig& config, Candidate& candidate) {
   const auto nodes = nodes_along(s, candidate, config.node_spacing_m);
   const Hallucination path =
@@ -118,8 +119,8 @@ std::string add_gain(const Situation& s, const DecisionConfig& config, Candidate
 }
 
 // The Fisher information of a surface's position is 1 / c^2 where the map alone limits it, and 1 / (c^2 + s^2) where
-// the camera's position has variance s^2 besides; the views' variances lie between those of the robot and of the path's
-// end.
+// the position of the camera has variance s^2, too. The variances of the views are interpolated between that of the
+// robot and that of the path's end.
 void discount_information(const Situation& s, double limit_m, Candidate& candidate) {
   const double robot = std::pow(position_sigma_m(*s.graph) / limit_m, 2);
   const double end = std::pow(candidate.gain.end_sigma_m / limit_m, 2);
@@ -146,8 +147,8 @@ std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, con
   return best;
 }
 
-/// What the pose graph would gain by each. Without a graph that can be judged, by none of them: all have the same D
-/// then.
+/// Adds what the pose graph would gain by each candidate. If the graph cannot be judged, no candidate gets a gain: all
+/// have the same D.
 std::string add_gains(const Situation& s, const DecisionConfig& config, const std::vector<Candidate*>& open) {
   std::string problem;
   const bool has_graph = s.graph != nullptr && s.landmarks != nullptr;
@@ -167,7 +168,7 @@ std::string add_gains(const Situation& s, const DecisionConfig& config, const st
   return problem;
 }
 
-/// What a frontier is not looked at for, all paths to it taken together: what comes last in the enumeration.
+/// Why each frontier is not viewed: of the reasons of its paths, the one that is last in the enumeration.
 std::map<std::uint32_t, Rejection> reasons_by_frontier(const std::vector<Candidate>& candidates) {
   std::map<std::uint32_t, Rejection> reasons;
   for (const Candidate& candidate : candidates) {
@@ -183,7 +184,7 @@ Leftover leftover_of(const Situation& s, const std::vector<Candidate>& candidate
   double left_m = 0.0, to_blame_m = 0.0;
   for (const auto& [id, reason] : reasons_by_frontier(candidates)) {
     const auto frontier = s.frontiers.frontiers().find(id);
-    if (frontier == s.frontiers.frontiers().end()) continue;  // a place
+    if (frontier == s.frontiers.frontiers().end()) continue;  // the candidate is not a view of a frontier
     const double length_m = frontier->second.length_m;
     leftover.length_m[reason] += length_m;
     left_m += length_m;
@@ -193,15 +194,15 @@ Leftover leftover_of(const Situation& s, const std::vector<Candidate>& candidate
   return leftover;
 }
 
-/// And of the spectrum, where information is discounted by it.
+/// Asks for the spectrum, too, where the information is discounted by the position's variance.
 Asks with_discount(Asks asks, const DecisionConfig& config) {
   const bool is_discounted = config.information_discount_sigma_m > 0.0;
   if (is_discounted && (asks.path_information || asks.goal_information)) asks.spectrum = true;
   return asks;
 }
 
-/// What the map and the pose graph would gain by each candidate, as far as that is asked for. What is wrong with the
-/// graph, if anything is.
+/// Computes what the map and the pose graph would gain by each open candidate, as far as it is asked for. Returns what
+/// is wrong with the graph; empty when nothing is.
 std::string judge(const Situation& s, const DecisionConfig& config, const Asks& asks,
                   std::vector<Candidate>& candidates) {
   const std::vector<Candidate*> open = open_ones(candidates);
@@ -214,7 +215,7 @@ std::string judge(const Situation& s, const DecisionConfig& config, const Asks& 
   return problem;
 }
 
-/// Among the candidates that are proposed.
+/// Judges the proposed candidates and chooses among them.
 Decision choose(const Situation& s, std::vector<Candidate> proposals, const Memory& memory,
                 const DecisionConfig& config) {
   Decision decision;

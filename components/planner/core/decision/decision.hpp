@@ -13,50 +13,53 @@
 namespace lapis::planner {
 
 struct DecisionConfig : ProposalConfig {
-  std::shared_ptr<const Method> method;  ///< to be set
-  /// What each of these would choose among the same candidates is reported, too.
+  std::shared_ptr<const Method> method;  ///< has to be set
+  /// Decisions report what each of these methods would have chosen among the same candidates.
   std::vector<std::shared_ptr<const Method>> compared_methods;
   GraphConfig graph;
-  double node_spacing_m = 1.0;      ///< between hallucinated key-frames
-  double sigma_limit_voxels = 0.5;  ///< of the position at a path's end: what is more exact is of no use; in (0, 10]
-  /// The information of a view from a position with sigma s counts 1 / (1 + (s / this)^2) [m]; 0: all of it.
+  double node_spacing_m = 1.0;  ///< distance between hallucinated key-frames
+  /// Standard deviation of the position at a path's end, in voxels, below which loop closures add nothing; in (0, 10].
+  double sigma_limit_voxels = 0.5;
+  /// Information from a position with standard deviation s counts 1 / (1 + (s / this)^2) [m]; 0: no discount.
   double information_discount_sigma_m = 0.0;
 };
 
-/// Frontiers that are not going to be looked at.
+/// The frontiers that remain when nothing is chosen.
 struct Leftover {
-  /// By why; a frontier counts once, for the last of its paths' reasons in the order of the enumeration.
+  /// Length by reason. A frontier counts once: of its paths' reasons, the last in the enumeration counts.
   std::map<Rejection, double> length_m;
-  /// Of this length, what geometry does not excuse: frontiers through which the robot would fit, tried in vain.
+  /// Share of the total length that geometry does not excuse: frontiers wide enough for the robot that it tried in
+  /// vain.
   double share_to_blame = 0.0;
 
-  /// "frontiers left: 2.5 m: cannot be reached, 1.0 m: left alone for now"; empty when nothing is left.
+  /// For example "frontiers left: 2.5 m: cannot be reached, 1.0 m: left alone for now"; empty when none is left.
   std::string text() const;
 };
 
 /// A view along the chosen path.
 struct PromisedView {
   Pose2 robot;
-  double nats = 0.0;  ///< promised by the views up to this one, the one at the beginning included
+  double nats = 0.0;  ///< information of all views up to this one, including the first
 };
 
 struct Decision {
   std::vector<Candidate> candidates;   ///< at least one for each frontier
-  std::optional<std::size_t> chosen;   ///< index; nothing when none can be driven to
-  std::string explanation;             ///< of the choice, see explain(); empty when there is none
-  std::vector<PromisedView> promised;  ///< along the chosen path, from where the robot is
-  std::vector<double> first_turn_rad;  ///< headings to turn through before the chosen path; empty: the short way
-  Leftover leftover;                   ///< when none can
-  Asks known;                          ///< what the candidates were judged by, and no more
-  /// What each of the compared methods would have chosen.
+  std::optional<std::size_t> chosen;   ///< index of the candidate; empty when none can be driven to
+  std::string explanation;             ///< of the choice, see explain(); empty when nothing is chosen
+  std::vector<PromisedView> promised;  ///< views along the chosen path, from the robot's pose on
+  std::vector<double> first_turn_rad;  ///< headings to turn through before the path; empty: turn the shorter way
+  Leftover leftover;                   ///< set when nothing is chosen
+  Asks known;                          ///< the terms by which the candidates were judged; other terms are zero
+  /// Index that each of the compared methods would have chosen.
   std::vector<std::optional<std::size_t>> by_compared_methods;
-  /// What would have been chosen with each of the compared fields.
+  /// Index that would have been chosen with each of the compared fields.
   std::vector<std::optional<std::size_t>> by_compared_fields;
-  std::string problem;  ///< of the pose graph, when loops could not be judged; empty otherwise
+  std::string problem;  ///< why the pose graph could not be judged; empty when it could
 };
 
-/// Chooses where to go: candidates in front of every frontier, their paths, what the map and the pose graph would gain
-/// by them, and the best by the method's utility. Deterministic; ties go to the smaller frontier id.
+/// Chooses the next goal: proposes candidates in front of every frontier with their paths, computes what the map and
+/// the pose graph would gain by them, and takes the one with the largest utility of the method. Deterministic: of equal
+/// utilities, the candidate that was proposed first wins.
 Decision decide(const Situation& situation, const Memory& memory, const DecisionConfig& config);
 
 }  // namespace lapis::planner

@@ -43,7 +43,7 @@ std::string worth_of(const Candidate& candidate, const Asks& asks) {
   return place_of(candidate) + ": " + terms + text("%.1f m, %.4g", value.cost_m, candidate.utility);
 }
 
-/// The best of those that lead elsewhere.
+/// The best open candidate that does not lead to the same frontier.
 std::optional<std::size_t> runner_up(const std::vector<Candidate>& candidates, std::size_t chosen) {
   std::optional<std::size_t> best;
   const std::uint32_t frontier = candidates[chosen].frontier;

@@ -7,9 +7,9 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kLeast_rad = 1.75;  // less of a turn always has part of one end or of the other in view
+constexpr double kLeast_rad = 1.75;  // during a smaller turn, part of the first or of the last view is always visible
 constexpr double kStep_rad = 0.5;    // between headings
-constexpr int kEnough = 30;          // landmarks in view: slam tracks
+constexpr int kEnough = 30;          // number of landmarks in view with which slam tracks
 
 std::vector<double> headings_through(double from_rad, double turn_rad) {
   const double steps = std::ceil(std::abs(turn_rad) / kStep_rad);
@@ -18,7 +18,7 @@ std::vector<double> headings_through(double from_rad, double turn_rad) {
   return headings_rad;
 }
 
-/// Of one old key-frame, which is what slam tracks against.
+/// Largest number of landmarks of one old key-frame that are in view: slam tracks against a single key-frame.
 int landmarks_in_view(const Situation& s, double heading_rad, const CovisibilityConfig& config) {
   const auto seen =
       s.landmarks->predict(s.view.config().camera, camera_at(s, {s.robot.p_map, heading_rad}), s.field, config);

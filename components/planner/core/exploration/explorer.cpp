@@ -11,13 +11,13 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kTurnTolerance_rad = 0.3;     // of a turn on the spot
+constexpr double kTurnTolerance_rad = 0.3;     // of the heading after a turn on the spot
 constexpr double kRestPeriod_s = 5.0;          // between decisions while there is no old place to drive to
-constexpr double kHomePeriod_s = 1.0;          // between paths home, where decisions have no period
-constexpr double kLeastDecisionTime_s = 0.5;   // from one decision to the next, whatever happens
-constexpr double kBlindPatience_s = 2.0;       // without a pose, before it looks around for it
-constexpr double kLeastGrowth = 0.02;          // of sigma by odometry alone, for each metre
-constexpr int kBlindTurns = 2, kHeadings = 3;  // of such a look around: full turns, and poses of the path for each
+constexpr double kHomePeriod_s = 1.0;          // between searches for the path home when replan_period_s is 0
+constexpr double kLeastDecisionTime_s = 0.5;   // least time from one decision to the next, in all cases
+constexpr double kBlindPatience_s = 2.0;       // time without a pose before the robot looks around
+constexpr double kLeastGrowth = 0.02;          // of the standard deviation in dead reckoning, per metre
+constexpr int kBlindTurns = 2, kHeadings = 3;  // of a look around: full turns, and poses of the path per turn
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
 
@@ -36,7 +36,8 @@ std::string purpose_of(const Candidate& chosen) {
   }
 }
 
-/// 1: headings to the left of where the robot looks, -1: to the right, 0: none.
+/// Direction of the turn: 1 when the headings are to the left of the robot's heading, -1 to the right, 0 without
+/// headings.
 int side_of(const std::vector<double>& headings_rad, double yaw_rad) {
   if (headings_rad.empty()) return 0;
   return headings_rad.back() > yaw_rad ? 1 : -1;
@@ -103,7 +104,7 @@ void Explorer::forget_map() {
   if (std::holds_alternative<Returning>(mission_)) fail("the map in which it started is gone");
 }
 
-/// What is to be done is decided anew.
+/// Enters a state; the next decision is due at once.
 void Explorer::enter(MissionState mission, std::string reason) {
   decided_at_.reset();
   mission_ = std::move(mission);
@@ -183,8 +184,8 @@ void Explorer::await_first_pose(time::Time now) {
        " s: move the robot to where there is something to see, and start again");
 }
 
-// Other views may show slam where it is, first those that it has turned away from. The controller turns slowly, and the
-// robot stands when it has turned twice.
+// Other views may show slam where it is; the views that the robot turned away from come first. The controller turns
+// slowly, and the robot stands still after two full turns.
 void Explorer::look_for_pose(time::Time now) {
   if ((now - *blind_since_).seconds() < kBlindPatience_s) return;
   reason_ = std::holds_alternative<Recovering>(mission_) ? "slam is lost: looks around"
@@ -220,15 +221,15 @@ bool Explorer::consolidate(const Consolidating& consolidating, const Report& rep
   return may_decide;
 }
 
-/// An old place is visited once, reached or not, before all are visited again.
+/// Each old place is visited once, reached or not, before all are visited again.
 void Explorer::end_visit() {
   auto* consolidating = std::get_if<Consolidating>(&mission_);
   if (consolidating != nullptr && goal_) consolidating->visited.push_back(*goal_->target_map);
   drop_goal();
 }
 
-/// It has been reached, or has failed. To go to and fro, or after what is never seen, has to end whatever a method
-/// promises itself of it.
+/// True when the goal has been reached or has failed. Driving to and fro, or after something that is never seen, has to
+/// end, whatever information the method expects.
 bool Explorer::ends_goal(const Report& report, Surroundings& surroundings) {
   if (is_at(*goal_, *report.robot)) {
     note_arrival(report.now);
@@ -242,16 +243,17 @@ bool Explorer::ends_goal(const Report& report, Surroundings& surroundings) {
   return is_stopped(report, surroundings);
 }
 
-/// The goal is not reached for what is in the way.
+/// True when the robot cannot reach the goal: it is blocked, too slow, or does not move.
 bool Explorer::is_stopped(const Report& report, Surroundings& surroundings) {
   const bool is_late = goal_->deadline && report.now > *goal_->deadline;
   if (!report.is_blocked && !is_late && !stands_still(report)) return false;
-  if (goal_->target_map) note_blocked(report, surroundings);  // nothing is in the way of a turn
+  if (goal_->target_map) note_blocked(report, surroundings);  // a turn on the spot cannot be blocked
   reason_ = report.is_blocked ? "the path was blocked" : is_late ? "the path took too long" : "it did not get on";
   return true;
 }
 
-/// Slam tracks again where it drove to for that, or the budget of sigma is spent before another goal.
+/// True when a goal for relocalisation is obsolete because slam tracks again, or when another goal is no longer allowed
+/// because the position is too uncertain.
 bool Explorer::is_of_other_tier(const Goal& goal) const {
   return goal.kind == CandidateKind::kTracked ? !is_adrift_ : goal.target_map && is_beyond_budget();
 }
@@ -268,8 +270,9 @@ void Explorer::note_arrival(time::Time now) {
   setbacks_.await({*goal_->target_map, goal_->pose.p_map}, now, config_.settle_s);
 }
 
-// What is seen from nearby only, such as an obstacle on a place that the map does not know, is forgotten when the robot
-// is away: without this it would come back for ever. A closer look only waits while another frontier is in sight.
+// A feature that is seen only from nearby, such as an obstacle on a place that the map does not know, disappears when
+// the robot leaves and reappears when it returns. Its target is left alone for a time; otherwise the robot would come
+// back for ever. A closer look has not vanished: it waits while another frontier is in sight.
 void Explorer::note_vanished(const Decision& decision, time::Time now) {
   if (!goal_ || !goal_->target_map || !is_of_frontier(goal_->kind)) return;
   const bool is_in_sight = std::any_of(decision.candidates.begin(), decision.candidates.end(), [](const Candidate& c) {
@@ -286,8 +289,8 @@ void Explorer::note_vanished(const Decision& decision, time::Time now) {
   if (!is_there) setbacks_.await({*goal_->target_map, robot_.p_map}, now, config_.memory.expiry_s);
 }
 
-/// Of a turn on the spot, and of a view that is to be had again, the heading is what counts, however little it does
-/// elsewhere.
+/// The heading counts for turns on the spot and for revisits, whatever the configured tolerance is: there the view
+/// itself is the goal.
 bool Explorer::is_at(const Goal& goal, const Pose2& robot) const {
   const bool is_heading_loose = goal.target_map && goal.kind != CandidateKind::kRevisit;
   const double tolerance_rad =
@@ -304,7 +307,7 @@ bool Explorer::stands_still(const Report& report) {
   return (report.now - goal_->moved_at).seconds() > config_.progress_timeout_s;
 }
 
-// The target is left alone, and paths no longer lead through what stopped the robot.
+// Remembers the failure of the target, and closes the place that stopped the robot to later paths.
 void Explorer::note_blocked(const Report& report, Surroundings& surroundings) {
   add_failure(report.now, is_adrift_);
   const auto place = place_ahead(path_, *report.robot);
@@ -368,7 +371,7 @@ void Explorer::act_on(Exploring& exploring, const Decision& decision, const Repo
   follow(decision, report.now);
 }
 
-/// When all old places that can be driven to have been visited, another round begins; when there are none, the robot
+/// Another round begins when all old places that can be driven to have been visited; when there are none, the robot
 /// rests.
 void Explorer::act_on(Consolidating& consolidating, const Decision& decision, time::Time now) {
   consolidating.rests = decision.candidates.empty();
@@ -378,7 +381,7 @@ void Explorer::act_on(Consolidating& consolidating, const Decision& decision, ti
   reason_ = consolidating.rests ? "no old place can be driven to" : "old places are visited once more";
 }
 
-/// Goes elsewhere, though what it drove to is there still.
+/// True when the decision leads elsewhere although the current goal is still open.
 bool Explorer::is_detour(const Decision& decision) const {
   if (!goal_ || !goal_->target_map) return false;
   const auto is_at_goal = [&](const Candidate& c) {
@@ -388,11 +391,11 @@ bool Explorer::is_detour(const Decision& decision) const {
          std::any_of(decision.candidates.begin(), decision.candidates.end(), is_at_goal);
 }
 
-// Going to and fro between goals without getting to any has to end, too.
+// Driving to and fro between goals without reaching any has to end, too.
 void Explorer::set_deadline(const Candidate& chosen, bool is_detour, time::Time now) {
   const bool is_new =
       !goal_->deadline_of_map || (*goal_->deadline_of_map - chosen.target_map).norm() > config_.memory.radius_m;
-  if (!is_new) return;  // nor crept forward by so much
+  if (!is_new) return;  // the target is the same one, or has not moved farther than the radius
   if (!is_detour) goal_->set_out_at = now;
   const double longest_s = config_.progress_timeout_s + chosen.value.cost_m / config_.slowest_m_s;
   const time::Time due = goal_->set_out_at + time::Duration::from_seconds(longest_s);
@@ -417,8 +420,8 @@ void Explorer::follow(const Decision& decision, time::Time now) {
   set_path(std::move(path));
 }
 
-// First the map is searched for gaps, which is sure to bring something; then a turn in all directions may show what has
-// been missed, and what has failed gets another chance.
+// The robot first looks for gaps of the map, which always brings information. Then a turn in all directions may show
+// what was missed, and failed targets get another chance.
 void Explorer::end_or_look_around(Exploring& exploring, const Decision& decision, const Report& report) {
   const time::Time now = report.now;
   const bool turns = goal_ && !goal_->target_map && distance(robot_, goal_->pose) <= config_.goal_tolerance_m;
@@ -457,8 +460,9 @@ void Explorer::end(const Leftover& leftover) {
   }
 }
 
-// What is left alone for a time is tried again, what has failed for good once more from another side, and where paths
-// were blocked they may be free; then, once, what waits for the map's correction: where slam tracks, it may come.
+// Targets that are left alone for a time are tried again; targets that were given up are tried once more from another
+// side; blocked paths may be free again. Then, once, the robot looks at targets that wait for the map's correction,
+// which may come where slam tracks.
 bool Explorer::has_another_chance(Exploring& exploring, const Decision& decision, const Report& report) {
   const bool has_forgiven = is_any_left_alone(decision) && setbacks_.forgive_targets(report.now);
   const bool has_unblocked = setbacks_.forgive_blocked(report.now);
@@ -489,12 +493,12 @@ void Explorer::recover(const Report& report) {
   look_for_pose(report.now);
 }
 
-// Slam may lose itself anywhere; on the way to the same target again, it does so for what is seen there.
+// slam may lose track anywhere. A second loss on the way to the same target is attributed to what is seen there.
 void Explorer::note_loss(time::Time now) {
   if (goal_ && goal_->target_map && setbacks_.note_loss(*goal_->target_map)) add_failure(now, false);
 }
 
-// Who stood in the way may have gone, or may go.
+// People who stood in the way may have left, or may still leave.
 bool Explorer::may_yet_return(const Report& report, Surroundings& surroundings) {
   if (setbacks_.forgive_blocked(report.now)) {
     surroundings.set_blocked(setbacks_.blocked_places(is_adrift_, report.now));
@@ -509,7 +513,7 @@ void Explorer::go_home(const Returning& returning, const Report& report, Surroun
   const bool has_path = !path_.empty();
   if (has_path && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m) {
     drop_goal();
-    const Ended ended = returning.then;  // entering it ends `returning`
+    const Ended ended = returning.then;  // a copy, because enter() destroys `returning`
     return enter(ended, "is back where it started" + (ended.why.empty() ? "" : "; " + ended.why));
   }
   if (report.is_blocked) note_blocked(report, surroundings);
@@ -517,7 +521,7 @@ void Explorer::go_home(const Returning& returning, const Report& report, Surroun
   const double period_s = config_.replan_period_s > 0.0 ? config_.replan_period_s : kHomePeriod_s;
   if (report.is_blocked || (is_wanted && is_due(report.now, period_s))) drive_to(*home_, report, surroundings);
   if (!path_.empty()) reason_ = "drives back to where it started";
-  if (!has_path && !path_.empty()) goal_->moved_at = report.now;  // a path has opened
+  if (!has_path && !path_.empty()) goal_->moved_at = report.now;  // a path has become free
   if (!stands_still(report) || may_yet_return(report, surroundings)) return;
   const std::string trouble = path_.empty() ? "no path back is known" : "it does not get on to where it started";
   drop_goal();

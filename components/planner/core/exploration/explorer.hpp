@@ -18,80 +18,83 @@ namespace lapis::planner {
 struct ExplorerConfig {
   GoalMemoryConfig memory = {};
   PathConfig path = {};
-  double replan_period_s = 1.0;  ///< between decisions while a goal is being driven to; 0: none
+  double replan_period_s = 1.0;  ///< between decisions while the robot drives to a goal; 0: no such decisions
   double goal_tolerance_m = 0.3;
   double goal_tolerance_rad = 0.3;
-  double progress_timeout_s = 8.0;  ///< without moving 0.3 m or 0.3 rad, a goal has failed
-  double slowest_m_s = 0.15;        ///< a path that takes longer than at this speed has failed
-  Allowance stall = {};             ///< without seeing anything new before a goal has failed
-  double settle_s = 1.5;            ///< after arriving, until the map shows whether the view has failed
-  double max_drift_m = 0.5;         ///< sigma of the position by odometry alone at a path's end
-  double lost_timeout_s = 60.0;     ///< without a pose, exploration has failed
-  double path_spacing_m = 0.1;      ///< between poses of the path
-  int confirmations = 3;            ///< looks around, a full turn in all, that find nothing before it is over
-  double patience_s = 20.0;         ///< for obstacles that may go away before it is over
-  double max_left_share = 0.02;     ///< Leftover::share_to_blame with which it is over all the same
-  bool returns_home = false;        ///< when nothing is left
-  bool consolidates = false;        ///< when nothing is left, for ever
+  double progress_timeout_s = 8.0;  ///< a goal has failed after this time without a motion of 0.3 m or 0.3 rad
+  double slowest_m_s = 0.15;        ///< a path has failed when it takes longer than at this speed
+  Allowance stall = {};             ///< a goal has failed when nothing new was seen for longer than this
+  double settle_s = 1.5;            ///< from arrival until the map shows whether the view has failed
+  double max_drift_m = 0.5;         ///< largest standard deviation of the position at a path's end in dead reckoning
+  double lost_timeout_s = 60.0;     ///< exploration has failed after this time without a pose
+  double path_spacing_m = 0.1;      ///< between the poses of the path
+  int confirmations = 3;            ///< fruitless looks around before exploration ends; together they are a full turn
+  double patience_s = 20.0;         ///< for obstacles that may go away, before exploration ends
+  /// Largest Leftover::share_to_blame with which exploration is done; with more, it has given up.
+  double max_left_share = 0.02;
+  bool returns_home = false;  ///< when nothing is left to explore
+  bool consolidates = false;  ///< when nothing is left to explore; consolidation does not end
 };
 
 enum class Tracking { kTracking, kDeadReckoning, kLost };
 
-/// What the rest of the robot says.
+/// The state of the rest of the robot.
 struct Report {
   time::Time now;
-  std::optional<Pose2> robot;  ///< nothing while slam has no pose
+  std::optional<Pose2> robot;  ///< empty while slam has no pose
   Tracking tracking = Tracking::kLost;
-  bool is_blocked = false;     ///< the controller finds no path; only true when it speaks of the newest path
-  double drift_m = 0.0;        ///< sigma of the position since slam tracked last
-  bool is_map_behind = false;  ///< the graph has been corrected, and the map is not yet
+  bool is_blocked = false;     ///< the controller finds no path; refers to the newest path only
+  double drift_m = 0.0;        ///< standard deviation of the position since slam tracked last
+  bool is_map_behind = false;  ///< the pose graph has been corrected, and the map does not yet contain the correction
 };
 
-/// The mission: when to decide, what to do with the decision, and when it is over.
+/// The mission: decides when to decide, acts on decisions, and decides when exploration is over.
 class Explorer {
  public:
   explicit Explorer(const ExplorerConfig& config);
 
   void start();
   void stop();
-  /// False when there is nothing to pause.
+  /// Returns false when there is nothing to pause.
   bool pause();
   void return_home();
-  /// Places are of a map that is gone: none is known any more, not even where it started.
+  /// slam has begun another map: forgets all places of the old map, including the place where the mission started.
   void forget_map();
 
-  /// Looks at what has happened since the last call. True when a decision is wanted.
+  /// Evaluates what has happened since the last call. Returns true when a decision is wanted.
+  /// @param surroundings null while there is no map
   bool step(const Report& report, Surroundings* surroundings);
-  /// What decide() has to leave alone, and what is being driven to.
+  /// What decide() has to leave alone, and the current goal.
   Memory memory(time::Time now) const;
-  /// Acts on a decision that was wanted. One that came too late changes nothing, nor does one that was made before the
-  /// path was found blocked: the goal that it did not know to have failed is judged first. False for these.
+  /// Acts on a decision that was wanted. Returns false and changes nothing when the decision came too late, or when it
+  /// was made before the path was found blocked: the decision did not know that the goal has failed.
   bool take(const Decision& decision, const Report& report);
 
   State state() const { return state_of(mission_); }
-  /// While it consolidates, also how exploration ended.
+  /// Why the mission is in its state; while it consolidates, also how exploration ended.
   std::string reason() const;
-  /// To the current goal; empty: stand still.
+  /// Path to the current goal; empty: stand still.
   const std::vector<Pose2>& path() const { return path_; }
-  /// Somebody has chosen where it drives to.
+  /// True when a decision chose the current goal.
   bool has_goal() const { return goal_ && goal_->target_map; }
-  /// The path is not of the map: it turns on the spot, through headings relative to the one that the robot has now.
+  /// True when the path is not in the map frame: the robot turns on the spot, and the path holds headings relative to
+  /// its current heading.
   bool is_turn() const { return is_turn_; }
-  /// Goals so far that were not reached, or looked at in vain.
+  /// Number of goals so far that were not reached, or that were viewed in vain.
   std::uint64_t failures() const { return setbacks_.count(); }
-  /// Grows with every new path.
+  /// Increases with every new path.
   std::uint64_t path_number() const { return path_number_; }
 
  private:
   struct Goal {
     Pose2 pose = {};
-    std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< none: a look around, or the path home
+    std::optional<Eigen::Vector2d> target_map = std::nullopt;  ///< empty: a look around, or the path home
     CandidateKind kind = CandidateKind::kFrontier;
     int turns_to = 0;            ///< as in Memory
-    time::Time set_out_at = {};  ///< from where none was left for another
+    time::Time set_out_at = {};  ///< when the robot set out; not renewed by a detour
     std::optional<time::Time> deadline = std::nullopt;
-    std::optional<Eigen::Vector2d> deadline_of_map = std::nullopt;  ///< the target at which it was set
-    Pose2 moved_from;                                               ///< where the robot was when it last had moved
+    std::optional<Eigen::Vector2d> deadline_of_map = std::nullopt;  ///< the target for which the deadline was set
+    Pose2 moved_from;                                               ///< pose at which a motion was noticed last
     time::Time moved_at;
   };
 
@@ -144,15 +147,15 @@ class Explorer {
   std::optional<Goal> goal_;
   std::vector<Eigen::Vector2d> awaited_;  ///< targets that wait for a correction of the map [m, map]
   std::optional<Pose2> home_;
-  Pose2 robot_;  ///< where it was known to be last
+  Pose2 robot_;  ///< last known pose
   Trail trail_;
-  std::optional<time::Time> decided_at_;   ///< in this state
-  std::optional<time::Time> chosen_at_;    ///< the last decision took effect
-  std::optional<time::Time> blind_since_;  ///< while it was active: slam has no pose
-  bool is_adrift_ = false;                 ///< slam reckons by odometry alone
-  double drift_m_ = 0.0;                   ///< sigma of the position since slam tracked
-  double reckoned_m_ = 0.0;                ///< driven since
-  bool may_change_ = false;                ///< obstacles stand where there may soon be none
+  std::optional<time::Time> decided_at_;   ///< last decision or search for a path home in this state
+  std::optional<time::Time> chosen_at_;    ///< when the last decision took effect
+  std::optional<time::Time> blind_since_;  ///< while the mission is active: since when slam has had no pose
+  bool is_adrift_ = false;                 ///< slam is in dead reckoning
+  double drift_m_ = 0.0;                   ///< standard deviation of the position since slam tracked
+  double reckoned_m_ = 0.0;                ///< distance driven since then
+  bool may_change_ = false;                ///< obstacles stand where the map is free, and may go away
 };
 
 }  // namespace lapis::planner

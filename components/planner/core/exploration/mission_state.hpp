@@ -12,15 +12,15 @@
 namespace lapis::planner {
 
 enum class State {
-  kIdle,           ///< nobody has asked for anything
+  kIdle,           ///< nothing has been requested
   kExploring,      ///< drives to frontiers
-  kPaused,         ///< stands still until it is started again
-  kRecovering,     ///< slam has no pose: looks around
-  kReturning,      ///< drives to where it started
-  kDone,           ///< nothing is left that can be reached, or it has returned
-  kGaveUp,         ///< the same, but frontiers are left that geometry does not excuse; the reason says which
-  kFailed,         ///< needs help; the reason says why
-  kConsolidating,  ///< nothing is left to explore: drives through old places, so that loops are closed
+  kPaused,         ///< stands still until the mission is started again
+  kRecovering,     ///< slam has no pose: the robot looks around
+  kReturning,      ///< drives back to where the mission started
+  kDone,           ///< nothing is left that can be reached, or the robot has returned
+  kGaveUp,         ///< as kDone, but frontiers are left that geometry does not excuse; the reason names them
+  kFailed,         ///< the robot needs help; the reason says why
+  kConsolidating,  ///< nothing is left to explore: the robot drives through old places so that slam closes loops
 };
 
 struct Idle {};
@@ -28,27 +28,27 @@ struct Idle {};
 struct Paused {};
 
 struct Exploring {
-  bool looks_at_gaps = false;               ///< of the map: no frontier is left to try
-  bool looks_again = false;                 ///< at what waits for a correction of the map, too: nothing else is left
-  bool goes_back = false;                   ///< to where slam tracked, or else what waits never comes into the map
-  int empty_decisions = 0;                  ///< in a row, each answered by a look around
-  std::optional<time::Time> nothing_since;  ///< no candidate was open
+  bool looks_at_gaps = false;               ///< at gaps of the map: no frontier is left to try
+  bool looks_again = false;                 ///< also at targets that wait for a correction: nothing else is left
+  bool goes_back = false;                   ///< to where slam tracked; otherwise the awaited frames never enter the map
+  int empty_decisions = 0;                  ///< number in a row, each answered by a look around
+  std::optional<time::Time> nothing_since;  ///< since when no candidate has been open
 };
 
-/// How it ended.
+/// How the mission ended.
 struct Ended {
   State how = State::kDone;  ///< kDone, kGaveUp or kFailed
-  std::string why;           ///< of an exploration that came to its end; else empty
+  std::string why;           ///< of an exploration that came to its end; otherwise empty
 };
 
 struct Returning {
-  Ended then;  ///< when it has arrived
+  Ended then;  ///< the state after arrival
 };
 
 struct Consolidating {
-  Ended exploration;                          ///< how that ended
-  std::vector<Eigen::Vector2d> visited = {};  ///< old places, since all of them were to be visited [m, map]
-  bool rests = false;                         ///< there is none to drive to
+  Ended exploration;                          ///< how exploration ended
+  std::vector<Eigen::Vector2d> visited = {};  ///< old places visited in this round [m, map]
+  bool rests = false;                         ///< there is no old place to drive to
 };
 
 struct Recovering {
@@ -56,10 +56,10 @@ struct Recovering {
   time::Time lost_at;  ///< when slam lost its pose
 };
 
-/// What the mission does, with what only that needs to know.
+/// The state of the mission, with the data that only this state needs.
 using MissionState = std::variant<Idle, Exploring, Paused, Recovering, Returning, Consolidating, Ended>;
 
-/// How exploration has ended, where that is to be said when the robot has returned; else null.
+/// How exploration ended, when the mission still has to report it after the robot has returned; otherwise null.
 inline const Ended* outcome_of(const MissionState& mission) {
   const auto outcome_in = [](const auto& states) -> const Ended* {
     if (const auto* returning = std::get_if<Returning>(&states)) return &returning->then;

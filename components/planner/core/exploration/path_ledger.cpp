@@ -9,16 +9,17 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kMetresPerRadian = 0.5;  // of turning, where the nearest place on a path is looked for
-constexpr double kSameView_rad = 0.6;     // between the headings of two views that show about the same
+constexpr double kMetresPerRadian = 0.5;  // weight of turning when the nearest place on a path is searched
+constexpr double kSameView_rad = 0.6;     // largest angle between two views that show about the same
 
-/// Place and heading after the begin of a stretch between two views [m].
+/// Difference of position and weighted heading between two poses [m].
 Eigen::Vector3d offset(const Pose2& from, const Pose2& to) {
   const Eigen::Vector2d step = to.p_map - from.p_map;
   return {step.x(), step.y(), kMetresPerRadian * std::remainder(to.yaw_rad - from.yaw_rad, 2.0 * std::numbers::pi)};
 }
 
-/// Up to where the robot is between the views, by place and heading; of several equally near places, the last.
+/// Information promised up to the robot's place on the path, interpolated between the views by position and heading. Of
+/// several equally near places, the last one counts.
 double promised_up_to(const std::vector<PromisedView>& views, const Pose2& robot) {
   double nats = views.empty() ? 0.0 : views.front().nats, nearest_m = std::numeric_limits<double>::infinity();
   for (std::size_t i = 1; i < views.size(); ++i) {

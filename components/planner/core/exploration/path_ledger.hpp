@@ -9,36 +9,37 @@
 
 namespace lapis::planner {
 
-/// A path from its choice until there was none or another one was chosen.
+/// A path, from its choice until another one was chosen or none was left.
 struct DrivenPath {
   time::Time begin, end;
   CandidateKind kind = CandidateKind::kFrontier;
-  double cost_m = 0.0;         ///< when it was chosen first
-  double promised_nats = 0.0;  ///< by Decision::promised when it was chosen first
-  double driven_nats = 0.0;    ///< of these, by what was driven of it
+  double cost_m = 0.0;         ///< at the first choice of the path
+  double promised_nats = 0.0;  ///< of Decision::promised at the first choice of the path
+  double driven_nats = 0.0;    ///< part of promised_nats that belongs to the driven part of the path
   double gained_nats = 0.0;    ///< by the map from begin to end
-  /// Of the log-determinant of the pose graph by loop closures: expected when the path was chosen first, and what those
-  /// that were closed from begin to end add. Nothing where nobody asks for the spectrum, or without a graph.
+  /// Change of the pose graph's log-determinant by loop closures: the expectation at the first choice of the path, and
+  /// the contribution of the loops that were closed from begin to end. Empty when no method asks for the spectrum, or
+  /// without a graph.
   std::optional<double> promised_loop_gain = {}, loop_gain = {};
 
   bool operator==(const DrivenPath&) const = default;
 };
 
-/// What the robot knows.
+/// What the robot knows at an instant.
 struct Learnt {
   double map_nats = 0.0;                 ///< MapInformation::nats()
-  const AnalysedGraph* graph = nullptr;  ///< null: none
+  const AnalysedGraph* graph = nullptr;  ///< null when there is no graph
 };
 
-/// Compares what paths promised with what the map and the pose graph gained while they were driven. A path is the same
-/// as long as its goal stays near to what it was at first: it has no promise of what lies beyond.
+/// Compares what paths promised with what the map and the pose graph gained while the robot drove them. A path remains
+/// the same while its goal stays near to the first one; its promise covers nothing beyond that goal.
 class PathLedger {
  public:
-  /// @param radius_m between the goals of one path
+  /// @param radius_m largest distance between the goals of one path
   explicit PathLedger(double radius_m) : radius_m_(radius_m) {}
 
-  /// Takes note of the choice that is being driven to, or that there is none. What ended by that, if anything did.
-  /// @param decision with a choice; null: nothing is driven to
+  /// Notes the choice that the robot is driving to, or that there is none. Returns the path that ended by this, if any.
+  /// @param decision with a choice; null: the robot is driving to nothing
   std::optional<DrivenPath> note(const Decision* decision, const Learnt& learnt, const Pose2& robot, time::Time now);
 
  private:

@@ -6,8 +6,8 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kLeast_m3 = 0.5, kLeastShare = 1e-3;
-constexpr double kSlow_m_s = 0.25;     // of a path that gets on
-constexpr double kLongestGap_s = 5.0;  // between calls: somebody else drove meanwhile
+constexpr double kSlow_m_s = 0.25;     // speed on a path that makes progress
+constexpr double kLongestGap_s = 5.0;  // between calls; in a longer gap the robot did not explore
 
 }  // namespace
 
@@ -20,7 +20,7 @@ void ProgressWatch::note(double explored_m3, const Eigen::Vector2d& robot_map, t
   robot_map_ = robot_map;
   noted_at_ = now;
   const double least_m3 = std::max(kLeast_m3, kLeastShare * explored_m3_);
-  const bool has_shrunk = explored_m3 <= explored_m3_ - least_m3;  // a correction of the map, and not its jitter
+  const bool has_shrunk = explored_m3 <= explored_m3_ - least_m3;  // by a correction of the map, not by jitter
   const bool is_progress = explored_m3 >= explored_m3_ + least_m3;
   if (has_shrunk || is_progress) explored_m3_ = explored_m3;
   if (is_progress) begin_anew();

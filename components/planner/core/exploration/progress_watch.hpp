@@ -7,30 +7,31 @@
 
 namespace lapis::planner {
 
-/// Driven and passed without progress, besides twice the longest path that was set out on meanwhile.
+/// Distance and time without progress that are allowed in addition to twice the longest path that began meanwhile.
 struct Allowance {
   double metres = 15.0;   ///< in [1, 1000]
   double seconds = 60.0;  ///< in [1, 3600]
 };
 
-/// Notices when the robot drives, or turns, and sees nothing new: it may go to a far place through what it knows, there
-/// and back, and a little more. Progress is half a cubic metre, or a thousandth of what is explored.
+/// Notices when the robot drives or turns and sees nothing new. It may cross known space to a distant place and return,
+/// and drive a little more. Progress is an increase of the explored volume by 0.5 m^3 or by a thousandth of it,
+/// whichever is larger.
 class ProgressWatch {
  public:
   explicit ProgressWatch(const Allowance& allowance) : allowance_(allowance) {}
 
   void note(double explored_m3, const Eigen::Vector2d& robot_map, time::Time now);
-  /// A path of this cost begins.
+  /// A path of this cost [m] begins.
   void set_out(double cost_m);
   bool is_stalled() const;
-  /// As after progress.
+  /// Resets the watch as progress does.
   void begin_anew();
 
  private:
   Allowance allowance_;
-  double explored_m3_ = 0.0;                 ///< at the last progress
-  double driven_m_ = 0.0, longest_m_ = 0.0;  ///< since
-  double passed_s_ = 0.0;                    ///< since
+  double explored_m3_ = 0.0;                 ///< at the last progress, or after it shrank
+  double driven_m_ = 0.0, longest_m_ = 0.0;  ///< since the last progress
+  double passed_s_ = 0.0;                    ///< since the last progress
   std::optional<Eigen::Vector2d> robot_map_;
   time::Time noted_at_;
 };

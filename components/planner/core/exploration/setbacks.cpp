@@ -6,10 +6,10 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kBlockedRadius_m = 0.2;  // what stops the robot nearer to each other is one
-constexpr int kChange_cells = 5;          // known around a target: what failed there may succeed now
+constexpr double kBlockedRadius_m = 0.2;  // obstructions that are nearer to each other count as one
+constexpr int kChange_cells = 5;          // new known cells around a failed target that may make it succeed
 
-// Who stands in a path may go, however often that happens.
+// A person in the way may leave, however often that happens, so blocked places are never given up.
 GoalMemoryConfig memory_of_blocked(GoalMemoryConfig config) {
   config.radius_m = kBlockedRadius_m;
   config.max_failures = std::numeric_limits<int>::max();

@@ -9,8 +9,8 @@
 namespace lapis::planner {
 namespace {
 
-constexpr std::size_t kPoses = 50;       // that are remembered
-constexpr double kLeastTurn_rad = 0.01;  // from pose to pose; less is noise
+constexpr std::size_t kPoses = 50;       // number of remembered poses
+constexpr double kLeastTurn_rad = 0.01;  // least turn between poses that is not noise
 
 }  // namespace
 

@@ -13,9 +13,9 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kLeastEdgeLength_m = 0.02;     // of an edge whose weight is scaled by its length
-constexpr double kFirstLoopLength_m = 0.5;      // a loop is worth an odometry edge of this length before there is any
-constexpr std::size_t kNewestNeighbours = 100;  // pairs of key-frames from which odometry is calibrated
+constexpr double kLeastEdgeLength_m = 0.02;     // least length of an edge whose weight is scaled by its length
+constexpr double kFirstLoopLength_m = 0.5;      // without loops, one weighs as much as an odometry edge of this length
+constexpr std::size_t kNewestNeighbours = 100;  // number of key-frame pairs from which odometry is calibrated
 
 double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
@@ -71,7 +71,7 @@ std::vector<double> travelled(const std::vector<Keyframe>& keyframes) {
   return sums;
 }
 
-// Effective resistance between neighbours counts every path through the graph, so it needs no choice of edges.
+// The effective resistance between neighbours accounts for every path through the graph, so no edges have to be chosen.
 double calibrate_odometry(const LaplacianFactor& factor, const std::vector<Keyframe>& keyframes) {
   std::vector<double> values;
   const std::size_t first = keyframes.size() - std::min(keyframes.size() - 1, kNewestNeighbours);
@@ -88,7 +88,7 @@ double variance_of_edges(std::span<const KeyframeEdge> edges, Criterion criterio
   std::vector<double> values;
   for (const KeyframeEdge& edge : edges) {
     const auto weight = edge_weight(edge.information, criterion);
-    if (!weight) continue;  // of another part of the graph
+    if (!weight) continue;  // the edge belongs to another part of the graph
     const geometry::Matrix6d covariance = edge.information.inverse();
     values.push_back(*weight * covariance.topLeftCorner<3, 3>().trace() / 3.0);
   }

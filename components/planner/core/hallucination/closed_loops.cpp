@@ -8,9 +8,9 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kLeastShare = 1e-9;  // of a loop's weight: less is what rounding leaves of its difference
+constexpr double kLeastShare = 1e-9;  // of a loop's weight; a smaller remainder is a rounding error
 
-using Weights = std::map<std::pair<int, int>, double>;  // by nodes, the smaller one first
+using Weights = std::map<std::pair<int, int>, double>;  // by pair of nodes, the smaller one first
 
 LoopName name_of(const AnalysedGraph& graph, const LoopClosure& loop) {
   return {graph.keyframes[index(loop.older)].id, graph.keyframes[index(loop.newer)].id};

@@ -17,12 +17,12 @@ struct LoopName {
   auto operator<=>(const LoopName&) const = default;
 };
 
-/// Of all loop closures of a graph; sorted.
+/// Names of all loop closures of a graph; sorted.
 std::vector<LoopName> names_of_loops(const AnalysedGraph& graph);
 
-/// What the loop closures of `graph` that are not named in `before` add to its log-determinant [nats], to be compared
-/// with ExpectedGain::loop_gain; 0 when there are none. Nothing where it cannot be said: without them the graph falls
-/// apart or is singular.
+/// Contribution of the loop closures of `graph` that are not named in `before` to its log-determinant [nats],
+/// comparable to ExpectedGain::loop_gain; 0 when there are none. Empty when the graph without them is not connected or
+/// is singular.
 /// @param before sorted
 std::optional<double> gain_of_new_loops(const AnalysedGraph& graph, std::span<const LoopName> before);
 

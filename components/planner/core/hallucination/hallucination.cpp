@@ -10,7 +10,7 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kLeastHallucinatedLength_m = 0.02;  // of a hallucinated odometry edge
+constexpr double kLeastHallucinatedLength_m = 0.02;  // least length of a hallucinated odometry edge
 
 // Finds, pose by pose, the old places that a path sees again.
 class PlaceFinder {
@@ -64,7 +64,7 @@ class PlaceFinder {
   std::vector<Place> places_;
 };
 
-// Loops of a set are worth what they bring until the end of the path is sure enough.
+// Reduces the gain of a set of loops to the part that brings the variance at the path's end down to the limit.
 double saturated(double gain, double variance_without, double variance, double limit) {
   if (variance_without <= limit || variance >= variance_without) return 0.0;
   if (variance >= limit) return gain;

@@ -13,7 +13,7 @@ mapping::VoxelIndex voxel_of(const Eigen::Vector3d& p, double resolution_m) {
   return {cell(p.x()), cell(p.y()), cell(p.z())};
 }
 
-// A landmark of a tile that the graph's key-frames have seen.
+// A landmark of a tile that key-frames of the graph have seen.
 struct Seen {
   mapping::VoxelIndex voxel;
   std::uint32_t id;
@@ -99,7 +99,7 @@ std::vector<Covisibility> LandmarkIndex::predict(const geometry::PinholeCamera& 
     const std::uint32_t begin = std::exchange(first, cell.landmarks_end);
     if ((cell.center - eye).norm() > config.max_range_m + resolution_m_) continue;
     if ((T_camera_map * cell.center).z() < -resolution_m_) continue;
-    bool is_visible = false;  // asked once for all landmarks of the cell, when the first is on the image
+    bool is_visible = false;  // computed once for all landmarks of the cell, when the first is in the image
     for (std::uint32_t i = begin; i < cell.landmarks_end; ++i) {
       const Eigen::Vector3d p_camera = T_camera_map * landmarks_[i].p_map.cast<double>();
       if (!is_on_image(camera, p_camera, config.max_range_m)) continue;

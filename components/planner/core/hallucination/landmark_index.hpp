@@ -16,20 +16,22 @@
 namespace lapis::planner {
 
 struct CovisibilityConfig {
-  double max_range_m = 5.0;            ///< of landmarks from the camera, in (0, 20]
-  double max_viewing_angle_rad = 0.7;  ///< between the directions from which a landmark was and would be seen, (0, pi]
-  double max_range_ratio = 2.0;        ///< between the distances, either way: descriptors bear so much scale; [1, 10]
-  double min_visibility = 0.5;         ///< probability that the ray to a landmark is free
+  double max_range_m = 5.0;  ///< of landmarks from the camera, in (0, 20]
+  /// Largest angle between the directions from which a landmark was and would be seen, in (0, pi].
+  double max_viewing_angle_rad = 0.7;
+  /// Largest ratio of the distances, either way: the change of scale that descriptors tolerate; in [1, 10].
+  double max_range_ratio = 2.0;
+  double min_visibility = 0.5;  ///< least probability that the ray to a landmark is free
 };
 
-/// Landmarks that a camera would see and that an old key-frame has seen.
+/// Number of landmarks that a camera would see and that an old key-frame has seen.
 struct Covisibility {
   int keyframe = 0;  ///< node of the AnalysedGraph
   int landmarks = 0;
   bool operator==(const Covisibility&) const = default;
 };
 
-/// slam's landmarks by the voxel that they are in, with the key-frames that saw them.
+/// slam's landmarks, grouped by voxel, with the key-frames that saw them.
 class LandmarkIndex {
  public:
   /// Landmarks that no key-frame of the graph has seen are left out.
@@ -38,11 +40,12 @@ class LandmarkIndex {
 
   std::size_t size() const { return landmarks_.size(); }
 
-  /// Landmarks of a key-frame that others have seen, too.
+  /// Number of landmarks of a key-frame that other key-frames have seen, too.
   int shared_landmarks(int node) const { return shared_[static_cast<std::size_t>(node)]; }
 
-  /// Which key-frames' landmarks a camera at T_map_camera would see again: on the image, within range, free in the map
-  /// up to the voxel before theirs, and from a similar direction and distance. By ascending node, no zero counts.
+  /// For each key-frame, the number of its landmarks that a camera at T_map_camera would see again: landmarks in the
+  /// image, within range, behind free space up to the voxel before theirs, and seen from a similar direction and
+  /// distance. Sorted by node, without zero counts.
   std::vector<Covisibility> predict(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
                                     const InformationField& field, const CovisibilityConfig& config) const;
 
@@ -53,25 +56,25 @@ class LandmarkIndex {
   };
   struct Landmark {
     Eigen::Vector3f p_map;
-    std::uint32_t observations_end;  ///< in observations_; they begin where those of the landmark before end
+    std::uint32_t observations_end;  ///< end in observations_; the previous landmark's end is the begin
   };
   struct Cell {
     Eigen::Vector3d center;       ///< mean of its landmarks [m, map frame]
-    std::uint32_t landmarks_end;  ///< in landmarks_
+    std::uint32_t landmarks_end;  ///< end in landmarks_
   };
 
   void count(std::size_t landmark, const Eigen::Vector3f& camera, const CovisibilityConfig& config,
              std::vector<int>& counts) const;
 
-  std::vector<int> shared_;  ///< by key-frame
+  std::vector<int> shared_;  ///< number of shared landmarks by node
   double resolution_m_;
   std::vector<Cell> cells_;
   std::vector<Landmark> landmarks_;
   std::vector<Observation> observations_;
 };
 
-/// Probability that a ray from one point to another is free, the voxel of the end and the one before it left out:
-/// surfaces are not sharper than that.
+/// Probability that a ray from one point to another is free. The voxel of the end and the one before it do not count,
+/// because surfaces are not sharper than that.
 double free_probability(const InformationField& field, const Eigen::Vector3d& from_map, const Eigen::Vector3d& to_map);
 
 }  // namespace lapis::planner

@@ -9,7 +9,7 @@ namespace lapis::planner {
 namespace {
 
 constexpr double kNormal95 = 1.959964;
-constexpr double kLeastProbability = 0.01;  // one surprise must not rule a ramp out
+constexpr double kLeastProbability = 0.01;  // a single surprise must not rule out a set of parameters
 constexpr double kGridFactor = 1.15;
 constexpr int kMostLandmarks = 1000;
 
@@ -21,7 +21,7 @@ struct Stretch {
 std::vector<Stretch> stretches_of(const std::vector<Keyframe>& keyframes, double length_m) {
   std::vector<Stretch> stretches;
   double path_m = 0.0;
-  std::size_t begin = 2;  // a graph has two key-frames
+  std::size_t begin = 2;  // the first graph has two key-frames
   for (std::size_t i = begin; i < keyframes.size(); ++i) {
     path_m += path_between(keyframes[i - 1].T_map_camera, keyframes[i].T_map_camera);
     if (path_m < length_m) continue;
@@ -79,7 +79,7 @@ void compare(const std::vector<Eigen::Vector3d>& loops, const std::vector<std::p
   }));
 }
 
-/// Every place, however improbable.
+/// A configuration that predicts every place, however improbable it is.
 HallucinationConfig all_places(HallucinationConfig config) {
   config.impossible_landmarks = 0;
   config.certain_landmarks = std::numeric_limits<int>::max();

@@ -19,7 +19,7 @@ double probability(double log_odds) { return 1.0 / (1.0 + std::exp(-log_odds)); 
 /// ln(1 + e^x)
 double softplus(double x) { return std::max(x, 0.0) + std::log1p(std::exp(-std::abs(x))); }
 
-/// KL of "occupied or not" from one log-odds to another.
+/// KL divergence KL(after || before) of occupancy, from log-odds.
 double occupancy_divergence(double after, double before) {
   return probability(after) * (after - before) - softplus(after) + softplus(before);
 }
@@ -36,7 +36,8 @@ mapping::SensorModel without_occupancy_limit(mapping::SensorModel model) {
   return model;
 }
 
-/// KL of the shares of a voxel's classes, each read at most `limit` below the largest, from after a hit to before.
+/// KL divergence KL(after || before) of the shares of a voxel's classes by a hit; each share is read at most `limit`
+/// below the largest one.
 template <class Kind>
 class ShareDivergence {
  public:
@@ -52,7 +53,7 @@ class ShareDivergence {
 
   double operator()(const Kind& hit) const {
     const double log_share_after = hit.log_share + hit.own_surplus;
-    const double rise = std::max(log_share_after, 0.0);  // of the largest share
+    const double rise = std::max(log_share_after, 0.0);  // rise of the largest share
     if (lowest_ < rise - limit_ && rise > 0.0) return with_new_floor(hit, rise);
     const double before = read(hit.log_share), after = rise > 0.0 ? log_share_after : read(log_share_after);
     const double sum_after = sum_ - std::exp(before) + std::exp(after);
@@ -60,7 +61,8 @@ class ShareDivergence {
   }
 
  private:
-  /// When the hit class has the largest share afterwards, and others fall so far below that they are clamped.
+  /// The case in which the hit class has the largest share afterwards and others fall so far below it that they are
+  /// clamped.
   double with_new_floor(const Kind& hit, double rise) const {
     double sum_after = 1.0, change = -read(hit.log_share);
     for (const Kind& kind : kinds_) {
@@ -93,7 +95,7 @@ void CellMeasure::group_priors() {
     const auto [it, is_new] = group_of_prior.emplace(prior, groups_.size());
     if (is_new) {
       const std::vector<double> after = reader_.class_log_odds({0, {{static_cast<std::uint16_t>(c + 1), kOneVote}}});
-      const std::size_t other = before.size() == 1 ? c : (c + 1) % before.size();  // a single class: no surplus
+      const std::size_t other = before.size() == 1 ? c : (c + 1) % before.size();  // a single class has no surplus
       const double own_gain = after[c] - before[c], other_gain = after[other] - before[other];
       groups_.push_back({prior, other_gain, own_gain - other_gain});
     }
@@ -126,7 +128,7 @@ CellInformation CellMeasure::compute(const VoxelCounts& counts) const {
     after.hits.push_back({0, view});
     hit = occupancy_divergence(reader_.occupancy_log_odds(after), log_odds);
   }
-  return {p_free, std::max(p_free * miss + p_occupied * hit, 0.0)};  // rounding may fall below 0
+  return {p_free, std::max(p_free * miss + p_occupied * hit, 0.0)};  // rounding may give values below 0
 }
 
 double CellMeasure::clamped(double log_odds) const {
@@ -143,11 +145,12 @@ double CellMeasure::mean_hit_divergence(const VoxelCounts& counts) const {
   for (const ClassCount& hit : counts.hits) occupied_votes += votes(hit.count);
   for (const Kind& kind : kinds) unclamped_shares += kind.size * std::exp(kind.log_share);
   for (const Kind& kind : kinds) {
-    // A hit multiplies the odds by e^phi of the other classes and e^psi of its own, or adds a vote.
+    // A hit multiplies the odds of its own class by e^psi and those of the others by e^phi; by Dirichlet rules it adds
+    // a vote.
     const double share = std::exp(kind.log_share) / unclamped_shares;
     const double gain = model.fusion == "log_odds" ? kind.other_gain + std::log1p(share * std::expm1(kind.own_surplus))
                                                    : std::log1p(ray_.votes / occupied_votes);
-    // Divergences chain: that of occupancy, then that of the classes given occupied.
+    // Chain rule: the divergence of occupancy plus P(occupied) times that of the classes given occupied.
     const double after = clamped(log_odds + gain);
     const double divergence =
         occupancy_divergence(after, clamped(log_odds)) + probability(after) * share_divergence(kind);

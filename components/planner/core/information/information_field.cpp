@@ -49,7 +49,7 @@ void BasicInformationField<Real>::update(const mapping::VoxelMap& map, std::span
   }
 }
 
-/// And the blocks beside them, if it matters to them.
+/// The changed blocks and, if surfaces continue into them, the blocks beside them.
 template <class Real>
 std::vector<BlockIndex> BasicInformationField<Real>::with_neighbours(std::span<const BlockIndex> changed) const {
   std::vector<BlockIndex> blocks(changed.begin(), changed.end());
@@ -92,7 +92,7 @@ CellInformation BasicInformationField<Real>::cell(const mapping::VoxelIndex& vox
   return {found.free[offset], found.gain[offset]};
 }
 
-/// RayModel::surface_occupied for voxels never observed.
+/// Applies RayModel::surface_occupied to voxels never observed.
 template <class Real>
 void BasicInformationField<Real>::continue_surfaces(const mapping::VoxelMap& map, const BlockIndex& index,
                                                     const mapping::VoxelBlock& voxels, Block& block) const {

@@ -13,9 +13,9 @@
 
 namespace lapis::planner {
 
-/// What rays have to know about the cells of a map: two numbers per voxel, renewed where the map changed. Blocks that
-/// the map does not have are unknown, but for where a surface beside them goes on. Blocks whose cells are all equal
-/// share one copy.
+/// What rays need to know about the cells of a map: two numbers per voxel, updated where the map changed. Blocks that
+/// the map does not have are unknown, except where a surface of a neighbouring block continues. Blocks whose cells are
+/// all equal share one copy.
 template <class Real>
 class BasicInformationField {
  public:
@@ -24,17 +24,18 @@ class BasicInformationField {
     std::array<Real, mapping::kBlockVoxels> gain;  ///< CellInformation::gain [nats]
   };
 
-  /// Of an empty map with voxels of this edge. Throws std::runtime_error naming the parameter that is out of range.
+  /// The field of an empty map with voxels of edge `resolution_m`. Throws std::runtime_error naming the parameter that
+  /// is out of range.
   BasicInformationField(double resolution_m, const mapping::SensorModel& model, const RayModel& ray);
 
   double resolution_m() const { return resolution_m_; }
 
-  /// Reads blocks of the map again, in parallel; those that it does not have become unknown. Also their neighbours,
-  /// where surfaces go on. Throws std::invalid_argument when the map's resolution is another.
+  /// Reads the changed blocks of the map again, in parallel, and their neighbours where surfaces continue; blocks that
+  /// the map no longer has become unknown. Throws std::invalid_argument when the map has another resolution.
   void update(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed);
-  /// Reads the whole map.
+  /// Clears the field and reads the whole map.
   void rebuild(const mapping::VoxelMap& map);
-  /// Replaces what is known about a block, by offset_in_block.
+  /// Replaces the cells of a block, which are indexed by offset_in_block.
   void set_block(const mapping::BlockIndex& index, std::span<const CellInformation, mapping::kBlockVoxels> cells);
 
   const Block& block(const mapping::BlockIndex& index) const;
@@ -47,13 +48,13 @@ class BasicInformationField {
   std::shared_ptr<Block> make_block(const mapping::VoxelBlock& voxels) const;
   void continue_surfaces(const mapping::VoxelMap& map, const mapping::BlockIndex& index,
                          const mapping::VoxelBlock& voxels, Block& block) const;
-  /// The shared copy, when all cells of the block are equal.
+  /// Returns the shared copy when all cells of the block are equal; otherwise the block itself.
   BlockPtr share_if_uniform(BlockPtr block);
 
   double resolution_m_;
   CellMeasure measure_;
   std::unordered_map<mapping::BlockIndex, BlockPtr, mapping::GridIndexHash> blocks_;
-  std::map<std::pair<Real, Real>, BlockPtr> uniform_;  ///< by free and gain
+  std::map<std::pair<Real, Real>, BlockPtr> uniform_;  ///< by (free, gain)
   BlockPtr unknown_;
 };
 

@@ -9,16 +9,16 @@
 
 namespace lapis::planner {
 
-/// What a map has learnt so far: by how much the entropy of all its voxels is below that of voxels never observed
-/// [nats]. The gain of a path, once it is driven, is the difference.
+/// The information that a map contains: the difference between the entropy of its voxels before any observation and now
+/// [nats]. The gain of a path is the difference between before and after the robot drove it.
 class MapInformation {
  public:
   /// Throws std::runtime_error naming the parameter of the sensor model that is out of range.
   explicit MapInformation(const mapping::SensorModel& model);
 
-  /// Of all blocks.
+  /// Information of all blocks [nats].
   double nats() const { return nats_; }
-  /// @param changed all blocks whose content is not what it was at the last call, those that are gone included
+  /// @param changed all blocks whose content has changed since the last call, including removed ones
   void update(const mapping::VoxelMap& map, std::span<const mapping::BlockIndex> changed);
 
  private:
@@ -26,7 +26,7 @@ class MapInformation {
   double entropy(const mapping::VoxelCounts& counts) const;
 
   mapping::BeliefReader reader_;
-  std::vector<double> by_misses_;  ///< entropy of voxels without hits, by whole votes; 0: never observed
+  std::vector<double> by_misses_;  ///< entropy of voxels without hits, by whole votes; [0]: never observed
   std::unordered_map<mapping::BlockIndex, double, mapping::GridIndexHash> blocks_;
   double nats_ = 0.0;
 };

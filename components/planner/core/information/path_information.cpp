@@ -17,8 +17,8 @@ namespace {
 using mapping::kBlockEdge;
 using mapping::kBlockVoxels;
 
-/// Blocks around the views of a path, and the reach of the cells in those that a ray came to. Kept by each thread,
-/// because fresh memory from the system costs more time than most of what is done with it.
+/// The blocks around the views of a path, and the reach of the cells in the blocks that a ray came to. Each thread
+/// keeps its window, because fresh memory from the system costs more time than most of the work that uses it.
 template <class Real>
 class Window {
  public:
@@ -27,10 +27,10 @@ class Window {
 
   struct Entry {
     const typename Field::Block* block;
-    std::size_t reach;  ///< index, or kNone
+    std::size_t reach;  ///< index in reaches_, or kNone
   };
 
-  /// @param low, high corners of a box [voxels of the map]
+  /// @param low, high corners of the box [voxels of the map]
   void open(const Field& field, const Eigen::Vector3d& low, const Eigen::Vector3d& high) {
     const auto block_of_point = [](const Eigen::Vector3d& p) {
       return Eigen::Vector3i((p / kBlockEdge).array().floor().cast<int>());
@@ -45,7 +45,7 @@ class Window {
           entries_.push_back({&field.block({first_.x() + x, first_.y() + y, first_.z() + z}), kNone});
   }
 
-  /// Distance in entry() between neighbours along each axis.
+  /// Distance between the indices of neighbouring blocks along each axis, for entry().
   Eigen::Vector3i strides() const { return {1, size_.x(), size_.x() * size_.y()}; }
   /// Index of a block for entry().
   int index_of(const Eigen::Vector3i& block) const { return strides().dot(block - first_); }
@@ -60,7 +60,7 @@ class Window {
   }
   Reach& reach(const Entry& entry) { return reaches_[entry.reach]; }
 
-  /// Sum of gain times reach, always in the order of the entries.
+  /// Sum of gain times reach. The order of the sum is always that of the entries.
   double information() const {
     double sum = 0.0;
     for (const Entry& entry : entries_)
@@ -86,7 +86,7 @@ class Window {
   std::size_t used_ = 0;
 };
 
-/// Time along a ray in whole ticks: sums are exact, so that cells and blocks agree on when the ray leaves them.
+/// Time along a ray in whole ticks. Sums are exact, so that cells and blocks agree on when the ray leaves them.
 using Ticks = std::int64_t;
 constexpr Ticks kRange = Ticks{1} << 40;
 constexpr Ticks kNever = Ticks{1} << 44;
@@ -94,13 +94,13 @@ constexpr Ticks kNever = Ticks{1} << 44;
 /// How a ray moves along one axis.
 struct Axis {
   Ticks next;        ///< when the ray enters the next cell
-  Ticks per_cell;    ///< from cell to cell
-  Ticks block_end;   ///< when it enters the next block
-  int cell_stride;   ///< signed distance of neighbours in offset_in_block
-  int block_stride;  ///< and in Window::entry
+  Ticks per_cell;    ///< from one cell to the next
+  Ticks block_end;   ///< when the ray enters the next block
+  int cell_stride;   ///< signed difference of offset_in_block between neighbours
+  int block_stride;  ///< the same for indices of Window::entry
 
   /// @param start [voxels of the map]
-  /// @param travel until the end of the range [voxels]
+  /// @param travel displacement along the axis until the end of the range [voxels]
   Axis(double start, double travel, int cell_stride_, int block_stride_)
       : cell_stride(travel < 0.0 ? -cell_stride_ : cell_stride_),
         block_stride(travel < 0.0 ? -block_stride_ : block_stride_) {
@@ -128,7 +128,7 @@ struct Axis {
 struct Ray {
   Axis x, y, z;
   int cell;   ///< offset_in_block
-  int block;  ///< Window::entry
+  int block;  ///< index for Window::entry
 
   Ray(const Eigen::Vector3d& start, const Eigen::Vector3d& travel, int cell_, int block_,
       const Eigen::Vector3i& block_strides)
@@ -184,7 +184,7 @@ void look(const View& view, const geometry::Pose& T_map_camera, double resolutio
                      window);
 }
 
-/// Box that holds all rays, with a voxel to spare [voxels of the map].
+/// Box that holds all rays, with a margin of one voxel [voxels of the map].
 std::pair<Eigen::Vector3d, Eigen::Vector3d> box_of(const View& view, const ViewPath& path, double resolution_m) {
   Eigen::Vector3d low = Eigen::Vector3d::Constant(std::numeric_limits<double>::infinity()), high = -low;
   for (const geometry::Pose& T_map_camera : path) {

@@ -8,13 +8,13 @@
 
 namespace lapis::planner {
 
-/// Rays that stand for what a camera sees from a pose.
+/// The rays that represent what a camera sees from a pose.
 struct ViewConfig {
-  geometry::PinholeCamera camera;  ///< the whole image is seen
-  int columns = 64;                ///< of rays, evenly over the image, in [1, 4096]
+  geometry::PinholeCamera camera;  ///< rays cover its whole image
+  int columns = 64;                ///< of rays, evenly spaced over the image; in [1, 4096]
   int rows = 36;                   ///< in [1, 4096]
   double range_m = 10.0;           ///< Euclidean, in (0, 100]
-  /// A ray ends where the probability to get there falls below, in [0, 1). A clamped wall lets 1e-4 of it through.
+  /// A ray ends where the probability of reaching a cell falls below this, in [0, 1). A clamped wall lets 1e-4 through.
   double min_reach = 1e-5;
 };
 
@@ -27,7 +27,7 @@ class View {
   const ViewConfig& config() const { return config_; }
   /// Unit vectors in the camera's optical frame, row by row.
   const std::vector<Eigen::Vector3d>& directions() const { return directions_; }
-  /// Corners of a pyramid with its tip at the camera that holds all rays [m], optical frame.
+  /// Corners of a pyramid with its tip at the camera that contains all rays [m], optical frame.
   const std::vector<Eigen::Vector3d>& corners() const { return corners_; }
 
  private:

@@ -10,7 +10,7 @@
 namespace lapis::planner {
 namespace {
 
-/// A number is drawn from where the place is, so that the order is any, and the same with the same map.
+/// Draws a number from the position of the place, so that the order is random but the same for the same map.
 class RandomPlace : public Method {
  public:
   Asks asks() const override { return {}; }
@@ -22,7 +22,7 @@ class RandomPlace : public Method {
   }
 };
 
-/// What another method thinks of drives through old places.
+/// Judges drives through old places by the utility of another method.
 class AmongOldPlaces : public Method {
  public:
   explicit AmongOldPlaces(std::shared_ptr<const Method> judge) : judge_(std::move(judge)) {}

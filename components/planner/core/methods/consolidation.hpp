@@ -9,10 +9,11 @@
 
 namespace lapis::planner {
 
-/// By what the next old place is chosen when nothing is left to explore; names as in configuration, but for "none".
+/// Names of the rules that choose the next old place when nothing is left to explore: as in the configuration, without
+/// "none".
 const std::vector<std::string>& consolidation_names();
-/// Drives through old places, the best by utility first: "nearest", "random", or "lapis", which is the method of that
-/// name. Null for another name.
+/// A method that drives through old places, in the order of utility: "nearest", "random", or "lapis", which judges them
+/// as the method of that name. Null for another name.
 std::shared_ptr<const Method> make_consolidation(const std::string& name, const MethodsConfig& config = {});
 
 }  // namespace lapis::planner

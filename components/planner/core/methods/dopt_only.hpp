@@ -4,7 +4,7 @@
 
 namespace lapis::planner {
 
-/// D, as in Paper.
+/// Utility D, as in Paper.
 class DoptOnly : public Method {
  public:
   Asks asks() const override { return {.spectrum = true}; }

@@ -4,7 +4,8 @@
 
 namespace lapis::planner {
 
-/// As Paper, but long paths neither win nor lose by the number of their nodes.
+/// As Paper, but D compares graphs with an equal number of nodes, so that the number of a path's nodes neither raises
+/// nor lowers the utility.
 class FixedN : public Method {
  public:
   Asks asks() const override { return {.path_information = true, .spectrum = true}; }

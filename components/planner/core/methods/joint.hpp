@@ -5,11 +5,11 @@
 namespace lapis::planner {
 
 struct JointConfig {
-  double beta = 1.0;  ///< what a nat about the trajectory counts against one about the map
+  double beta = 1.0;  ///< weight of a nat about the trajectory relative to a nat about the map
 };
 
-/// (MI + beta d / 2 expected change of the log-determinant by loops) / cost, all in nats; d are the degrees of freedom
-/// of a pose.
+/// Utility (MI + beta d / 2 G) / cost, in nats per metre: G is the expected change of the log-determinant by loop
+/// closures and d the number of degrees of freedom of a pose.
 class Joint : public Method {
  public:
   explicit Joint(const JointConfig& config) : config_(config) {}

@@ -6,7 +6,7 @@
 
 namespace lapis::planner {
 
-/// What a utility is made of.
+/// The terms that a utility uses.
 struct Asks {
   bool path_information = false;
   bool goal_information = false;
@@ -20,21 +20,21 @@ struct Asks {
   bool operator==(const Asks&) const = default;
 };
 
-/// A way to choose where to go: which paths there are to choose from, and what each of them is worth.
+/// A method decides where to go: it proposes candidate paths and rates each of them.
 class Method {
  public:
   virtual ~Method() = default;
 
-  /// What of a candidate's value its utility needs; the rest may be zero.
+  /// The terms of a candidate's value that the utility needs; other terms may be zero.
   virtual Asks asks() const = 0;
-  /// Of a candidate that is open; larger is better.
+  /// Utility of an open candidate; larger is better.
   virtual double utility(const Candidate& candidate) const = 0;
-  /// All candidates with their paths, those that are out of the question with the reason. Who asks for the spectrum
-  /// gets old places as goals, too.
+  /// Proposes all candidates with their paths; a candidate that is out of the question has the reason. Methods that ask
+  /// for the spectrum get old places as goals, too.
   virtual std::vector<Candidate> propose(const ProposalInput& in) const;
-  /// It judges nothing but what it has proposed, so it cannot be compared with others.
+  /// True when the method judges only its own candidates, so that it cannot be compared with others.
   virtual bool has_own_candidates() const { return false; }
-  /// The goal that is being driven to is kept until another one is better by ProposalConfig::keep_factor.
+  /// True when the current goal is kept until another one is better by ProposalConfig::keep_factor.
   virtual bool keeps_goal() const { return true; }
 };
 

@@ -26,7 +26,7 @@ std::shared_ptr<const Method> make(const MethodsConfig&) {
   return std::make_shared<M>();
 }
 
-/// All methods; a new one is a line here.
+/// All methods. A new method needs one line here.
 constexpr Entry kMethods[] = {
     {"paper", make<Paper>},
     {"fixed_n", make<FixedN>},

@@ -10,15 +10,15 @@
 
 namespace lapis::planner {
 
-/// Of the methods that have something to set.
+/// Configuration of the methods that have parameters.
 struct MethodsConfig {
   JointConfig joint = {};
   TareConfig tare = {};
 };
 
-/// Names as in configuration, without "lapis", which is another name of one of them.
+/// Names as in the configuration, without "lapis", which is a second name of one of them.
 const std::vector<std::string>& method_names();
-/// Null for another name.
+/// The method of that name, "lapis" included; null for another name.
 std::shared_ptr<const Method> make_method(const std::string& name, const MethodsConfig& config = {});
 
 }  // namespace lapis::planner

@@ -4,7 +4,7 @@
 
 namespace lapis::planner {
 
-/// MI / cost.
+/// Utility MI / cost.
 class MiOnly : public Method {
  public:
   Asks asks() const override { return {.path_information = true}; }

@@ -4,7 +4,7 @@
 
 namespace lapis::planner {
 
-/// 1 / cost.
+/// Utility 1 / cost.
 class Nearest : public Method {
  public:
   Asks asks() const override { return {}; }

@@ -4,8 +4,8 @@
 
 namespace lapis::planner {
 
-/// D (1 + MI / cost), all nodes of a path in D [Zhang, Bong & Beltrame 2024, eq. 24-25]; without information D, its
-/// limit.
+/// Utility D (1 + MI / cost), where D includes all nodes of the path [Zhang, Bong & Beltrame 2024, eq. 24-25]. Without
+/// information it is D, the limit for MI = 0.
 class Paper : public Method {
  public:
   Asks asks() const override { return {.path_information = true, .spectrum = true}; }

@@ -4,9 +4,9 @@
 
 namespace lapis::planner {
 
-/// D (1 + share of unknown cells around the frontier): as Paper, but the map counts at the goal alone and whatever the
-/// path costs, after what Zhang et al. 2024 compare with [Placed, Rodriguez, Tardos & Castellanos, "ExplORB-SLAM",
-/// 2022].
+/// Utility D (1 + share of unknown cells around the frontier): as Paper, but the map counts only at the goal and the
+/// cost of the path does not. It follows the version with which Zhang et al. 2024 compare [Placed, Rodriguez, Tardos &
+/// Castellanos, "ExplORB-SLAM", 2022].
 class Placed : public Method {
  public:
   Asks asks() const override { return {.spectrum = true, .unknown_share = true}; }

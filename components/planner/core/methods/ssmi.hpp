@@ -4,7 +4,8 @@
 
 namespace lapis::planner {
 
-/// MI of the goal's view alone, every ray for itself, whatever the path costs [Asgharivaskasi & Atanasov 2023].
+/// Utility MI of the goal's view alone, where every ray counts by itself, whatever the cost of the path [Asgharivaskasi
+/// & Atanasov 2023].
 class Ssmi : public Method {
  public:
   Asks asks() const override { return {.goal_information = true}; }

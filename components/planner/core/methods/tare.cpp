@@ -7,7 +7,7 @@
 namespace lapis::planner {
 namespace {
 
-/// The stops of TARE's tour; as many of the first ones as may be looked at.
+/// The stops of TARE's tour; only the first max_candidates of them stay open.
 std::vector<Candidate> propose_tour(const ProposalInput& in, const TareConfig& tare) {
   const auto& [s, tree, memory, config] = in;
   const geometry::PinholeCamera& camera = s.view.config().camera;
@@ -26,7 +26,7 @@ std::vector<Candidate> propose_tour(const ProposalInput& in, const TareConfig& t
   return candidates;
 }
 
-/// As a tour: what is left when there is no stop any more.
+/// Orders the open candidates by cost, as if they were the stops of a tour; used when the tour has no open stop.
 std::vector<Candidate> nearest_first(std::vector<Candidate> candidates) {
   std::vector<Candidate*> open;
   for (Candidate& candidate : candidates) {

@@ -5,7 +5,7 @@
 
 namespace lapis::planner {
 
-/// The first stop of the tour that TARE would drive (plan_tour).
+/// Chooses the first stop of the tour that TARE would drive (plan_tour).
 class Tare : public Method {
  public:
   explicit Tare(const TareConfig& config) : config_(config) {}

@@ -14,12 +14,12 @@ namespace {
 
 constexpr std::string_view kMagic = "LAPISSIT";
 constexpr std::uint32_t kFormatVersion = 1;
-constexpr double kFarthest_m = 20'000.0;        // of a pose from the origin: conversions.hpp accepts no farther ones
+constexpr double kFarthest_m = 20'000.0;        // of a pose from the origin; conversions.hpp refuses poses beyond 10 km
 constexpr std::int32_t kFarthestCell = 40'000;  // from the origin, along an axis
-constexpr int kMostDimensions = 6;              // of an edge's information
-constexpr double kRounding = 1e-6;              // of a rotation
+constexpr int kMostDimensions = 6;              // of the information of an edge
+constexpr double kRounding = 1e-6;              // tolerance for rotation matrices
 
-/// Writes what the functions below list.
+/// Writes the parts that the functions below list.
 struct Encoder {
   void number(double value) { out.f64(value); }
   void any_number(double value) { out.f64(value); }
@@ -43,7 +43,7 @@ struct Encoder {
   files::ByteWriter out;
 };
 
-/// Reads the same; fails for numbers that are not finite.
+/// Reads the same parts; fails for numbers that are not finite.
 struct Decoder {
   void number(double& value) {
     value = in.f64();
@@ -58,7 +58,7 @@ struct Decoder {
   template <class Items, class Each>
   void list(Items& items, const Each& each) {
     const std::uint64_t count = in.varint();
-    require(count <= in.remaining());  // an item has a byte or more
+    require(count <= in.remaining());  // an item has at least one byte
     for (std::uint64_t i = 0; i < count && in.is_good(); ++i) each(*this, items.emplace_back());
   }
   template <class Value, class Each>
@@ -74,7 +74,7 @@ struct Decoder {
   files::ByteReader in;
 };
 
-// Each of these lists the parts of its type once, for both directions.
+// Each of these functions lists the parts of its type once, for both directions.
 
 constexpr auto kNumbers = [](auto& file, auto& matrix) {
   for (Eigen::Index i = 0; i < matrix.size(); ++i) file.number(matrix.data()[i]);

@@ -14,17 +14,17 @@
 
 namespace lapis::planner {
 
-/// The pose graph and the landmarks that a decision was made with.
+/// The pose graph and the landmarks from which a decision was made.
 struct RecordedGraph {
-  std::vector<Keyframe> keyframes;  ///< by id
+  std::vector<Keyframe> keyframes;  ///< sorted by id
   std::vector<KeyframeEdge> edges;
-  double position_variance_m2 = 0.0;  ///< of each axis, as slam says; 0: it does not
+  double position_variance_m2 = 0.0;  ///< per axis, as slam publishes it; 0 when slam does not publish it
   std::map<mapping::TileIndex, mapping::LandmarkTile> landmarks;
 };
 
-/// What a decision was made from, but for the configuration. lapis_planner --replay makes it again.
+/// The input of a decision, except the configuration. lapis_planner --replay makes the decision again.
 struct RecordedSituation {
-  mapping::MapFile map;  ///< its provenance names the decision, its stamp, and the method
+  mapping::MapFile map;  ///< its provenance names the decision, the time stamp and the method
   GridMarks marks;
   Pose2 robot;
   Memory memory;
@@ -34,7 +34,7 @@ struct RecordedSituation {
 /// Bytes of a situation file: "LAPISSIT", format version (u32), CRC-32 of everything after it (u32), marks, robot,
 /// memory, graph, and a map file (map_file.hpp) to the end. Equal content gives equal bytes.
 std::vector<std::uint8_t> encode_situation(const RecordedSituation& situation);
-/// Nothing, with the reason in `error`, for anything that is not a whole and undamaged file.
+/// Returns nothing, and sets `error` to the reason, unless the bytes are a complete and undamaged file.
 std::optional<RecordedSituation> decode_situation(std::span<const std::uint8_t> bytes, std::string& error);
 
 }  // namespace lapis::planner

@@ -11,9 +11,9 @@ namespace lapis::planner {
 namespace {
 
 constexpr int kSearchesPerPath = 3;
-constexpr float kSurcharge = 0.5F;  // per metre near a path that was seen, and seen again
+constexpr float kSurcharge = 0.5F;  // per metre, added near a path each time that it is found
 
-/// Cells on the straight lines of a path, each a neighbour of the one before.
+/// Cells on the straight lines of a path; each is a neighbour of the one before.
 std::vector<Cell> cells_on(const Path& path) {
   std::vector<Cell> cells{path.cells.front()};
   for (std::size_t i = 1; i < path.cells.size(); ++i) {
@@ -25,8 +25,9 @@ std::vector<Cell> cells_on(const Path& path) {
   return cells;
 }
 
-/// True when a cell that is not free lies inside the loop of two paths with common ends. Rows are filled between pairs
-/// of crossings (even-odd rule); a step between rows crosses the lower one at the end that lies in it.
+/// True when a cell that is not free lies inside the loop formed by two paths with common ends. Each row is filled
+/// between pairs of crossings (even-odd rule); a step between two rows is a crossing of the lower row, at the cell of
+/// the step in that row.
 bool encloses_obstacle(const PlanningGrid& grid, const std::vector<Cell>& a, const std::vector<Cell>& b) {
   std::vector<Cell> crossings;
   for (const std::vector<Cell>* cells : {&a, &b})
@@ -39,7 +40,7 @@ bool encloses_obstacle(const PlanningGrid& grid, const std::vector<Cell>& a, con
   return false;
 }
 
-/// Largest distance of a cell of `cells` to the nearest one of `other` [cells].
+/// Largest distance from a cell of `cells` to the nearest cell of `other` [cells].
 double largest_gap(const std::vector<Cell>& cells, const std::vector<Cell>& other) {
   std::int64_t largest = 0;
   for (const Cell& c : cells) {
@@ -50,7 +51,7 @@ double largest_gap(const std::vector<Cell>& cells, const std::vector<Cell>& othe
   return std::sqrt(static_cast<double>(largest));
 }
 
-/// Raises the cost of cells within `radius` [cells] of a path, of each one once.
+/// Raises the cost of all cells within `radius` [cells] of a path, once per cell.
 void raise_cost(const std::vector<Cell>& cells, double radius, SparseGrid<float>& surcharge) {
   const int reach = static_cast<int>(radius);
   std::vector<Cell> around;
@@ -71,7 +72,7 @@ void raise_cost(const std::vector<Cell>& cells, double radius, SparseGrid<float>
 
 std::vector<Path> find_alternatives(const PlanningGrid& grid, const PathConfig& config, Cell from, Cell to, int count) {
   std::vector<Path> found;
-  std::vector<std::vector<Cell>> found_cells;  // of `found`
+  std::vector<std::vector<Cell>> found_cells;  // cells of `found`
   if (!grid.is_traversable(to)) return found;
   const double apart = config.min_apart_m / grid.resolution_m();
   SparseGrid<float> surcharge;

@@ -10,7 +10,7 @@
 
 namespace lapis::planner {
 
-/// Cell of the floor plan: x and y as mapping::VoxelIndex. Ordered by y, then x.
+/// Cell of the floor plan; x and y as in mapping::VoxelIndex. Cells are ordered by y, then by x.
 struct Cell {
   std::int32_t x = 0;
   std::int32_t y = 0;
@@ -25,17 +25,17 @@ struct Cell {
 constexpr Cell operator+(Cell a, Cell b) { return {a.x + b.x, a.y + b.y}; }
 constexpr Cell operator-(Cell a, Cell b) { return {a.x - b.x, a.y - b.y}; }
 
-/// Square of the distance between two centres [cells^2].
+/// Square of the distance between the centres of two cells [cells^2].
 constexpr std::int64_t squared_distance(Cell a, Cell b) {
   const std::int64_t x = a.x - b.x, y = a.y - b.y;
   return x * x + y * y;
 }
 
-/// Distance between two centres [cells].
+/// Distance between the centres of two cells [cells].
 inline double distance(Cell a, Cell b) { return std::sqrt(static_cast<double>(squared_distance(a, b))); }
 
-/// Steps to the eight neighbours: the four straight ones, then the four diagonal ones; diagonal step 4 + i lies between
-/// the straight steps i and (i + 1) % 4.
+/// Steps to the eight neighbours: first the four straight ones, then the four diagonal ones. The diagonal step 4 + i
+/// lies between the straight steps i and (i + 1) % 4.
 inline constexpr std::array<Cell, 8> kSteps{{{1, 0}, {0, 1}, {-1, 0}, {0, -1}, {1, 1}, {-1, 1}, {-1, -1}, {1, -1}}};
 inline constexpr std::size_t kStraightSteps = 4;
 

@@ -9,7 +9,8 @@
 namespace lapis::planner {
 namespace {
 
-/// Distance of the `kChunkEdge` middle cells of a row to the nearest source in the row, at most `reach` [cells].
+/// Distance from each of the `kChunkEdge` middle cells of a row to the nearest source in the row, at most `reach`
+/// [cells].
 void scan_row(const SparseGrid<std::int8_t>& values, std::int8_t source, Cell first, int reach, std::int32_t* out) {
   std::int32_t since = reach;
   for (std::int32_t i = -reach; i < kChunkEdge; ++i) {

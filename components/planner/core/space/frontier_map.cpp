@@ -9,10 +9,10 @@
 namespace lapis::planner {
 namespace {
 
-// During an update cells may carry, in place of a frontier's id:
+// During an update, cells may have one of these values in place of a frontier's id:
 constexpr std::uint32_t kNone = 0;
-constexpr std::uint32_t kFresh = std::numeric_limits<std::uint32_t>::max();  // a frontier cell, new
-constexpr std::uint32_t kTaken = kFresh - 1;                                 // a frontier cell, collected
+constexpr std::uint32_t kFresh = std::numeric_limits<std::uint32_t>::max();  // a new frontier cell
+constexpr std::uint32_t kTaken = kFresh - 1;                                 // a frontier cell that has been collected
 
 bool is_frontier(const PlanningGrid& grid, Cell c) {
   return grid.state(c) == mapping::kFree &&
@@ -33,7 +33,8 @@ struct Box {
   double diagonal() const { return std::hypot(width(), height()); }
 };
 
-/// The cell nearest to `centroid` [cells], then each time the one farthest from those chosen; ties: the first one.
+/// The cell nearest to `centroid` [cells], then repeatedly the cell farthest from those chosen; of equal ones, the
+/// first.
 std::vector<Cell> representatives(const std::vector<Cell>& cells, const Eigen::Vector2d& centroid, int count) {
   const auto to_centroid = [&](Cell c) { return (Eigen::Vector2d(c.x, c.y) - centroid).squaredNorm(); };
   std::vector<Cell> chosen{
@@ -57,8 +58,8 @@ void FrontierMap::update(const PlanningGrid& grid, std::span<const Cell> changed
   replace(std::move(pieces), grid.resolution_m());
 }
 
-/// Marks new frontier cells and takes out those that are none any more, with the frontiers they belonged to. Every
-/// component that is another one than before contains one of the cells returned.
+/// Marks new frontier cells, and unmarks cells that are no longer frontier cells, and removes their frontiers. Every
+/// component that has changed contains one of the returned cells.
 std::vector<Cell> FrontierMap::renew_cells(const PlanningGrid& grid, std::span<const Cell> changed) {
   std::vector<Cell> seeds;
   ++updates_;
@@ -84,7 +85,7 @@ std::vector<Cell> FrontierMap::renew_cells(const PlanningGrid& grid, std::span<c
   return seeds;
 }
 
-/// Collects the frontier cells that are connected with `seed` and not yet taken.
+/// Collects the frontier cells that are connected to `seed` and have not been collected yet.
 FrontierMap::Group FrontierMap::take_component(Cell seed) {
   Group component;
   const auto take = [&](Cell c) {
@@ -94,14 +95,14 @@ FrontierMap::Group FrontierMap::take_component(Cell seed) {
     marks_[c].id = kTaken;
   };
   take(seed);
-  for (std::size_t next = 0; next < component.size();) {  // grows meanwhile
+  for (std::size_t next = 0; next < component.size();) {  // the component grows in the loop
     const Cell c = component[next++].cell;
     for (const Cell& step : kSteps) take(c + step);
   }
   return component;
 }
 
-/// Appends the pieces of a component that was taken.
+/// Splits a collected component, and appends its pieces.
 void FrontierMap::split(Group component, double max_extent_cells, std::vector<Group>& pieces) {
   Box box;
   for (const Member& member : component) box.include(member.cell);
@@ -116,21 +117,21 @@ void FrontierMap::split(Group component, double max_extent_cells, std::vector<Gr
   };
   const auto middle = std::partition(component.begin(), component.end(), is_low);
   for (const auto& [begin, end] : {std::pair{component.begin(), middle}, std::pair{middle, component.end()}}) {
-    for (auto m = begin; m != end; ++m) marks_[m->cell].id = m->old_id;  // put back, to be taken in connected parts
+    for (auto m = begin; m != end; ++m) marks_[m->cell].id = m->old_id;  // put back, to be collected in connected parts
     for (auto m = begin; m != end; ++m)
       if (marks_.at(m->cell).id != kTaken) split(take_component(m->cell), max_extent_cells, pieces);
   }
 }
 
-/// Puts pieces in the place of the frontiers that had their cells, and decides who inherits an id.
+/// Replaces the frontiers that had the cells of the pieces, and decides which piece inherits an id.
 void FrontierMap::replace(std::vector<Group> pieces, double resolution_m) {
   const auto by_first_cell = [](const Group& a, const Group& b) { return a.front().cell < b.front().cell; };
   std::sort(pieces.begin(), pieces.end(), by_first_cell);
-  std::map<std::pair<std::uint32_t, std::size_t>, int> shared;  // old id, piece: cells
+  std::map<std::pair<std::uint32_t, std::size_t>, int> shared;  // (old id, index of the piece): common cells
   for (std::size_t i = 0; i < pieces.size(); ++i)
     for (const Member& member : pieces[i])
       if (member.old_id != kFresh) ++shared[{member.old_id, i}];
-  std::vector<std::tuple<int, std::uint32_t, std::size_t>> claims;  // most cells first
+  std::vector<std::tuple<int, std::uint32_t, std::size_t>> claims;  // largest overlap first
   for (const auto& [claim, cells] : shared) {
     claims.emplace_back(-cells, claim.first, claim.second);
     frontiers_.erase(claim.first);

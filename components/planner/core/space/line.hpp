@@ -7,9 +7,9 @@
 
 namespace lapis::planner {
 
-/// Visits every cell that the straight line between the centres of two cells touches, in order, with the share of the
-/// line in it; where it goes through a corner both cells beside the corner are touched, with share 0. Exact: integers
-/// decide which cell is next. Ends early, with false, when visit(Cell, double share) returns false.
+/// Visits, in order, every cell that the straight line between the centres of two cells touches, with the share of the
+/// line in the cell. Where the line passes through a corner, both cells beside the corner are visited with share 0. The
+/// order is exact, because integers decide which cell is next. Returns false as soon as visit(Cell, double share) does.
 template <class Visitor>
 bool walk_line(Cell from, Cell to, Visitor&& visit) {
   const Cell step{to.x < from.x ? -1 : 1, to.y < from.y ? -1 : 1};
@@ -19,7 +19,7 @@ bool walk_line(Cell from, Cell to, Visitor&& visit) {
   double entered = 0.0;
   Cell c = from;
   while (i < nx || j < ny) {
-    const std::int64_t side = (2 * i + 1) * ny - (2 * j + 1) * nx;  // < 0: the column ends first
+    const std::int64_t side = (2 * i + 1) * ny - (2 * j + 1) * nx;  // negative: the column ends first
     const double left = side < 0 ? static_cast<double>(2 * i + 1) / static_cast<double>(2 * nx)
                                  : static_cast<double>(2 * j + 1) / static_cast<double>(2 * ny);
     if (!visit(c, left - entered)) return false;

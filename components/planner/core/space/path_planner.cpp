@@ -10,12 +10,12 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kSlack = 1.001;  // a line may cost so much more than the cells that it replaces
+constexpr double kSlack = 1.001;  // a line may cost this factor more than the cells that it replaces
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Of a straight line; infinite when it touches a cell that is not traversable.
+/// Cost of a straight line; infinite when it touches a cell that is not passable.
 double line_cost(const PlanningGrid& grid, const PathConfig& config, Cell from, Cell to) {
-  double rate = 0.0;  // mean along the line
+  double rate = 0.0;  // mean cost per metre along the line
   const bool is_open = walk_line(from, to, [&](Cell c, double share) {
     if (!grid.is_passable(c)) return false;
     rate += share * cost_per_metre(grid, config, c);
@@ -24,7 +24,7 @@ double line_cost(const PlanningGrid& grid, const PathConfig& config, Cell from, 
   return is_open ? rate * distance(from, to) * grid.resolution_m() : kInfinity;
 }
 
-/// As the search counts it.
+/// Cost of a step, as in the search.
 double step_cost(const PlanningGrid& grid, const PathConfig& config, Cell from, Cell to) {
   const double rate = 0.5 * (cost_per_metre(grid, config, from) + cost_per_metre(grid, config, to));
   return rate * distance(from, to) * grid.resolution_m();
@@ -73,7 +73,7 @@ std::vector<Pose2> poses_along(std::span<const Eigen::Vector2d> points, double s
   for (std::size_t i = 1; i < points.size(); ++i) length += (points[i] - points[i - 1]).norm();
   const double intervals = std::ceil(length / spacing_m - 1e-9);
   std::vector<Pose2> poses;
-  double begin = 0.0;  // of the line, along the path
+  double begin = 0.0;  // begin of the line, along the path
   for (std::size_t i = 1; i < points.size(); ++i) {
     const Eigen::Vector2d line = points[i] - points[i - 1];
     const double end = begin + line.norm(), yaw = std::atan2(line.y(), line.x());

@@ -34,7 +34,7 @@ std::vector<Cell> CostTree::path_to(Cell to) const {
   return path;
 }
 
-/// One run of the search.
+/// A single run of the search.
 class PathSearch {
  public:
   PathSearch(const PlanningGrid& grid, const PathConfig& config, const PathQuery& query)
@@ -56,14 +56,14 @@ class PathSearch {
   }
 
  private:
-  using Entry = std::pair<double, Cell>;  // cost from the root and at least to the goal
+  using Entry = std::pair<double, Cell>;  // cost from the root plus the lower bound to the goal
 
   double rate(Cell c) const {
     const double surcharge = query_.surcharge != nullptr ? static_cast<double>(query_.surcharge->at(c)) : 0.0;
     return cost_per_metre(grid_, config_, c) + surcharge;
   }
 
-  /// Length of the shortest path over an empty grid [m].
+  /// Lower bound of the cost to the goal: length of the shortest path on an empty grid [m].
   double least_cost(Cell c) const {
     if (!query_.to) return 0.0;
     const double x = std::abs(c.x - query_.to->x), y = std::abs(c.y - query_.to->y);

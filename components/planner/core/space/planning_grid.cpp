@@ -13,9 +13,9 @@ namespace {
 using mapping::kBlockEdge;
 
 constexpr std::int8_t kOccupiedFrom = 50;
-constexpr double kRounding_cells = 1e-6;  // of borders of cells that ought to coincide
+constexpr double kRounding_cells = 1e-6;  // tolerance for borders of cells that should coincide
 
-/// Smallest squared distance [cells^2] that is not below a distance [m].
+/// Smallest squared distance [cells^2] that is at least a distance [m].
 int least_squared(double distance_m, double resolution_m) {
   const double cells = distance_m / resolution_m;
   return static_cast<int>(std::ceil(cells * cells - kRounding_cells));
@@ -44,7 +44,7 @@ PlanningGrid::PlanningGrid(const GridConfig& config, double resolution_m)
       to_occupied_(mapping::kOccupied, reach_cells(config, resolution_m)),
       to_unknown_(mapping::kUnknown, reach_cells(config, resolution_m)) {}
 
-/// Unknown where the bottom of a free column has not been seen.
+/// The projection of a column; free cells become unknown where the bottom of the height band has not been seen.
 mapping::ColumnCells PlanningGrid::floor_plan(const mapping::BlockColumn& column, const mapping::VoxelMap& map,
                                               const mapping::BeliefReader& reader) const {
   const double bottom_m =
@@ -101,7 +101,7 @@ void PlanningGrid::erase_freed(const ObstacleGrid& grid, std::vector<Cell>& touc
   }
 }
 
-/// Every cell of the plan that an occupied cell of the grid overlaps.
+/// Marks every cell of the plan that an occupied cell of the grid overlaps.
 void PlanningGrid::mark_seen(const ObstacleGrid& grid, time::Time stamp, std::vector<Cell>& touched) {
   const auto first = [&](double edge_m) {
     return static_cast<std::int32_t>(std::floor(edge_m / resolution_m_ + kRounding_cells));
@@ -143,7 +143,8 @@ std::vector<Cell> PlanningGrid::set_blocked(std::set<Cell> cells) {
   return renew(touched);
 }
 
-/// All cells whose centre is within half a diagonal: consecutive ones share an edge, as steps of paths do.
+/// Marks all cells whose centre is within half a cell's diagonal: consecutive ones share an edge, as the steps of paths
+/// do.
 void PlanningGrid::mark_driven(const Eigen::Vector2d& robot_map) {
   const Cell middle = cell_of(robot_map);
   for (Cell step{0, -1}; step.y <= 1; ++step.y) {
@@ -170,7 +171,7 @@ bool PlanningGrid::has_passing_obstacles() const {
                      [&](const auto& entry) { return mapped_.at(entry.first) == mapping::kFree; });
 }
 
-/// Brings the state of these cells up to date, and the distances; returns those that changed.
+/// Updates the state of these cells, and the distances; returns the cells whose state changed.
 std::vector<Cell> PlanningGrid::renew(std::span<const Cell> touched) {
   std::vector<Cell> changed;
   for (const Cell& c : touched) {

@@ -5,13 +5,14 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kAhead_m = 0.35;         // what stops the robot is about there
-constexpr double kNearEnough_m = 1.0;     // to a place that itself cannot be reached
-constexpr double kPathTolerance_m = 1.0;  // around the robot what the path crosses does not matter
+constexpr double kAhead_m = 0.35;         // distance ahead of the robot at which an obstruction is assumed
+constexpr double kNearEnough_m = 1.0;     // accepted distance from a place that cannot be reached
+constexpr double kPathTolerance_m = 1.0;  // nearer to the robot, obstacles on the path are ignored
 
 double distance(const Pose2& a, const Pose2& b) { return (a.p_map - b.p_map).norm(); }
 
-// Of the cells that can be reached; the robot may have started where it cannot get back to, as beside a wall.
+// The nearest cell that can be reached. The place itself may be out of reach, such as a start of the mission beside a
+// wall.
 std::optional<Cell> nearest_reached(const PlanningGrid& grid, const CostTree& tree, const Eigen::Vector2d& place_map) {
   const Cell middle = grid.cell_of(place_map);
   const int reach = static_cast<int>(kNearEnough_m / grid.resolution_m());

@@ -12,14 +12,14 @@
 
 namespace lapis::planner {
 
-/// Cells along one edge of a chunk.
+/// Number of cells along an edge of a chunk.
 inline constexpr std::int32_t kChunkEdge = 32;
 
-/// Chunk that contains a cell.
+/// The chunk that contains a cell.
 constexpr Cell chunk_of(Cell c) { return {c.x >> 5, c.y >> 5}; }
 
-/// A value for every cell of the plane. Memory is taken in chunks of 32 x 32 cells where values differ from the
-/// default, plus one pointer for every chunk of the box around them. References stay valid.
+/// A value for every cell of the plane. Memory is allocated in chunks of 32 x 32 cells where values differ from the
+/// default, plus one pointer for every chunk of the box around them. References to values stay valid.
 template <class T>
 class SparseGrid {
  public:
@@ -29,13 +29,13 @@ class SparseGrid {
     const Chunk* chunk = find(chunk_of(c));
     return chunk != nullptr ? (*chunk)[offset(c)] : default_;
   }
-  /// The cell's value to write to.
+  /// The cell's value, for writing.
   T& operator[](Cell c) { return make(chunk_of(c))[offset(c)]; }
   void set(Cell c, const T& value) {
     if (!(at(c) == value)) (*this)[c] = value;
   }
 
-  /// Sorted; not for the default.
+  /// All cells with this value, which must not be the default; sorted.
   std::vector<Cell> cells_with(const T& value) const {
     std::vector<Cell> cells;
     for (std::size_t i = 0; i < chunks_.size(); ++i) {

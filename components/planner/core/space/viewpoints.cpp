@@ -11,7 +11,7 @@ namespace lapis::planner {
 namespace {
 
 struct RingCell {
-  std::uint64_t rank;  ///< by which they are taken
+  std::uint64_t rank;  ///< cells are taken in the order of their rank
   Cell cell;
   auto operator<=>(const RingCell&) const = default;
 };
@@ -21,13 +21,13 @@ std::uint64_t draw(std::uint64_t seed, Cell c) {
   return mapping::mix_bits(mapping::mix_bits(seed) ^ (std::uint64_t{y} << 32 | x));
 }
 
-/// Number of the sector of `count` around `middle` in which a cell lies.
+/// Index of the sector, of `count` around `middle`, in which a cell lies.
 std::size_t sector_of(Cell c, Cell middle, std::size_t count) {
   const double turns = 0.5 + std::atan2(c.y - middle.y, c.x - middle.x) / (2.0 * std::numbers::pi);
   return std::min(count - 1, static_cast<std::size_t>(turns * static_cast<double>(count)));
 }
 
-/// Cells of the ring that can be reached, in the order in which they are taken; `lack` says what the best ones lack.
+/// Cells of the ring that can be reached, in the order of their rank; sets `lack` to what the best cells lack.
 std::vector<RingCell> reachable_ring(const PlanningGrid& grid, const CostTree& paths, Cell target,
                                      const ViewpointConfig& config, Rejection& lack) {
   std::vector<RingCell> ring;
@@ -63,9 +63,9 @@ std::vector<Viewpoint> one_per_sector(const PlanningGrid& grid, const CostTree& 
   return viewpoints;
 }
 
-/// Seen from a middle, two places lie in about the same direction.
+/// True when two places lie in about the same direction from `middle`.
 bool is_same_side(const Eigen::Vector2d& middle, const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
-  constexpr double kSide_cos = 0.5;  // 60 degrees
+  constexpr double kSide_cos = 0.5;  // of 60 degrees
   return (a - middle).dot(b - middle) >= kSide_cos * (a - middle).norm() * (b - middle).norm();
 }
 

@@ -9,7 +9,7 @@
 namespace lapis::planner {
 namespace {
 
-// Of no symmetry, so that it has a share of every eigenvector.
+// A pseudo-random vector: it has no symmetry, so it has a component along every eigenvector.
 Eigen::VectorXd scattered_vector(int size) {
   std::mt19937 random(1);
   Eigen::VectorXd vector(size);
@@ -30,7 +30,7 @@ LargestRitz largest_ritz(const Eigen::VectorXd& diagonal, const Eigen::VectorXd&
   return {solver.eigenvalues().tail<1>()[0], solver.eigenvectors().rightCols<1>()};
 }
 
-// One run from a unit vector of sum 0, of at most `steps`; counts them.
+// One run of at most `steps` steps from a unit vector with sum 0; adds its solves to `solves`.
 FiedlerPair lanczos(const LaplacianFactor& factor, const Eigen::VectorXd& start, int steps, double tolerance,
                     int& solves) {
   Eigen::MatrixXd basis(factor.node_count(), steps);

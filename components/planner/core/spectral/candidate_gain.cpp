@@ -12,14 +12,14 @@
 namespace lapis::planner {
 namespace {
 
-// Least square of a pivot, of the node's degree: below, rounding has eaten what connects the node.
+// Least squared pivot relative to the node's degree: below it, rounding errors have destroyed the node's connection.
 constexpr double kLeastPivot = 1e-12;
 
 double log_determinant(const Eigen::LLT<Eigen::MatrixXd>& factor) {
   return 2.0 * factor.matrixLLT().diagonal().array().log().sum();
 }
 
-// Adds an edge's Laplacian.
+// Adds the Laplacian of an edge.
 void add_edge(Eigen::MatrixXd& laplacian, Eigen::Index a, Eigen::Index b, double weight) {
   laplacian(a, a) += weight;
   laplacian(b, b) += weight;
@@ -27,7 +27,7 @@ void add_edge(Eigen::MatrixXd& laplacian, Eigen::Index a, Eigen::Index b, double
   laplacian(b, a) -= weight;
 }
 
-// Rows of the small matrices: the new nodes, then the old ones that are touched.
+// Rows of the small matrices: first the new nodes, then the old nodes that edges touch.
 class TouchedNodes {
  public:
   TouchedNodes(int first_new, const HallucinatedGraph& candidate)
@@ -89,9 +89,10 @@ std::variant<CandidateGain, GraphError> CandidateGain::make(const LaplacianFacto
   return gain;
 }
 
-// With C, B and D the blocks of `certain` by new and old nodes and G the old nodes' covariance, F = -C^-1 B takes moves
-// of the old nodes to the new ones, M = D + B' F is what the certain edges say about the old nodes, and these have then
-// (G^-1 + M)^-1 = (I + G M)^-1 G. False when C is singular. Lazy products are the faster ones of matrices this small.
+// Let C, B and D be the blocks of `certain` by new and old nodes, and G the covariance of the old nodes. F = -C^-1 B
+// transfers displacements of the old nodes to the new ones, M = D + B' F is the information of the certain edges on the
+// old nodes, and their covariance becomes (G^-1 + M)^-1 = (I + G M)^-1 G. Returns false when C is singular. Lazy
+// products are faster for matrices this small.
 bool CandidateGain::add_certain(const Eigen::MatrixXd& certain, const Eigen::MatrixXd& G) {
   const Eigen::Index k = new_nodes_, s = G.rows();
   new_block_ = certain.topLeftCorner(k, k);
@@ -125,7 +126,7 @@ std::vector<CandidateGain::LoopEdge> CandidateGain::loops_to(PlaceSet places) co
   return chosen;
 }
 
-// I + W^1/2 R W^1/2, R the covariance of the differences across the loop edges.
+// I + W^1/2 R W^1/2, where R is the covariance of the differences across the loop edges.
 Eigen::MatrixXd CandidateGain::loop_system(const std::vector<LoopEdge>& loops) const {
   const auto size = std::ssize(loops);
   Eigen::MatrixXd system = Eigen::MatrixXd::Identity(size, size);
@@ -137,7 +138,7 @@ Eigen::MatrixXd CandidateGain::loop_system(const std::vector<LoopEdge>& loops) c
       system(i, j) += std::sqrt(e.weight * f.weight) * across;
     }
   }
-  return system;  // only the lower triangle
+  return system;  // only the lower triangle is set
 }
 
 double CandidateGain::loop_gain(PlaceSet places) const {

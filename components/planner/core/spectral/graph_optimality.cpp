@@ -14,8 +14,8 @@ double trace(const WeightedGraph& graph) {
   return sum;
 }
 
-/// 1/l_2 + ... + 1/l_n, the trace of the Laplacian's pseudo-inverse. That is P G P with G the inverse of the reduced
-/// Laplacian, zero at the anchor, and P what takes the mean away.
+/// 1/l_2 + ... + 1/l_n, the trace of the Laplacian's pseudo-inverse P G P, where G is the inverse of the reduced
+/// Laplacian, with zeros at the anchor, and P removes the mean.
 double trace_of_inverse(const LaplacianFactor& factor) {
   const int n = factor.node_count();
   double sum = -factor.solve(Eigen::VectorXd::Ones(n)).sum() / n;

@@ -9,7 +9,8 @@
 namespace lapis::planner {
 namespace {
 
-// Least square of a pivot, of its element of the diagonal: below, rounding has eaten the digits.
+// Least squared pivot relative to its diagonal element: below it, rounding errors have destroyed the significant
+// digits.
 constexpr double kLeastRelativePivot = 1e-12;
 
 std::size_t place(int i) { return static_cast<std::size_t>(i); }
@@ -30,16 +31,16 @@ cholmod_sparse view_of(LowerTriangle& triangle) {
   return matrix;
 }
 
-// LL' by columns.
+// Factor LL', stored by columns.
 struct Cholmod {
   explicit Cholmod(LowerTriangle& triangle) {
     cholmod_start(&common);
     common.print = 0;
     common.nmethods = 1;
-    // Nested dissection keeps the paths to the root short; minimum degree makes long ones of the ends of a chain.
+    // Nested dissection keeps the paths to the root short; minimum degree makes them long from the ends of a chain.
     common.method[0].ordering = CHOLMOD_METIS;
     common.supernodal = CHOLMOD_SIMPLICIAL;
-    common.final_ll = 1;  // LL': finds a matrix that is not positive definite
+    common.final_ll = 1;  // LL' detects a matrix that is not positive definite
     common.quick_return_if_not_posdef = 1;
     cholmod_sparse matrix = view_of(triangle);
     factor = cholmod_analyze(&matrix, &common);
@@ -58,7 +59,7 @@ struct Cholmod {
 
 }  // namespace
 
-// Column of L^-1 along its path, root first.
+// Column of L^-1 along the path of its index to the root, in the order from the root.
 struct SparseCholesky::Path {
   std::vector<int> columns;
   std::vector<double> values;
@@ -124,7 +125,7 @@ SparseCholesky::Path SparseCholesky::path_of(int index) const {
 Eigen::MatrixXd SparseCholesky::inverse(std::span<const int> indices) const {
   std::vector<Path> paths;
   for (const int index : indices) paths.push_back(path_of(index));
-  // The paths of two indices meet at the root, and are the same up to where they part.
+  // The paths of two indices begin at the root and are the same up to the column at which they part.
   const auto product = [&](const Path& left, const Path& right) {
     const auto size = std::min(left.columns.size(), right.columns.size());
     const auto end = left.columns.begin() + static_cast<std::ptrdiff_t>(size);

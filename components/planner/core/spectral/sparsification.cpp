@@ -17,9 +17,10 @@
 namespace lapis::planner {
 namespace {
 
-// Of Fiedler vectors on the way: any unit vector gives a valid bound.
+// Tolerance of Fiedler vectors during the relaxation, where any unit vector gives a valid bound.
 constexpr double kRelaxedTolerance = 1e-6;
-// Picks between two factorisations: each costs a product with the vectors of all picks since.
+// Number of picks between two factorisations: each pick costs a product with the vectors of all picks since the last
+// one.
 constexpr int kPicksPerFactor = 64;
 
 std::optional<GraphError> problem_error(const SparsificationProblem& problem) {
@@ -35,7 +36,7 @@ std::optional<GraphError> problem_error(const SparsificationProblem& problem) {
   return error == nullptr ? std::nullopt : std::optional(*error);
 }
 
-// Of the graph of the fixed edges and x times the candidates.
+// Factor of the graph of the fixed edges and of the candidates with weights x w.
 std::variant<LaplacianFactor, GraphError> factor_of(const SparsificationProblem& problem, const Eigen::VectorXd& x) {
   std::vector<WeightedEdge> edges = problem.fixed;
   for (int k = 0; k < std::ssize(problem.candidates); ++k) {
@@ -47,13 +48,14 @@ std::variant<LaplacianFactor, GraphError> factor_of(const SparsificationProblem&
   return LaplacianFactor::make(std::get<WeightedGraph>(graph));
 }
 
-// v' L v of the edge.
+// v' L v, where L is the Laplacian of the edge.
 double energy(const WeightedEdge& edge, const Eigen::VectorXd& v) {
   const double difference = v[edge.a] - v[edge.b];
   return edge.weight * difference * difference;
 }
 
-// 1 for the `count` candidates of largest value, the heavier and then the first of equal ones, 0 for the others.
+// 1 for the `kept` candidates of largest value, 0 for the others; of equal values, the heavier candidate comes first,
+// then the earlier one.
 Eigen::VectorXd largest(const SparsificationProblem& problem, const Eigen::VectorXd& values) {
   std::vector<int> order(problem.candidates.size());
   std::iota(order.begin(), order.end(), 0);
@@ -67,7 +69,8 @@ Eigen::VectorXd largest(const SparsificationProblem& problem, const Eigen::Vecto
   return chosen;
 }
 
-// Madow (1949): candidate k is chosen where one of offset, offset + 1, ... falls into its interval of the sums of x.
+// Systematic sampling by Madow (1949): candidate k is chosen when one of offset, offset + 1, ... falls into its
+// interval of the cumulative sums of x.
 Eigen::VectorXd systematic_sample(const Eigen::VectorXd& x, double offset) {
   Eigen::VectorXd chosen = Eigen::VectorXd::Zero(x.size());
   double sum = 0.0;
@@ -92,7 +95,8 @@ struct Relaxed {
   double upper_bound = std::numeric_limits<double>::infinity();
 };
 
-// Frank and Wolfe (1956). The connectivity of any choice s is at most v' L(s) v, v any unit vector of sum 0.
+// The method of Frank and Wolfe (1956). The connectivity of any choice s is at most v' L(s) v for any unit vector v
+// with sum 0.
 std::variant<Relaxed, GraphError> relax(const SparsificationProblem& problem, const MacConfig& config) {
   const Eigen::Index m = std::ssize(problem.candidates);
   Relaxed relaxed;
@@ -116,7 +120,7 @@ std::variant<Relaxed, GraphError> relax(const SparsificationProblem& problem, co
   return relaxed;
 }
 
-// Effective resistance of every candidate in a graph that grows by one candidate after the other.
+// Effective resistance of every candidate in a graph that grows by one candidate at a time.
 class GrowingGraph {
  public:
   GrowingGraph(const SparsificationProblem& problem, LaplacianFactor factor)
@@ -130,7 +134,7 @@ class GrowingGraph {
 
   double log_trees() const { return factor_.log_trees(); }
 
-  // w r of each candidate, which gains ln(1 + w r), 0 of those chosen.
+  // w r of each candidate, which would gain ln(1 + w r); 0 for chosen candidates.
   Eigen::VectorXd shares(const Eigen::VectorXd& chosen) const {
     Eigen::VectorXd result(chosen.size());
     for (int k = 0; k < chosen.size(); ++k) {
@@ -139,7 +143,8 @@ class GrowingGraph {
     return result;
   }
 
-  // Sherman and Morrison: A^-1 loses z z', z = A^-1 a / sqrt(1/w + a' A^-1 a), a the edge's column of incidence.
+  // By Sherman and Morrison, A^-1 loses z z' with z = A^-1 a / sqrt(1/w + a' A^-1 a), where a is the edge's column of
+  // incidence.
   void add(const WeightedEdge& edge) {
     Eigen::VectorXd z = Eigen::VectorXd::Zero(problem_.node_count);
     z[edge.a] = 1.0;
@@ -158,10 +163,10 @@ class GrowingGraph {
   const SparsificationProblem& problem_;
   LaplacianFactor factor_;
   Eigen::VectorXd resistances_;
-  std::vector<Eigen::VectorXd> updates_;  // z of each edge since the factorisation
+  std::vector<Eigen::VectorXd> updates_;  // z of each edge added since the factorisation
 };
 
-// Moves the edges of the heaviest spanning tree to the front: Kruskal's algorithm. Returns their end.
+// Moves the edges of the maximum spanning tree to the front (Kruskal's algorithm). Returns the end of the tree.
 std::vector<WeightedEdge>::iterator tree_first(int node_count, std::vector<WeightedEdge>& edges) {
   std::stable_sort(edges.begin(), edges.end(),
                    [](const WeightedEdge& left, const WeightedEdge& right) { return left.weight > right.weight; });
@@ -217,7 +222,7 @@ std::variant<Sparsification, GraphError> maximize_log_trees(const Sparsification
     chosen[best] = 1.0;
     graph->add(problem.candidates[static_cast<std::size_t>(best)]);
   }
-  // Submodular: what is not chosen gains no more in a larger graph.
+  // ln S is submodular: a candidate that is not chosen gains no more in a larger graph.
   const Eigen::VectorXd gains = graph->shares(chosen).array().log1p();
   return Sparsification{indices(chosen), graph->log_trees(), graph->log_trees() + gains.dot(largest(problem, gains))};
 }

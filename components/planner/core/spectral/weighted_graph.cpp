@@ -12,7 +12,7 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kSymmetry = 1e-9;  // of the matrix' norm
+constexpr double kSymmetry = 1e-9;  // relative to the norm of the matrix
 
 double mean_eigenvalue(const Information& information, const Eigen::LLT<Information>& factor, Criterion criterion) {
   switch (criterion) {
@@ -28,7 +28,7 @@ double mean_eigenvalue(const Information& information, const Eigen::LLT<Informat
   return std::numeric_limits<double>::quiet_NaN();
 }
 
-// Sets of nodes that hang together.
+// Sets of connected nodes (union-find).
 class Components {
  public:
   explicit Components(std::size_t nodes) : parent_(nodes) { std::iota(parent_.begin(), parent_.end(), 0); }
@@ -47,7 +47,7 @@ std::vector<WeightedEdge> merged(std::vector<WeightedEdge> edges) {
   for (WeightedEdge& edge : edges) {
     if (edge.a > edge.b) std::swap(edge.a, edge.b);
   }
-  // Stable: parallel edges add in the order given.
+  // The sort is stable, so that the weights of parallel edges are added in the given order.
   std::stable_sort(edges.begin(), edges.end(), [](const WeightedEdge& left, const WeightedEdge& right) {
     return std::pair(left.a, left.b) < std::pair(right.a, right.b);
   });

@@ -7,7 +7,7 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kLeastGain = 1e-9;  // rounding must not make it go round in circles
+constexpr double kLeastGain = 1e-9;  // rounding must not lead to endless improvements
 
 using Order = std::vector<int>;
 
@@ -19,7 +19,7 @@ double insertion_cost(const Eigen::MatrixXd& cost, const Order& order, std::size
   return before + cost(node, order[at]) - cost(order[at - 1], order[at]);
 }
 
-// The node that lengthens the tour least, where it does so, until all are in.
+// Cheapest insertion: repeatedly inserts the node that lengthens the tour least, at the best position.
 Order insert_all(const Eigen::MatrixXd& cost, bool ends_at_last) {
   const int nodes = static_cast<int>(cost.rows());
   Order order{0}, left;
@@ -43,7 +43,7 @@ Order insert_all(const Eigen::MatrixXd& cost, bool ends_at_last) {
   return order;
 }
 
-/// Keeps the first change, of reversals and moves in [1, end), that makes the tour shorter.
+/// Makes the first change that shortens the tour, of reversals and moves in [1, end). Returns false when there is none.
 bool improve(const Eigen::MatrixXd& cost, std::ptrdiff_t end, Order& order, double& length) {
   Order changed = order;
   const auto is_better = [&] {
@@ -59,10 +59,10 @@ bool improve(const Eigen::MatrixXd& cost, std::ptrdiff_t end, Order& order, doub
       std::reverse(first, last);
       if (is_better()) return true;
       std::reverse(first, last);
-      std::rotate(first, first + 1, last);  // the first to the end
+      std::rotate(first, first + 1, last);  // move the first node to the end
       if (is_better()) return true;
       std::rotate(first, last - 1, last);
-      std::rotate(first, last - 1, last);  // the last to the beginning
+      std::rotate(first, last - 1, last);  // move the last node to the beginning
       if (is_better()) return true;
       std::rotate(first, first + 1, last);
     }

@@ -14,11 +14,11 @@ namespace lapis::planner {
 namespace {
 
 constexpr int kHeadings = 8;
-constexpr std::size_t kChoices = 3;  // best viewpoints among which one is drawn
+constexpr std::size_t kChoices = 3;  // number of best viewpoints of which one is drawn
 constexpr int kTours = 10;
-constexpr double kSureView = 0.9;             // of the field of view: what is at its edge may be missed
-constexpr double kSubSpacesPerHorizon = 5.0;  // along an edge of the local area
-constexpr std::size_t kMostSubSpaces = 30;    // in the coarse tour
+constexpr double kSureView = 0.9;             // share of the field of view; targets at its edge may be missed
+constexpr double kSubSpacesPerHorizon = 5.0;  // number along an edge of the local area
+constexpr std::size_t kMostSubSpaces = 30;    // largest number in the coarse tour
 constexpr double kSameGoal_m = 0.5, kSameGoal_rad = 0.5;
 constexpr double kForbidden_m = 1e6;
 
@@ -32,7 +32,7 @@ bool is_left_alone(const TourProblem& problem, Cell c) {
   return why_left_alone(problem.left_alone, p, std::nullopt, problem.radius_m) != Rejection::kNone;
 }
 
-/// Why it is not to be viewed from there; kNone: it may be.
+/// Why the target must not be viewed from there; kNone when it may be.
 Rejection why_not_viewed(const TourProblem& problem, Cell from, Cell target) {
   const Eigen::Vector2d p = problem.grid.center_of(target), from_map = problem.grid.center_of(from);
   const Rejection why = why_left_alone(problem.left_alone, p, from_map, problem.radius_m);
@@ -40,24 +40,24 @@ Rejection why_not_viewed(const TourProblem& problem, Cell from, Cell target) {
   return std::max(why, Rejection::kFailedView);
 }
 
-/// Cell of a frontier that is to be covered.
+/// A cell of a frontier that has to be covered.
 struct Target {
   Cell cell;
   std::uint32_t frontier;
 };
 
-/// A viewpoint of the lattice with the targets that it covers.
+/// A viewpoint of the lattice, with the targets that it covers.
 struct LocalView {
   TourStop stop;
   std::vector<std::size_t> covered;
 };
 
-/// Costs of paths between stops; searches each of them once.
+/// Costs of paths between stops; the search from each stop is done once.
 class PathCosts {
  public:
   explicit PathCosts(const TourProblem& problem) : problem_(problem) {}
 
-  /// Node 0 is the robot, node i stops[i - 1].
+  /// Costs [m] between nodes: node 0 is the robot, node i is stops[i - 1].
   Eigen::MatrixXd between(const std::vector<TourStop>& stops, double max_cost_m) {
     const auto count = static_cast<Eigen::Index>(stops.size());
     Eigen::MatrixXd cost = Eigen::MatrixXd::Zero(count + 1, count + 1);
@@ -93,7 +93,8 @@ struct TourOrder {
   double length_m = 0.0;
 };
 
-/// A short tour from the robot; what is being driven to stays the first stop unless another order is much shorter.
+/// A short tour from the robot. The current goal stays the first stop unless another order is shorter by the keep
+/// factor.
 TourOrder order(const TourProblem& problem, PathCosts& costs, const std::vector<TourStop>& stops, bool ends_at_last,
                 double max_cost_m) {
   if (stops.empty()) return {};
@@ -125,7 +126,7 @@ std::vector<Target> targets_around(const TourProblem& problem, double reach_m) {
   return targets;
 }
 
-/// What a camera in a cell covers, by heading; the nearest target first.
+/// Targets that a camera in a cell covers, by heading; the nearest target comes first.
 std::array<std::vector<std::size_t>, kHeadings> covered_from(const TourProblem& problem, const TareConfig& config,
                                                              const std::vector<Target>& targets, Cell from) {
   std::array<std::vector<std::size_t>, kHeadings> covered;
@@ -152,7 +153,8 @@ std::size_t least_reward(const TourProblem& problem, const TareConfig& config) {
   return static_cast<std::size_t>(std::max(1.0, std::ceil(config.min_reward_m / problem.grid.resolution_m() - 1e-9)));
 }
 
-/// The lattice does not move with the robot, so that a viewpoint stays one while it is driven to.
+/// Viewpoints of the local area. The lattice does not move with the robot, so that a viewpoint still exists while the
+/// robot drives to it.
 std::vector<LocalView> local_views(const TourProblem& problem, const TareConfig& config,
                                    const std::vector<Target>& targets) {
   const PlanningGrid& grid = problem.grid;
@@ -179,7 +181,7 @@ std::vector<LocalView> local_views(const TourProblem& problem, const TareConfig&
   return views;
 }
 
-/// Chooses viewpoints until all that is left to gain is less than `least` targets at each.
+/// Draws viewpoints until each of the others would cover fewer than `least` further targets.
 class RandomChoice {
  public:
   RandomChoice(const std::vector<LocalView>& views, std::size_t targets, std::size_t least)
@@ -194,7 +196,7 @@ class RandomChoice {
   }
 
  private:
-  using Ranked = std::pair<std::size_t, const LocalView*>;  // by targets that it would cover besides
+  using Ranked = std::pair<std::size_t, const LocalView*>;  // number of further targets that it would cover, viewpoint
 
   std::vector<Ranked> best_ones() const {
     std::vector<Ranked> best;
@@ -219,7 +221,7 @@ class RandomChoice {
   std::vector<TourStop> stops_;
 };
 
-/// The best viewpoint of a frontier: the one being driven to, else the cheapest.
+/// The best viewpoint of a frontier: the current goal if it is one, otherwise the cheapest.
 std::optional<TourStop> stop_at(const TourProblem& problem, const Frontier& frontier, Tour& tour) {
   const ViewpointResult found = sample_viewpoints(problem.grid, problem.paths, frontier, problem.viewpoints);
   std::optional<TourStop> best;
@@ -235,7 +237,7 @@ std::optional<TourStop> stop_at(const TourProblem& problem, const Frontier& fron
   return best;
 }
 
-/// One stop in each sub-space of what no local viewpoint covers, the cheapest first.
+/// One stop in each sub-space with frontiers that no local viewpoint covers, the cheapest first.
 std::vector<TourStop> sub_spaces(const TourProblem& problem, const TareConfig& config,
                                  const std::vector<LocalView>& views, const std::vector<Target>& targets, Tour& tour) {
   std::set<std::uint32_t> is_local;
@@ -265,7 +267,7 @@ std::vector<TourStop> sub_spaces(const TourProblem& problem, const TareConfig& c
   return stops;
 }
 
-/// Frontiers that a stop at another one covers, or that are in the same sub-space as one.
+/// Names the frontiers that are covered from a stop at another one, or that share a sub-space with another stop.
 void name_the_rest(const TourProblem& problem, Tour& tour) {
   std::set<std::uint32_t> named;
   for (const TourStop& stop : tour.stops) named.insert(stop.frontier);
@@ -294,7 +296,7 @@ Tour plan_tour(const TourProblem& problem, const TareConfig& config) {
     if (!local || order_of.length_m < local->length_m) local = std::move(order_of);
   }
   if (local) tour.stops = std::move(local->stops);
-  if (local && !global.stops.empty()) tour.stops.pop_back();  // where it ends towards
+  if (local && !global.stops.empty()) tour.stops.pop_back();  // the global stop at which the local tour ends
   tour.local_stops = tour.stops.size();
   tour.stops.insert(tour.stops.end(), global.stops.begin(), global.stops.end());
   name_the_rest(problem, tour);

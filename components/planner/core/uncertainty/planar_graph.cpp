@@ -7,18 +7,18 @@
 namespace lapis::planner {
 namespace {
 
-constexpr int kSize = 3;  // unknowns of a key-frame
+constexpr int kSize = 3;  // number of unknowns of a key-frame
 
 using Unknowns = Eigen::Matrix<double, 6, kSize>;
 
-/// Block of the information matrix, on or below the diagonal.
+/// A block of the information matrix, on or below the diagonal.
 struct Block {
   int column, row;
   Eigen::Matrix3d value;
 };
 
-/// What the errors of a pose in the plane are in its own tangent: a turn about the vertical through the camera does not
-/// move it.
+/// Maps the planar errors of a pose to its own tangent space: a turn about the vertical axis through the camera does
+/// not displace the camera.
 Unknowns tangent_of(const geometry::Pose& T_map_camera) {
   const Eigen::Matrix3d R_camera_map = T_map_camera.linear().transpose();
   Unknowns tangent = Unknowns::Zero();
@@ -27,7 +27,7 @@ Unknowns tangent_of(const geometry::Pose& T_map_camera) {
   return tangent;
 }
 
-/// Of an edge from `a` to `b`: its error is that of `b` less that of `a`, carried to `b`.
+/// Adds the blocks of an edge from `a` to `b`. Its error is that of `b` minus that of `a`, carried to `b`.
 void add_edge(int a, int b, const geometry::Pose& T_map_a, const geometry::Pose& T_map_b,
               const Information& information, std::vector<Block>& blocks) {
   const Unknowns at_a = -geometry::adjoint(T_map_b.inverse() * T_map_a) * tangent_of(T_map_a);
@@ -41,7 +41,7 @@ void add_edge(int a, int b, const geometry::Pose& T_map_a, const geometry::Pose&
   }
 }
 
-/// Sums what lies at the same place. Node 0 is left out.
+/// Sums the blocks at the same position, without node 0.
 LowerTriangle assemble(int nodes, std::vector<Block> blocks) {
   std::erase_if(blocks, [](const Block& block) { return block.column == 0; });
   std::stable_sort(blocks.begin(), blocks.end(), [](const Block& a, const Block& b) {

@@ -14,23 +14,24 @@
 
 namespace lapis::planner {
 
-/// slam's pose graph with three unknowns for each key-frame: its errors along x and y of the map frame [m] and of its
-/// heading about z [rad], as a robot on a floor makes them. The information of the edges is that of all six, held in
-/// the other three. The first key-frame has no errors. Made once per version of the graph and only read afterwards.
+/// slam's pose graph with three unknowns per key-frame: its errors along x and y of the map frame [m] and of its
+/// heading about z [rad], because the robot moves on a floor. The edges have information on all six degrees of freedom;
+/// the errors of the other three are held at zero. The first key-frame has no errors. The graph is made once per
+/// version and then only read.
 class PlanarGraph {
  public:
-  /// The part that hangs together with the newest key-frame; node i is keyframes()[i].
-  /// @param keyframes by ascending id
-  /// @param edges information in the tangent (translation, rotation) of a right perturbation at `to`, 6x6
-  /// The error says that an edge has no weight, has no information of a pose, or names a key-frame that is not there,
-  /// that there are fewer than two connected key-frames, or that the matrix is singular to rounding.
+  /// The part of the graph that is connected to the newest key-frame; node i is keyframes()[i]. The error says that an
+  /// edge has no weight, does not have the information of a pose, or names a key-frame that does not exist, that there
+  /// are fewer than two connected key-frames, or that the matrix is singular up to rounding.
+  /// @param keyframes sorted by id
+  /// @param edges with 6x6 information in the tangent space (translation, rotation) of a right perturbation at `to`
   static std::variant<PlanarGraph, GraphError> make(std::span<const Keyframe> keyframes,
                                                     std::span<const KeyframeEdge> edges);
 
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
-  /// Joint covariance of nodes, which may repeat: three rows and columns each.
+  /// Joint covariance of nodes, which may repeat: three rows and columns (x, y, heading) per node [m, rad].
   Eigen::MatrixXd covariance(std::span<const int> nodes) const;
-  /// Covariance of each node alone.
+  /// Covariance of each node by itself.
   std::vector<Eigen::Matrix3d> marginals() const;
 
  private:
@@ -38,7 +39,7 @@ class PlanarGraph {
       : keyframes_(std::move(keyframes)), factor_(std::move(factor)) {}
 
   std::vector<Keyframe> keyframes_;
-  SparseCholesky factor_;  // three indices for each node but the first
+  SparseCholesky factor_;  // three indices per node, without the first node
 };
 
 }  // namespace lapis::planner

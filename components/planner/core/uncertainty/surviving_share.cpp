@@ -22,7 +22,7 @@ double surface_sigma_m(const Eigen::Matrix3d& covariance, const Eigen::Vector3d&
   return std::sqrt(std::max(0.5 * (J * covariance * J.transpose()).trace(), 0.0));
 }
 
-/// With q = |d| / h, the mean of max(0, 1 - q |cos phi|) over a quarter turn: up to acos(1 / q) nothing is left.
+/// With q = |d| / h, the mean of max(0, 1 - q |cos phi|) over a quarter turn; it is zero for phi below acos(1 / q).
 double surviving_share_of(const Eigen::Vector2d& displacement_m, double edge_m) {
   const double edges = displacement_m.norm() / edge_m;
   const double first = edges > 1.0 ? std::acos(1.0 / edges) : 0.0;

@@ -1,7 +1,8 @@
 #pragma once
 
-// The topic table: every name, type and QoS that Lapis's processes promise each other.
-// docs/topics.md is printed from it. Who uses topics includes their groups: all of them cost the compiler seconds.
+// The topic table: all names, types and QoS settings that Lapis's processes agree on. docs/topics.md is printed from
+// it. Source files include only the groups of topics that they use, because all groups together cost seconds of compile
+// time.
 
 #include "common/topics/camera.hpp"
 #include "common/topics/controller.hpp"

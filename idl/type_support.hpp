@@ -2,7 +2,7 @@
 
 namespace lapis::idl {
 
-/// What the wire calls a message type. Every struct of every package has a specialisation, in "idl/<package>.hpp":
+/// Names of a message type on the wire. Every struct of every package has a specialisation in "idl/<package>.hpp":
 ///
 ///     using PubSubType = ...;                 Fast DDS's type support of T
 ///     static constexpr const char* kRosName;  "sensor_msgs/msg/Image"
@@ -12,7 +12,8 @@ namespace lapis::idl {
 template <typename T>
 struct TypeSupport;
 
-/// A service, named by an empty tag as in ROS 2's C++ (std_srvs::srv::Trigger); specialised in "idl/<package>.hpp":
+/// A service. An empty tag type names it, as in ROS 2's C++ (std_srvs::srv::Trigger); specialised in
+/// "idl/<package>.hpp":
 ///
 ///     using Request = ...; using Response = ...;
 ///     static constexpr const char* kRosName;  "std_srvs/srv/Trigger"

@@ -5,18 +5,18 @@
 
 namespace lapis::idl {
 
-/// A message type known to this build, for code that meets types by name (recording, probing).
+/// A message type of this build, for code that looks up types by name (recording, probing).
 struct TypeEntry {
   std::string_view ros_name;      ///< "sensor_msgs/msg/Image"
   std::string_view dds_name;      ///< "sensor_msgs::msg::dds_::Image_"
   std::string_view hash;          ///< "RIHS01_..."
-  std::string_view ros2msg_text;  ///< schema with all dependencies, as rosbag2 writes it (encoding `ros2msg`)
+  std::string_view ros2msg_text;  ///< schema with all dependencies, in the format of rosbag2 (encoding `ros2msg`)
 };
 
 /// All types, sorted by ROS name.
 std::span<const TypeEntry> type_table();
 
-/// The type of that ROS name; nullptr when it is not known.
+/// The type with this ROS name; nullptr when there is none.
 const TypeEntry* find(std::string_view ros_name);
 
 }  // namespace lapis::idl

@@ -9,7 +9,7 @@
 namespace lapis::config {
 namespace {
 
-/// Bytes of the UTF-8 character at the beginning of `text`; 0: none begins there.
+/// Number of bytes of the UTF-8 character at the beginning of `text`; 0 when no valid character begins there.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = static_cast<unsigned char>(text.front());
   const std::size_t length = byte < 0x80 ? 1 : byte >> 5 == 6 ? 2 : byte >> 4 == 14 ? 3 : byte >> 3 == 30 ? 4 : 0;
@@ -23,7 +23,7 @@ std::size_t utf8_length(std::string_view text) {
 std::string hexadecimal_escape(char c) {
   static constexpr char kDigits[] = "0123456789abcdef";
   const auto byte = static_cast<unsigned char>(c);
-  return {'\\', 'u', '0', '0', kDigits[byte >> 4], kDigits[byte & 15]};  // in JSON, too
+  return {'\\', 'u', '0', '0', kDigits[byte >> 4], kDigits[byte & 15]};  // the escape is valid in YAML and in JSON
 }
 
 }  // namespace

@@ -11,8 +11,8 @@
 
 namespace lapis::config {
 
-/// A configuration that cannot be used; the message names the path, the value and the bound, and the source where there
-/// is one.
+/// A configuration that cannot be used; the message names the path, the value, the bound and, if there is one, the
+/// source.
 class Error : public std::runtime_error {
  public:
   using std::runtime_error::runtime_error;
@@ -21,16 +21,18 @@ class Error : public std::runtime_error {
 using Words = std::vector<std::string>;
 using Numbers = std::vector<double>;
 
-/// What a value may be: a closed interval for numbers, a list of words for text, or anything.
+/// The allowed values: a closed interval for numbers, a list of words for text, or anything.
 struct Bound {
   double lowest = -std::numeric_limits<double>::infinity();
   double highest = std::numeric_limits<double>::infinity();
   Words words;
-  std::string listed_in = {};  ///< where documents refer to for the words, which may become more; empty: they list them
+  /// Where the words are listed, for documents that must not repeat a list that may grow; empty: documents list the
+  /// words.
+  std::string listed_in = {};
 
   /// "0.1 to 20", "a | b", or empty when everything is allowed.
   std::string text() const;
-  /// The same for documents.
+  /// As text(), for documents: refers to `listed_in` when that is set.
   std::string document() const { return listed_in.empty() ? text() : listed_in; }
   /// NaN is never allowed.
   bool allows(double number) const { return number >= lowest && number <= highest; }
@@ -44,7 +46,7 @@ Bound at_least(double lowest);
 Bound one_of(Words words, std::string listed_in = "");
 Bound anything();
 
-/// One configuration value: where it is, what it may be, what it means.
+/// One configuration value: its path, its storage, its allowed values and its meaning.
 struct Entry {
   std::string path;  ///< "slam.noise.max_depth_m"
   std::variant<bool*, int*, std::int64_t*, double*, std::string*, Words*, Numbers*> value;
@@ -52,18 +54,18 @@ struct Entry {
   std::string meaning;
 };
 
-/// What keys have to be to each other: whether they are, and how it reads, with the keys by their full paths.
+/// A condition between several keys: whether it holds, and its text, which names the keys by their full paths.
 struct Rule {
   bool holds;
   std::string text;
 };
 using Rules = std::vector<Rule>;
 
-/// A key, or a section with all its keys, that configurations of before may hold.
+/// A key, or a section with all its keys, that older configurations may contain.
 struct FormerKey {
   std::string path;    ///< "planner.sensor_model"
-  std::string now;     ///< its full path today; empty: it is gone
-  std::string remark;  ///< why, or how what it said is known now; may be empty
+  std::string now;     ///< its full path today; empty: it was removed
+  std::string remark;  ///< why, or what replaces it; may be empty
 };
 
 /// Collects the entries of configuration structs. A struct takes part by a free function in its own namespace,
@@ -89,11 +91,11 @@ class Schema {
     prefix_ = outer;
   }
 
-  /// A key or section of before: who still sets it gets its full path of today.
+  /// A renamed key or section: an error for the old name gives the full path of the new one.
   void moved(const std::string& former, std::string now, std::string remark = "") {
     former_.push_back({prefix_ + former, std::move(now), std::move(remark)});
   }
-  /// One that is gone, and why.
+  /// A removed key or section, and the reason.
   void removed(const std::string& former, std::string remark) { moved(former, "", std::move(remark)); }
 
   const std::vector<Entry>& entries() const { return entries_; }
@@ -107,7 +109,7 @@ class Schema {
 
 /// Throws Error unless all values are within their bounds: "fan.length_m: 9 is out of range, allowed is 0.5 to 5".
 void check(const Schema& schema);
-/// The same for a described struct that comes from elsewhere than a configuration.
+/// The same for a described struct that does not come from a configuration.
 template <class Struct>
 void check(const std::string& section, Struct values) {
   Schema schema;
@@ -115,10 +117,10 @@ void check(const std::string& section, Struct values) {
   check(schema);
 }
 
-/// Whether it is UTF-8 without NUL, as text is.
+/// True when the text is valid UTF-8 without NUL bytes.
 bool is_utf8(std::string_view text);
-/// Text as a double-quoted YAML scalar, which JSON reads, too; bytes that are not UTF-8 become the characters with
-/// their numbers.
+/// Text as a double-quoted YAML scalar, which is valid JSON, too. A byte that is not valid UTF-8 becomes the escape of
+/// the character with its number.
 std::string quoted(const std::string& text);
 /// The entry's current value as YAML text.
 std::string to_text(const Entry& entry);

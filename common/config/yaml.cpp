@@ -22,7 +22,7 @@ std::string place(const std::string& source, const YAML::Node& node) {
   return node.Mark().is_null() ? source : source + ":" + std::to_string(node.Mark().line + 1);
 }
 
-/// Checks and stores one scalar or list; visited with the pointer to the target.
+/// Checks and stores one scalar or list; std::visit passes the pointer to the target.
 struct Store {
   const Entry& entry;
   const YAML::Node& node;
@@ -86,7 +86,7 @@ const Entry* find(const Schema& schema, const std::string& path) {
   return it == entries.end() ? nullptr : &*it;
 }
 
-/// The known key that looks most like a mistyped one: the longest common prefix wins.
+/// The known key that resembles a mistyped one most: the key with the longest common prefix.
 std::string nearest_key(const Schema& schema, const std::string& path) {
   std::string best;
   std::size_t best_length = 0;
@@ -101,7 +101,7 @@ std::string nearest_key(const Schema& schema, const std::string& path) {
   return best.empty() ? "" : " (did you mean '" + best + "'?)";
 }
 
-/// Where a key of before is today, said for the key that was given: it may be in a section that moved as a whole.
+/// What became of an old key, worded for the key that was given, which may be in a section that moved as a whole.
 std::optional<std::string> whereabouts(const Schema& schema, const std::string& path) {
   for (const auto& former : schema.former()) {
     const bool is_inside = path.compare(0, former.path.size() + 1, former.path + ".") == 0;
@@ -147,7 +147,7 @@ YAML::Node parse(const std::string& text, const std::string& source) {
   }
 }
 
-/// The text with the value of each key that it names behind the key.
+/// The text, with the current value inserted after each key that it names.
 std::string with_values(const Schema& schema, const std::string& text) {
   std::istringstream words(text);
   std::string out;

@@ -1,6 +1,6 @@
 #pragma once
 
-// The one place that knows which Fast DDS this is built against: 2.9 (Debian 12) or 3.1 (Debian 13).
+// The only file that depends on the Fast DDS version: 2.9 (Debian 12) or 3.1 (Debian 13).
 
 #include <fastdds/dds/core/condition/GuardCondition.hpp>
 #include <fastdds/dds/core/condition/WaitSet.hpp>
@@ -66,7 +66,7 @@ inline bool ok(const eprosima::fastrtps::types::ReturnCode_t& code) {
 }
 inline bool ok(bool done) { return done; }
 inline bool write(fdds::DataWriter& writer, const void* sample, rtps::WriteParams& params) {
-  return writer.write(const_cast<void*>(sample), params);  // 2.9 takes void*, but only reads
+  return writer.write(const_cast<void*>(sample), params);  // Fast DDS 2.9 takes void*, but only reads
 }
 template <class WriterQos>
 void set_timings(WriterQos& qos, DdsDuration heartbeat_period, DdsDuration response_delay) {

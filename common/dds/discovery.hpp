@@ -7,16 +7,16 @@
 
 namespace lapis::dds {
 
-/// Participants of a host that others look for. rmw_fastrtps looks for 32. Fast DDS numbers those of one process
-/// without reusing numbers, and each of ours takes two.
+/// Number of participants per host that discovery looks for (rmw_fastrtps looks for 32). Fast DDS numbers the
+/// participants of one process without reusing numbers, and each Participant takes two.
 inline constexpr int kPeersPerHost = 64;
-/// The last domain in which each of them has a port: 7400 + 250 domain + 11 + 2 number is 65535 at most. Where one has
-/// none, Fast DDS ends the process.
+/// The highest domain in which each of these participants has a port: 7400 + 250 domain + 11 + 2 number is at most
+/// 65535. Fast DDS ends the process when a participant has no valid port.
 inline constexpr int kLargestDomain = (65535 - 7400 - 11 - 2 * (kPeersPerHost - 1)) / 250;
 
 enum class DiscoveryRange { kSubnet, kLocalhost, kOff };
 
-/// Who may find us; the meaning of ROS 2 Jazzy's environment variables.
+/// Who may discover this process; the settings mean the same as ROS 2 Jazzy's environment variables.
 struct DiscoverySettings {
   int domain = 0;                                  ///< ROS_DOMAIN_ID
   DiscoveryRange range = DiscoveryRange::kSubnet;  ///< ROS_AUTOMATIC_DISCOVERY_RANGE

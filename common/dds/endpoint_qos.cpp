@@ -5,7 +5,7 @@ namespace {
 
 using namespace compat::fdds;  // NOLINT(google-build-using-namespace): policy names only
 
-// What readers and writers have in common.
+// Policies that readers and writers share.
 template <class EndpointQos>
 void apply_common(const Qos& wanted, const std::string& type_hash, EndpointQos& qos) {
   qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
@@ -13,7 +13,8 @@ void apply_common(const Qos& wanted, const std::string& type_hash, EndpointQos& 
   qos.durability().kind = wanted.latched ? TRANSIENT_LOCAL_DURABILITY_QOS : VOLATILE_DURABILITY_QOS;
   qos.history().kind = KEEP_LAST_HISTORY_QOS;
   qos.history().depth = wanted.depth;
-  // Keyed: no limit on keys, one sample each. The default limit of ten instances leaves a reader matched and silent.
+  // A keyed topic has no limit on keys and keeps one sample per key. With the default limit of ten instances, a reader
+  // is matched but receives nothing for further keys.
   qos.resource_limits().max_instances = wanted.keyed ? 0 : 1;
   qos.resource_limits().max_samples = wanted.keyed ? 0 : 5000;
   qos.resource_limits().max_samples_per_instance = wanted.keyed ? 1 : 5000;
@@ -34,7 +35,7 @@ DataWriterQos writer_qos(const Qos& wanted, const std::string& type_hash) {
   apply_common(wanted, type_hash, qos);
   qos.publish_mode().kind = SYNCHRONOUS_PUBLISH_MODE;
   qos.representation().m_value = {XCDR_DATA_REPRESENTATION};
-  // Fast DDS repeats a lost last datagram only with the next heartbeat; its default of 3 s freezes lock-step.
+  // Fast DDS resends a lost last datagram only after the next heartbeat; its default period of 3 s stalls lock-step.
   compat::set_timings(qos, compat::duration(wanted.urgent ? kUrgentHeartbeatNs : kHeartbeatNs), compat::duration(0));
   return qos;
 }

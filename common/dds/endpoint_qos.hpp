@@ -7,7 +7,7 @@
 
 namespace lapis::dds {
 
-/// Every policy of a writer or reader set explicitly; `type_hash` becomes the user data that ROS 2 shows.
+/// The QoS of a writer or reader with every policy set explicitly; `type_hash` becomes the user data that ROS 2 shows.
 compat::fdds::DataWriterQos writer_qos(const Qos& wanted, const std::string& type_hash);
 compat::fdds::DataReaderQos reader_qos(const Qos& wanted, const std::string& type_hash);
 

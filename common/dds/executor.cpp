@@ -21,7 +21,7 @@ void Executor::at(Clock::time_point due, std::function<void()> action) {
 
 void Executor::spin() {
   while (!stopping_) spin_once(std::chrono::seconds(1));
-  for (Source* source : sources_) source->dispatch();  // what others said before they ended
+  for (Source* source : sources_) source->dispatch();  // samples that arrived before the stop
 }
 
 void Executor::spin_once(Clock::duration timeout) {
@@ -29,7 +29,7 @@ void Executor::spin_once(Clock::duration timeout) {
   compat::fdds::ConditionSeq active;
   wait_set_.wait(active, compat::duration(patience.count()));
   bool worked = guard_.get_trigger_value();
-  if (worked) guard_.set_trigger_value(false);  // unconditionally, it could swallow a wake() of just now
+  if (worked) guard_.set_trigger_value(false);  // an unconditional reset could lose a wake() that came in between
   for (Source* source : sources_) worked |= source->dispatch() > 0;
   worked |= run_due_timers();
   if (worked && cycle_ && !stopping_) cycle_();

@@ -9,8 +9,8 @@
 
 namespace lapis::dds {
 
-/// Runs all handlers and timers of a component, one at a time, on the thread that calls spin(); DDS threads only
-/// wake it. After each batch of handlers the cycle function is called, where the component does its work.
+/// Runs all handlers and timers of a component, one at a time, on the thread that calls spin(); DDS threads only wake
+/// it. After each batch of handlers it calls the cycle function, in which the component does its work.
 class Executor {
  public:
   using Clock = std::chrono::steady_clock;
@@ -21,17 +21,17 @@ class Executor {
   void add(Source& source);
   /// Calls `action` every `period` of wall time, for book-keeping only.
   void every(Clock::duration period, std::function<void()> action);
-  /// Calls `action` once, at a point of wall time.
+  /// Calls `action` once, when the steady clock reaches `due`.
   void at(Clock::time_point due, std::function<void()> action);
   void set_cycle(std::function<void()> cycle) { cycle_ = std::move(cycle); }
 
   /// Handles events until stop().
   void spin();
-  /// Handles what is there, waiting at most `timeout` for the first event; for clients and tests.
+  /// Handles all pending events and waits at most `timeout` for the first one; for clients and tests.
   void spin_once(Clock::duration timeout);
-  /// Ends spin(); any thread.
+  /// Ends spin(); may be called from any thread.
   void stop();
-  /// Makes spin() run a cycle soon; any thread.
+  /// Makes spin() run a cycle soon; may be called from any thread.
   void wake();
 
  private:

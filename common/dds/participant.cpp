@@ -31,7 +31,7 @@ void apply_transport(const ParticipantOptions& options, compat::fdds::DomainPart
   auto udp = std::make_shared<compat::UDPv4TransportDescriptor>();
   udp->sendBufferSize = udp->receiveBufferSize = static_cast<std::uint32_t>(options.socket_buffer_bytes);
   udp->maxInitialPeersRange = kPeersPerHost;
-  // Peers on other hosts are reached over other interfaces.
+  // Static peers may be on other hosts, which only the other interfaces reach.
   const bool is_local = options.discovery.range == DiscoveryRange::kLocalhost && options.discovery.static_peers.empty();
   if (is_local) udp->interfaceWhiteList.emplace_back("127.0.0.1");
   qos.transport().use_builtin_transports = false;
@@ -54,7 +54,7 @@ void apply_discovery(const DiscoverySettings& discovery, compat::fdds::DomainPar
     // A unicast locator keeps Fast DDS from adding the default multicast one.
     builtin.metatrafficUnicastLocatorList.push_back(Locator_t());
   } else if (!discovery.static_peers.empty()) {
-    // Naming peers replaces the default multicast peer, so it is named, too.
+    // A list of peers replaces the default multicast peer, so the list must contain it, too.
     Locator_t multicast = peer_locator("239.255.0.1");
     multicast.port = 7400u + 250u * static_cast<std::uint32_t>(discovery.domain);
     builtin.initialPeersList.push_back(multicast);
@@ -85,15 +85,15 @@ rmw_dds_common::msg::Gid to_message(const Gid& gid) {
 
 Participant::Participant(const ParticipantOptions& options) : options_(options) {
   compat::fdds::DomainParticipantQos qos;
-  qos.name("/");  // the enclave, as rmw_fastrtps names its participants
+  qos.name("/");  // the enclave, which is also the name that rmw_fastrtps gives its participants
   const std::string enclave = "enclave=/;";
   qos.user_data().setValue(std::vector<unsigned char>(enclave.begin(), enclave.end()));
   apply_transport(options, qos);
   apply_discovery(options.discovery, qos);
   compat::announce_no_type_information(qos);
   participant_ = create_participant(options.discovery.domain, qos);
-  // Fast DDS announces a participant before it listens, and the others answer a first announcement only. So a second
-  // participant comes and goes, and the first hears what they answer to that: decision 0029.
+  // Fast DDS announces a participant before it listens, and other participants answer only the first announcement. So a
+  // second participant is created and deleted, and the first one hears the answers to its announcement: decision 0029.
   compat::fdds::DomainParticipantFactory::get_instance()->delete_participant(
       create_participant(options.discovery.domain, qos));
   publisher_ = participant_->create_publisher(compat::fdds::PUBLISHER_QOS_DEFAULT);
@@ -149,7 +149,8 @@ int effective_socket_buffer_bytes(int wanted) {
     socklen_t size = sizeof granted;
     setsockopt(socket, SOL_SOCKET, option, &wanted, sizeof wanted);
     getsockopt(socket, SOL_SOCKET, option, &granted, &size);
-    smallest = std::min(smallest, granted / 2);  // Linux reports twice what it grants, for its own book-keeping
+    // Linux doubles the size for its own book-keeping and reports the doubled value.
+    smallest = std::min(smallest, granted / 2);
   }
   ::close(socket);
   return smallest;

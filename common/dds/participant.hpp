@@ -24,7 +24,7 @@ struct ParticipantOptions {
 /// Publishers and subscriptions hold a reference to it and must be destroyed before it.
 class Participant {
  public:
-  /// Throws std::runtime_error that names the domain when DDS refuses.
+  /// Throws std::runtime_error, which names the domain, when DDS cannot create the participant.
   explicit Participant(const ParticipantOptions& options);
   ~Participant();
   Participant(const Participant&) = delete;
@@ -32,7 +32,8 @@ class Participant {
 
   compat::fdds::Publisher& publisher() { return *publisher_; }
   compat::fdds::Subscriber& subscriber() { return *subscriber_; }
-  /// The topic of a DDS name, created at first use. Throws when the name is in use with another type.
+  /// The topic with a DDS name, created at its first use. Throws std::runtime_error when the name is in use with
+  /// another type.
   compat::fdds::Topic& topic(const std::string& dds_name, const std::string& type_name, compat::fdds::TypeSupport type);
 
   Gid gid() const;
@@ -41,7 +42,7 @@ class Participant {
   /// Endpoints report themselves, so that the ROS 2 graph can list them.
   void add_reader(const Gid& gid) { readers_.push_back(gid); }
   void add_writer(const Gid& gid) { writers_.push_back(gid); }
-  /// Publishes the node's endpoints on `ros_discovery_info`; call when all have been created.
+  /// Publishes the node's endpoints on `ros_discovery_info`; call it when all endpoints have been created.
   void announce_graph();
 
  private:
@@ -54,7 +55,7 @@ class Participant {
   std::vector<Gid> writers_;
 };
 
-/// Size that the kernel really gives to a UDP socket that asks for `wanted` bytes (it caps silently).
+/// Buffer size that the kernel grants to a UDP socket that asks for `wanted` bytes (it caps the size silently).
 int effective_socket_buffer_bytes(int wanted);
 
 }  // namespace lapis::dds

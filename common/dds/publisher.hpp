@@ -6,7 +6,7 @@
 
 namespace lapis::dds {
 
-/// Publishes messages of one topic of the table.
+/// Publishes messages of one topic of the topic table.
 template <class Message>
 class Publisher : public Writer {
  public:
@@ -14,9 +14,9 @@ class Publisher : public Writer {
       : Writer(participant, lapis::dds::dds_name(topic, participant.name_space()), Support::kDdsName,
                make_type_support<Message>(), Support::kHash, topic.qos) {}
 
-  /// False (and counted) when DDS refused the sample.
+  /// Returns false when DDS refuses the sample, which is counted.
   bool publish(const Message& message) { return write(&message); }
-  /// Ends the key of `message` on a keyed topic.
+  /// Unregisters the key of `message` on a keyed topic.
   bool end_key(const Message& message) { return unregister(&message); }
 
  private:

@@ -4,13 +4,14 @@
 
 namespace lapis::dds {
 
-/// What a topic needs of DDS. Everything is RELIABLE and KEEP_LAST (docs/topics.md).
+/// What a topic requires of DDS. Every topic is RELIABLE and KEEP_LAST (docs/topics.md).
 struct Qos {
   int depth = 10;
   bool latched = false;  ///< TRANSIENT_LOCAL: a late joiner gets the last samples
   bool keyed = false;    ///< one history per key, any number of keys
-  int reader_depth =
-      0;  ///< 0: as depth. More for a latched topic that several writers share: a reader keeps one history
+  /// History depth of readers; 0: same as depth. It is larger for a latched topic with several writers, because a
+  /// reader keeps one history for all of them.
+  int reader_depth = 0;
   bool urgent = false;  ///< heartbeat period 20 ms instead of 100 ms: frames, /clock, /sim/*
 
   bool operator==(const Qos&) const = default;

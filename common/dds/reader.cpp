@@ -60,7 +60,7 @@ void Reader::on_subscription_matched(compat::fdds::DataReader* /*reader*/,
                                      const compat::fdds::SubscriptionMatchedStatus& status) {
   const Gid writer = to_gid(compat::rtps::iHandle2GUID(status.last_publication_handle));
   const std::lock_guard lock(mutex_);
-  if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is the match's
+  if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is that of the match
     writers_.insert(writer);
   } else {
     writers_.erase(writer);

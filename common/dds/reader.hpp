@@ -22,10 +22,10 @@ class Reader : private compat::fdds::DataReaderListener {
   Reader& operator=(const Reader&) = delete;
 
   enum class Taken { kNothing, kSample, kKeyEnded };
-  /// Takes the next sample into `sample`. Thread of the wait set only.
+  /// Takes the next sample into `sample`. Only for the thread of the wait set.
   Taken take(void* sample, compat::fdds::SampleInfo& info);
 
-  /// Sequence number of the newest sample taken from a writer; 0 = none. Thread of the wait set only.
+  /// Sequence number of the newest sample taken from a writer; 0 = none. Only for the thread of the wait set.
   std::uint64_t received(const Gid& writer) const;
   /// Samples that were overwritten or lost before they could be taken.
   std::uint64_t missed() const { return missed_; }

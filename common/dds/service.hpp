@@ -14,7 +14,8 @@ namespace lapis::dds {
 
 // Requests and replies are topics; a reply names its request by the related sample identity (ros2-interop 5.1).
 
-/// Identity of a request: the client's reply reader (or, when it does not say, its request writer) and a number.
+/// Identity of a request: the client's reply reader (or its request writer, if the request does not name the reader)
+/// and a sequence number.
 struct RequestId {
   compat::rtps::SampleIdentity identity;
   Gid client{};
@@ -56,7 +57,7 @@ class ServiceServer : public Source {
   struct Pending {
     RequestId id;
     Response response;
-    std::chrono::steady_clock::time_point deadline;  // until when the client's reader may still match
+    std::chrono::steady_clock::time_point deadline;  // the reply waits until then for the client's reader to match
   };
 
   static RequestId request_id(const compat::fdds::SampleInfo& info) {
@@ -115,7 +116,7 @@ class ServiceClient : public Source {
     return request_.written();
   }
 
-  /// The reply to a call, once it has come; each can be taken once.
+  /// The reply to a call if it has arrived; each reply can be taken once.
   std::optional<Response> take_reply(std::uint64_t number) {
     const auto it = replies_.find(number);
     if (it == replies_.end()) return std::nullopt;

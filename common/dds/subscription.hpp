@@ -9,15 +9,17 @@
 
 namespace lapis::dds {
 
-/// A reader that hands what it takes to a handler; the executor drives it.
+/// A reader that passes the samples it takes to a handler; the executor drives it.
 class Source : public Reader {
  public:
   using Reader::Reader;
-  /// Takes everything that is there and calls the handler for each sample; returns the number of samples.
+  /// Takes all samples that are available and calls the handler for each; returns the number of samples, including
+  /// those that only end a key.
   virtual std::size_t dispatch() = 0;
 };
 
-/// Messages of one topic of the table. The handler runs on the executor's thread and may move the message away.
+/// Receives the messages of one topic of the topic table. The handler runs on the executor's thread and may move from
+/// the message.
 template <class Message>
 class Subscription : public Source {
  public:

@@ -7,7 +7,7 @@
 
 namespace lapis::dds {
 
-/// A row of the topic table (common/topics.hpp): the one place that joins a name, a type and a QoS.
+/// A row of the topic table (common/topics.hpp), which alone relates a name, a type and a QoS.
 template <class Message>
 struct Topic {
   using Type = Message;
@@ -15,11 +15,11 @@ struct Topic {
   Qos qos;
   const char* from;        ///< who publishes it
   const char* rate;        ///< when
-  const char* meaning;     ///< a line for docs/topics.md
+  const char* meaning;     ///< one line for docs/topics.md
   bool is_global = false;  ///< true: never prefixed by --namespace (/tf, /clock, ...)
 };
 
-/// A service: request and reply topics derive from its name.
+/// A service; the names of its request and reply topics derive from its name.
 template <class Service>
 struct ServiceTopic {
   using Type = Service;

@@ -9,10 +9,10 @@
 
 namespace lapis::dds {
 
-/// Samples of this process that were dropped because their bytes are no message of the topic's type.
+/// Number of samples that this process dropped because their bytes are not a message of the topic's type.
 inline std::atomic<std::uint64_t> undecodable_samples{0};
 
-/// Generated type support that survives damaged samples: what Fast CDR throws would otherwise end the process.
+/// Generated type support that survives damaged samples: otherwise the exceptions of Fast CDR would end the process.
 template <class PubSubType>
 class GuardedType : public PubSubType {
  public:

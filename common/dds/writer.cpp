@@ -19,8 +19,8 @@ Writer::Writer(Participant& participant, const std::string& dds_name, const std:
 }
 
 Writer::~Writer() {
-  // An empty history first: 2.9 frees the samples one by one while a periodic heartbeat may still walk through them,
-  // and then never comes back from the holes it finds.
+  // The history must be empty first: Fast DDS 2.9 frees the samples one by one while a periodic heartbeat may still
+  // iterate over them, and that iteration never ends when it meets the gaps.
   std::size_t removed = 0;
   writer_->clear_history(&removed);
   participant_.publisher().delete_datawriter(writer_);
@@ -41,7 +41,7 @@ bool Writer::write(const void* sample) {
 }
 
 bool Writer::unregister(const void* sample) {
-  // 2.9 takes void*, but only reads the key.
+  // Fast DDS 2.9 takes void*, but only reads the key.
   if (!compat::ok(writer_->unregister_instance(const_cast<void*>(sample), compat::no_instance()))) {
     ++failed_;
     return false;

@@ -11,7 +11,7 @@
 
 namespace lapis::dds {
 
-/// The untyped half of a publisher: the DDS writer, who is matched with it and how many samples it wrote.
+/// The untyped half of a publisher: the DDS writer, its matched readers and the number of samples written.
 class Writer : private compat::fdds::DataWriterListener {
  public:
   Writer(Participant& participant, const std::string& dds_name, const std::string& type_name,
@@ -23,11 +23,12 @@ class Writer : private compat::fdds::DataWriterListener {
   /// Writes one sample; a refusal by DDS is counted and returned.
   bool write(const void* sample, compat::rtps::WriteParams& params);
   bool write(const void* sample);
-  /// Ends a key without leaving a sample behind (never dispose: late joiners would get the disposed keys, too).
+  /// Unregisters a key, so that no sample of it remains. Keys are never disposed, because late joiners would receive
+  /// the disposed keys, too.
   bool unregister(const void* sample);
 
-  /// Waits until every matched reader has acknowledged all samples; false when that takes longer. Only for the end of
-  /// a process: in a loop it costs whole heartbeat periods.
+  /// Waits until every matched reader has acknowledged all samples; returns false after `timeout_s` seconds. Only for
+  /// the end of a process: in a loop it would cost whole heartbeat periods.
   bool wait_until_acknowledged(double timeout_s);
 
   /// RTPS sequence number of the last sample: the number of samples written since the start.
@@ -38,7 +39,7 @@ class Writer : private compat::fdds::DataWriterListener {
   /// Number of matched readers.
   std::size_t matched() const;
   bool is_matched(const Gid& reader) const;
-  /// Number of readers that have ever matched; a change says that a new reader has come.
+  /// Number of matches since the start; an increase means that a new reader has matched.
   std::uint64_t total_matches() const { return total_matches_; }
   /// Readers refused because of an incompatible QoS.
   std::uint64_t incompatible() const { return incompatible_; }

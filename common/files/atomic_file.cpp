@@ -13,7 +13,7 @@
 namespace lapis::files {
 namespace {
 
-/// Open file descriptor that closes itself.
+/// File descriptor that its destructor closes.
 class Descriptor {
  public:
   explicit Descriptor(int value) : value_(value) {}
@@ -22,7 +22,7 @@ class Descriptor {
   ~Descriptor() { close(); }
   bool is_open() const { return value_ >= 0; }
   int get() const { return value_; }
-  /// Some file systems report a full disk only here.
+  /// Returns false on failure: some file systems report a full disk only when the file is closed.
   bool close() {
     const int result = value_ >= 0 ? ::close(value_) : 0;
     value_ = -1;
@@ -47,7 +47,7 @@ bool write_all(int descriptor, std::span<const std::uint8_t> bytes) {
   return true;
 }
 
-/// The reason, when it cannot be, names the file that it is a part of.
+/// Writes the ".part" file of `path` and flushes it. Returns the reason on failure, which names `path`.
 std::optional<std::string> write_part(const std::string& part, const std::string& path,
                                       std::span<const std::uint8_t> bytes) {
   Descriptor file(::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0644));
@@ -68,7 +68,8 @@ std::optional<std::string> replace_file(const std::string& path, std::span<const
     ::unlink(part.c_str());
     return error;
   }
-  // Makes the new name itself survive a power cut; a file system that cannot do it has still replaced the file.
+  // The new directory entry survives a power cut only when the folder is flushed. The file is replaced even where the
+  // file system cannot do that.
   const std::string folder = std::filesystem::path(path).parent_path().string();
   const Descriptor directory(::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC));
   if (directory.is_open()) ::fsync(directory.get());
@@ -125,7 +126,7 @@ void require_writable_folder(const std::string& folder, const std::string& key) 
   if (error || !std::filesystem::is_directory(folder)) {
     throw std::runtime_error(key + ": " + folder + " is not a folder and cannot be made one: " + error.message());
   }
-  // A name of its own: other processes may try the same folder now.
+  // The file has a unique name because other processes may probe the same folder at the same time.
   std::string probe = (std::filesystem::path(folder) / ".lapis_writable_XXXXXX").string();
   const Descriptor file(::mkstemp(probe.data()));
   if (!file.is_open()) throw std::runtime_error(key + ": no file can be written there: " + reason(folder, "open"));

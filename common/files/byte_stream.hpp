@@ -14,7 +14,7 @@ namespace lapis::files {
 /// Appends little-endian numbers and variable-length integers (seven bits a byte, low bits first) to a buffer.
 class ByteWriter {
  public:
-  /// For so many more bytes.
+  /// Reserves memory for `more` further bytes.
   void reserve(std::size_t more) { bytes_.reserve(bytes_.size() + more); }
   void u8(std::uint8_t v) { bytes_.push_back(v); }
   void u16(std::uint16_t v) { fixed(v, 2); }
@@ -27,14 +27,14 @@ class ByteWriter {
     for (; v >= 0x80; v >>= 7) u8(static_cast<std::uint8_t>(v | 0x80));
     u8(static_cast<std::uint8_t>(v));
   }
-  /// Length, then the characters.
+  /// Writes the length as a varint, then the characters.
   void text(std::string_view s) {
     varint(s.size());
     bytes_.insert(bytes_.end(), s.begin(), s.end());
   }
   void raw(std::span<const std::uint8_t> more) { bytes_.insert(bytes_.end(), more.begin(), more.end()); }
 
-  /// Replaces a number written before, at byte `at`.
+  /// Overwrites an earlier number at byte offset `at`.
   void set_u32(std::size_t at, std::uint32_t v) { set(at, v, 4); }
   void set_u64(std::size_t at, std::uint64_t v) { set(at, v, 8); }
 
@@ -53,8 +53,8 @@ class ByteWriter {
   std::vector<std::uint8_t> bytes_;
 };
 
-/// Reads what ByteWriter wrote. Reading past the end or a malformed number gives zero and makes is_good() false for
-/// good, so that a decoder may check once per record instead of once per number.
+/// Reads what ByteWriter wrote. Reading past the end or reading a malformed number gives zero and makes is_good() false
+/// from then on, so that a decoder may check once per record instead of once per number.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}

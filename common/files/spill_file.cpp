@@ -15,7 +15,8 @@ constexpr std::size_t kPage = 4096;
 
 std::size_t capacity_of(std::size_t size) { return (size + kPage - 1) / kPage * kPage; }
 
-/// Some file systems have no unnamed files; there a name is made and taken away at once.
+/// Opens a file without a name. Where the file system does not support this, a named file is created and unlinked at
+/// once.
 int open_unnamed(const std::string& folder) {
   const int file = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);
   if (file >= 0 || (errno != EOPNOTSUPP && errno != EISDIR)) return file;

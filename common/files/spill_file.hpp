@@ -10,11 +10,11 @@
 
 namespace lapis::files {
 
-/// Bytes on disk in a file without a name: nothing is left behind, however the process ends. The place of what is
-/// released is used again.
+/// Stores bytes on disk in a file without a name, so that nothing is left behind, however the process ends. The space
+/// of released extents is reused.
 class SpillFile {
  public:
-  /// Where some bytes are.
+  /// Position of stored bytes in the file.
   struct Extent {
     std::uint64_t offset = 0;
     std::size_t size = 0;
@@ -27,12 +27,13 @@ class SpillFile {
   SpillFile& operator=(SpillFile&& other) noexcept;
   ~SpillFile();
 
-  /// Nothing on success; otherwise why there can be no file in the folder.
+  /// Returns nothing on success, otherwise the reason why no file can be created in the folder.
   [[nodiscard]] std::optional<std::string> open(const std::string& folder);
   bool is_open() const { return file_ >= 0; }
-  /// Nothing when the bytes could not be written (`error` names the folder and says why); what is there stays whole.
+  /// Returns nothing when the bytes cannot be written (`error` names the folder and gives the reason); bytes stored
+  /// before stay intact.
   std::optional<Extent> write(std::span<const std::uint8_t> bytes, std::string& error);
-  /// Nothing when the disk does not give them back.
+  /// Returns nothing when the bytes cannot be read.
   std::optional<std::vector<std::uint8_t>> read(const Extent& extent) const;
   void release(const Extent& extent);
   /// Length of the file [bytes].

@@ -4,10 +4,10 @@
 
 namespace lapis::geometry {
 
-/// How the camera sits on the robot: straight above base_link's origin, looking forward and down.
+/// Mounting of the camera on the robot: straight above the origin of base_link, looking forward and down.
 struct CameraMount {
   double height_m = 0.0;        ///< above base_link, 0 to 10
-  double pitch_down_rad = 0.0;  ///< positive looks at the floor, -pi/2 to pi/2
+  double pitch_down_rad = 0.0;  ///< positive looks towards the floor, -pi/2 to pi/2
 };
 
 /// Pose of camera_link in base_link; both x forward, y left, z up [REP 103].

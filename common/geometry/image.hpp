@@ -39,7 +39,7 @@ using GrayImage = Image<std::uint8_t>;
 using DepthImage = Image<float>;
 /// Class ids; 0 = unlabelled.
 using LabelImage = Image<std::uint16_t>;
-/// How sure a label is: 255 = certain.
+/// Confidence of a label: 0 to 255 = certain.
 using ConfidenceImage = Image<std::uint8_t>;
 
 }  // namespace lapis::geometry

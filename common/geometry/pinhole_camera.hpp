@@ -31,15 +31,15 @@ struct PinholeCamera {
   bool operator==(const PinholeCamera&) const = default;
 };
 
-/// True when size and focal lengths are positive and finite.
+/// True when the size and the focal lengths are positive and all parameters are finite.
 bool is_valid(const PinholeCamera& camera);
 
 /// A pinhole camera behind a lens that bends rays radially and tangentially (Brown, "Decentering distortion of lenses",
 /// 1966).
 struct LensCamera {
   PinholeCamera pinhole;
-  /// None, or k1 k2 p1 p2, followed by k3 or by k3 k4 k5 k6: ROS's plumb_bob and rational_polynomial, which are
-  /// OpenCV's.
+  /// Empty, or k1 k2 p1 p2, optionally followed by k3 or by k3 k4 k5 k6: ROS's models plumb_bob and
+  /// rational_polynomial, which are those of OpenCV.
   std::vector<double> distortion;
 
   bool is_distorted() const;

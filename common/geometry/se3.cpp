@@ -8,7 +8,7 @@ namespace {
 // Below this angle [rad] the series expansions are exact to double precision.
 constexpr double kSmallAngle = 1e-4;
 
-// V of the closed form exp([rho, omega]) = [exp(omega), V rho].
+// The matrix V of the closed form exp([rho, omega]) = [exp(omega), V rho].
 Eigen::Matrix3d left_jacobian(const Eigen::Vector3d& omega) {
   const double angle = omega.norm();
   const Eigen::Matrix3d W = skew(omega);

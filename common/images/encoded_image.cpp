@@ -21,7 +21,7 @@ bool begins_with(Bytes bytes, const std::array<std::uint8_t, kSize>& start) {
   return bytes.size() >= kSize && std::equal(start.begin(), start.end(), bytes.begin());
 }
 
-/// Number of `count` bytes, the highest first; they must be there.
+/// Big-endian number of `count` bytes from byte `at`, which must exist.
 std::uint32_t big_endian(Bytes bytes, std::size_t at, std::size_t count) {
   std::uint32_t value = 0;
   for (const std::uint8_t byte : bytes.subspan(at, count)) value = value << 8 | byte;
@@ -33,7 +33,7 @@ std::optional<ImageSize> checked_size(std::uint32_t width, std::uint32_t height)
   return ImageSize{static_cast<int>(width), static_cast<int>(height)};
 }
 
-// Start of frame: any of 0xC0 to 0xCF but the tables of Huffman codes, JPEG extensions and arithmetic conditioning.
+// Start of frame: 0xC0 to 0xCF except the markers of Huffman tables, JPEG extensions and arithmetic conditioning.
 bool is_frame_header(std::uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
 }
@@ -44,7 +44,7 @@ std::optional<ImageSize> jpeg_size(Bytes bytes) {
   while (at + kToEndOfSize <= bytes.size() && bytes[at] == 0xFF) {
     const std::uint8_t marker = bytes[at + 1];
     if (is_frame_header(marker)) return checked_size(big_endian(bytes, at + 7, 2), big_endian(bytes, at + 5, 2));
-    at += marker == 0xFF ? 1 : 2 + big_endian(bytes, at + 2, 2);  // 0xFF: filling
+    at += marker == 0xFF ? 1 : 2 + big_endian(bytes, at + 2, 2);  // 0xFF: fill byte
   }
   return std::nullopt;
 }
@@ -71,7 +71,7 @@ std::optional<geometry::GrayImage> decode_gray(Bytes bytes) {
   if (!encoded_size(bytes) || is_truncated_jpeg(bytes) || bytes.size() > std::numeric_limits<int>::max())
     return std::nullopt;
   try {
-    // The decoder takes a matrix that it does not write to.
+    // The const_cast is safe because the decoder does not write to its input.
     const cv::Mat coded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
     const cv::Mat image = cv::imdecode(coded, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
     if (image.empty() || !image.isContinuous()) return std::nullopt;

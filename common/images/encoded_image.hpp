@@ -14,15 +14,15 @@ struct ImageSize {
   bool operator==(const ImageSize&) const = default;
 };
 
-/// Size that the header of a JPEG (ISO/IEC 10918-1, B.2.2) or PNG (ISO/IEC 15948, 11.2.2) promises, at most 65535 each
-/// way; nothing for other bytes. To be compared with what is expected before anything of that size is allocated.
+/// Size [px] in the header of a JPEG (ISO/IEC 10918-1, B.2.2) or PNG (ISO/IEC 15948, 11.2.2), at most 65535 by 65535;
+/// nothing for other bytes. Compare it with the expected size before memory of that size is allocated.
 std::optional<ImageSize> encoded_size(std::span<const std::uint8_t> bytes);
 
-/// True for a JPEG without an end: libjpeg fills the rest with grey and calls it a success.
+/// True for a JPEG without an end marker: libjpeg fills the missing part with grey and reports success.
 bool is_truncated_jpeg(std::span<const std::uint8_t> bytes);
 
-/// Grey values of a JPEG or PNG, pixels as they are stored (orientation tags are left alone); nothing when it is
-/// damaged.
+/// Grey values of a JPEG or PNG, with the pixels in the stored order (orientation tags are ignored); nothing when the
+/// image is damaged.
 std::optional<geometry::GrayImage> decode_gray(std::span<const std::uint8_t> bytes);
 
 }  // namespace lapis::images

@@ -17,10 +17,10 @@ void remap(geometry::Image<Pixel>& image, int type, const cv::Mat& whole, const 
 
 }  // namespace
 
-// Where each pixel of the rectified image lies in the recorded one.
+// Position in the recorded image of each pixel of the rectified image [px].
 struct Rectifier::Maps {
   cv::Mat whole;    // rounded down
-  cv::Mat parts;    // what `whole` leaves, in 1/32
+  cv::Mat parts;    // the remainder of `whole` in units of 1/32 px
   cv::Mat nearest;  // rounded
 };
 
@@ -32,7 +32,8 @@ Rectifier::Rectifier(const geometry::LensCamera& camera) {
   cv::Mat y;
   cv::initUndistortRectifyMap(intrinsics, camera.distortion, cv::noArray(), intrinsics, cv::Size(c.width, c.height),
                               CV_32FC1, x, y);
-  Maps maps;  // converted afterwards, because this way what lies far outside does not wrap around
+  // The maps are computed as floats and converted here, so that positions far outside the image do not wrap around.
+  Maps maps;
   cv::convertMaps(x, y, maps.whole, maps.parts, CV_16SC2);
   cv::Mat none;
   cv::convertMaps(x, y, maps.nearest, none, CV_16SC2, true);

@@ -7,10 +7,10 @@
 
 namespace lapis::images {
 
-/// Takes the lens distortion out of a camera's images: what comes out fits the same focal lengths and principal point
-/// without distortion. Colour is interpolated; depth and labels are those of the nearest pixel, because a mean of two
-/// surfaces or classes is neither. Pixels that the lens did not see are black, without depth, unlabelled.
-/// All functions may be called from several threads.
+/// Removes the lens distortion from a camera's images: the result has the same focal lengths and principal point, but
+/// no distortion. Colour is interpolated; depth and labels are those of the nearest pixel, because the mean of two
+/// surfaces or of two classes is neither of them. Pixels that the lens did not see are black, without depth and
+/// unlabelled.
 class Rectifier {
  public:
   explicit Rectifier(const geometry::LensCamera& camera);
@@ -27,7 +27,7 @@ class Rectifier {
 
  private:
   struct Maps;
-  std::unique_ptr<const Maps> maps_;  // null: nothing to do
+  std::unique_ptr<const Maps> maps_;  // null: the lens has no distortion
 };
 
 }  // namespace lapis::images

@@ -8,14 +8,15 @@
 
 namespace lapis::logging {
 
-/// Lets a repeated message through once per period and counts the ones held back. One thread.
+/// Lets a repeated message through once per period and counts the suppressed ones. For use by one thread only.
 class RateLimit {
  public:
   using Clock = std::chrono::steady_clock;
 
   explicit RateLimit(Clock::duration period = std::chrono::seconds(5)) : period_(period) {}
 
-  /// Nothing when the message of this key was let through less than a period ago; otherwise how many were held back.
+  /// Returns nothing when the message with this key was let through less than a period ago, otherwise the number of
+  /// messages that were suppressed since then.
   std::optional<std::uint64_t> pass(const std::string& key, Clock::time_point now = Clock::now()) {
     auto [it, is_new] = seen_.try_emplace(key, Seen{now, 0});
     if (!is_new && now - it->second.last < period_) {

@@ -11,21 +11,21 @@ namespace {
 
 using sensor_msgs::msg::Image;
 
-constexpr std::uint32_t kLargestSide = 16384;  // keeps sizes far from overflow
+constexpr std::uint32_t kLargestSide = 16384;  // [px]; products of sizes cannot overflow
 
-/// Why an image's layout cannot be read; empty when it can.
+/// The reason why an image's layout cannot be read; empty when it can be read.
 std::string layout_problem(const Image& image, std::size_t bytes_per_pixel) {
   if (image.width() == 0 || image.height() == 0) return "image is empty";
   if (image.width() > kLargestSide || image.height() > kLargestSide) return "image is larger than 16384 pixels";
   if (image.step() < image.width() * bytes_per_pixel) return "image rows are shorter than their width";
   if (image.data().size() != static_cast<std::size_t>(image.step()) * image.height()) {
-    return "image has not step x height bytes";  // no figures: reasons are keys of counters
+    return "image has not step x height bytes";  // no numbers, because reasons are keys of counters
   }
   if (image.is_bigendian() != 0 && bytes_per_pixel > 1) return "image is big-endian";
   return "";
 }
 
-/// The beginning of a text from outside: reasons are keys of counters.
+/// The beginning of a received text. Its length is limited because reasons are keys of counters.
 std::string shown(const std::string& text) {
   constexpr std::size_t kLongest = 32;
   return text.substr(0, kLongest);

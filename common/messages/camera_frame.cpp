@@ -26,7 +26,7 @@ sensor_msgs::msg::Image image_message(const geometry::Image<Pixel>& image, const
   return message;
 }
 
-// mono8 where all ids fit: 255 would read as "unlabelled" (vision_msgs).
+// mono8 if all ids are below 255, which would mean "unlabelled" (vision_msgs); otherwise mono16.
 sensor_msgs::msg::Image label_message(const geometry::LabelImage& labels, const std_msgs::msg::Header& h) {
   const bool fits = std::all_of(labels.pixels.begin(), labels.pixels.end(), [](auto id) { return id < 255; });
   if (!fits) return image_message(labels, "mono16", h);

@@ -13,7 +13,7 @@
 
 namespace lapis::messages {
 
-/// Frame ids as they go on the wire, with the robot's namespace.
+/// Frame ids as in messages, with the robot's namespace.
 struct CameraFrameIds {
   std::string base;
   std::string camera;
@@ -21,8 +21,8 @@ struct CameraFrameIds {
   std::string world;
 };
 
-/// What an RGB-D camera saw at one time, and what is known of it. The images belong to somebody else and have the size
-/// of the camera; null or empty: there is none.
+/// Images of an RGB-D camera at one time, with their labels and ground truth. The images belong to the caller and have
+/// the size of the camera; null or empty: not available.
 struct CameraFrame {
   time::Time stamp;
   const geometry::ColorImage& color;
@@ -41,7 +41,7 @@ struct CameraMessages {
 };
 
 CameraMessages to_messages(const CameraFrame& frame, const geometry::PinholeCamera& camera, const CameraFrameIds& ids);
-/// base_link -> camera_link -> optical frame, in one message, as /tf_static wants it.
+/// base_link -> camera_link -> optical frame in one message, as /tf_static requires.
 tf2_msgs::msg::TFMessage to_static_transforms(const geometry::CameraMount& mount, const CameraFrameIds& ids,
                                               time::Time stamp);
 

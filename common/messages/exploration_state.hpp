@@ -6,9 +6,9 @@
 
 namespace lapis::messages {
 
-/// "EXPLORING" and so on, as the constants of lapis_msgs are called; "UNKNOWN" for a number that is none of them.
+/// Name of the state as in the constants of lapis_msgs, such as "EXPLORING"; "UNKNOWN" for any other number.
 std::string state_name(const lapis_msgs::msg::PlannerStatus& status);
-/// The planner is DONE, GAVE_UP or has FAILED: it will not move the robot any more.
+/// True when the planner is DONE, GAVE_UP or FAILED, so that it does not move the robot any more.
 bool has_ended(const lapis_msgs::msg::PlannerStatus& status);
 
 }  // namespace lapis::messages

@@ -76,7 +76,7 @@ std::string StaticTransforms::add(const tf2_msgs::msg::TFMessage& message) {
 std::optional<geometry::Pose> StaticTransforms::find(const std::string& parent, const std::string& child) const {
   geometry::Pose T = geometry::Pose::Identity();
   std::string frame = child;
-  for (std::size_t steps = 0; steps <= links_.size(); ++steps) {  // bounded: garbage may announce a ring
+  for (std::size_t steps = 0; steps <= links_.size(); ++steps) {  // bounded, because faulty input may form a cycle
     if (frame == parent) return T;
     const auto it = links_.find(frame);
     if (it == links_.end()) return std::nullopt;

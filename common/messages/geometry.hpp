@@ -15,19 +15,19 @@ namespace lapis::messages {
 geometry_msgs::msg::Pose to_message(const geometry::Pose& T);
 geometry_msgs::msg::Transform to_transform(const geometry::Pose& T);
 
-/// Refuses non-finite numbers and quaternions whose norm is off 1 by more than 1e-3 (all zero means "unknown").
+/// Refuses non-finite numbers and quaternions whose norm differs from 1 by more than 1e-3 (all zero means "unknown").
 Converted<geometry::Pose> from_message(const geometry_msgs::msg::Pose& message);
 Converted<geometry::Pose> from_message(const geometry_msgs::msg::Transform& message);
 
-/// 6x6 row-major covariance of ROS: order (x, y, z, rotation about x, y, z), which is our tangent order.
+/// 6x6 row-major covariance as in ROS: the order (x, y, z, rotation about x, y, z) is that of Vector6d.
 std::array<double, 36> to_row_major(const geometry::Matrix6d& covariance);
 
-/// Static transforms by child frame, as /tf_static has announced them so far (several writers add up).
+/// Static transforms by child frame, as announced on /tf_static so far (the transforms of several writers are merged).
 class StaticTransforms {
  public:
-  /// Takes those that are transforms; returns why the others were refused, or an empty text.
+  /// Stores the valid transforms; returns the reason why the last of the others was refused, or an empty text.
   std::string add(const tf2_msgs::msg::TFMessage& message);
-  /// T_parent_child along the chain of announced transforms; nothing until it is complete.
+  /// T_parent_child along the chain of announced transforms; nothing until the chain is complete.
   std::optional<geometry::Pose> find(const std::string& parent, const std::string& child) const;
 
  private:

@@ -6,13 +6,13 @@
 
 namespace lapis::messages {
 
-/// Refused when the lists do not fit each other, are not in order, exceed mapping::kMaxLandmarkTileBytes, or when a
-/// position is not finite.
+/// Refused when the lists have inconsistent lengths, are not in order or exceed mapping::kMaxLandmarkTileBytes, or when
+/// a position is not finite.
 Converted<mapping::LandmarkTile> from_message(const lapis_msgs::msg::LandmarkTile& message);
 mapping::LandmarkState from_message(const lapis_msgs::msg::LandmarkState& message);
 
 lapis_msgs::msg::LandmarkTile to_message(const mapping::LandmarkTile& tile, std::int64_t session);
-/// The header is the caller's.
+/// The caller sets the header.
 lapis_msgs::msg::LandmarkState to_message(const mapping::LandmarkState& state);
 
 }  // namespace lapis::messages

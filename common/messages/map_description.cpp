@@ -8,7 +8,7 @@
 namespace lapis::messages {
 namespace {
 
-/// What does not fit becomes a number that validation refuses.
+/// A number that does not fit becomes -1, which validation refuses.
 int to_int(std::uint32_t number) {
   return number > static_cast<std::uint32_t>(std::numeric_limits<int>::max()) ? -1 : static_cast<int>(number);
 }

@@ -9,7 +9,7 @@
 
 namespace lapis::messages {
 
-/// Refused, with its name, when a value is out of range or not finite, or when a class id is 0 or occurs twice.
+/// Refused when a value is out of range or not finite (the reason names it), or when a class id is 0 or occurs twice.
 Converted<mapping::MapDescription> from_message(const lapis_msgs::msg::MapDescription& message);
 
 lapis_msgs::msg::MapDescription to_message(const mapping::MapDescription& description,

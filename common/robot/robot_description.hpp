@@ -6,7 +6,7 @@
 
 namespace lapis::robot {
 
-/// The camera as it is built and mounted.
+/// The camera and its mounting.
 struct CameraDescription {
   int width = 640;
   int height = 360;
@@ -17,7 +17,7 @@ struct CameraDescription {
   double pitch_down_deg = 0.0;
 };
 
-/// What every process may have to know of the robot; config/robot.yaml is the one place where it stands.
+/// Properties of the robot that several processes need; only config/robot.yaml sets them.
 struct RobotDescription {
   double radius_m = 0.20;
   double max_speed_m_s = 0.6;
@@ -32,7 +32,7 @@ struct RobotDescription {
   CameraDescription camera;
 };
 
-/// Pinhole model: the principal point is the middle of the image.
+/// Pinhole model whose principal point is the middle of the image.
 geometry::PinholeCamera pinhole_camera(const CameraDescription& camera);
 geometry::CameraMount camera_mount(const CameraDescription& camera);
 

@@ -10,8 +10,8 @@
 
 namespace lapis::runtime {
 
-/// The topics of an RGB-D camera that may know classes and truth, and the clock that goes with its frames: what
-/// sensor_replay and simulator publish, so that consumers cannot distinguish them.
+/// The topics of an RGB-D camera, optionally with labels and ground truth, and the clock of its frames. sensor_replay
+/// and simulator both publish with it, so that subscribers cannot distinguish them.
 class CameraPublisher {
  public:
   struct Parts {
@@ -21,12 +21,12 @@ class CameraPublisher {
   CameraPublisher(Context& context, const Parts& parts);
 
   const messages::CameraFrameIds& ids() const { return ids_; }
-  /// True when the depth images have had `number` readers for half a second: their readers of other topics match within
-  /// that time. To be asked often.
+  /// True when the depth images have had `number` readers for half a second, within which the readers' other
+  /// subscriptions match. Call it often.
   bool has_readers(std::size_t number);
-  /// Mount and classes, once.
+  /// Publishes the camera mount and the classes, once.
   void publish_latched(const geometry::CameraMount& mount, const mapping::LabelList& labels, time::Time stamp);
-  /// The frame, and then its stamp on /clock. Published again by lock-step when a participant was late.
+  /// Publishes the frame, and then its stamp on /clock. Lock-step publishes a frame again when a participant is late.
   void publish(const messages::CameraMessages& messages);
 
  private:

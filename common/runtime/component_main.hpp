@@ -2,8 +2,8 @@
 
 namespace lapis::runtime {
 
-/// The whole life of a process (common/runtime/run_component.hpp). Each component's source instantiates it for its
-/// component, so that main.cpp costs the compiler nothing.
+/// Runs the process of a component from start to end (common/runtime/run_component.hpp). Each component instantiates it
+/// in its own source file, so that main.cpp compiles quickly.
 template <class Component>
 int run_component(int argc, char** argv);
 

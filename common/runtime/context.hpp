@@ -23,15 +23,16 @@ namespace lapis::runtime {
 
 class LockstepParticipant;
 
-/// One turn of a component's work. Handlers only store what came; the work is done in the cycle.
+/// One cycle of a component's work. Handlers only store their input; the work is done in the cycle.
 struct Cycle {
-  /// Lock-step: every input of this tick is here, what is missing was not published. Otherwise more may come.
+  /// In lock-step: all inputs of this tick have arrived; what is missing was not published. False: more may come.
   bool inputs_complete = false;
-  /// Lock-step: no input follows; finish what is pending.
+  /// In lock-step: no input follows; finish all pending work.
   bool is_final = false;
 };
 
-/// Thrown where a bad set-up shows only with the first data: the process ends with the same status as for any other.
+/// Thrown when a bad set-up shows only with the first data: the process ends with the same exit status as for any other
+/// bad set-up.
 struct BadSetup : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -42,7 +43,7 @@ struct ContextOptions {
   bool use_sim_time = false;
 };
 
-/// What the runtime gives to a component: its endpoints, its clock, its status. All on the component's one thread.
+/// What the runtime provides to a component: endpoints, clock and status. For use on the component's only thread.
 class Context {
  public:
   explicit Context(const ContextOptions& options);
@@ -72,9 +73,9 @@ class Context {
     executor_.add(*server);
     services_.push_back(std::move(server));
   }
-  /// Called after handlers ran, or in lock-step when a tick's inputs are complete.
+  /// Sets the function that is called after handlers have run, or, in lock-step, when a tick's inputs are complete.
   void on_cycle(std::function<void(const Cycle&)> cycle) { cycle_ = std::move(cycle); }
-  /// Calls `action` every so many seconds of wall time.
+  /// Calls `action` every `period_s` seconds of wall-clock time.
   void every(double period_s, std::function<void()> action);
 
   Status& status() { return status_; }
@@ -89,11 +90,11 @@ class Context {
   const std::vector<std::unique_ptr<dds::Writer>>& writers() const { return writers_; }
   const std::vector<std::unique_ptr<dds::Source>>& sources() const { return sources_; }
 
-  /// Ends the process: with status 0 because the work is done, or 1 with the reason.
+  /// End the process: finish() with status 0 because the work is done, fail() with status 1 and the reason.
   void finish();
   void fail(const std::string& reason);
   int exit_status() const { return exit_status_; }
-  /// True when somebody waits at a terminal for the end (SIGINT): what can be made later is left out.
+  /// True when somebody waits for the end at a terminal (SIGINT): output that can be produced later is left out.
   bool is_in_a_hurry() const { return is_in_a_hurry_; }
 
   /// Used by the runtime only: announces the endpoints, then handles events until the end.

@@ -7,21 +7,22 @@
 
 namespace lapis::runtime {
 
-/// Publishes that this process lives, in which phase it is and what it does, so that a supervisor can distinguish one
-/// that is busy from one that hangs. On the component's thread, whose silence is what counts.
+/// Publishes heartbeats with the phase and the activity of this process, so that a supervisor can distinguish a busy
+/// process from one that hangs. Heartbeats come from the component's thread, because it is the thread that must not
+/// hang.
 class Heart {
  public:
   enum class Phase { kStarting, kRunning, kEnding };
-  /// Between heartbeats while nothing else is announced [s].
+  /// Time between heartbeats while no longer silence is announced [s].
   static constexpr double kPeriod_s = 0.5;
 
-  /// `name`: of the process, with its robot's namespace.
+  /// `name`: name of the process, with the robot's namespace.
   Heart(dds::Participant& participant, const std::string& name);
 
-  /// Start and end take longer than a cycle: up to kTransition_s are announced with them.
+  /// Enters a phase. Start and end take longer than a cycle, so a silence of up to kTransition_s is announced for them.
   void enter(Phase phase);
   void beat();
-  /// How far the process is; said with the next heartbeat, until something else is said.
+  /// Sets the progress that the next heartbeats report as the activity.
   void set_progress(const std::string& text) { message_.activity(text); }
 
  private:
@@ -32,11 +33,11 @@ class Heart {
   dds::Publisher<lapis_msgs::msg::Heartbeat> publisher_;
 };
 
-/// Announces, for as long as it lives, work during which the process is silent. May be nested.
+/// Announces, during its lifetime, work during which the process is silent. May be nested.
 class LongWork {
  public:
-  /// `activity`: what is done, for example "saves the map". After `longest_s` the process counts as hung; that is for
-  /// the slowest machine and disk, not for the usual one.
+  /// `activity`: the work, for example "saves the map". After `longest_s` seconds the process counts as hung, so choose
+  /// it for the slowest machine and disk, not for the usual one.
   LongWork(Heart& heart, const std::string& activity, double longest_s);
   ~LongWork();
   LongWork(const LongWork&) = delete;

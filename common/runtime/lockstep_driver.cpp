@@ -12,8 +12,8 @@ using lapis_msgs::msg::Ack_Constants::STATUS_BUSY;
 using lapis_msgs::msg::Ack_Constants::STATUS_DONE;
 using lapis_msgs::msg::Ack_Constants::STATUS_ERROR;
 
-constexpr double kJoinRepeat_s = 0.1;    // tick 0 is for those who come later, so it is repeated often
-constexpr double kTickRepeat_s = 0.5;    // later ones for a participant that has been restarted
+constexpr double kJoinRepeat_s = 0.1;    // tick 0 waits for participants that start later, so it is repeated often
+constexpr double kTickRepeat_s = 0.5;    // later ticks are repeated for a participant that has been restarted
 constexpr double kLongestWait_s = 60.0;  // policy "wait"
 
 double seconds_since(std::chrono::steady_clock::time_point t) {
@@ -66,7 +66,7 @@ void LockstepDriver::begin(time::Time stamp, bool is_final) {
   state_ = State::kWaiting;
   tick_began_ = stage_began_ = frame_published_ = Clock::now();
   publish_tick();
-  advance();  // no stages: nothing to wait for
+  advance();  // without stages there is nothing to wait for
 }
 
 void LockstepDriver::release_stage() {
@@ -111,7 +111,7 @@ void LockstepDriver::on_ack(const Ack& ack) {
   const auto& stages = config_.stages;
   const std::string& participant = ack.participant();
   if (ack.run_gid() != tick_->gid() || std::find(stages.begin(), stages.end(), participant) == stages.end()) return;
-  if (number_of(ack) > std::make_pair(number_, stage_)) return;  // was never released
+  if (number_of(ack) > std::make_pair(number_, stage_)) return;  // this stage was never released
   const auto known = last_ack_.find(participant);
   const bool is_new = known == last_ack_.end() || known->second.participant_gid() != ack.participant_gid();
   if (!is_new && number_of(ack) < number_of(known->second)) return;
@@ -119,7 +119,8 @@ void LockstepDriver::on_ack(const Ack& ack) {
   if (ack.status() == STATUS_ERROR) return fail(participant + " reported an error in lock-step: " + ack.reason());
   const bool is_joining = state_ == State::kJoining;
   const bool is_newcomer = is_new && ack.status() == STATUS_BUSY;
-  // What it published before its endpoints were matched is nobody's; later it is waited for, however long it stalled.
+  // Samples that it published before its endpoints were matched never arrive, so they are not waited for. All later
+  // samples are waited for, however long it stalls.
   if (is_joining || is_newcomer) outputs_.forgive(ack.counts(), context_.sources());
   if (is_newcomer && !is_joining) {
     newcomers_[participant] = ack;
@@ -128,7 +129,8 @@ void LockstepDriver::on_ack(const Ack& ack) {
   newcomers_.erase(participant);
   last_ack_[participant] = ack;
   if (is_new && is_joining) {
-    // All must match the newcomer's endpoints, so all are asked again; a VOLATILE sample from before is nobody's.
+    // All participants must match the newcomer's endpoints, so all are asked again: the newcomer never gets a VOLATILE
+    // sample that was published before.
     ++stage_;
     publish_tick();
   }
@@ -141,10 +143,10 @@ bool LockstepDriver::has_answered(const std::string& participant) const {
          it->second.status() == STATUS_DONE;
 }
 
-/// True in a tick whose last stage has answered; what was counted in the answers may still be on its way.
+/// True in a tick whose last stage has answered; samples that the answers counted may still be in transit.
 bool LockstepDriver::have_all_answered() const { return state_ == State::kWaiting && stage_ >= config_.stages.size(); }
 
-/// True when all that we write reaches the participant.
+/// True when all samples that this process writes reach the participant.
 bool LockstepDriver::is_matched(const Ack& ack) const {
   for (const auto& reader : ack.readers()) {
     for (const auto& writer : context_.writers()) {
@@ -185,7 +187,7 @@ void LockstepDriver::advance() {
   }
 }
 
-/// For whom the run waits: for an answer, or for samples that an answer has counted.
+/// The participants that the run waits for: for an answer, or for samples that an answer has counted.
 std::vector<std::string> LockstepDriver::silent() const {
   std::vector<std::string> names;
   if (state_ == State::kWaiting && stage_ < config_.stages.size()) return {config_.stages[stage_]};
@@ -202,7 +204,7 @@ const lapis_msgs::msg::TopicCount* LockstepDriver::missing_output(const Ack& ack
   return outputs_.missing(ack.counts(), context_.sources());
 }
 
-// The endpoints of a participant that has left must not be waited for. It drops out of discovery with its lease.
+// The endpoints of a participant that has left must not be waited for. Discovery drops it when its lease expires.
 void LockstepDriver::forget_the_dead() {
   const auto is_dead = [this](const auto& entry) {
     return !acks_.is_participant_matched(entry.second.participant_gid());
@@ -211,7 +213,8 @@ void LockstepDriver::forget_the_dead() {
   std::erase_if(newcomers_, is_dead);
 }
 
-// Who comes in the middle of a run has not had this tick's samples: they are published again as soon as they reach it.
+// A participant that joins in the middle of a run has not received this tick's samples, so they are published again as
+// soon as they can reach it.
 void LockstepDriver::admit_newcomers() {
   const auto admitted = std::erase_if(newcomers_, [this](const auto& entry) {
     if (!is_matched(entry.second)) return false;
@@ -240,7 +243,7 @@ void LockstepDriver::check_time() {
   if (silence_s > patience_s) {
     give_up(silence_s);
   } else if (have_all_answered()) {
-    return;  // nothing to repeat: what they have counted is on its way
+    return;  // nothing to repeat: the counted samples are in transit
   } else if (!is_joining && std::min(silence_s, seconds_since(frame_published_)) > config_.soft_timeout_s) {
     spdlog::warn("{}; publishing it again", describe_silence(silence_s));
     publish_frame_again();
@@ -270,7 +273,7 @@ std::string LockstepDriver::describe_silence(double silence_s) const {
 
 void LockstepDriver::give_up(double silence_s) {
   const auto participants = silent();
-  if (participants.empty()) {  // while joining: all have answered, but not all endpoints are matched
+  if (participants.empty()) {  // while joining: all have answered, but some endpoints are not matched
     return fail("lock-step: endpoints of " + joined(config_.stages) + " were not matched; is a QoS incompatible?");
   }
   const std::string reason = describe_silence(silence_s);

@@ -31,30 +31,30 @@ void describe(Field& field, LockstepConfig& c) {
         "end the run, wait for a restart (at most 60 s), or continue without it");
 }
 
-/// The clock's side of lock-step (docs/architecture.md). Its owner publishes frame and /clock, calls begin(), and
-/// publishes the next frame when the driver is idle again; in between the tick is released to one stage after another.
-/// Idle means, too, that all samples which participants published for the owner (commands) have been received; before
-/// the first frame, those that are latched.
+/// The clock's side of lock-step (docs/architecture.md). Its owner publishes a frame and /clock, calls begin(), and
+/// publishes the next frame when the driver is idle again; in between, the tick is released to one stage after another.
+/// Idle also means that all samples that participants published for the owner (commands) have been received; before the
+/// first frame, this applies to latched samples only.
 class LockstepDriver {
  public:
   enum class State { kJoining, kIdle, kWaiting, kFailed };
 
-  /// `republish` publishes the samples of the tick under way, frame and /clock, again: for one that is late, and for
-  /// one that has been restarted and cannot have them.
+  /// `republish` publishes the samples of the current tick (frame and /clock) again: for a participant that is late, or
+  /// for one that has been restarted and has not received them.
   LockstepDriver(Context& context, const LockstepConfig& config, std::function<void()> republish);
 
   void begin(time::Time stamp, bool is_final);
-  /// Begins a new run, whose participants join again; answers to the old one are ignored.
+  /// Begins a new run, which the participants join again; answers to the old run are ignored.
   void restart();
-  /// As it is now that handlers have run.
+  /// Updates and returns the state; to be called after handlers have run.
   State state();
-  /// Why the state is kFailed: names the silent participants and the remedy.
+  /// The reason why the state is kFailed, which names the silent participants and the remedy.
   const std::string& failure() const { return failure_; }
-  /// Longest time that a tick took so far [s].
+  /// Longest wall-clock time of a tick so far [s].
   double longest_tick_s() const { return longest_tick_s_; }
-  /// CPU time of each participant, from one answer to the next [ms].
+  /// CPU time of each participant, summed over its answers of this run [ms].
   const std::map<std::string, double>& cpu_ms() const { return cpu_ms_; }
-  /// Participants without which this run or one before it continued, and the tick that they did not answer.
+  /// Participants without which this run or an earlier one continued, with the tick that they did not answer.
   const std::map<std::string, std::uint64_t>& demoted() const { return demoted_; }
 
  private:
@@ -89,7 +89,7 @@ class LockstepDriver {
   std::string failure_;
   CountedInputs outputs_;
   std::map<std::string, Ack> last_ack_;   // by participant
-  std::map<std::string, Ack> newcomers_;  // came in the middle of a run, and our samples do not reach them yet
+  std::map<std::string, Ack> newcomers_;  // joined in the middle of a run; our samples do not reach them yet
   std::map<std::string, std::uint64_t> demoted_;
   std::uint64_t number_ = 0;
   std::uint32_t stage_ = 0;

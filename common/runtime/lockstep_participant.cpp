@@ -33,7 +33,7 @@ LockstepParticipant::LockstepParticipant(Context& context)
 }
 
 void LockstepParticipant::after_handlers() {
-  if (pending_ && !is_active()) pending_.reset();  // the driver is gone: nobody waits for the answer
+  if (pending_ && !is_active()) pending_.reset();  // the driver has left, so nobody waits for the answer
   if (pending_) {
     answer_pending();
   } else if (is_free()) {
@@ -43,8 +43,8 @@ void LockstepParticipant::after_handlers() {
 
 bool LockstepParticipant::is_active() const { return run_ != dds::Gid{} && ticks_.is_matched(run_); }
 
-// A newcomer to a run leaves its inputs alone until it is its turn, or has seen a whole tick that was not for it. The
-// process that drives is always free.
+// A newcomer to a run does not work on its inputs until a tick is due for it, or until it has seen a whole tick that
+// was not due for it. The process that drives is always free.
 bool LockstepParticipant::is_free() const {
   const bool drives = ticks_.is_participant_matched(context_.participant().gid());
   return !is_active() && (ticks_.matched() == 0 || drives || (is_bystander_ && ticks_.is_matched(watched_)));
@@ -57,7 +57,7 @@ void LockstepParticipant::on_tick(const Tick& tick) {
     watched_ = tick.run_gid();
     first_watched_ = tick.tick();
   }
-  is_bystander_ = !is_due && (tick.tick() == 0 || tick.tick() > first_watched_ + 1);  // tick 0 names everybody
+  is_bystander_ = !is_due && (tick.tick() == 0 || tick.tick() > first_watched_ + 1);  // tick 0 names every participant
   if (!is_due) return leave_if_demoted(tick);
   last_due_ = tick.tick();
   const std::pair<std::uint64_t, std::uint32_t> number(tick.tick(), tick.stage());
@@ -68,8 +68,9 @@ void LockstepParticipant::on_tick(const Tick& tick) {
     answered_.reset();
     inputs_.clear();
   }
-  // What was published before we came is nobody's: of a tick under way the driver publishes its own samples again, when
-  // it knows us. Tick 0 carries no data and comes again with each newcomer's counts.
+  // Samples that were published before this process joined never arrive, so they are not waited for. The driver
+  // publishes its own samples of the current tick again when it knows this process. Tick 0 carries no data and is
+  // repeated with the counts of each newcomer.
   if (is_new_run || tick.tick() == 0) inputs_.forgive(tick.counts(), context_.sources());
   if (answered_ && number == *answered_) {
     publish_ack(tick, lapis_msgs::msg::Ack_Constants::STATUS_DONE, "");  // the answer was lost
@@ -81,8 +82,7 @@ void LockstepParticipant::on_tick(const Tick& tick) {
   if (!has_joined_) say_busy();
 }
 
-// The driver continued without us while we were silent: from here on we run freely, as one that has been restarted
-// does.
+// The driver continued without this process while it was silent: from now on it runs freely, like a restarted process.
 void LockstepParticipant::leave_if_demoted(const Tick& tick) {
   if (tick.run_gid() != run_ || tick.tick() <= last_due_ + 1) return;
   spdlog::warn("lock-step continues without this process since tick {}: it works on what comes by itself", last_due_);
@@ -100,7 +100,7 @@ void LockstepParticipant::answer_pending() {
   pending_.reset();
 }
 
-/// Why a tick cannot be answered yet; empty: it can.
+/// The reason why a tick cannot be answered yet; empty when it can be answered.
 std::string LockstepParticipant::obstacle(const Tick& tick) const {
   if (!are_endpoints_matched(tick)) return "matching endpoints";
   if (!has_joined_ && tick.tick() > 0 && !is_admitted(tick)) return "waiting to be admitted to the run";
@@ -109,7 +109,7 @@ std::string LockstepParticipant::obstacle(const Tick& tick) const {
   return "";
 }
 
-// The driver names our readers from the moment on when its samples reach them.
+// The driver lists the readers of this process as soon as its samples reach them.
 bool LockstepParticipant::is_admitted(const Tick& tick) const {
   return std::any_of(tick.readers().begin(), tick.readers().end(),
                      [this](const auto& reader) { return reader.gid() == ticks_.gid(); });
@@ -150,7 +150,7 @@ void LockstepParticipant::publish_ack(const Tick& tick, std::uint8_t status, con
     reader.gid(source->gid());
     ack.readers().push_back(reader);
   }
-  lapis_msgs::msg::TopicEndpoint tick_reader;  // names us even when there is no other reader
+  lapis_msgs::msg::TopicEndpoint tick_reader;  // identifies this process even when it has no other reader
   tick_reader.topic(ticks_.dds_name());
   tick_reader.gid(ticks_.gid());
   ack.readers().push_back(tick_reader);

@@ -13,12 +13,12 @@ namespace lapis::runtime {
 class Context;
 
 /// A component's side of lock-step (docs/architecture.md): waits until the counted inputs of a tick have been received,
-/// lets the component work, and answers with the counts of its outputs. Outside lock-step it just passes cycles on.
+/// lets the component work, and answers with the counts of its outputs. Outside lock-step it only passes cycles on.
 class LockstepParticipant {
  public:
   explicit LockstepParticipant(Context& context);
 
-  /// The executor's cycle: handlers have run.
+  /// The executor's cycle function, called after handlers have run.
   void after_handlers();
 
  private:
@@ -43,7 +43,8 @@ class LockstepParticipant {
   std::optional<Tick> pending_;                                      // received, not answered
   std::optional<std::pair<std::uint64_t, std::uint32_t>> answered_;  // tick and stage
   std::uint64_t last_due_ = 0;                                       // tick
-  // The run of the last tick, whoever was due, its first tick that came here, and whether it does without us.
+  // The run of the newest tick, whoever it was due for; the first tick of that run that was received; and whether the
+  // run works without this process.
   dds::Gid watched_{};
   std::uint64_t first_watched_ = 0;
   bool is_bystander_ = false;

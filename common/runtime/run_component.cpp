@@ -80,9 +80,9 @@ void log_setup(const config::Schema& schema, const ContextOptions& options) {
   }
 }
 
-/// Ends the run on SIGINT or SIGTERM, and lets its end be hurried by a SIGINT that comes then. A handler receives them,
-/// in whatever thread: blocking them in ours does not keep them from the threads that a library started before main(),
-/// as OpenBLAS does, and there they would end the process.
+/// Ends the run on SIGINT or SIGTERM; a SIGINT, even one that comes later, also hurries the end. A signal handler
+/// receives the signals in any thread: blocking them in our own threads does not keep them from threads that a library
+/// such as OpenBLAS started before main(), where they would end the process.
 class SignalWaiter {
  public:
   explicit SignalWaiter(Context& context) {
@@ -95,13 +95,14 @@ class SignalWaiter {
   }
   ~SignalWaiter() {
     is_over_ = true;
-    sem_post(&has_come);  // ends the wait when no signal came
+    sem_post(&has_come);  // ends the wait when no signal has arrived
     thread_.join();
   }
   SignalWaiter(const SignalWaiter&) = delete;
   SignalWaiter& operator=(const SignalWaiter&) = delete;
 
-  /// From here on signals wait for a SignalWaiter. Threads inherit the mask: their system calls are not interrupted.
+  /// From here on, signals wait for a SignalWaiter. New threads inherit the mask, so that signals do not interrupt
+  /// their system calls.
   static void prepare() {
     sem_init(&has_come, 0, 0);
     std::signal(SIGINT, remember);
@@ -148,7 +149,7 @@ int spin(const ComponentFactory& factory, Context& context, const std::function<
 
 int set_up_and_spin(const ComponentFactory& factory, const ContextOptions& options) {
   SignalWaiter::prepare();        // before DDS starts its threads
-  std::signal(SIGXFSZ, SIG_IGN);  // a limit on file sizes is an error of write(), as a full disk is
+  std::signal(SIGXFSZ, SIG_IGN);  // write() then reports a file size limit as an error, like a full disk
   std::unique_ptr<Context> context;
   std::function<void()> finish;
   try {
@@ -162,7 +163,8 @@ int set_up_and_spin(const ComponentFactory& factory, const ContextOptions& optio
   return spin(factory, *context, finish);
 }
 
-/// What the command line asks for instead of a component: exit status.
+/// Does what the command line asks for instead of running the component, and returns the exit status; otherwise returns
+/// nothing.
 std::optional<int> answer(const ComponentFactory& factory, const Arguments& arguments) {
   if (arguments.print_config) {
     std::cout << config::to_yaml(factory.schema);
@@ -196,7 +198,7 @@ int run(ComponentFactory factory, int argc, char** argv) {
     dds::check_namespace(arguments.name_space);
     for (const auto& file : arguments.config_files) config::apply_file(factory.schema, file);
     for (const auto& assignment : arguments.overrides) config::apply_override(factory.schema, assignment);
-    app.parse(argc, argv);  // again: options of the component win over files
+    app.parse(argc, argv);  // again, because the component's own options override files
     config::check(factory.schema);
     if (factory.rules) config::check(factory.schema, factory.rules());
     options = context_options(factory.name, arguments, dds);

@@ -16,7 +16,7 @@ class App;
 
 namespace lapis::runtime {
 
-/// What every process can set under `dds.`.
+/// The keys of every process under `dds.`.
 struct DdsConfig {
   int socket_buffer_bytes = 4 << 20;
 };
@@ -27,29 +27,29 @@ void describe(Field& field, DdsConfig& c) {
         "size asked for each UDP socket's send and receive buffer [B]");
 }
 
-/// A component as run_component's implementation sees it.
+/// A component as run() sees it.
 struct ComponentFactory {
   std::string name;
   std::string summary;
   config::Schema schema;  ///< without `dds.`
-  /// Adds options and positionals of its own.
+  /// Adds the component's own options and positional arguments.
   std::function<void(CLI::App&)> add_options;
-  /// What its keys have to be to each other.
+  /// Conditions between its keys.
   std::function<config::Rules()> rules;
-  /// A job that needs no DDS (such as --list): exit status, or nothing to continue.
+  /// Runs a job that needs no DDS (such as --list) and returns its exit status; nothing: the component runs.
   std::function<std::optional<int>()> run_tool;
-  /// Builds the component; the returned functions own it: what to do at the end, once spinning stopped.
+  /// Builds the component. The returned function owns it and is called at the end, once spinning has stopped.
   std::function<std::function<void()>(Context&)> create;
 };
 
-/// The whole ceremony, once: command line, configuration, DDS, signals, spinning, exit status
-/// (0 asked to stop, 1 failed while running, 2 bad set-up).
+/// Runs a process: command line, configuration, DDS, signals, spinning. Returns the exit status (0 finished or asked to
+/// stop, 1 failed while running, 2 bad set-up).
 int run(ComponentFactory factory, int argc, char** argv);
 
-/// `Component` has: `Config` (described for common/config), `kName`, `kSummary`, a constructor
-/// (const Config&, Context&), and, where needed, `static void add_options(CLI::App&, Config&)`,
-/// `static config::Rules rules(const Config&)`, `static std::optional<int> run_tool(const Config&)` and `void
-/// finish()`, called when spinning has stopped. What it is constructed with is within its bounds, and the rules hold.
+/// `Component` has: `Config` (described for common/config), `kName`, `kSummary`, a constructor (const Config&,
+/// Context&), and, where needed, `static void add_options(CLI::App&, Config&)`, `static config::Rules rules(const
+/// Config&)`, `static std::optional<int> run_tool(const Config&)` and `void finish()`, called when spinning has
+/// stopped. The configuration that the constructor gets is within its bounds, and the rules hold.
 template <class Component>
 int run_component(int argc, char** argv) {
   using Config = typename Component::Config;

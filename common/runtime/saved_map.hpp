@@ -11,26 +11,26 @@
 namespace lapis::runtime {
 
 struct SavedMapConfig {
-  std::string component;    ///< whose keys are COMPONENT.output_dir and COMPONENT.resume_from
+  std::string component;    ///< name of the component, whose keys are COMPONENT.output_dir and COMPONENT.resume_from
   std::string folder;       ///< empty: the map is not kept
   std::string resume_from;  ///< file of an earlier session; empty: none
-  std::vector<std::string>
-      files;              ///< names in the folder; the first one is the map's own, of which the others are made
-  double period_s = 0.0;  ///< between saves; 0: at the end only
+  /// File names in the folder; the first one is the map itself, from which the others are derived.
+  std::vector<std::string> files;
+  double period_s = 0.0;  ///< time between saves [s]; 0: at the end only
 };
 
-/// The life of a component's map on disk: it resumes the one of an earlier session or begins anew, sets the files of
-/// the one before aside, and is saved from time to time.
+/// Manages a component's map on disk: resumes the map of an earlier session or begins a new one, renames the files of
+/// the previous map, and says when the map is due to be saved.
 class SavedMap {
  public:
-  /// Throws std::runtime_error when the folder cannot be written into.
+  /// Throws std::runtime_error when no files can be written into the folder.
   SavedMap(SavedMapConfig config, Context& context);
 
   bool is_kept() const { return !config_.folder.empty(); }
   std::string path(const std::string& name) const { return (std::filesystem::path(config_.folder) / name).string(); }
 
-  /// What `read(path, error)` makes of the file to resume, if there is one. Throws std::runtime_error naming the key
-  /// and why it cannot be read.
+  /// Result of `read(path, error)` for the file to resume; empty without such a file. Throws std::runtime_error, which
+  /// names the key and the reason, when the file cannot be read.
   template <class Read>
   auto resume(const Read& read) const {
     std::string error;
@@ -41,13 +41,13 @@ class SavedMap {
     if (!file) throw std::runtime_error(key() + ": " + error);
     return file;
   }
-  /// "slam.resume_from: FILE: WHAT", for a file that does not fit.
+  /// Error text "slam.resume_from: FILE: WHAT" for a file that does not fit.
   std::string misfit(const std::string& what) const { return key() + ": " + config_.resume_from + ": " + what; }
 
-  /// A map begins. Files of the map before stay under another name, but for those of the map that is resumed: the new
-  /// ones hold all of it.
+  /// Begins a map at `stamp`. Files of the previous map are kept under another name, except those of a resumed map,
+  /// whose content the new files include.
   void begin(time::Time stamp, bool is_resumed);
-  /// A period is over since it was begun or saved last.
+  /// True when a period has passed since the map was begun or last saved.
   bool is_due(time::Time now) const;
   void note_save(time::Time now) { saved_ = now; }
 

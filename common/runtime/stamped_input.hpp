@@ -11,13 +11,13 @@
 
 namespace lapis::runtime {
 
-/// The messages of one topic, waiting in the order of their stamps to be joined with those of other topics. What cannot
-/// be used is counted on /diagnostics by stream and reason.
+/// The messages of one topic, which wait in the order of their stamps to be joined with those of other topics. Unusable
+/// messages are counted on /diagnostics by stream and reason.
 template <class Message>
 class StampedInput {
  public:
-  /// `name`: the stream's name in counters. `capacity`: messages that may wait; the oldest is dropped beyond. What the
-  /// topic carries is a Message, or becomes one.
+  /// `name`: name of the stream in counters. `capacity`: number of messages that may wait; when there are more, the
+  /// oldest is dropped. A sample of the topic is a Message or converts to one.
   template <class Sample>
   StampedInput(Context& context, const dds::Topic<Sample>& topic, std::string name, std::size_t capacity)
       : context_(context), name_(std::move(name)), buffer_(capacity),
@@ -25,25 +25,25 @@ class StampedInput {
   StampedInput(const StampedInput&) = delete;
   StampedInput& operator=(const StampedInput&) = delete;
 
-  /// Called with every message that arrives, before it is stored.
+  /// Sets the function that is called for every message that arrives, before it is stored.
   void on_arrival(std::function<void(time::Time stamp)> action) { on_arrival_ = std::move(action); }
-  /// Called when the source began anew: stamps went back by more than a second.
+  /// Sets the function that is called when the source has restarted: its stamps went back by more than a second.
   void on_restart(std::function<void()> action) { on_restart_ = std::move(action); }
 
   bool has_publisher() const { return source_.matched() > 0; }
   /// Messages that were lost before they could be taken.
   std::uint64_t missed() const { return source_.missed(); }
-  /// True when the next message would push out the oldest.
+  /// True when the next message would displace the oldest.
   bool is_full() const { return buffer_.is_full(); }
   bool empty() const { return buffer_.empty(); }
   /// Oldest message and its stamp; the input must not be empty.
   const std::pair<time::Time, Message>& front() const { return buffer_.front(); }
   std::pair<time::Time, Message>& front() { return buffer_.front(); }
-  /// As StampBuffer::match.
+  /// See StampBuffer::match.
   time::Match match(time::Time stamp, time::Duration tolerance, bool is_complete, Message*& found) {
     return buffer_.match(stamp, tolerance, is_complete, found);
   }
-  /// As StampBuffer::second, drop_until and expect_restart.
+  /// See StampBuffer::second, drop_until and expect_restart.
   std::optional<time::Time> second() const { return buffer_.second(); }
   std::size_t drop_until(time::Time stamp) { return buffer_.drop_until(stamp); }
   void expect_restart(time::Time stamp) { buffer_.expect_restart(stamp); }
@@ -74,7 +74,7 @@ class StampedInput {
   time::StampBuffer<Message> buffer_;
   std::function<void(time::Time)> on_arrival_;
   std::function<void()> on_restart_;
-  dds::Source& source_;  // last: its handler uses the rest
+  dds::Source& source_;  // last member, because its handler uses the others
 };
 
 }  // namespace lapis::runtime

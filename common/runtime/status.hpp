@@ -7,7 +7,7 @@
 
 namespace lapis::runtime {
 
-/// What a component says of itself on /diagnostics.
+/// Status of a component, which is published on /diagnostics.
 class Status {
  public:
   enum class Level { kOk = 0, kWarn = 1, kError = 2 };
@@ -19,7 +19,7 @@ class Status {
   }
   void value(const std::string& key, const std::string& text) { values_[key] = text; }
   void value(const std::string& key, std::uint64_t number) { values_[key] = std::to_string(number); }
-  /// Adds to a counter, for example of dropped input; the key says what and why.
+  /// Adds to a counter, for example of dropped input; the key says what is counted and why.
   void count(const std::string& key, std::uint64_t more = 1) { counters_[key] += more; }
   std::uint64_t counter(const std::string& key) const {
     const auto it = counters_.find(key);
@@ -30,7 +30,7 @@ class Status {
   const std::string& message() const { return message_; }
   const std::map<std::string, std::string>& values() const { return values_; }
   const std::map<std::string, std::uint64_t>& counters() const { return counters_; }
-  /// True once after the level changed.
+  /// True once after a change of the level.
   bool take_change() { return std::exchange(has_changed_, false); }
 
  private:

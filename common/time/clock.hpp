@@ -4,7 +4,7 @@
 
 namespace lapis::time {
 
-/// Says the time: the system's (UTC), or the one that /clock last announced.
+/// The current time: that of the system (UTC), or the time last announced on /clock.
 class Clock {
  public:
   enum class Kind { kSystem, kSimulated };
@@ -13,7 +13,7 @@ class Clock {
 
   /// Simulated time is 0 until the first announcement, as in ROS 2.
   Time now() const;
-  /// Takes over an announcement of simulated time; a system clock ignores it.
+  /// Sets the simulated time; a system clock ignores it.
   void announce(Time t) { simulated_ = t; }
   Kind kind() const { return kind_; }
 

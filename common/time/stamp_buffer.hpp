@@ -10,21 +10,23 @@
 
 namespace lapis::time {
 
-/// A source whose stamps go back by more than this began anew; less is disorder.
+/// A source whose stamps go back by more than this has restarted; a smaller step back is disorder.
 inline constexpr Duration kRestartGap{1'000'000'000};
 
 enum class Push {
   kStored,
-  kDuplicate,  ///< not stored: the stamp is there or was taken last
+  kDuplicate,  ///< not stored: the stamp is in the buffer or was taken last
   kLate,       ///< not stored: later stamps have been taken
-  kRestarted,  ///< stored; the stamp lies more than a second in the past, so the source began anew and the rest is gone
-  kOverflow    ///< stored, and the oldest was dropped
+  /// Stored; the stamp is more than a second before the newest one, so the source has restarted and the older messages
+  /// were dropped.
+  kRestarted,
+  kOverflow  ///< stored, and the oldest was dropped
 };
 
 enum class Match {
   kFound,
   kMissing,
-  kWait  ///< one that fits (better) may still come
+  kWait  ///< a message that fits, or fits better, may still come
 };
 
 /// Recent messages of one stream in the order of their stamps, so that streams can be joined by stamp. Joining depends
@@ -69,14 +71,14 @@ class StampBuffer {
   std::size_t drop_until(Time stamp) {
     const std::size_t before = entries_.size();
     while (!entries_.empty() && entries_.front().first <= stamp) entries_.pop_front();
-    // A stream that began anew alone has not reached `stamp`: what follows there is not late.
+    // A stream that has restarted alone has not reached `stamp` yet, so its next messages are not late.
     const Time reached = std::min(stamp, newest_.value_or(stamp));
     taken_ = std::max(taken_.value_or(reached), reached);
     return before - entries_.size();
   }
 
-  /// A stream that comes from the same source began anew at `stamp`. If this one has not done so yet, match() waits
-  /// for it: that there are later messages, of before, does not mean that no better one comes.
+  /// Another stream of the same source has restarted at `stamp`. If this stream has not restarted yet, match() waits
+  /// for it: later messages from before the restart do not mean that no better match will come.
   void expect_restart(Time stamp) { is_restart_expected_ = !newest_ || is_before_restart(stamp); }
 
   /// Looks for the message nearest to `stamp` within `tolerance`; `is_complete` says that nothing more will come.
@@ -98,7 +100,7 @@ class StampBuffer {
   }
 
  private:
-  /// True when the stream is so far ahead of `stamp` that its source must have begun anew since.
+  /// True when the stream is so far ahead of `stamp` that its source must have restarted since.
   bool is_before_restart(Time stamp) const { return newest_ && *newest_ - stamp > kRestartGap; }
 
   std::size_t capacity_;

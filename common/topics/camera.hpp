@@ -6,7 +6,7 @@
 
 namespace lapis::topics {
 
-// What a camera publishes, and a segmentation of its images.
+// What a camera and a segmentation of its images publish.
 inline constexpr dds::Topic<sensor_msgs::msg::Image> kColor{"/camera/color/image_raw", dds::kSensor, "camera",
                                                             "15 or 30 Hz", "rgb8, bgr8, rgba8, bgra8 or mono8"};
 inline constexpr dds::Topic<sensor_msgs::msg::CompressedImage> kCompressedColor{

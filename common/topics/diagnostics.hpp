@@ -5,7 +5,7 @@
 
 namespace lapis::topics {
 
-// What everybody publishes.
+// What every process except the supervisor publishes.
 inline constexpr dds::Topic<diagnostic_msgs::msg::DiagnosticArray> kDiagnostics{
     "/diagnostics",
     dds::kState,

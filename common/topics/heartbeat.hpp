@@ -5,7 +5,7 @@
 
 namespace lapis::topics {
 
-// The life of every process.
+// Heartbeats of every process except the supervisor.
 inline constexpr dds::Topic<lapis_msgs::msg::Heartbeat> kHeartbeat{"/heartbeat",
                                                                    dds::kLatchedByMany,
                                                                    "all but the supervisor",

@@ -5,7 +5,7 @@
 
 namespace lapis::topics {
 
-// The planner's thoughts for viewers.
+// What the planner publishes for viewers.
 inline constexpr dds::Topic<visualization_msgs::msg::MarkerArray> kPlannerMarkers{
     "/planner/markers", dds::kLatched, "planner", "each decision",
     "frontiers, candidates, hallucinated graph; made only for readers"};

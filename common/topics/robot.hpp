@@ -6,7 +6,7 @@
 
 namespace lapis::topics {
 
-// What a robot publishes beside its camera.
+// What a robot publishes besides its camera images.
 inline constexpr dds::Topic<nav_msgs::msg::Odometry> kWheelOdometry{"/odom", dds::kBurst, "robot", "50 Hz",
                                                                     "optional; wheel odometry, drifting"};
 inline constexpr dds::Topic<sensor_msgs::msg::Imu> kImu{"/imu", dds::kBurst, "robot", "200 Hz", "optional"};

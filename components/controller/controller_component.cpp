@@ -29,7 +29,7 @@ time::Time steady_now() {
 
 }  // namespace
 
-/// Without these the robot would not see what it drives into, or be blocked by turning.
+/// Without these conditions, the robot would not see obstacles in its path, or a turn would count as no progress.
 config::Rules ControllerComponent::rules(const Config& config) {
   const LocalMapConfig& map = config.method.local_map;
   const FanConfig& fan = config.method.fan;
@@ -66,8 +66,8 @@ ControllerComponent::ControllerComponent(const Config& config, runtime::Context&
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
 
-/// In lock-step time is that of the frames, and each tick has one command. Otherwise the ages of inputs are those of
-/// their arrival: a robot must stop in time also when the clock that stamps them has stopped.
+/// In lock-step, time is that of the frames, and each tick has one command. Otherwise the age of an input is the time
+/// since its arrival, because a robot must stop in time even when the clock that stamps its inputs has stopped.
 void ControllerComponent::work(const runtime::Cycle& cycle) {
   const time::Time now = cycle.inputs_complete ? camera_stamp_ : steady_now();
   take_inputs(cycle, now);
@@ -86,7 +86,8 @@ void ControllerComponent::take_inputs(const runtime::Cycle& cycle, time::Time no
   path_.reset();
 }
 
-/// Joins the oldest pose with its depth image; false when that may still come.
+/// Joins the oldest pose with its depth image and camera info. Returns false when there is no pose, or when these may
+/// still arrive.
 bool ControllerComponent::next_frame(const runtime::Cycle& cycle, time::Time now) {
   using time::Match;
   if (pose_.empty()) return false;
@@ -144,7 +145,7 @@ void ControllerComponent::take_map(time::Time now) {
   obstacles_.reset();
 }
 
-/// A path that cannot be used stops the robot as an empty one does: the one before it is not wanted any more.
+/// An unusable path stops the robot, like an empty one, because the previous path is no longer wanted.
 void ControllerComponent::take_path(const Path& message) {
   auto path = to_core(message);
   if (!path) return refuse_path(path.reason);
@@ -175,7 +176,7 @@ void ControllerComponent::drop(const std::string& what, const std::string& reaso
   if (context_.rate_limit().pass(what + reason)) spdlog::warn("{} dropped: {}", what, reason);
 }
 
-/// The one place that lets a command out.
+/// All decisions pass through here, so that only finite commands are published.
 void ControllerComponent::publish(Decision decision, time::Time now) {
   if (!is_finite(decision.command)) {
     drop("command", "it is not finite");

@@ -11,7 +11,8 @@
 
 namespace lapis::controller {
 
-/// Drives the robot along the planner's path, around what its camera sees, and stops it when it knows too little.
+/// Drives the robot along the planner's path, around obstacles that its camera sees, and stops it when inputs are
+/// missing or old.
 class ControllerComponent {
  public:
   using Config = ControllerComponentConfig;
@@ -64,8 +65,8 @@ class ControllerComponent {
 
   messages::StaticTransforms static_transforms_;
   std::uint64_t frames_ = 0;
-  time::Time camera_stamp_;  // of the depth image that arrived last
-  bool is_due_ = false;      // by the wall clock
+  time::Time camera_stamp_;  // stamp of the depth image that arrived last
+  bool is_due_ = false;      // a command is due by the wall clock
   std::optional<time::Time> reported_at_;
   Decision reported_;
 };

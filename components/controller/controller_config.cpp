@@ -3,7 +3,7 @@
 namespace lapis::controller {
 namespace {
 
-constexpr double kTickLatencies = 2.0;  // a command acts from the next frame on, which takes a frame to be seen
+constexpr double kTickLatencies = 2.0;  // frames: one until an obstacle is seen, and one until the command takes effect
 
 }  // namespace
 

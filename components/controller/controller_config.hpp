@@ -6,7 +6,7 @@
 
 namespace lapis::controller {
 
-/// What the process adds to the method's configuration.
+/// The method's configuration and what the process adds to it.
 struct ControllerComponentConfig {
   ControllerConfig method;
   double rate_hz = 20.0;
@@ -14,9 +14,9 @@ struct ControllerComponentConfig {
   robot::RobotDescription robot;
 };
 
-/// What the robot can do, its reaction the lag of the drives and the latency of lock-step.
+/// The limits of the robot. Its reaction time is the lag of the drives plus the latency of lock-step.
 RobotLimits limits_of(const robot::RobotDescription& robot);
-/// With all that the core needs of the robot.
+/// The configuration, completed with the properties of the robot that the core needs.
 ControllerComponentConfig completed(ControllerComponentConfig config);
 
 template <class Field>

@@ -8,7 +8,7 @@
 namespace lapis::controller {
 namespace {
 
-constexpr double kFarthest_m = 1e4;  // keeps cells within the range of integers
+constexpr double kFarthest_m = 1e4;  // keeps cell indices within the range of integers
 constexpr double kFinest_m = 0.01;
 
 geometry_msgs::msg::Pose to_message(const PlanarPose& T) {

@@ -13,13 +13,13 @@
 
 namespace lapis::controller {
 
-/// A pose seen from above; refused when it is not valid or more than 10 km from the origin.
+/// Position and yaw of a pose; refused when the pose is not valid or more than 10 km from the origin.
 messages::Converted<PlanarPose> to_core(const geometry_msgs::msg::Pose& message);
-/// Poses of a path; refused when one of them is.
+/// Poses of a path; refused when one of them is refused.
 messages::Converted<std::vector<PlanarPose>> to_core(const nav_msgs::msg::Path& message);
-/// Refused when cells, size and resolution do not fit each other, or when the grid is turned.
+/// Refused when the number of cells differs from the size, the resolution is out of range, or the grid is rotated.
 messages::Converted<Grid> to_core(const nav_msgs::msg::OccupancyGrid& message);
-/// Refused when image and camera info do not fit each other.
+/// Refused when the image or the camera info is not usable, or when their sizes differ.
 messages::Converted<DepthView> to_core(const sensor_msgs::msg::Image& depth, const sensor_msgs::msg::CameraInfo& info,
                                        const geometry::Pose& T_base_camera);
 

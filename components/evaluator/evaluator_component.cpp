@@ -27,11 +27,11 @@ namespace {
 
 constexpr std::size_t kWaitingFrames = 30;
 constexpr std::chrono::seconds kProgressPeriod(2);
-constexpr double kLongestJudging_s = 900.0;  // maps compared, files written, figures drawn
+constexpr double kLongestJudging_s = 900.0;  // to compare maps, write files and draw figures
 
-/// Root of the sum of the variances of x, y and z [m]; none when the covariance is none.
+/// Root of the sum of the variances of x, y and z [m]; none when the covariance is not valid.
 std::optional<double> position_sigma_m(const nav_msgs::msg::Odometry& message) {
-  const auto& covariance = message.pose().covariance();  // 6x6, row by row
+  const auto& covariance = message.pose().covariance();  // 6x6, row-major
   const double sum = covariance[0] + covariance[7] + covariance[14];
   return sum >= 0.0 ? std::optional(std::sqrt(sum)) : std::nullopt;
 }
@@ -97,13 +97,13 @@ void EvaluatorComponent::count_contact(bool is_in_contact) {
 
 void EvaluatorComponent::on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message) {
   for (const auto& status : message.status()) {
-    if (status.name() != context_.frame(status.hardware_id())) continue;  // another robot's, or no process of Lapis
+    if (status.name() != context_.frame(status.hardware_id())) continue;  // another robot, or not a process of Lapis
     costs_.add(status);
   }
 }
 
-/// Ends the process when the map cannot be judged: the description makes no sense, or is of another map than the
-/// references are for.
+/// Ends the process when the map cannot be judged: the description is not valid, or it differs from the one for which
+/// the references are built.
 void EvaluatorComponent::on_map_description(const lapis_msgs::msg::MapDescription& message) {
   const std::string topic = topics::kMapDescription.name;
   auto description = messages::from_message(message);
@@ -147,7 +147,7 @@ void EvaluatorComponent::work(const runtime::Cycle& cycle) {
   report_progress();
 }
 
-/// By which explore.sh shows how far the robot is.
+/// Logs the progress and publishes it with the heartbeat, for display during the run.
 void EvaluatorComponent::report_progress() {
   find_truth();
   const std::string text = fmt::format("{}, {}: {}", how_far(), messages::state_name(*planner_), planner_->reason());
@@ -164,7 +164,8 @@ std::string EvaluatorComponent::how_far() const {
                      row.path_length_m.value_or(0.0), loop_closures());
 }
 
-/// Joins and records the oldest frame that slam answered; false when its partners may still come.
+/// Joins and records the oldest frame that slam answered. Returns false when there is none or its partners may still
+/// arrive.
 bool EvaluatorComponent::next_frame(const runtime::Cycle& cycle) {
   if (tracked_.empty()) return false;
   const auto& [stamp, tracked] = tracked_.front();
@@ -176,7 +177,7 @@ bool EvaluatorComponent::next_frame(const runtime::Cycle& cycle) {
   return true;
 }
 
-/// None while one of them may still come.
+/// The messages that belong to a frame; none while one of them may still arrive.
 std::optional<EvaluatorComponent::Partners> EvaluatorComponent::partners_of(const Tracked& tracked,
                                                                             const runtime::Cycle& cycle) {
   using time::Match;
@@ -184,7 +185,7 @@ std::optional<EvaluatorComponent::Partners> EvaluatorComponent::partners_of(cons
   const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
   const auto is_over = [&](const auto& input) { return cycle.inputs_complete || !input.has_publisher(); };
   Partners found;
-  // What slam says of one frame has one stamp; without a pose it says nothing of it here.
+  // slam's messages of one frame have the same stamp; for a frame without a pose, slam publishes no odometry.
   const bool no_odometry_comes = tier_of(tracked) == PoseTier::kNone || is_over(odometry_) || tracked_.is_full();
   const bool is_complete = odometry_.match(stamp, {}, no_odometry_comes, found.odometry) != Match::kWait &&
                            truth_.match(stamp, tolerance, is_over(truth_), found.truth) != Match::kWait &&
@@ -194,7 +195,7 @@ std::optional<EvaluatorComponent::Partners> EvaluatorComponent::partners_of(cons
   return is_complete ? std::optional(found) : std::nullopt;
 }
 
-/// Forgets the frame, and what no later one can use.
+/// Drops the frame, and all messages that no later frame can use.
 void EvaluatorComponent::drop_until(time::Time stamp) {
   const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
   tracked_.drop_until(stamp);
@@ -205,7 +206,7 @@ void EvaluatorComponent::drop_until(time::Time stamp) {
   info_.drop_until(stamp - tolerance);
 }
 
-/// True when the camera's mount is known, without which a true pose of the base says nothing of the camera.
+/// True when the camera's mount is known, without which the true pose of the base does not give that of the camera.
 bool EvaluatorComponent::is_mount_known(const Odometry& truth, const Tracked& tracked) {
   const std::string& optical_frame = tracked.header().frame_id();
   if (static_transforms_.find(truth.child_frame_id(), optical_frame)) return true;
@@ -236,7 +237,7 @@ void EvaluatorComponent::record(const Tracked& tracked, const Partners& partners
   add_timeline_row(frame.stamp);
 }
 
-/// Of the camera, in the map; none when slam had none.
+/// Pose of the camera in the map; none when slam had no pose.
 std::optional<geometry::Pose> EvaluatorComponent::pose_of(const Tracked& tracked) {
   if (tier_of(tracked) == PoseTier::kNone) return std::nullopt;
   const auto T_map_keyframe = messages::from_message(tracked.keyframe_pose());
@@ -246,7 +247,7 @@ std::optional<geometry::Pose> EvaluatorComponent::pose_of(const Tracked& tracked
   return std::nullopt;
 }
 
-/// Returns what is wrong with the scene's ground truth, or an empty text.
+/// Loads the scene's ground truth when it is available. Returns the problem with it, or an empty text.
 std::string EvaluatorComponent::find_truth() {
   return record_.T_map_world() ? maps_.find_truth(*record_.T_map_world()) : "";
 }

@@ -37,7 +37,7 @@ class EvaluatorComponent {
   using Tracked = lapis_msgs::msg::TrackedFrame;
   using Odometry = nav_msgs::msg::Odometry;
 
-  /// What belongs to a frame that slam answered; null where it is not there.
+  /// The messages that belong to a frame that slam answered; null where there is none.
   struct Partners {
     Odometry* odometry = nullptr;  ///< slam's pose with its covariance
     Odometry* truth = nullptr;
@@ -72,7 +72,7 @@ class EvaluatorComponent {
   Config config_;
   runtime::Context& context_;
   runtime::StampedInput<Tracked> tracked_;
-  runtime::StampedInput<Odometry> odometry_;  // slam's
+  runtime::StampedInput<Odometry> odometry_;  // of slam
   runtime::StampedInput<Odometry> truth_;
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Image> labels_;
@@ -87,10 +87,10 @@ class EvaluatorComponent {
   MapJudge maps_;
   std::vector<TimelineRow> timeline_;
   std::optional<time::Time> timeline_stamp_;
-  bool has_ended_ = false;  // lock-step said that no input follows
+  bool has_ended_ = false;  // lock-step has announced that no input follows
   std::optional<std::chrono::steady_clock::time_point> began_;
   std::chrono::steady_clock::time_point newest_;
-  std::chrono::steady_clock::time_point reported_;  // progress
+  std::chrono::steady_clock::time_point reported_;  // when progress was last reported
 };
 
 }  // namespace lapis::evaluator

@@ -20,7 +20,8 @@ std::string figures_script() {
   return (std::filesystem::read_symlink("/proc/self/exe").parent_path() / "lapis_evaluator_figures.py").string();
 }
 
-/// Waits for the end of a child, which is ended when there is no time for it.
+/// Waits for the end of a child, which is terminated when the process is in a hurry. True when the child exits with
+/// status 0.
 bool has_succeeded(pid_t child, const std::function<bool()>& is_in_a_hurry) {
   int status = 0;
   pid_t ended = 0;
@@ -39,7 +40,7 @@ void draw_figures(std::string folder, const std::function<bool()>& is_in_a_hurry
   std::string script = figures_script();
   char* arguments[] = {script.data(), folder.data(), nullptr};
   pid_t child = 0;
-  sigset_t none;  // our threads block the signals that end a process; the script must not
+  sigset_t none;  // our threads block the signals that end a process, but the script must not
   sigemptyset(&none);
   posix_spawnattr_t attributes;
   posix_spawnattr_init(&attributes);

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kMaxDistance_m = 10'000.0;  // the mapper's limit
 
-/// What of a map file is not as the description says; empty when the two can be compared.
+/// The first difference between a map file and the description; empty when the two maps can be compared.
 std::string unlike(const mapping::MapFile& file, const mapping::MapDescription& description) {
   if (file.map.resolution_m() != description.resolution_m)
     return fmt::format("resolution_m {} and {}", file.map.resolution_m(), description.resolution_m);
@@ -73,7 +73,8 @@ std::string MapJudge::find_truth(const geometry::Pose& T_map_world) {
   return "";
 }
 
-/// Only slam's first map has the frame of the truth.
+/// True when the map has the grid of the ground truth and belongs to slam's first map, the only one in the frame of the
+/// truth.
 bool MapJudge::is_comparable(const KnownSpace& map) const {
   return map_session_ == judged_session_ && map.occupied.resolution_m == description_->resolution_m;
 }
@@ -138,8 +139,8 @@ void MapJudge::write_to(RunMetrics& m, bool has_reference) const {
   m.full_map = figures_by("full.lapis");
 }
 
-/// Occupied voxels of a map without noise, which the simulator has written. None, with a warning, when it was not built
-/// as the map was.
+/// Occupied voxels of a map without noise that the simulator has written. None, with a warning, when it was not built
+/// in the same way as the map.
 std::optional<LabelledVoxels> MapJudge::load_exact(const std::string& name) const {
   const std::string file = (truth_folder_ / name).string();
   if (!std::filesystem::exists(file)) return std::nullopt;

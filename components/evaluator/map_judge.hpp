@@ -16,43 +16,43 @@
 
 namespace lapis::evaluator {
 
-/// The map that the mapper publishes, and what it is judged by: the same mapper's map from true poses, a plain fusion,
-/// and the ground truth of a simulated scene. All are in the run's map frame.
+/// The map that the mapper publishes and its references: a map that the same algorithm builds from true poses, a plain
+/// fusion, and the ground truth of a simulated scene. All are in the run's map frame.
 class MapJudge {
  public:
   /// @param truth_folder where the simulator writes the ground truth of the scene, if there is one
   explicit MapJudge(std::filesystem::path truth_folder) : truth_folder_(std::move(truth_folder)) {}
 
   mapping::MapMirror& mirror() { return mirror_; }
-  /// Of slam: the one that the run is judged by, and the one that the newest map is of.
+  /// Sessions of slam: the one in which the run is judged, and the one to which the newest map belongs.
   void set_judged_session(std::int64_t session) { judged_session_ = session; }
   void set_map_session(std::int64_t session) { map_session_ = session; }
-  /// What the mapper says of its map; without it there are no references, and no map is read. Returns what of it
-  /// differs from what it said before, so that maps of one run could not be compared; else an empty text.
+  /// Sets the mapper's description of its map, without which there are no references and no map is read. Returns the
+  /// difference from the previous description that makes the maps of the run incomparable, or an empty text.
   std::string set_description(mapping::MapDescription description);
 
-  /// A frame that slam tracked, at its true pose: the references judge the map, so only what the map can hold is in
-  /// them. Labels may be empty. Returns what is wrong with the frame, or an empty text.
+  /// Adds a frame that slam tracked to the references, at its true pose. Frames that slam did not track are not in the
+  /// map and must not be added. Labels may be empty. Returns the problem with the frame, or an empty text.
   std::string add_reference_frame(const geometry::PinholeCamera& camera, const geometry::DepthImage& depth_m,
                                   const geometry::LabelImage& labels, const geometry::Pose& T_map_camera);
-  /// Looks for the ground truth of the scene, which the simulator writes while the run continues. Returns what is wrong
-  /// with it, or an empty text.
+  /// Loads the ground truth of the scene, which the simulator writes during the run, once it is available. Returns the
+  /// problem with it, or an empty text.
   std::string find_truth(const geometry::Pose& T_map_world);
 
-  /// Of the map as it is; none without a map or ground truth.
+  /// Explored share of the current map; none without a map or ground truth.
   std::optional<double> explored_share() const;
-  /// Fills in the explored volume, and remembers the map for its share.
+  /// Fills in the explored volume, and remembers the map for add_shares().
   void write_to(TimelineRow& row);
-  /// Fills in the explored share of all rows that were written to.
+  /// Fills in the explored shares of all rows that write_to() has filled.
   void add_shares(std::vector<TimelineRow>& rows) const;
-  /// Fills in what RunMetrics has of maps.
-  /// @param has_reference whether the map frame's place in the world is known
+  /// Fills in the figures of maps.
+  /// @param has_reference whether the pose of the map frame in the world is known
   void write_to(RunMetrics& metrics, bool has_reference) const;
-  /// Throws std::runtime_error when it cannot be written.
+  /// Throws std::runtime_error when the file cannot be written.
   void save_reference(const std::filesystem::path& file) const;
 
  private:
-  /// What the run's own frames give at true poses.
+  /// Maps of the run's own frames at true poses.
   struct References {
     explicit References(const mapping::MapDescription& description);
     mapping::VoxelMap map;
@@ -69,8 +69,8 @@ class MapJudge {
   mapping::MapMirror mirror_;
   std::optional<std::int64_t> judged_session_, map_session_;
   std::optional<References> references_;
-  std::optional<GroundTruth> truth_;  // of a simulated scene
-  KnownHistory known_;                // of the rows that have a comparable map
+  std::optional<GroundTruth> truth_;  // ground truth of a simulated scene
+  KnownHistory known_;                // known voxels of the rows that have a comparable map
 };
 
 }  // namespace lapis::evaluator

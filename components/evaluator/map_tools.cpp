@@ -51,7 +51,7 @@ ordered_json describe(const MapOptions& options, const LoadedMap& reference, con
           {"estimate_occupied_voxels", estimate.space.occupied.voxels.size()}};
 }
 
-// One id must mean one class in both files.
+// Throws unless every id means the same class in both files.
 void require_same_classes(const MapOptions& options, const LoadedMap& reference, const LoadedMap& estimate) {
   for (const mapping::Label& label : reference.labels.labels()) {
     if (!estimate.labels.contains(label.id) || estimate.labels.name(label.id) == label.name) continue;

@@ -5,8 +5,8 @@
 
 namespace lapis::evaluator {
 
-/// Adds `map` (distances between occupied voxels), `iou` (agreement of classes) and `coverage` (explored volume) of
-/// one map.lapis file against another.
+/// Adds the tools `map` (distances between occupied voxels), `iou` (agreement of classes) and `coverage` (explored
+/// volume), which compare one map.lapis file with another.
 void add_map_tools(CLI::App& app, std::ostream& out);
 
 }  // namespace lapis::evaluator

@@ -9,12 +9,12 @@
 
 namespace lapis::evaluator {
 
-/// CPU time and memory of the processes of a run, as they publish them on /diagnostics: the newest values count.
+/// CPU time and memory of the processes of a run, as published on /diagnostics; the newest values count.
 class ProcessCosts {
  public:
-  /// @param status of a process of Lapis
+  /// @param status status of a process of Lapis
   void add(const diagnostic_msgs::msg::DiagnosticStatus& status);
-  /// Fills in cpu_ms_per_frame and peak_rss_mb; without a value where a process did not publish one.
+  /// Fills in cpu_ms_per_frame and peak_rss_mb, without a value for a process that did not publish one.
   void write_to(RunMetrics& metrics) const;
 
  private:
@@ -23,7 +23,7 @@ class ProcessCosts {
     std::optional<double> peak_rss_mb;
     std::optional<double> frames;
   };
-  std::map<std::string, Costs> costs_;  // by name of the process
+  std::map<std::string, Costs> costs_;  // keys are names of processes
 };
 
 }  // namespace lapis::evaluator

@@ -5,9 +5,9 @@
 
 namespace lapis::evaluator {
 
-/// Adds `ate`: absolute trajectory error of one TUM file against another.
+/// Adds the tool `ate`: absolute trajectory error of one TUM file against another.
 void add_ate_tool(CLI::App& app, std::ostream& out);
-/// Adds `rpe`: relative pose error of one TUM file against another.
+/// Adds the tool `rpe`: relative pose error of one TUM file against another.
 void add_rpe_tool(CLI::App& app, std::ostream& out);
 
 }  // namespace lapis::evaluator

@@ -17,15 +17,15 @@
 
 namespace lapis::semantic_mapper {
 
-/// Depth and, where there are any, labels and their confidence of one instant as the mapper keeps them; refused with a
+/// Compact frame of the depth and, where there are any, the labels and their confidence of one instant; refused with a
 /// reason when they do not fit each other or the camera info.
 messages::Converted<mapping::CompactFrame> to_core(const sensor_msgs::msg::Image& depth,
                                                    const sensor_msgs::msg::Image* labels,
                                                    const sensor_msgs::msg::Image* confidence,
                                                    const sensor_msgs::msg::CameraInfo& info,
                                                    const mapping::CompactFrameConfig& config);
-/// A tracked frame's anchor around its compact frame; refused when the poses are not valid, or odometry alone gave them
-/// and no drift is said.
+/// Adds the pose of a tracked frame to its compact frame; refused when the poses are not valid, or when odometry alone
+/// gave them and the message states no drift.
 messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& tracked, mapping::CompactFrame frame);
 /// Valid key-frame poses of a graph.
 std::vector<KeyframePose> to_core(const lapis_msgs::msg::PoseGraph& graph);

@@ -28,7 +28,7 @@ Bytes encode(const mapping::MapFile& file, const ConvertOptions& options) {
   throw std::runtime_error(options.out + ": cannot be written; expected .ot, .bt or .ply");
 }
 
-/// An octree holds no counts: of it only the points can be reported.
+/// An octree holds no counts, so only its points can be written.
 Bytes encode(const OctreeFile& octree, const ConvertOptions& options) {
   if (extension_of(options.out) != ".ply")
     throw std::runtime_error(options.out + ": cannot be made from " + options.in +

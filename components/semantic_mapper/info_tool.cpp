@@ -44,7 +44,7 @@ double volume_m3(std::size_t voxels, double resolution_m) {
   return static_cast<double>(voxels) * resolution_m * resolution_m * resolution_m;
 }
 
-/// Occupied voxels of a class, and all its hits.
+/// Number of occupied voxels of a class, and the sum of its hits.
 struct ClassSum {
   std::size_t occupied = 0;
   double votes = 0.0;
@@ -80,7 +80,7 @@ ordered_json describe(const mapping::SensorModel& model) {
           {"class_count", model.class_count}};
 }
 
-/// Null when nobody knows, or when the map is not made of frames.
+/// Null when the settings are unknown, or when the map was not made from frames.
 ordered_json describe(const std::optional<mapping::FrameSettings>& frames) {
   if (!frames) return nullptr;
   const mapping::IntegrationConfig& c = frames->integration;

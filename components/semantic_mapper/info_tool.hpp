@@ -5,7 +5,7 @@
 
 namespace lapis::semantic_mapper {
 
-/// `info FILE [--json]`: what is in a map.
+/// `info FILE [--json]`: prints what is in a map.
 void add_info_tool(CLI::App& app, std::ostream& out);
 
 }  // namespace lapis::semantic_mapper

@@ -17,7 +17,7 @@ namespace {
 
 using geometry::Pose;
 
-constexpr double kMaxDistance_m = 10'000.0;  // as for frames
+constexpr double kMaxDistance_m = 10'000.0;  // the same limit as for frames
 
 struct MergeOptions {
   std::vector<std::string> files;

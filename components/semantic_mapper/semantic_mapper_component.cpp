@@ -38,7 +38,7 @@ bool has_pose(const lapis_msgs::msg::TrackedFrame& frame) {
   return frame.state() == Constants::STATE_TRACKING || frame.state() == Constants::STATE_DEAD_RECKONING;
 }
 
-/// A number among the notes of a map file; 0 when it is not there.
+/// Number in the notes of a map file; 0 when there is no such note.
 std::uint64_t note(const mapping::MapFile& file, const char* key) {
   const auto found = file.provenance.find(key);
   return found == file.provenance.end() ? 0 : std::strtoull(found->second.c_str(), nullptr, 10);
@@ -46,7 +46,7 @@ std::uint64_t note(const mapping::MapFile& file, const char* key) {
 
 }  // namespace
 
-/// Without these no frame would enter the map, or its tiles could not be read.
+/// Without these rules no frame would enter the map, or its tiles could not be read.
 config::Rules SemanticMapperComponent::rules(const Config& config) {
   const MapperConfig& map = config.map;
   constexpr int kMaxVoxelsPerTileEdge = mapping::kMaxBlocksPerTileEdge * mapping::kBlockEdge;
@@ -95,7 +95,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   describe_map();
 }
 
-/// The one to resume, if there is one; throws with file and remedy.
+/// Loads the map to resume, if there is one; throws with the file and the remedy.
 void SemanticMapperComponent::load_map() {
   resumed_ = disk_.resume(mapping::load_map);
   if (!resumed_) return;
@@ -138,9 +138,9 @@ mapping::FrameSettings SemanticMapperComponent::frame_settings() const {
   return {config_.map.integration, config_.frame.stride};
 }
 
-/// Publishes what the map is when that is not what was published last: at the start, and then in cycles only, before
-/// the tiles that it is needed for, so that in lock-step each comes in a certain tick. Throws std::runtime_error naming
-/// what cannot be.
+/// Publishes the description of the map when it differs from the one published last: at the start, and later only in
+/// cycles, before the tiles that need it, so that in lock-step each description is published in a defined tick. Throws
+/// std::runtime_error that names what is not allowed.
 void SemanticMapperComponent::describe_map() {
   mapping::MapDescription now;
   now.resolution_m = config_.map.resolution_m;
@@ -182,7 +182,7 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   Image* labels = nullptr;
   Image* confidence = nullptr;
   Info* info = nullptr;
-  // Labels are optional: a slow segmentation costs the frames their labels, not the map its frames.
+  // Labels are optional: a slow segmentation costs frames their labels, but does not cost the map its frames.
   const bool is_last_chance = cycle.inputs_complete || tracked_.is_full();
   const bool no_labels_come = is_last_chance || !labels_.has_publisher();
   const bool no_confidence_comes = is_last_chance || !confidence_.has_publisher();
@@ -238,7 +238,7 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
   report_store(mapper_->store());
 }
 
-/// Frames that are not whole in the map, because odometry alone gave their poses.
+/// Reports frames that are not whole in the map, because odometry alone gave their poses.
 void SemanticMapperComponent::report_drift() {
   context_.status().value("frames_waiting", static_cast<std::uint64_t>(mapper_->frames_waiting()));
   context_.status().value("frames_in_part", static_cast<std::uint64_t>(mapper_->frames_in_part()));
@@ -266,14 +266,14 @@ void SemanticMapperComponent::drop(const std::string& reason) {
   if (context_.rate_limit().pass(reason)) spdlog::warn("frame dropped: {}", reason);
 }
 
-/// The map, if any, holds nothing of an earlier run.
+/// From here on, the map contains nothing from an earlier run.
 void SemanticMapperComponent::forget_resumed() {
   resumed_labels_ = {};
   resumed_frames_ = 0;
   is_mixed_ = false;
 }
 
-/// The map of a session of slam is over; what there is of it stays on disk.
+/// Ends the map of a session of slam, and saves it where maps are kept on disk.
 void SemanticMapperComponent::end_map() {
   if (mapper_ == nullptr) return;
   spdlog::warn("slam began a new map; so does the mapper");
@@ -316,7 +316,7 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
   provisional_changes_.reset();
 }
 
-/// All tiles published so far are over.
+/// Ends all tiles published so far.
 void SemanticMapperComponent::begin_epoch(time::Time stamp) {
   for (const auto& [x, y, z] : published_tiles_) {
     lapis_msgs::msg::VoxelTile tile;
@@ -381,13 +381,13 @@ void SemanticMapperComponent::publish_tiles() {
   map_state_.publish(message);
 }
 
-/// Also of frames that could not be integrated, for the robot has to find back to where slam tracks.
+/// Also for frames that could not be integrated, because the robot has to find its way back to where slam tracks.
 void SemanticMapperComponent::publish_obstacles() {
   obstacles_stamp_ = published_stamp_;
   obstacles_.publish(to_message(obstacle_layer_->grid(), header(published_stamp_)));
 }
 
-/// When it has changed, as it has when a new map begins: nothing waits in it.
+/// Publishes the area when it has changed, also when a new map begins, in which no frame waits.
 void SemanticMapperComponent::publish_provisional_area() {
   provisional_stamp_ = published_stamp_;
   if (provisional_changes_ == mapper_->provisional_changes()) return;
@@ -398,7 +398,7 @@ void SemanticMapperComponent::publish_provisional_area() {
   provisional_area_ = std::move(area);
 }
 
-/// True when a view is due and read by anybody, or when a reader has come since the last look.
+/// True when a view has a reader and is due, or when a reader has come since the last call.
 bool SemanticMapperComponent::wants_view(const dds::Writer& writer, bool is_due) {
   const bool has_new_reader = std::exchange(seen_matches_[&writer], writer.total_matches()) != writer.total_matches();
   return writer.matched() > 0 && (is_due || has_new_reader);
@@ -436,14 +436,14 @@ std_srvs::srv::Trigger_Response SemanticMapperComponent::save_on_request() {
   return response;
 }
 
-/// All frames go to where the pose graph has them now.
+/// Moves all frames to the poses of the present pose graph.
 void SemanticMapperComponent::flush() {
   const runtime::LongWork work(context_.heart(), "moves frames to corrected poses", kLongestFlush_s);
   mapper_->flush();
 }
 
-/// Saves the map as it is, without moving frames to corrected poses first, which may take long. Nothing, or why it
-/// could not be saved; the status says so until a later save works.
+/// Saves the map as it is, without moving frames to corrected poses first, which may take long. Returns nothing, or why
+/// it could not be saved; the status reports this until a later save succeeds.
 std::optional<std::string> SemanticMapperComponent::save() {
   auto problem = write_files();
   using Level = runtime::Status::Level;

@@ -59,8 +59,8 @@ class SemanticMapperComponent {
   void publish_views(bool is_due);
   bool wants_view(const dds::Writer& writer, bool is_due);
   std_srvs::srv::Trigger_Response save_on_request();
-  /// Nothing on success; otherwise what failed, naming the file.
   void flush();
+  /// Nothing on success; otherwise what failed, naming the file.
   std::optional<std::string> save();
   std::optional<std::string> write_files();
   mapping::BeliefReader belief_reader() const;
@@ -82,7 +82,7 @@ class SemanticMapperComponent {
   runtime::StampedInput<Image> labels_;
   runtime::StampedInput<Image> confidence_;
   runtime::StampedInput<Info> info_;
-  std::optional<Graph> graph_;  // newest, not yet followed
+  std::optional<Graph> graph_;  // newest one, not applied yet
   mapping::LabelList label_list_;
   std::optional<mapping::MapDescription> described_;  // published last
 
@@ -90,7 +90,7 @@ class SemanticMapperComponent {
   std::optional<mapping::MapFile> resumed_;  // until the first map begins with it
   mapping::LabelList resumed_labels_;
   std::uint64_t resumed_frames_ = 0;
-  bool is_mixed_ = false;  // the resumed map has counts of frames that entered it otherwise, or nobody knows how
+  bool is_mixed_ = false;  // the resumed map has counts of frames with other settings, or with unknown ones
 
   std::unique_ptr<SemanticMapper> mapper_;  // exists once slam tracks
   std::optional<FloorPlan> floor_plan_;     // of mapper_
@@ -104,7 +104,7 @@ class SemanticMapperComponent {
   std::optional<time::Time> obstacles_stamp_;
   std::optional<time::Time> provisional_stamp_;
   OccupancyGrid provisional_area_;                       // published last
-  std::optional<std::uint64_t> provisional_changes_;     // of the map's, when it was looked at last
+  std::optional<std::uint64_t> provisional_changes_;     // count of changes at the last look
   std::set<std::tuple<int, int, int>> published_tiles_;  // of this epoch
   std::map<const dds::Writer*, std::uint64_t> seen_matches_;
   std::uint64_t frames_integrated_ = 0;

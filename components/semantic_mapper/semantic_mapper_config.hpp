@@ -20,7 +20,7 @@ struct SemanticMapperComponentConfig {
   double frame_interval_s = 0.0;
   double tile_period_s = 0.5;
   double view_period_s = 1.0;
-  double obstacle_period_s = 0.06;  // each frame at 15 Hz: the controller stops for want of them
+  double obstacle_period_s = 0.06;  // each frame at 15 Hz; the controller stops when none come
   int re_anchor_work_per_cycle = 1'000'000;
   std::string resume_from;
   bool resume_any_session = true;

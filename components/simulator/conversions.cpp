@@ -6,8 +6,8 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kUnknownVariance = 1e6;  // of what a robot on the floor cannot measure
-constexpr double kLeastVariance = 1e-8;   // of what has no noise: zero would read as "unknown"
+constexpr double kUnknownVariance = 1e6;  // for what a robot on the floor cannot measure
+constexpr double kLeastVariance = 1e-8;   // for what has no noise: zero would mean "unknown"
 
 /// Pose of a robot on the floor.
 geometry::Pose planar_pose(const Eigen::Vector2d& position, double yaw_rad) {
@@ -15,7 +15,7 @@ geometry::Pose planar_pose(const Eigen::Vector2d& position, double yaw_rad) {
                              Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
 }
 
-/// Covariance of (x, y, yaw) among those of the six dimensions of ROS.
+/// Covariance of (x, y, yaw), embedded in the 6x6 matrix of ROS (x, y, z, rotations about x, y and z).
 geometry::Matrix6d planar_covariance(const Eigen::Matrix3d& covariance) {
   geometry::Matrix6d out = geometry::Matrix6d::Zero();
   for (const int i : {2, 3, 4}) out(i, i) = kUnknownVariance;

@@ -8,17 +8,17 @@
 
 namespace lapis::simulator {
 
-/// Frame and odometry frame as they go on the wire, with the robot's namespace.
+/// Names of the camera's frames and of the odometry frame on the wire, with the robot's namespace.
 struct SimulatorFrameIds {
   messages::CameraFrameIds camera;
   std::string odom;
 };
 
-/// The messages of all that was sensed since the last frame.
+/// Messages of everything that was sensed since the last frame.
 struct SensorMessages {
   messages::CameraMessages camera;
   std::vector<nav_msgs::msg::Odometry> odometry;
-  std::vector<tf2_msgs::msg::TFMessage> transforms;  ///< odom -> base_link, one with each of `odometry`
+  std::vector<tf2_msgs::msg::TFMessage> transforms;  ///< odom -> base_link, one per element of `odometry`
   std::vector<sensor_msgs::msg::Imu> imu;
 };
 

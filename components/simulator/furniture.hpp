@@ -7,7 +7,8 @@
 
 namespace lapis::simulator {
 
-/// The catalogue as a source of models; every model is read once. An empty function when the catalogue is empty.
+/// Returns the catalogue as a source of models, which reads each model once; an empty function when the catalogue is
+/// empty.
 FurnitureSource furniture_from(std::shared_ptr<const FurnitureCatalog> catalog);
 
 }  // namespace lapis::simulator

@@ -50,7 +50,7 @@ void Run::note_collision(const SensorFrame& frame) {
 
 void Run::begin_next() {
   next_ = std::async(std::launch::async, [this, command = std::exchange(command_, std::nullopt)] {
-    add_to_ideal_map();  // the last frame: only what has been published counts
+    add_to_ideal_map();  // adds the last frame: only published frames count
     Step step;
     step.frame = simulation_.next(command);
     step.messages = to_messages(step.frame, pinhole_camera(config_.robot.camera), ids_);
@@ -59,7 +59,8 @@ void Run::begin_next() {
 }
 
 void Run::add_to_ideal_map() {
-  if (frames_in_ideal_map_ == frames() || !ideal_map_) return;  // in this order: before the first frame it may change
+  // The order matters: before the first frame, another thread may be writing ideal_map_ in keep_ideal_map().
+  if (frames_in_ideal_map_ == frames() || !ideal_map_) return;
   add_to(*ideal_map_, step_->frame, world_, start_, config_);
   frames_in_ideal_map_ = frames();
 }

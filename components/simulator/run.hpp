@@ -12,28 +12,29 @@
 
 namespace lapis::simulator {
 
-/// One run of the robot, from its start to its end. The next frame is simulated in a thread of its own, because that
-/// takes as long as the others' work on the last one.
+/// One run of the robot, from its start to its end. A separate thread simulates the next frame while the other
+/// processes work on the last one, because both take about as long.
 class Run {
  public:
   /// @param world must outlive the run.
-  /// @param tour that the robot drives by itself; without one it obeys commands.
+  /// @param tour path that the robot drives by itself; without one it obeys commands.
   /// @throws std::runtime_error when the robot does not fit at the start.
   Run(const World& world, const StartPose& start, const SimulatorConfig& config, std::optional<TourFollower> tour,
       SimulatorFrameIds ids);
 
-  /// Before the first frame: keeps what a mapper with these settings would make of the frames without noise.
+  /// Keeps the map that a mapper with these settings would build from the frames without noise. To be called before the
+  /// first frame.
   void keep_ideal_map(double resolution_m, const mapping::FrameSettings& frames);
-  /// From the next frame but one on, because the next one is under way. Ignored on a tour, and before the first frame,
-  /// which no command can be an answer to.
+  /// The command takes effect from the next frame but one, because the next one is already being simulated. It is
+  /// ignored on a tour, and before the first frame, because nobody can have seen a frame to which it is an answer.
   void command(const DriveCommand& command);
-  /// Waits for the next frame, and has the one after it simulated, too.
-  /// @throws whatever went wrong there; std::runtime_error when the robot is stuck on its tour.
+  /// Waits for the next frame, and starts the simulation of the one after it.
+  /// @throws whatever the simulation of the next frame threw; std::runtime_error when the robot is stuck on its tour.
   void advance();
-  /// No frame follows: the tour is finished, or the time is up.
+  /// True when no frame follows: the tour is finished, or the time is up.
   bool is_over() const { return is_over_; }
 
-  /// Messages of the last frame, and of the sensors since the one before; nothing before the first.
+  /// Messages of the last frame, and of the other sensors since the frame before it; null before the first frame.
   const SensorMessages* messages() const { return step_ ? &step_->messages : nullptr; }
   bool is_in_contact() const { return step_ && step_->frame.is_in_contact; }
   /// Number of frames so far, and the time of the last one.
@@ -45,9 +46,9 @@ class Run {
   std::uint64_t collisions() const { return collisions_; }
   /// Greatest speed of the robot towards something that it touched [m/s].
   double hardest_push_m_s() const { return hardest_push_m_s_; }
-  /// Waits for what is being simulated. Commands that were not finite.
+  /// Number of commands that were refused because they were not finite. Waits for the frame that is being simulated.
   std::uint64_t commands_refused();
-  /// Waits for what is being simulated. The ideal map of the frames so far; null when none is kept.
+  /// The ideal map of the frames so far; null when none is kept. Waits for the frame that is being simulated.
   const IdealMap* ideal_map();
 
  private:
@@ -66,7 +67,7 @@ class Run {
   const SimulatorFrameIds ids_;
   Simulation simulation_;
   std::optional<TourFollower> tour_;
-  std::optional<DriveCommand> command_;  // newest, not yet obeyed
+  std::optional<DriveCommand> command_;  // the newest, which the robot does not obey yet
   std::optional<IdealMap> ideal_map_;
   std::uint64_t frames_in_ideal_map_ = 0;
   std::optional<Step> step_;
@@ -74,7 +75,7 @@ class Run {
   double hardest_push_m_s_ = 0.0;
   bool is_over_ = false;
   bool has_contact_changed_ = false;
-  std::future<Step> next_;  // last: its thread uses what is above, and ends before it does
+  std::future<Step> next_;  // declared last: its thread uses the members above, and ends before they are destroyed
 };
 
 }  // namespace lapis::simulator

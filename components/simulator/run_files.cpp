@@ -17,7 +17,7 @@
 namespace lapis::simulator {
 namespace {
 
-/// Pose of base_link at the start, which is the origin of the run's map.
+/// Pose of base_link at the start, which is the origin of the run's frame `map`.
 geometry::Pose T_world_start(const World& world, const StartPose& start) {
   const Eigen::Quaterniond rotation(Eigen::AngleAxisd(start.yaw_rad, Eigen::Vector3d::UnitZ()));
   return geometry::make_pose({start.position.x(), start.position.y(), world.scene().floor_z_m}, rotation);
@@ -35,7 +35,7 @@ std::string exact(double value) {
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
-/// full.lapis, from the user's cache where it was made before.
+/// Writes full.lapis, and takes it from the user's cache when an earlier run made it.
 void write_full_truth(const World& world, const geometry::Pose& T_world_base, const SimulatorConfig& config,
                       const mapping::MapDescription& map, const std::filesystem::path& folder,
                       const std::stop_token& cancelled) {
@@ -56,7 +56,7 @@ void write_full_truth(const World& world, const geometry::Pose& T_world_base, co
   if (cancelled.stop_requested()) return;
   write_full_map(target, world.scene(), made, text);
   if (cache.empty()) return;
-  std::error_code ignored;  // without it the next run takes longer
+  std::error_code ignored;  // without the cache the next run only takes longer
   std::filesystem::create_directories(cache, ignored);
   std::string problem;
   if (const auto bytes = files::read_file(target.string(), problem)) {

@@ -14,13 +14,13 @@
 
 namespace lapis::simulator {
 
-/// What the planner said last.
+/// State and reason in the last status of the planner.
 struct PlannerEnd {
   std::string state;
   std::string reason;
 };
 
-/// How a run went.
+/// Result of a run.
 struct RunSummary {
   std::string exit_reason;
   std::uint64_t frames = 0;
@@ -28,22 +28,22 @@ struct RunSummary {
   double wall_s = 0.0;
   std::uint64_t collisions = 0;
   double hardest_push_m_s = 0.0;
-  std::optional<PlannerEnd> planner;             ///< when the run waits for its end and it has spoken
+  std::optional<PlannerEnd> planner;             ///< with simulator.ends_when_explored, once a status has arrived
   std::map<std::string, double> cpu_ms;          ///< by participant of lock-step
-  std::map<std::string, std::uint64_t> demoted;  ///< participants without which the run continued, from which tick on
+  std::map<std::string, std::uint64_t> demoted;  ///< by participant: the tick from which the run continued without it
 };
 
-/// simulation.yaml of the run folder: what is needed to repeat the run, and how it went.
+/// Text of simulation.yaml in the run folder: what is needed to repeat the run, and its result.
 std::string to_yaml(const RunSummary& summary, const World& world, const StartPose& start,
                     const SimulatorConfig& config);
 
 std::filesystem::path truth_folder(const SimulatorConfig& config);
-/// The map of a mapper that nobody configured, on this robot: for ground truth where no mapper is.
+/// Map of a mapper with the default configuration on this robot, for ground truth when there is no mapper.
 mapping::MapDescription default_map(const SimulatorConfig& config);
 void add_to(IdealMap& ideal, const SensorFrame& frame, const World& world, const StartPose& start,
             const SimulatorConfig& config);
-/// Writes the ground truth of a scene, as far as it does not depend on the run's path, into a folder whose parent
-/// exists, for a map with these voxels and frames; nothing when it is cancelled before it is complete.
+/// Writes the part of the ground truth that does not depend on the run's path into a folder whose parent exists. Voxels
+/// and frame settings are those of `map`. When it is cancelled, it leaves out the files that are not complete.
 /// @throws std::runtime_error naming the file that cannot be written
 void write_truth(const World& world, const StartPose& start, const SimulatorConfig& config,
                  const mapping::MapDescription& map, const std::filesystem::path& folder,

@@ -132,7 +132,7 @@ class WallPlace {
     return wall;
   }
 
-  /// The only wall that lies, within 44 degrees, on that side of the room.
+  /// Index of the only wall whose outward normal points, within 44 degrees, to that side (north, east, ...).
   int named_wall(const std::string& side) const {
     constexpr std::array<const char*, 4> kSides{"east", "north", "west", "south"};
     const auto* wanted = std::find(kSides.begin(), kSides.end(), side);
@@ -175,12 +175,12 @@ class WallPlace {
   }
 };
 
-/// How often an entry is repeated; the key `row`.
+/// Number of copies of an entry, and the step between them; the key `row`.
 struct Row {
   int count = 1;
-  Eigen::Vector2d step{0, 0};  ///< along a wall: x
+  Eigen::Vector2d step{0, 0};  ///< [m]; along a wall only x counts
 
-  /// @param existing how many there are already in that list
+  /// @param existing number of items that the list has already
   Row(YamlEntry& entry, bool is_on_wall, std::size_t existing) {
     if (existing >= kMostItems) entry.refuse("there are more than 10000 of them");
     if (!entry.has("row")) return;

@@ -7,11 +7,11 @@
 
 namespace lapis::simulator {
 
-/// Reads a scene file; docs/scenes.md describes it. Its labels come from the file that it names, by default
-/// ../labels/mpcat40.yaml beside its own folder.
-/// @throws std::runtime_error naming file and line for what is missing, unknown, or of the wrong kind. Whether the
-///   building makes sense is checked by build_scene.
-/// @param usual_labels of a file that names none and has none there
+/// Reads a scene file; docs/scenes.md describes it. Its labels come from the file that it names, by default from
+/// ../labels/mpcat40.yaml relative to its own folder.
+/// @throws std::runtime_error naming file and line for what is missing, unknown, or of the wrong kind. build_scene
+///   checks whether the building makes sense.
+/// @param usual_labels label file that is used when the scene file names none and the default one does not exist
 SceneSpec read_scene_yaml(const std::filesystem::path& file, const std::filesystem::path& usual_labels = {});
 
 /// Reads the waypoints of a tour: "tour: [[x, y], ...]".

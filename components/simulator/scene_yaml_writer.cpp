@@ -11,7 +11,7 @@ namespace {
 
 long degrees(double rad) { return std::lround(rad * 180.0 / std::numbers::pi); }
 
-/// @param vector of two or three numbers
+/// @param values vector of two or three numbers
 template <class Vector>
 void write_list(YAML::Emitter& out, const Vector& values) {
   out << YAML::Flow << YAML::BeginSeq;
@@ -108,7 +108,7 @@ void write_start(YAML::Emitter& out, const StartPose& start) {
   out << YAML::Key << "yaw_deg" << YAML::Value << degrees(start.yaw_rad);
 }
 
-/// A list of one map a line.
+/// Writes a list with one map per line.
 template <class Item, class Write>
 void write_all(YAML::Emitter& out, const char* key, const std::vector<Item>& items, const Write& write) {
   if (items.empty()) return;

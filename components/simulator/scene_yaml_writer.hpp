@@ -6,8 +6,8 @@
 
 namespace lapis::simulator {
 
-/// A scene file that read_scene_yaml reads as `spec`, when its lengths are whole centimetres and its angles whole
-/// degrees. Labels are not named: the usual ones.
+/// Text of a scene file from which read_scene_yaml reads `spec`, provided that its lengths are whole centimetres and
+/// its angles whole degrees. The file names no labels, so the default ones apply.
 std::string to_scene_yaml(const SceneSpec& spec);
 
 }  // namespace lapis::simulator

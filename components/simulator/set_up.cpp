@@ -25,7 +25,7 @@ std::string joined(const std::vector<std::string>& words) {
   return out;
 }
 
-/// A bundled scene by its name, or a file or folder.
+/// Path of a bundled scene that is given by its name, or of a file or folder.
 fs::path find_scene(const std::string& name) {
   if (name.empty()) {
     throw std::runtime_error("no scene given; call: lapis_simulator SCENE (bundled: " + joined(bundled_scenes()) + ")");

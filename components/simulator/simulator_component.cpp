@@ -26,7 +26,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kProgressPeriod_s = 2.0;
-constexpr double kLongestLoading_s = 900.0;  // a large scan, light baked
+constexpr double kLongestLoading_s = 900.0;  // a large scan whose light has to be baked
 constexpr double kLongestTruth_s = 900.0;
 constexpr double kHurriedTruth_s = 3.0;
 constexpr std::chrono::milliseconds kHurryPeriod(50);
@@ -142,7 +142,7 @@ void SimulatorComponent::serve() {
   });
 }
 
-/// The ground truth is for one map. A mapper that dies may come again, but not with other settings.
+/// Ground truth is built for one map. A mapper that dies may be restarted, but not with other settings.
 void SimulatorComponent::note_map(const lapis_msgs::msg::MapDescription& message) {
   const std::string topic = topics::kMapDescription.name;
   auto map = messages::from_message(message);
@@ -153,7 +153,7 @@ void SimulatorComponent::note_map(const lapis_msgs::msg::MapDescription& message
   map_ = std::move(*map);
 }
 
-/// What is latched from another run has a stamp that is not of this one.
+/// A status with a stamp outside this run is latched from another one, and is ignored.
 void SimulatorComponent::note_planner(const lapis_msgs::msg::PlannerStatus& message) {
   const time::Time stamp = messages::from_message(message.header().stamp());
   if (run_->frames() > 0 && stamp <= run_->stamp()) planner_ = message;
@@ -171,14 +171,14 @@ void SimulatorComponent::resume() {
   due_ = Clock::now();
 }
 
-/// Wall time since the first frame, without pauses.
+/// Wall-clock time since the first frame, without pauses.
 double SimulatorComponent::wall_s() const {
   return running_since_ ? ran_s_ + seconds_between(*running_since_, Clock::now()) : ran_s_;
 }
 
-/// At the start again, with time 0.
+/// Begins a new run at the start pose and at time 0.
 void SimulatorComponent::begin() {
-  run_.reset();  // before the next one takes its memory
+  run_.reset();  // frees its memory before the next run allocates its own
   run_ =
       std::make_unique<Run>(world_, start_, config_, tour_, SimulatorFrameIds{camera_.ids(), context_.frame("odom")});
   planner_.reset();
@@ -190,7 +190,7 @@ void SimulatorComponent::begin() {
   camera_.publish_latched(robot::camera_mount(config_.robot.camera), world_.scene().labels, time::Time{});
 }
 
-/// One tick at most: between two the executor looks for signals, services and commands.
+/// Begins at most one tick, because the executor handles signals, services and commands between ticks.
 void SimulatorComponent::work() {
   using State = runtime::LockstepDriver::State;
   if (!failure_.empty()) return;
@@ -209,8 +209,8 @@ void SimulatorComponent::fail(const std::string& reason) {
   context_.fail(reason);
 }
 
-/// False while paused, while readers or the map's description are awaited, or before the wall-clock time of the next
-/// tick, at which it wakes the executor.
+/// False while paused, while it waits for readers or for the map's description, and before the wall-clock time of the
+/// next tick; in that case the executor is woken at that time.
 bool SimulatorComponent::may_tick() {
   if (is_paused_ && steps_ == 0) return false;
   if (!driver_ && run_->frames() == 0 && !camera_.has_readers(static_cast<std::size_t>(config_.wait_for_readers))) {
@@ -225,21 +225,24 @@ bool SimulatorComponent::may_tick() {
   }
   if (pace > 0.0) {
     const std::chrono::duration<double> period(1.0 / (pace * config_.robot.camera.rate_hz));
-    due_ = std::max(due_ + std::chrono::duration_cast<Clock::duration>(period), Clock::now());  // lost time stays lost
+    // The ticks after a late one do not catch up.
+    due_ = std::max(due_ + std::chrono::duration_cast<Clock::duration>(period), Clock::now());
   }
   if (is_paused_) --steps_;
   return true;
 }
 
-/// True when it is known for which map ground truth is wanted: of the mapper that is there, or of none.
+/// True when it is known for which map ground truth is built: that of the connected mapper, or the default map when no
+/// mapper is connected.
 bool SimulatorComponent::is_map_settled() {
   if (map_ || map_descriptions_ == nullptr || map_descriptions_->matched() == 0) return true;
-  context_.executor().at(Clock::now() + kMatchingPeriod, [] {});  // it may go again
+  context_.executor().at(Clock::now() + kMatchingPeriod, [] {});  // checks again, because the mapper may leave
   if (context_.rate_limit().pass("map")) spdlog::info("waiting for {}", topics::kMapDescription.name);
   return false;
 }
 
-/// Publishes a frame; after the last one a tick without any, in which others finish their work; and then ends.
+/// Publishes a frame. The last frame is followed by a tick without a frame, in which the other processes finish their
+/// work; then the run ends.
 void SimulatorComponent::tick() {
   if (has_ended_) {
     report_progress(true);
@@ -258,7 +261,7 @@ void SimulatorComponent::tick() {
   context_.executor().wake();
 }
 
-/// Nothing in the last tick, which has no frame.
+/// Publishes nothing in the last tick, which has no frame.
 void SimulatorComponent::publish_again() {
   if (has_ended_) return;
   if (odometry_ != nullptr) {
@@ -290,7 +293,7 @@ void SimulatorComponent::report_progress(bool is_last) {
   context_.heart().set_progress(text);
 }
 
-/// That of the scene once, that of a run for each.
+/// Begins the ground truth: that of the scene only once, the ideal map for each run.
 void SimulatorComponent::begin_truth() {
   if (map_) run_->keep_ideal_map(map_->resolution_m, map_->frames);
   if (std::exchange(has_truth_begun_, true)) return;
@@ -300,14 +303,14 @@ void SimulatorComponent::begin_truth() {
   make_truth(map);
 }
 
-/// The ground truth of the scene, in a thread of its own: the run does not wait for it.
+/// Makes the ground truth of the scene in a separate thread, so that the run does not wait for it.
 void SimulatorComponent::make_truth(const mapping::MapDescription& map) {
   truth_ = std::async(std::launch::async, [this, map] {
     write_truth(world_, start_, config_, map, truth_folder(config_), truth_cancelled_.get_token());
   });
 }
 
-/// Not for long when somebody waits for the end.
+/// Waits for the ground truth of the scene; gives up after kHurriedTruth_s when the process has to end soon.
 void SimulatorComponent::await_truth() {
   std::optional<Clock::time_point> hurried_since;
   while (truth_.wait_for(kHurryPeriod) != std::future_status::ready) {

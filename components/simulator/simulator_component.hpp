@@ -18,8 +18,8 @@
 
 namespace lapis::simulator {
 
-/// Simulates a robot in a building on the topics of its hardware, in lock-step with their consumers or by the wall
-/// clock.
+/// Simulates a robot in a building on the topics of its hardware, either in lock-step with the consumers of these
+/// topics or at the pace of the wall clock.
 class SimulatorComponent {
  public:
   using Config = SimulatorConfig;
@@ -62,28 +62,28 @@ class SimulatorComponent {
   runtime::Context& context_;
   const World world_;
   const StartPose start_;
-  const std::optional<TourFollower> tour_;  // at its beginning
+  const std::optional<TourFollower> tour_;  // in its initial state; every run gets a copy
   runtime::CameraPublisher camera_;
-  dds::Publisher<nav_msgs::msg::Odometry>* odometry_ = nullptr;  ///< none: a robot without wheel odometry
+  dds::Publisher<nav_msgs::msg::Odometry>* odometry_ = nullptr;  ///< null for a robot without wheel odometry
   dds::Publisher<tf2_msgs::msg::TFMessage>* transforms_ = nullptr;
   dds::Publisher<std_msgs::msg::Bool>& collision_;
   dds::Publisher<sensor_msgs::msg::Imu>* imu_ = nullptr;
   std::unique_ptr<runtime::LockstepDriver> driver_;
   std::unique_ptr<Run> run_;
-  std::optional<lapis_msgs::msg::PlannerStatus> planner_;  // newest of this run
-  dds::Source* map_descriptions_ = nullptr;                // with a run folder only
-  std::optional<mapping::MapDescription> map_;             // newest
+  std::optional<lapis_msgs::msg::PlannerStatus> planner_;  // newest status of this run
+  dds::Source* map_descriptions_ = nullptr;                // null without a run folder
+  std::optional<mapping::MapDescription> map_;             // newest description
   bool has_truth_begun_ = false;
   std::string failure_;
-  bool has_ended_ = false;  // the tick after the last frame is out
+  bool has_ended_ = false;  // the last tick, which has no frame, has begun
   bool is_paused_ = false;
-  int steps_ = 0;                                   // asked for while paused
-  double ran_s_ = 0.0;                              // by the wall clock, up to the last pause
-  std::optional<Clock::time_point> running_since_;  // the first frame, or the last pause
-  Clock::time_point due_;                           // of the next tick by the wall clock
+  int steps_ = 0;                                   // number of ticks that were requested while paused
+  double ran_s_ = 0.0;                              // wall-clock time up to the last pause
+  std::optional<Clock::time_point> running_since_;  // since the first frame, or the first one after the last pause
+  Clock::time_point due_;                           // wall-clock time of the next tick
   Clock::time_point reported_;
   std::stop_source truth_cancelled_;
-  std::future<void> truth_;  // of the scene is being written; last: its thread uses what is above
+  std::future<void> truth_;  // writes the scene's ground truth; declared last: its thread uses the members above
 };
 
 }  // namespace lapis::simulator

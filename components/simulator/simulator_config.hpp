@@ -58,7 +58,7 @@ struct SimulatorConfig {
   WheelConfig wheels;
   robot::RobotDescription robot;
   runtime::LockstepConfig lockstep{.stages = {"slam", "semantic_mapper", "evaluator"}};
-  // command line only
+  // Set on the command line only:
   bool validate = false;
   bool credits = false;
   std::optional<std::uint64_t> generated_seed;

@@ -50,7 +50,7 @@ int write_snapshots(const SimulatorConfig& config) {
   return 0;
 }
 
-/// A folder per resolution: the paper's, and those of fine maps.
+/// Writes one folder per resolution: the paper's 0.25 m, and two of fine maps.
 int write_ground_truth(const SimulatorConfig& config) {
   const World world = open_world(config);
   print_warnings(world.scene());

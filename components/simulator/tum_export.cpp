@@ -21,7 +21,7 @@ std::string text(const char* format, auto... values) {
   return buffer;
 }
 
-/// Writes the images at once, and the lists at the end.
+/// Writes each image when it is added, and the lists at the end.
 class TumWriter {
  public:
   TumWriter(std::filesystem::path folder, const Scene& scene, const robot::CameraDescription& camera)

@@ -12,7 +12,7 @@ namespace lapis::simulator {
 /// Loads a YAML file. @throws std::runtime_error naming file and line
 YAML::Node load_yaml(const std::filesystem::path& file);
 
-/// A map of a YAML file that is read key by key; done() refuses keys that nobody asked for. All errors are
+/// A map of a YAML file that is read key by key; done() refuses keys that were never read. All errors are
 /// std::runtime_error and name file and line.
 class YamlEntry {
  public:

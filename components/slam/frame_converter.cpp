@@ -9,7 +9,7 @@ namespace {
 
 using Gray = messages::Converted<geometry::GrayImage>;
 
-/// Why an image does not have the camera's size; empty when it has.
+/// Why an image does not have the camera's size; empty when it does.
 std::string size_problem(const std::string& what, int width, int height, const geometry::PinholeCamera& camera) {
   if (width == camera.width && height == camera.height) return "";
   const auto text = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
@@ -23,7 +23,7 @@ Gray to_gray(const sensor_msgs::msg::Image& color, const geometry::PinholeCamera
   return problem.empty() ? std::move(gray) : Gray::refused(problem);
 }
 
-/// The size is compared before anything is decoded: a few bytes may promise any number of pixels.
+/// The size is compared before anything is decoded, because a few bytes may announce any number of pixels.
 Gray to_gray(const sensor_msgs::msg::CompressedImage& color, const geometry::PinholeCamera& camera) {
   const auto size = images::encoded_size(color.data());
   if (!size) return Gray::refused("compressed colour image is neither JPEG nor PNG");
@@ -55,7 +55,7 @@ messages::Converted<RgbdFrame> FrameConverter::convert(const ColorMessage& color
   return RgbdFrame{stamp, camera->pinhole, std::move(*gray), std::move(*metres)};
 }
 
-/// Made once per calibration: its tables cost more than the frame.
+/// Made once per calibration, because its tables take longer than a frame.
 const images::Rectifier& FrameConverter::rectifier(const geometry::LensCamera& camera) {
   if (rectifier_ == nullptr || camera != camera_) {
     rectifier_ = std::make_unique<const images::Rectifier>(camera);

@@ -11,15 +11,14 @@
 
 namespace lapis::slam {
 
-/// A colour image as it comes: raw or compressed.
+/// A colour image as received: raw or compressed.
 using ColorMessage = std::variant<sensor_msgs::msg::Image, sensor_msgs::msg::CompressedImage>;
 
-/// Makes frames of messages: colour becomes grey values, depth metres, and the distortion of the lens is taken out of
-/// both.
+/// Converts messages to frames: colour becomes grey values, depth becomes metres, and both are rectified.
 class FrameConverter {
  public:
-  /// Colour, depth registered to it and camera info of one instant; refused with a reason when they make no sense or do
-  /// not fit each other. The calibration may change from frame to frame; each frame has the camera of its own.
+  /// Colour, depth registered to it, and camera info of one instant; refused with a reason when they are invalid or do
+  /// not fit each other. The calibration may change from frame to frame; each frame has its own camera.
   messages::Converted<RgbdFrame> convert(const ColorMessage& color, const sensor_msgs::msg::Image& depth,
                                          const sensor_msgs::msg::CameraInfo& info, time::Time stamp);
 

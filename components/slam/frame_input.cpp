@@ -9,10 +9,10 @@ namespace lapis::slam {
 namespace {
 
 constexpr std::size_t kWaitingMessages = 8;
-constexpr std::size_t kPeriods = 9;  // their lower quartile is the camera's, also where images are missing
-constexpr time::Duration kLargestTolerance{120'000'000};  // at 5 Hz
+constexpr std::size_t kPeriods = 9;  // their lower quartile is the camera's period, even where images are missing
+constexpr time::Duration kLargestTolerance{120'000'000};  // 0.6 of the period at 5 Hz
 
-/// Half of a period, and a tenth for its jitter. As each depth image is used once, a neighbour's is not taken instead.
+/// Half of a period, and a tenth for its jitter. A neighbour's depth image is not taken instead: each is used once.
 time::Duration tolerance_of(time::Duration period) {
   return std::min(time::Duration{period.nanoseconds / 10 * 6}, kLargestTolerance);
 }
@@ -50,7 +50,7 @@ std::optional<JoinedFrame> FrameInput::oldest(const runtime::Cycle& cycle) {
   const auto info_match = info_.match(stamp, tolerance_, is_last_chance, info);
   if (depth_match == Match::kWait || info_match == Match::kWait) return std::nullopt;
   const bool is_whole = depth != nullptr && info != nullptr;
-  if (!is_whole && !known && !is_last_chance) return std::nullopt;  // the next colour image shows what is near
+  if (!is_whole && !known && !is_last_chance) return std::nullopt;  // the next colour image gives the tolerance
   const auto frame_id = [](const auto& message) { return message.header().frame_id(); };
   JoinedFrame frame{stamp, std::visit(frame_id, color), &color, depth, info, ""};
   if (depth == nullptr) {
@@ -78,7 +78,7 @@ void FrameInput::pop(const JoinedFrame& frame) {
   color_.drop_until(frame.stamp);
 }
 
-/// How far apart the stamps of a frame may be; nothing while there is one colour image only.
+/// Largest difference of the stamps in a frame; nothing while there is only one colour image.
 std::optional<time::Duration> FrameInput::known_tolerance() const {
   if (fixed_tolerance_.nanoseconds > 0) return fixed_tolerance_;
   if (!periods_.empty()) {

@@ -13,10 +13,10 @@ namespace lapis::slam {
 
 struct FrameInputConfig {
   std::string color = "raw";            ///< raw or compressed
-  double max_stamp_difference_s = 0.0;  ///< 0: 0.6 of the time between colour images
+  double max_stamp_difference_s = 0.0;  ///< 0: 0.6 of the time between colour images, at most 0.12 s
 };
 
-/// The messages of one frame; they stay where they are until the input is popped.
+/// The messages of one frame; the pointers are valid until the frame is popped.
 struct JoinedFrame {
   time::Time stamp;  ///< of the colour image
   std::string optical_frame;
@@ -26,22 +26,21 @@ struct JoinedFrame {
   std::string problem;  ///< what is missing; empty when the frame is whole
 };
 
-/// Colour, depth and camera info of one camera, joined by their stamps: each colour image with the nearest of the
-/// others within a tolerance. What is joined depends on stamps only, not on the order of arrival. A colour image
-/// without partners is a frame with a problem, a depth image without colour is counted on /diagnostics; neither holds
-/// up others.
+/// Joins colour, depth and camera info of one camera by their stamps: each colour image with the nearest of the others
+/// within a tolerance. The result depends on stamps only, not on the order of arrival. A colour image without partners
+/// is a frame with a problem; a depth image without colour is counted on /diagnostics. Neither holds up others.
 class FrameInput {
  public:
   FrameInput(const FrameInputConfig& config, runtime::Context& context);
 
-  /// Called when the camera began anew: stamps of colour went back by more than a second.
+  /// Called when the camera has restarted: stamps of colour went back by more than a second.
   void on_restart(std::function<void()> action) { on_restart_ = std::move(action); }
 
   /// The oldest frame, or nothing while its partners may still come.
   std::optional<JoinedFrame> oldest(const runtime::Cycle& cycle);
-  /// Its content; refused with a reason when it cannot be used.
+  /// Content of a frame; refused with a reason when it cannot be used.
   messages::Converted<RgbdFrame> convert(const JoinedFrame& frame);
-  /// Forgets the oldest frame, which must be `frame`, and what only older ones could use.
+  /// Removes the oldest frame, which must be `frame`, and the messages that only older frames could use.
   void pop(const JoinedFrame& frame);
 
  private:
@@ -53,7 +52,7 @@ class FrameInput {
   std::optional<time::Duration> known_tolerance() const;
 
   runtime::Status& status_;
-  time::Duration fixed_tolerance_;      // zero: from the camera's period
+  time::Duration fixed_tolerance_;      // zero: follows from the camera's period
   time::Duration tolerance_;            // of the oldest frame
   std::deque<time::Duration> periods_;  // between the newest colour images that were popped
   std::optional<time::Time> popped_;

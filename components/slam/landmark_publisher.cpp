@@ -7,7 +7,7 @@
 namespace lapis::slam {
 namespace {
 
-// With each frame. A loop closure changes some megabytes of tiles: at 30 Hz they are out after a second.
+// Published with each frame. A loop closure changes some megabytes of tiles: at 30 Hz they are out within a second.
 constexpr std::size_t kBytesPerPart = std::size_t{256} << 10;
 
 std::size_t bytes_of(const mapping::LandmarkTile& tile) {

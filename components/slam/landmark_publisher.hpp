@@ -11,20 +11,20 @@
 
 namespace lapis::slam {
 
-/// Publishes the landmarks version by version: the tiles that changed, a part with each frame so that none takes long
-/// and no socket buffer overflows, and then the state that announces the version.
+/// Publishes the landmarks version by version: first the tiles that changed, a part with each frame, so that no frame
+/// takes long and no socket buffer overflows; then the state that announces the version.
 class LandmarkPublisher {
  public:
   /// `period_s`: least time between two versions, by the frames' stamps.
   LandmarkPublisher(runtime::Context& context, double period_s);
 
-  /// A new map begins: the tiles of the one before end.
+  /// Begins a new map; the tiles of the previous one end.
   void begin_session(std::int64_t session);
-  /// True when the version before is out, the period is over, or nothing follows, and `graph_version` is new.
+  /// True when `graph_version` is new, the previous version is out, and the period is over or no frames follow.
   bool wants(std::uint64_t graph_version, time::Time stamp, bool is_final) const;
-  /// Begins a version: finds the tiles that differ from those of the version before.
+  /// Begins a version: finds the tiles that differ from those of the previous version.
   void begin_version(const Map& map, std::uint64_t graph_version, const std_msgs::msg::Header& header);
-  /// Publishes the part that belongs to the frame with that stamp; does nothing when that was done before.
+  /// Publishes the part that belongs to the frame with this stamp; a second call with the same stamp does nothing.
   void publish_part(time::Time stamp);
   /// Publishes all that is left of the version.
   void publish_rest();
@@ -41,7 +41,7 @@ class LandmarkPublisher {
 
   std::int64_t session_ = 0;
   LandmarkTiles landmarks_{LandmarkTileConfig{}};
-  std::set<mapping::TileIndex> published_;  // of the session
+  std::set<mapping::TileIndex> published_;  // in this session
   std::optional<time::Time> version_stamp_;
   std::uint64_t graph_version_ = 0;         // of the version begun last
   std_msgs::msg::Header header_;            // of that version

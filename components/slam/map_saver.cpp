@@ -10,7 +10,7 @@ void MapSaver::begin(const std::filesystem::path& path, SlamFile file) {
   writing_ = std::async(std::launch::async, [path = path.string(), file = std::move(file)]() -> Save {
     try {
       return {write_slam_file(path, file)};
-    } catch (const std::exception& error) {  // no memory
+    } catch (const std::exception& error) {  // for example, out of memory
       return {path + ": " + error.what()};
     }
   });

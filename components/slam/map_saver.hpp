@@ -9,20 +9,21 @@
 
 namespace lapis::slam {
 
-/// Writes slam.lapis in a thread of its own, one file at a time. Used by one thread; its destructor waits for the file.
+/// Writes slam.lapis in a separate thread, one file at a time. For use by one thread; its destructor waits for the
+/// file.
 class MapSaver {
  public:
   struct Save {
-    std::optional<std::string> problem;  ///< why the old file is still there; names the file
+    std::optional<std::string> problem;  ///< why the old file was not replaced; names the file
   };
 
-  /// Begins to write; not while it is busy.
+  /// Begins to write; not allowed while busy.
   void begin(const std::filesystem::path& path, SlamFile file);
   /// True from begin() until the result has been taken.
   bool is_busy() const { return writing_.valid(); }
-  /// The result of a save that has ended, once.
+  /// The result of a save that has ended; each result is returned once.
   std::optional<Save> take_finished();
-  /// The same, after waiting for its end.
+  /// The same, after waiting for the save to end.
   std::optional<Save> wait();
 
  private:

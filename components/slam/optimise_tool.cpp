@@ -18,7 +18,7 @@
 namespace lapis::slam {
 namespace {
 
-// A file's poses may be far from where they belong.
+// The poses of a file may be far from the optimum.
 constexpr int kMaxIterations = 1000;
 
 struct Arguments {

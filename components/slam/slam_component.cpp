@@ -56,7 +56,7 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
 
-/// The one to resume, if there is one; throws with file and remedy.
+/// Loads the map to resume, if there is one; throws with the file and the remedy.
 void SlamComponent::load_map() {
   resumed_ = disk_.resume(read_slam_file);
   if (!resumed_) return;
@@ -96,7 +96,7 @@ bool SlamComponent::next_frame(const runtime::Cycle& cycle) {
   return true;
 }
 
-/// Makes sure that the camera's mount is known.
+/// Begins a map if there is none yet; false while the camera's mount is not known.
 bool SlamComponent::prepare(const JoinedFrame& first) {
   if (slam_ != nullptr) return true;
   frame_.optical_frame = first.optical_frame;
@@ -171,7 +171,7 @@ void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
   if (context_.rate_limit().pass("odometry")) spdlog::warn("odometry dropped: {}", problem);
 }
 
-/// Readings from before the first frame are kept for it. False when the reading cannot be used.
+/// Keeps readings from before the first frame for it. False when the reading cannot be used.
 bool SlamComponent::use_odometry(time::Time stamp, const geometry::Pose& T_odom_base) {
   if (slam_ != nullptr) return slam_->add_odometry(stamp, T_odom_base);
   early_odometry_.emplace_back(stamp, T_odom_base);
@@ -179,7 +179,7 @@ bool SlamComponent::use_odometry(time::Time stamp, const geometry::Pose& T_odom_
   return true;
 }
 
-/// A frame that cannot be used is one that was not tracked, and those who wait for its pose learn so.
+/// Counts a frame that cannot be used as not tracked, and publishes this for those who wait for its pose.
 void SlamComponent::drop(time::Time stamp, const std::string& reason) {
   ++frames_total_;
   ++frames_dropped_;
@@ -192,7 +192,7 @@ void SlamComponent::drop(time::Time stamp, const std::string& reason) {
 }
 
 void SlamComponent::end_map() {
-  if (slam_ == nullptr) return;  // none has begun since the camera last started anew
+  if (slam_ == nullptr) return;  // none has begun since the camera restarted last
   spdlog::warn("the camera's stamps went back, so it has started anew: a new map begins");
   slam_->settle();
   if (const auto problem = write_files()) spdlog::error("{}; tracking continues", *problem);
@@ -221,8 +221,7 @@ void SlamComponent::publish_odometry(const TrackingResult& result) {
   publish_transforms(message);
 }
 
-/// A robot with odometry has odom -> base_link from there; then map -> odom is published as long as the odometry is
-/// known.
+/// Unless slam publishes odom -> base_link itself, it publishes map -> odom alone, where it knows odometry.
 void SlamComponent::publish_transforms(const nav_msgs::msg::Odometry& odometry) {
   if (config_.publish_odom_frame == "always" || (config_.publish_odom_frame == "auto" && !has_odometry_)) {
     transforms_.publish(to_transforms(odometry, ids_));
@@ -242,7 +241,7 @@ void SlamComponent::publish_graph(bool is_final) {
   graph_stamp_ = frame_.stamp;
 }
 
-/// Versions of the landmarks are some of those of the pose graph, which comes first.
+/// Each version of the landmarks is one of the pose graph, which is published first.
 void SlamComponent::publish_landmarks(bool is_final) {
   if (is_final) landmarks_.publish_rest();
   const bool is_graph_out = slam_->graph_version() == graph_version_;
@@ -293,7 +292,7 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   status_.publish(message);
 }
 
-/// Before the first frame that could be used, nobody would know why there is no pose.
+/// Until the first usable frame, nothing else would tell why there is no pose.
 void SlamComponent::report_waiting() {
   if (waiting_at_ && context_.now() - *waiting_at_ < kStatusPeriod && context_.now() >= *waiting_at_) return;
   waiting_at_ = context_.now();
@@ -306,8 +305,8 @@ void SlamComponent::report_waiting() {
   status_.publish(message);
 }
 
-/// Saves the map from time to time, in a thread of its own: no frame waits for the disk. A save that fails is tried
-/// again after the next period, and the old file stays as it was.
+/// Saves the map periodically in a separate thread, so that no frame waits for the disk. A failed save is tried again
+/// after the next period, and the old file stays as it was.
 void SlamComponent::autosave() {
   if (const auto save = saver_.take_finished()) note_save(save->problem);
   if (!disk_.is_due(frame_.stamp) || saver_.is_busy() || slam_->graph_version() == saved_version_) return;
@@ -339,7 +338,7 @@ void SlamComponent::finish() {
   if (const auto problem = write_files()) throw std::runtime_error(*problem);
 }
 
-/// All files of the map; the first problem, if any.
+/// Writes all files of the map; returns the first problem, if any.
 std::optional<std::string> SlamComponent::write_files() {
   if (const auto save = saver_.wait()) note_save(save->problem);
   if (!disk_.is_kept() || slam_ == nullptr) return std::nullopt;

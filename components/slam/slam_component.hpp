@@ -17,7 +17,7 @@
 
 namespace lapis::slam {
 
-/// Tracks the camera and publishes its pose, the frames' anchors and the pose graph.
+/// Tracks the camera, and publishes its pose, also relative to key-frames, and the pose graph.
 class SlamComponent {
  public:
   using Config = SlamComponentConfig;

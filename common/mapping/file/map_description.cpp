@@ -13,7 +13,7 @@ void refuse_unless(bool is_good, const std::string& what) {
   if (!is_good) throw std::runtime_error(what);
 }
 
-/// Keeps the first of several differences.
+/// Remembers the first of several differences.
 class Comparison {
  public:
   template <class Value>
@@ -73,7 +73,7 @@ void validate(const MapDescription& description) {
   const SensorModel& model = description.sensor_model;
   refuse_unless(std::isfinite(model.occupancy_limit) && std::isfinite(model.share_limit),
                 "sensor_model: limits must be finite");
-  static_cast<void>(BeliefReader(model));  // refuses a model that nobody could read the counts with
+  static_cast<void>(BeliefReader(model));  // throws for a model with which counts cannot be read
   refuse_unless(with_classes(model, description.labels) == model,
                 "sensor_model: class_count must be the largest id of the labels");
 }

@@ -18,10 +18,11 @@ constexpr std::string_view kFileMagic = "LAPISMAP";
 constexpr std::uint32_t kFormatVersion = 3;
 constexpr std::uint32_t kFormerVersion = 2;  // without the settings of frames
 constexpr int kFileCompressionLevel = 3;
-// A record (all before the blocks; a block) is at most so large: 20,000 classes in each voxel of a block.
+// Usual and largest size of a record (everything before the blocks, or one block). The largest size allows 20,000
+// classes in each voxel of a block.
 constexpr std::size_t kUsualRecordBytes = std::size_t{64} << 10;
 constexpr std::size_t kMaxRecordBytes = std::size_t{64} << 20;
-constexpr std::int32_t kMaxBlockIndex = 1 << 26;  // voxel indices, also turned ones, stay inside 32 bits
+constexpr std::int32_t kMaxBlockIndex = 1 << 26;  // voxel indices, even of a rotated map, fit into 32 bits
 
 bool is_in_range(const BlockIndex& index) {
   const auto fits = [](std::int32_t i) { return i >= -kMaxBlockIndex && i < kMaxBlockIndex; };
@@ -128,8 +129,8 @@ std::string memory_limit(std::size_t max_map_bytes) {
   return "more than " + std::to_string(max_map_bytes >> 20) + " MB of memory";
 }
 
-/// Everything before the blocks, with their number. Throws std::runtime_error for values out of range (the
-/// constructors' own checks).
+/// Everything before the blocks, and the number of blocks. Throws std::runtime_error for values out of range (most
+/// checks are those of the constructors).
 std::pair<MapFile, std::uint64_t> read_head(files::ByteReader& in, std::uint32_t format_version) {
   MapFile file{VoxelMap(in.f64()), {}, {}, {}};
   file.sensor_model = read_sensor_model(in);
@@ -144,7 +145,7 @@ std::pair<MapFile, std::uint64_t> read_head(files::ByteReader& in, std::uint32_t
   if (!in.is_good()) return {std::move(file), 0};
   if (file.frames) validate(*file.frames, file.map.resolution_m());
   file.labels = LabelList(std::move(labels));
-  static_cast<void>(BeliefReader(file.sensor_model));  // refuses a model that nobody could read the counts with
+  static_cast<void>(BeliefReader(file.sensor_model));  // throws for a model with which counts cannot be read
   return {std::move(file), blocks};
 }
 
@@ -158,7 +159,8 @@ std::pair<BlockIndex, VoxelBlock> read_indexed_block(files::ByteReader& in) {
   return {index, std::move(block)};
 }
 
-/// What `read` makes of the next bytes, of which it gets more while they do not suffice; nothing when they never do.
+/// Result of `read` on the next bytes. `read` is repeated with more bytes while they do not suffice; returns nothing
+/// when kMaxRecordBytes or the rest of the content do not suffice.
 template <class Read>
 auto read_record(ZstdReader& content, Read&& read)
     -> std::optional<decltype(read(std::declval<files::ByteReader&>()))> {
@@ -199,7 +201,8 @@ struct Payload {
   std::span<const std::uint8_t> bytes;
 };
 
-/// The payload after the header was checked; nothing with a reason otherwise.
+/// Checks the header and returns the payload; returns nothing and sets `error` to the reason when the header is not
+/// valid.
 std::optional<Payload> check_header(std::span<const std::uint8_t> bytes, std::string& error) {
   files::ByteReader in(bytes);
   const auto magic = in.raw(kFileMagic.size());

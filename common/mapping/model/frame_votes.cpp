@@ -5,7 +5,7 @@
 namespace lapis::mapping {
 namespace {
 
-/// Votes that are built block by block.
+/// Builds votes block by block.
 class VotesBuilder {
  public:
   void begin(const BlockVotes& block, const BlockMask& without) {

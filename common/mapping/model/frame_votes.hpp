@@ -25,8 +25,8 @@ struct HitVote {
   bool operator==(const HitVote&) const = default;
 };
 
-/// What one frame says about one block. A voxel is in `misses` (weight kOneVote) or in the hits, never in both, and its
-/// hits weigh no more than kOneVote together.
+/// Votes of one frame for one block. A voxel is in `misses` (weight kOneVote) or in the hits, never in both, and the
+/// total weight of its hits is at most kOneVote.
 struct BlockVotes {
   BlockIndex block;
   BlockMask misses{};
@@ -35,8 +35,8 @@ struct BlockVotes {
   bool operator==(const BlockVotes&) const = default;
 };
 
-/// What one frame says about the map: at most one miss or one vote per voxel; a vote may be split between a class and
-/// "unlabelled". Sorted by block.
+/// Votes of one frame for the map: at most one miss or one hit vote per voxel; a hit vote may be split between a class
+/// and "unlabelled". Sorted by block.
 struct FrameVotes {
   std::vector<BlockVotes> blocks;
   std::vector<HitVote> hits;
@@ -54,8 +54,8 @@ struct FrameVotes {
   bool operator==(const FrameVotes&) const = default;
 };
 
-/// Takes out of both what both say, so that they become the difference: taking `a` out of a map and putting `b` in
-/// does the same before and after.
+/// Removes from both the votes that they have in common, so that only their difference remains: to subtract `a` from a
+/// map and add `b` has the same effect before and after the call.
 void drop_common(FrameVotes& a, FrameVotes& b);
 
 }  // namespace lapis::mapping

@@ -7,7 +7,8 @@
 namespace lapis::mapping {
 geometry::Rgb8 default_color(std::uint16_t id) {
   if (id == 0) return {127, 127, 127};
-  // Hue by the golden ratio keeps any run of ids apart; four steps of saturation and value keep equal hues apart.
+  // Steps of the golden ratio give consecutive ids distinct hues; four saturations and two values separate similar
+  // hues.
   const double hue = std::fmod(id * 0.61803398874989485, 1.0) * 6.0;
   const double saturation = 0.55 + 0.15 * (id / 2 % 4);
   const double value = id % 2 == 0 ? 0.95 : 0.72;

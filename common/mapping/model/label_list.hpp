@@ -19,18 +19,17 @@ struct Label {
   bool operator==(const Label&) const = default;
 };
 
-/// Colour of a class that nobody gave one: deterministic, distinct for ids up to 255, and neighbouring
-/// ids differ in hue.
-/// 0 (unlabelled) is grey.
+/// Colour of a class without a colour of its own: deterministic, distinct for ids up to 255, and neighbouring ids
+/// differ in hue. 0 (unlabelled) is grey.
 geometry::Rgb8 default_color(std::uint16_t id);
 
-/// The classes of a label image: ids 1..65535 with name and colour; 0 always is "unlabelled".
+/// The classes of a label image: ids 1..65535 with name and colour; 0 is always "unlabelled".
 class LabelList {
  public:
   LabelList() = default;
   /// Throws std::runtime_error when an id is 0 or occurs twice.
   explicit LabelList(std::vector<Label> labels);
-  /// Names with default colours.
+  /// A list of classes with default colours.
   static LabelList from_names(const std::vector<std::pair<std::uint16_t, std::string>>& names);
 
   /// The classes of both. Throws std::runtime_error when an id has two names.
@@ -45,7 +44,7 @@ class LabelList {
   bool contains(std::uint16_t id) const { return find(id) != nullptr; }
   /// "unlabelled" for 0, "class <id>" for an id that is not listed.
   std::string name(std::uint16_t id) const;
-  /// Id of the class of that name; nothing when there is none. Of several the smallest.
+  /// Id of the class with this name, the smallest id if there are several; nothing when there is none.
   std::optional<std::uint16_t> id_of(std::string_view name) const;
   /// The default colour for an id that is not listed.
   geometry::Rgb8 color(std::uint16_t id) const;

@@ -6,7 +6,7 @@
 namespace lapis::mapping {
 namespace {
 
-/// How many 1/256 votes one count of an array stands for.
+/// Number of 1/256 votes that one count of an array stands for.
 template <class Count>
 constexpr std::uint32_t kUnit = sizeof(Count) == 4 ? 1 : kOneVote;
 
@@ -17,7 +17,7 @@ constexpr std::array<std::array<std::uint8_t, 8>, 256> kBitsOfByte = [] {
   return bits;
 }();
 
-/// Calls use(first voxel, their eight bits as bytes) for each byte of the mask that is not zero.
+/// Calls use(first voxel, bits of eight voxels as bytes) for each byte of the mask that is not zero.
 template <class Use>
 void for_each_byte(const BlockMask& voxels, Use&& use) {
   for (std::size_t first = 0; first < kBlockVoxels; first += 8) {
@@ -112,7 +112,7 @@ void MissCounts::widen() {
   counts_ = std::move(wide);
 }
 
-/// Makes one count per voxel, each wide enough for what there is and for `count` [1/256 vote].
+/// Switches to one count per voxel that is wide enough for the present counts and for `count` [1/256 vote].
 void MissCounts::make_room_for(std::uint32_t count) {
   const auto* all = std::get_if<std::uint32_t>(&counts_);
   const std::uint32_t largest = all ? std::max(*all, count) : count;

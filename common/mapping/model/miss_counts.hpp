@@ -10,14 +10,14 @@
 
 namespace lapis::mapping {
 
-/// Misses of the 512 voxels of a block [1/256 vote], in as few bytes as they need: one number while all voxels agree,
-/// then one byte of whole votes per voxel, then two, then four bytes of 1/256 votes. Exact in each form.
+/// Misses of the 512 voxels of a block [1/256 vote], in as few bytes as they need: one number while all voxels have the
+/// same count, then one byte of whole votes per voxel, then two, then four bytes of 1/256 votes. Exact in each form.
 class MissCounts {
  public:
   MissCounts() = default;
-  /// Every voxel has the same.
+  /// The same count for every voxel [1/256 vote].
   explicit MissCounts(std::uint32_t all) : counts_(all) {}
-  /// By offset_in_block.
+  /// One count per voxel [1/256 vote], indexed by offset_in_block.
   explicit MissCounts(const std::array<std::uint32_t, kBlockVoxels>& counts);
   MissCounts(const MissCounts& other);
   MissCounts& operator=(const MissCounts& other);
@@ -27,17 +27,18 @@ class MissCounts {
 
   std::uint32_t at(int offset) const;
   void add(int offset, std::uint32_t weight);
-  /// False, and nothing changed, when less than `weight` is there.
+  /// Returns false, and changes nothing, when the count is less than `weight`.
   [[nodiscard]] bool subtract(int offset, std::uint32_t weight);
-  /// One vote for each voxel of the mask.
+  /// Adds one vote to each voxel of the mask.
   void add_votes(const BlockMask& voxels);
-  /// False, and the counts are unspecified, when a voxel of the mask has less than one vote.
+  /// Subtracts one vote from each voxel of the mask. Returns false, and leaves the counts unspecified, when one of
+  /// these voxels has less than one vote.
   [[nodiscard]] bool subtract_votes(const BlockMask& voxels);
 
   bool is_uniform() const;
   /// Memory beyond this object [bytes].
   std::size_t heap_bytes() const;
-  /// Equal counts, whatever their form.
+  /// True for equal counts, whatever their form.
   bool operator==(const MissCounts& other) const;
 
  private:

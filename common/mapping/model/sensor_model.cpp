@@ -51,7 +51,7 @@ BeliefReader::BeliefReader(const SensorModel& model) : model_(model), by_evidenc
   for (const double pi : priors_) {
     double psi = kPaperPsi, phi = kPaperPhi;
     if (!model_.use_paper_increments) {
-      // With a single class a label carries no information: both increments are the plain hit.
+      // With a single class, a label carries no information: both increments are those of an unlabelled hit.
       const bool is_informative = count > 1;
       psi = model_.hit_gain + (is_informative ? std::log(model_.label_accuracy / pi) : 0.0);
       phi = model_.hit_gain + (is_informative ? std::log((1.0 - model_.label_accuracy) / (1.0 - pi)) : 0.0);
@@ -110,7 +110,7 @@ std::uint16_t BeliefReader::label(const VoxelCounts& counts) const {
   if (!has_label) return 0;
   std::uint16_t best = 0;
   double best_score = 0.0;
-  if (model_.class_priors.empty()) {  // uniform priors: a class that was hit beats all that were not
+  if (model_.class_priors.empty()) {  // uniform priors: a class with hits is more probable than any class without
     for (const ClassCount& hit : counts.hits) {
       if (!is_class(hit.label) || (best != 0 && votes(hit.count) <= best_score)) continue;
       best = hit.label;
@@ -123,7 +123,7 @@ std::uint16_t BeliefReader::label(const VoxelCounts& counts) const {
 }
 
 std::vector<double> BeliefReader::class_log_odds(const VoxelCounts& counts) const {
-  // First the shares given occupied, up to a common factor.
+  // First, the log shares of the classes given occupied, up to a common term.
   const double prior_votes = model_.prior_votes * model_.prior_occupied;
   std::vector<double> y(priors_.size());
   for (std::size_t c = 0; c < y.size(); ++c) y[c] = std::log(priors_[c]);

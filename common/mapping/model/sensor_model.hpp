@@ -9,8 +9,8 @@
 
 namespace lapis::mapping {
 
-/// How a frame's votes change what is believed about a voxel. Class ids are 1..class_count; a hit of class 0
-/// (unlabelled) or of an id above the list speaks for "occupied" and for no class.
+/// How a frame's votes change the belief about a voxel. Class ids are 1..class_count; a hit of class 0 (unlabelled) or
+/// of an id above the list supports "occupied", but no class.
 struct SensorModel {
   double hit_gain = 0.85;       ///< l: log-odds gain of "occupied" by a first hit
   double miss_gain = 0.4;       ///< m: log-odds loss of "occupied" by a miss
@@ -19,20 +19,21 @@ struct SensorModel {
   int class_count = 40;         ///< C
   /// Prior share of each class given occupied, size C and sum 1; empty = uniform.
   std::vector<double> class_priors;
-  /// The paper's own increments (psi = 1, phi = -0.1 for other classes and for misses) instead of those derived from
-  /// l, m and a. One hit then lowers P(occupied) as soon as there are more than 18 equal classes.
+  /// Uses the paper's own increments (psi = 1, phi = -0.1 for other classes and for misses) instead of those derived
+  /// from l, m and a. One hit then lowers P(occupied) when there are more than 19 classes of equal prior.
   bool use_paper_increments = false;
 
   /// How counts become beliefs:
   /// - "log_odds": multi-class log-odds, eq. 9-11 of the paper;
   /// - "dirichlet": counts are concentrations of a Dirichlet distribution over free space and the classes;
-  /// - "bki": likewise, of votes that a kernel has smoothed (IntegrationConfig) [Gan et al. 2019].
+  /// - "bki": like "dirichlet", for votes that a kernel has smoothed (IntegrationConfig) [Gan et al. 2019].
   std::string fusion = "log_odds";
-  /// Of a Dirichlet prior: as many votes as say what prior_occupied and the class priors say.
+  /// s: weight of the Dirichlet prior [vote], which prior_occupied and the class priors divide among free space and the
+  /// classes.
   double prior_votes = 2.0;
 
   double occupancy_limit = 9.21034;  ///< occupancy log-odds are read clamped to +-this; ln(0.9999 / 0.0001)
-  double share_limit = 9.21034;      ///< a class' log share is read at most this far below the largest one
+  double share_limit = 9.21034;      ///< a class's log share is read at most this far below the largest one
 
   bool operator==(const SensorModel&) const = default;
 };
@@ -59,7 +60,7 @@ SensorModel paper_sensor_model(std::vector<double> class_priors = {0.1, 0.1, 0.1
 /// and -m (miss, all classes), so that a first hit multiplies the odds of "occupied" by exp(l) for any number of
 /// classes. With h_c hits of class c, u unlabelled hits and n misses, and the free class as reference (y_0 = 0):
 ///   y_c = logit P0 + ln pi_c + u l - n m + sum_j h_j phi_j + h_c (psi_c - phi_c).
-/// By the Dirichlet rules with a prior of s votes the odds are those of the concentrations, a miss counting m / l
+/// With the Dirichlet rules and a prior of s votes, the odds are those of the concentrations, where a miss counts m / l
 /// votes:
 ///   y_c = ln (s P0 + u + sum_j h_j) - ln (s (1 - P0) + n m / l) + ln ((s P0 pi_c + h_c) / (s P0 + sum_j h_j)).
 class BeliefReader {
@@ -87,13 +88,13 @@ class BeliefReader {
  private:
   bool is_class(std::uint16_t label) const { return label >= 1 && label <= model_.class_count; }
   double prior(std::uint16_t label) const { return priors_[label - 1u]; }
-  /// ln sum_c exp y_c, by either kind of rule.
+  /// ln sum_c exp y_c, for every rule.
   double unclamped_log_odds(const VoxelCounts& counts) const;
   double log_odds_by_evidence(const VoxelCounts& counts) const;
   double log_odds_by_concentration(const VoxelCounts& counts) const;
 
   SensorModel model_;
-  bool by_evidence_ = true;          ///< by log-odds
+  bool by_evidence_ = true;          ///< true: fusion is "log_odds"
   std::vector<double> priors_;       ///< pi_c, index c - 1
   std::vector<double> other_gain_;   ///< phi_c, index c - 1
   std::vector<double> own_surplus_;  ///< psi_c - phi_c, index c - 1

@@ -5,7 +5,7 @@
 namespace lapis::mapping {
 namespace {
 
-/// Order of the hits of a block.
+/// Sort key of the hits of a block.
 template <class Entry>
 std::uint32_t key(const Entry& entry) {
   return static_cast<std::uint32_t>(entry.offset) << 16 | entry.label;
@@ -65,7 +65,7 @@ void VoxelBlock::add(const BlockMask& misses, std::span<const HitVote> hits) {
   if (hits_->list.empty()) hits_.reset();
 }
 
-/// Merges votes for classes that their voxels do not have yet into the list, from its end.
+/// Merges into the list, from its end, votes for classes that their voxels do not have yet.
 void VoxelBlock::insert(std::span<const HitVote> votes) {
   std::vector<Hit>& list = hits_->list;
   std::size_t from = list.size(), to = from + votes.size();

@@ -19,7 +19,7 @@ struct ClassCount {
   bool operator==(const ClassCount&) const = default;
 };
 
-/// Everything a voxel knows. All zero = never observed.
+/// All counts of a voxel. All zero = never observed.
 struct VoxelCounts {
   std::uint32_t misses = 0;      ///< [1/256 vote]
   std::vector<ClassCount> hits;  ///< sorted by label, no zero counts
@@ -28,9 +28,9 @@ struct VoxelCounts {
   bool operator==(const VoxelCounts&) const = default;
 };
 
-/// Counts of 8x8x8 voxels. Misses take as few bytes as they need (MissCounts), hits eight bytes per voxel and class
-/// that was seen there, plus one bit per voxel. Counts are exact up to 2^32 - 1, which is 16,777,215 one-vote frames:
-/// 155 h at 30 Hz of looking at one voxel.
+/// Counts of 8x8x8 voxels. Misses take as few bytes as they need (MissCounts); hits take eight bytes per voxel and
+/// class seen there, plus one bit per voxel. Counts are exact up to 2^32 - 1, which is 16,777,215 one-vote frames: 155
+/// h of observing one voxel at 30 Hz.
 class VoxelBlock {
  public:
   VoxelBlock() = default;
@@ -54,9 +54,9 @@ class VoxelBlock {
 
   void add_miss(int offset, std::uint32_t weight) { misses_.add(offset, weight); }
   void add_hit(int offset, std::uint16_t label, std::uint32_t weight);
-  /// Votes of one frame: hits sorted by offset, then label, no pair of them twice.
+  /// Adds the votes of one frame: hits sorted by offset, then label, without duplicate pairs.
   void add(const BlockMask& misses, std::span<const HitVote> hits);
-  /// Inverse of add. False, and the block is unspecified, when the votes were never added.
+  /// Inverse of add. Returns false, and leaves the block unspecified, when the votes were never added.
   [[nodiscard]] bool subtract(const BlockMask& misses, std::span<const HitVote> hits);
 
   /// True when no voxel was ever observed.
@@ -74,14 +74,14 @@ class VoxelBlock {
     bool operator==(const Hit&) const = default;
   };
   struct Hits {
-    BlockMask voxels{};     ///< that have hits
+    BlockMask voxels{};     ///< voxels that have hits
     std::vector<Hit> list;  ///< sorted by offset, then label
   };
 
   void insert(std::span<const HitVote> votes);
 
   MissCounts misses_;
-  std::unique_ptr<Hits> hits_;  ///< null when the block has none
+  std::unique_ptr<Hits> hits_;  ///< null when the block has no hits
 };
 
 }  // namespace lapis::mapping

@@ -12,7 +12,7 @@ inline constexpr int kBlockEdge = 8;
 inline constexpr int kBlockVoxels = kBlockEdge * kBlockEdge * kBlockEdge;
 
 /// Integer cell of a regular grid whose corner (0, 0, 0) is the origin of the map frame. Ordered by z, then y, then x,
-/// which is the order of every file and message, so that equal maps are equal bytes.
+/// which is the order in every file and message, so that equal maps give equal bytes.
 template <class Tag>
 struct GridIndex {
   std::int32_t x = 0;

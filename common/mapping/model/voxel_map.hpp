@@ -12,17 +12,18 @@
 
 namespace lapis::mapping {
 
-/// Smallest and largest edge of a voxel that the formats and algorithms are made for [m].
+/// Smallest and largest edge of a voxel that the formats and algorithms support [m].
 inline constexpr double kMinResolution_m = 0.02;
 inline constexpr double kMaxResolution_m = 0.5;
 
-/// Semantic voxel map: per voxel how many frames looked through it (misses) and how many saw a surface of which class
-/// in it (hits). Log-odds updates add (eq. 11 of the paper), so these counts are all there is to know; SensorModel
-/// turns them into probabilities. Integer counts do not depend on the order of frames and can be taken out again
-/// exactly. A voxel that was never observed is unknown. The world is assumed to be static.
+/// Semantic voxel map: for each voxel, the number of frames that saw through it (misses) and, per class, the number of
+/// frames that saw a surface in it (hits). Log-odds updates are additive (eq. 11 of the paper), so these counts are
+/// sufficient; BeliefReader converts them to probabilities with a SensorModel. Integer counts do not depend on the
+/// order of frames, and a frame can be subtracted again exactly. A voxel that was never observed is unknown. The world
+/// is assumed to be static.
 class VoxelMap {
  public:
-  /// @param resolution_m edge of a voxel, in [0.02, 0.5] m. Throws std::runtime_error outside.
+  /// @param resolution_m edge of a voxel, in [0.02, 0.5] m; throws std::runtime_error outside this range
   explicit VoxelMap(double resolution_m);
 
   double resolution_m() const { return resolution_m_; }
@@ -51,7 +52,7 @@ class VoxelMap {
 
   /// Memory of the blocks [bytes].
   std::size_t bytes() const;
-  /// Equal content at equal resolution, whatever the history.
+  /// True for equal content at equal resolution, whatever the history.
   bool operator==(const VoxelMap& other) const;
 
  private:

@@ -12,10 +12,10 @@ namespace {
 
 constexpr std::uint64_t kCertain = 255;  ///< confidence of a sample
 
-/// How much of the runs' samples in one cell is for a label.
+/// Samples of one cell that have the same label.
 struct LabelTally {
   std::uint16_t label;
-  std::uint32_t count;   ///< of samples
+  std::uint32_t count;   ///< number of samples
   std::uint64_t weight;  ///< sum of their confidence
 };
 
@@ -37,7 +37,7 @@ void add_to(std::vector<LabelTally>& tally, const LabelTally& votes) {
   }
 }
 
-/// The label with most weight, ties to the smaller one; label 0 when there is none.
+/// The label with the largest weight, the smaller label for ties; label 0 when there is none.
 LabelTally winner(const std::vector<LabelTally>& tally) {
   LabelTally best{};
   for (const LabelTally& entry : tally)
@@ -46,14 +46,14 @@ LabelTally winner(const std::vector<LabelTally>& tally) {
   return best;
 }
 
-/// What a hit is worth [1/256 vote]: the probability that the noise of its depth is less than half a voxel.
+/// Weight of a hit [1/256 vote]: the probability that its depth noise is less than half a voxel.
 std::uint16_t hit_weight(double sigma_m, double resolution_m) {
   const double half_voxel_sigmas = 0.5 * resolution_m / sigma_m;  // infinite without noise
   const auto weight = std::lround(std::erf(half_voxel_sigmas / std::numbers::sqrt2) * kOneVote);
   return static_cast<std::uint16_t>(std::max(weight, 1l));
 }
 
-/// The vote of one cell, of all that the hits around it say.
+/// The vote of one cell: the sum of the votes that the hits around it give to it.
 CellHit summarise(std::span<const KernelVote> votes, std::vector<LabelTally>& tally) {
   tally.clear();
   std::uint32_t sum = 0, labelled = 0;
@@ -70,7 +70,7 @@ CellHit summarise(std::span<const KernelVote> votes, std::vector<LabelTally>& ta
 }  // namespace
 
 CellSummary summarise(std::span<const SampleRun> runs, const std::vector<std::uint8_t>& confidence) {
-  thread_local std::vector<LabelTally> tally;  // fresh memory would cost more than the rest
+  thread_local std::vector<LabelTally> tally;  // allocating it anew would cost more time than the rest
   tally.clear();
   std::uint32_t hits = 0, beyond = 0;
   for (const SampleRun& run : runs) {
@@ -85,7 +85,7 @@ CellSummary summarise(std::span<const SampleRun> runs, const std::vector<std::ui
     summary.label_weight =
         static_cast<std::uint16_t>((most.weight * kOneVote + kCertain / 2 * most.count) / (kCertain * most.count));
   }
-  // The middle sample in scan order, of those that decide what the cell is.
+  // The middle one, in scan order, of the samples that decide whether the cell is a hit.
   std::uint32_t skip = (summary.is_hit ? hits : beyond) / 2;
   for (const SampleRun& run : runs) {
     if ((run.is_beyond != 0) == summary.is_hit) continue;

@@ -7,7 +7,7 @@
 namespace lapis::mapping {
 namespace {
 
-constexpr int kLargestLabel = 65534;  // 65535 is no class
+constexpr int kLargestLabel = 65534;  // 65535 is not a class
 
 /// Every stride-th pixel of a row.
 template <class Pixel>
@@ -26,7 +26,7 @@ void to_millimetres(const float* depth_m, std::size_t count, std::uint16_t* dept
   }
 }
 
-/// Returns how many labels are above `largest`, which become unlabelled.
+/// Copies the labels; those above `largest` become unlabelled. Returns the number of such labels.
 std::size_t keep_listed(const std::uint16_t* labels, std::size_t count, std::uint16_t largest, std::uint16_t* kept) {
   std::size_t above = 0;
   for (std::size_t i = 0; i < count; ++i) {
@@ -82,7 +82,7 @@ std::optional<CompactFrame> CompactFrame::make(const geometry::PinholeCamera& ca
 double CompactFrame::median_depth_m() const {
   std::array<std::uint32_t, 65536> count{};
   for (const std::uint16_t mm : depth_mm_) ++count[mm];
-  std::size_t below = (depth_mm_.size() - count[0]) / 2 + 1;  // the median is the below-th smallest of the measured
+  std::size_t below = (depth_mm_.size() - count[0]) / 2 + 1;  // the median is the below-th smallest measured depth
   for (std::size_t mm = 1; mm < count.size(); ++mm) {
     if (count[mm] >= below) return static_cast<double>(mm) * 1e-3;
     below -= count[mm];

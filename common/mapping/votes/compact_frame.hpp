@@ -15,7 +15,7 @@ namespace lapis::mapping {
 
 struct CompactFrameConfig {
   int stride = 2;         ///< every stride-th pixel of every stride-th row is kept
-  int max_label = 65534;  ///< labels above are kept as unlabelled (0) and counted; 65535 always is
+  int max_label = 65534;  ///< labels above this, and 65535, are kept as unlabelled (0) and counted
 };
 
 template <class Field>
@@ -23,17 +23,18 @@ void describe(Field& field, CompactFrameConfig& c) {
   field("stride", c.stride, config::in_range(1, 16), "every stride-th pixel of every stride-th row is kept");
 }
 
-/// What the mapper keeps of a camera frame, and the only thing it ever integrates. Because the map is moved with the
-/// pose graph by taking frames out and putting them back, what is put in must be exactly what can be put in again;
-/// integrating the raw image once and the compact frame later would leave traces. Depth is kept in millimetres (the
-/// unit of the depth topic), sampled on a regular grid of pixels. frame_codec.hpp packs it.
+/// The reduced form of a camera frame that the mapper keeps, and the only form that it integrates. The map follows the
+/// pose graph: frames are subtracted and added again at their new poses. A frame can only be subtracted exactly if
+/// every integration uses the same data; to integrate the raw image first and the compact frame later would leave
+/// residues. Depth is kept in millimetres (the unit of the depth topic), sampled on a regular grid of pixels.
+/// frame_codec.hpp packs a frame.
 class CompactFrame {
  public:
   /// @param camera intrinsics of the full images
   /// @param labels null, or an image of the same size
-  /// @param confidence of the labels; null (all are certain), or an image of the same size
+  /// @param confidence of the labels; null (all labels are certain), or an image of the same size
   /// Returns nothing, with the reason in `error`, when sizes disagree or the camera is not valid. Depth that is not
-  /// finite or not positive is taken as no measurement.
+  /// finite or not positive counts as no measurement.
   static std::optional<CompactFrame> make(const geometry::PinholeCamera& camera, const geometry::DepthImage& depth,
                                           const geometry::LabelImage* labels, const CompactFrameConfig& config,
                                           std::string& error, const geometry::ConfidenceImage* confidence = nullptr);
@@ -48,7 +49,7 @@ class CompactFrame {
   const std::vector<std::uint16_t>& depth_mm() const { return depth_mm_; }
   /// Class per sample, 0 = unlabelled; empty when the frame has no labels.
   const std::vector<std::uint16_t>& labels() const { return labels_; }
-  /// Confidence per sample, 255 = certain; empty when all are.
+  /// Confidence per sample, 255 = certain; empty when all labels are certain.
   const std::vector<std::uint8_t>& confidence() const { return confidence_; }
   /// Samples whose label was above CompactFrameConfig::max_label.
   std::size_t labels_out_of_list() const { return labels_out_of_list_; }

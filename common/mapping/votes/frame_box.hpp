@@ -10,7 +10,7 @@
 
 namespace lapis::mapping {
 
-/// Cells of the frame's box are numbered block by block (512 per block), so that ascending ids are in the order of
+/// Cells of the frame's box are numbered block by block (512 per block), so that ascending ids have the order of
 /// FrameVotes.
 using CellId = std::uint32_t;
 
@@ -30,7 +30,7 @@ class FrameBox {
   Eigen::Vector3d origin() const { return (first_block_ * kBlockEdge).cast<double>(); }
   Eigen::Vector3i blocks() const { return blocks_; }
   std::size_t block_count() const { return static_cast<std::size_t>(blocks_.prod()); }
-  /// Of the cell with these coordinates in the box.
+  /// Id of the cell with these coordinates in the box.
   CellId id(unsigned x, unsigned y, unsigned z) const {
     const auto columns = static_cast<unsigned>(blocks_[0]), rows = static_cast<unsigned>(blocks_[1]);
     const unsigned block = ((z >> 3) * rows + (y >> 3)) * columns + (x >> 3);

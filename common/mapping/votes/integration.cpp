@@ -45,7 +45,7 @@ double free_share(double range_voxels, double depth_m, const IntegrationConfig& 
   return 1.0 - margin_voxels / range_voxels;
 }
 
-/// Drift in voxels.
+/// Drift in units of voxels.
 class DriftLimit {
  public:
   DriftLimit(const Drift& drift, double resolution_m)
@@ -53,10 +53,10 @@ class DriftLimit {
         reach_(drift.range_m(0.5 * resolution_m) / resolution_m) {}
 
   bool is_none() const { return is_none_; }
-  double reach() const { return reach_; }  ///< up to which anything is said; infinite without drift
-  /// How far the surface at this distance may be from where it was measured.
+  double reach() const { return reach_; }  ///< range up to which there are votes; infinite without drift
+  /// Assumed largest distance of a surface at this range from its measured position.
   double margin(double range) const { return kDriftMargin_sigmas * (position_ + rotation_ * range); }
-  /// Length of the ray to a surface at this distance within which cells may get a miss.
+  /// Length within which the ray to a surface at this range may give misses.
   double free_length(double range) const { return std::min(reach_, range - margin(range)); }
 
  private:
@@ -76,8 +76,8 @@ void append_votes(const CellHit& hit, std::uint16_t offset, std::vector<HitVote>
   if (hit.label_weight > 0) votes.push_back({offset, hit.label, hit.label_weight});
 }
 
-/// Votes of the block number `number` at `at` of the box; `hit` is the first hit of the block and becomes that of the
-/// next.
+/// Appends the votes of the block with number `number` at position `at` in the box. `hit` is the first hit of the block
+/// and advances to that of the next block.
 void collect_block(const FrameBox& box, const Eigen::Vector3i& at, CellId number, const RayMarks& marks,
                    const IntegrationConfig& config, double resolution_m, const CellHit*& hit, const CellHit* hits_end,
                    FrameVotes& votes) {
@@ -114,8 +114,8 @@ FrameVotes collect(const FrameBox& box, const std::vector<CellHit>& hits, const 
   return votes;
 }
 
-/// Working memory of compute_votes. Kept by each thread, because fresh memory from the system costs more time than
-/// most of what is done with it.
+/// Working memory of compute_votes. Each thread keeps its own, because new memory from the system costs more time than
+/// most of the work that is done in it.
 struct Scratch {
   RowMemory rows;
   std::vector<SampleRun> runs, sorted_runs;
@@ -123,7 +123,7 @@ struct Scratch {
   std::vector<std::uint8_t> marks;
 };
 
-/// One frame on its way to votes: a ray and perhaps a hit for each cell that is seen.
+/// Computes the votes of one frame: a ray, and possibly a hit, for each cell that is seen.
 class Tracing {
  public:
   Tracing(const CompactFrame& frame, const geometry::Pose& T_map_camera, const IntegrationConfig& config,
@@ -190,7 +190,7 @@ class Tracing {
   Scratch& s_;
   RayMarks marks_;
   std::vector<CellHit> hits_;              // ascending cells
-  std::vector<Eigen::Vector3d> drifting_;  // rays to surfaces that may be elsewhere
+  std::vector<Eigen::Vector3d> drifting_;  // rays to surfaces whose position is uncertain because of drift
 };
 
 }  // namespace

@@ -8,9 +8,9 @@
 namespace lapis::mapping {
 namespace {
 
-/// One axis of a walk through the cells. Distances along the ray are 64-bit fixed point (kRayLength = its whole
-/// length), so that additions are exact. The lowest two bits hold the axis: when a ray meets an edge, the lower axis is
-/// first.
+/// One axis of the traversal of the cells. Distances along the ray are 64-bit fixed point (kRayLength = its whole
+/// length), so that additions are exact. The lowest two bits hold the axis: when a ray meets an edge, the lower axis
+/// comes first.
 struct AxisWalk {
   static constexpr std::int64_t kRayLength = std::int64_t{1} << 44;
 
@@ -37,14 +37,14 @@ struct AxisWalk {
   }
 };
 
-/// A ray on its way through the cells. Axis `d` is the one along which it goes furthest, so that between two walls of d
-/// it meets at most one wall of each other axis.
+/// Traversal of the cells along a ray. Axis `d` is the one along which the ray is longest, so that between two walls of
+/// d it meets at most one wall of each other axis.
 struct Walk {
   AxisWalk d, a, b;
   std::int64_t end;
   std::uint8_t* mark;
 
-  /// Wall by wall until the first wall of d; false when the walk ends before.
+  /// Goes wall by wall to the first wall of d; returns false when the ray ends before it.
   bool to_wall_of_d() {
     while (true) {
       AxisWalk& next = d.t_exit < std::min(a.t_exit, b.t_exit) ? d : a.t_exit < b.t_exit ? a : b;
@@ -56,7 +56,7 @@ struct Walk {
     }
   }
 
-  /// From a wall of d to the next ones. Masks replace the branches that a processor could not predict.
+  /// Goes from one wall of d to the next until the ray ends. Masks replace branches that a processor could not predict.
   void along_d() {
     for (; d.t_exit <= end; d.t_exit += d.t_cell) {
       const std::int64_t meets_a = (a.t_exit - d.t_exit) >> 63, meets_b = (b.t_exit - d.t_exit) >> 63;
@@ -97,12 +97,12 @@ void RayMarks::add_ray(const Eigen::Vector3d& start, const Eigen::Vector3d& ray,
   Walk walk{axes[dominant], axes[(dominant + 1) % 3], axes[(dominant + 2) % 3], AxisWalk::end(t_end), mark};
   if (!walk.to_wall_of_d()) return;
   walk.along_d();
-  walk.to_wall_of_d();  // the walls of the other axes in the last cells
+  walk.to_wall_of_d();  // the walls of the other axes after the last wall of d
 }
 
 void RayMarks::clear_around(const Eigen::Vector3d& start, const Eigen::Vector3d& ray, double margin, double reach) {
   const Eigen::Array3i center = (start + ray).array().floor().cast<int>();
-  const auto most = static_cast<int>(margin) + 1;  // cells that touch are at distance 0
+  const auto most = static_cast<int>(margin) + 1;  // adjacent cells have distance 0
   const Eigen::Array3i low = (center - most).max((start.array() - reach).max(0.0).cast<int>());
   const Eigen::Array3i high = (center + most).min((start.array() + reach).min(last_.cast<double>()).cast<int>());
   for (int z = low[2]; z <= high[2]; ++z)

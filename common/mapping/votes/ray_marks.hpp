@@ -14,16 +14,16 @@ namespace lapis::mapping {
 /// One byte per cell of the box, x fastest; not zero where a ray gives a miss.
 class RayMarks {
  public:
-  /// `memory` holds the marks, and is cleared.
+  /// `memory` holds the marks; it is resized and cleared, and must outlive this object.
   RayMarks(const FrameBox& box, std::vector<std::uint8_t>& memory);
 
   /// Marks every cell that the segment from `start` along `ray` [voxels] leaves before the share `t_end` of its length
   /// [Amanatides & Woo 1987].
   void add_ray(const Eigen::Vector3d& start, const Eigen::Vector3d& ray, double t_end);
-  /// Takes the marks off the cells within `margin` of the one in which the segment from `start` along `ray` ends; only
-  /// those matter that are within `reach` of the start.
+  /// Clears the marks of all cells within `margin` of the cell in which the segment from `start` along `ray` ends
+  /// [voxels]. Cells farther than `reach` from the start are skipped, because no ray marks them.
   void clear_around(const Eigen::Vector3d& start, const Eigen::Vector3d& ray, double margin, double reach);
-  /// The 64 cells of a layer, from 0 to 7, of the block at `block` of the box, as bits.
+  /// Marks of the 64 cells of layer `layer` (0 to 7) of the block at position `block` in the box, as bits x + 8 y.
   std::uint64_t layer_bits(const Eigen::Vector3i& block, int layer) const;
 
  private:

@@ -6,9 +6,9 @@
 
 #include "common/mapping/votes/integration.hpp"
 
-// Functions that the compiler vectorises come in two versions, of which the processor chooses when the program starts.
-// Both give the same bits: neither fuses multiplication and addition. Not under sanitizers: the choice is made before
-// they are ready.
+// The vectorised functions are compiled in two versions, one of which is chosen for the processor when the program
+// starts. Both give the same bits, because neither fuses multiplication and addition. Sanitizer builds have one version
+// only, because the choice is made before the sanitizers are ready.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__) && \
     !defined(__SANITIZE_THREAD__)
 #define LAPIS_VECTORISED __attribute__((target_clones("avx2", "default")))
@@ -19,11 +19,11 @@
 namespace lapis::mapping {
 namespace {
 
-/// A sample's cell in the box, as x | y << 10 | z << 20 (a box has at most 1024 cells along an axis), and kBeyond if
+/// A sample's cell in the box, as x | y << 10 | z << 20 (a box has at most 1024 cells along an axis), plus kBeyond if
 /// its ray ends there without a hit.
 using SampleCell = std::uint32_t;
 constexpr SampleCell kBeyond = 1u << 30;
-constexpr SampleCell kNoCell = 0xffffffffu;  ///< of a sample that says nothing
+constexpr SampleCell kNoCell = 0xffffffffu;  ///< of a sample without a vote
 static_assert(2 * (kMaxRangeInVoxels + kMaxKernelLength_voxels) + 18 <= 1024);
 
 LAPIS_VECTORISED
@@ -44,8 +44,8 @@ void locate(const double* ray, double camera, unsigned shift, std::size_t count,
     cells[i] |= static_cast<SampleCell>(static_cast<std::int32_t>(camera + ray[i])) << shift;
 }
 
-/// Begins the cells of a row with kNoCell for samples that say nothing and 0 for all others; returns how many are
-/// beyond the range.
+/// Initialises the cells of a row: kNoCell for samples without depth or nearer than the minimum range, 0 for all
+/// others. Returns the number of samples beyond the maximum range.
 LAPIS_VECTORISED
 std::int32_t judge_ranges(const double* squared_range, const std::uint16_t* depth_mm, double squared_min,
                           double squared_max, std::size_t count, SampleCell* cells) {
@@ -58,7 +58,7 @@ std::int32_t judge_ranges(const double* squared_range, const std::uint16_t* dept
   return beyond;
 }
 
-/// Shares of the rays that are within the range.
+/// Finds the share of each ray that is within the range, and marks cells of rays that are longer with kBeyond.
 LAPIS_VECTORISED
 void find_cuts(const double* squared_range, double max_range, std::size_t count, double* cut, SampleCell* cells) {
   for (std::size_t i = 0; i < count; ++i) {
@@ -74,7 +74,7 @@ void cut_rays(const double* cut, std::size_t count, double* ray) {
   for (std::size_t i = 0; i < count; ++i) ray[i] *= cut[i];
 }
 
-/// Cells of the samples of a row.
+/// Finds the cells of the samples of a row.
 void locate_row(const FrameProjector& projector, int row, const std::uint16_t* depth_mm, double min_range,
                 double max_range, RowMemory& s) {
   const std::size_t columns = s.cells.size();

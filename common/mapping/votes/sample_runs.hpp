@@ -11,7 +11,7 @@
 
 namespace lapis::mapping {
 
-/// The frame in box coordinates: p_box = offset + depth_mm * (x_step * column + y_step * row + corner).
+/// Maps samples to box coordinates [voxels]: p_box = camera + depth_mm * (x_step * column + y_step * row + corner).
 class FrameProjector {
  public:
   FrameProjector(const CompactFrame& frame, const geometry::Pose& T_map_camera, const FrameBox& box,
@@ -27,7 +27,7 @@ class FrameProjector {
   }
   const Eigen::Vector3d& camera() const { return camera_; }
   const Eigen::Vector3d& y_step() const { return y_step_; }
-  /// From the camera to the point at 1 mm depth [voxels] in row 0.
+  /// Vector from the camera to the point at 1 mm depth in row 0 [voxels].
   Eigen::Vector3d direction(int column) const { return corner_ + x_step_ * column; }
   Eigen::Vector3d direction_of_sample(std::uint32_t sample) const {
     return direction(static_cast<int>(sample) % columns_) + y_step_ * (static_cast<int>(sample) / columns_);
@@ -38,7 +38,7 @@ class FrameProjector {
   Eigen::Vector3d x_step_, y_step_, corner_, camera_;
 };
 
-/// Neighbouring samples of a row that fall into the same cell with the same label.
+/// Consecutive samples of a row that have the same cell and the same label.
 struct SampleRun {
   CellId cell;
   std::uint32_t first_sample;
@@ -53,15 +53,15 @@ struct RowMemory {
   std::array<std::vector<double>, 3> ray;         ///< per column of the current row: camera to point [voxels]
   std::vector<double> squared_range, cut;
   std::vector<std::uint32_t> cells;
-  std::vector<std::uint8_t> is_start;  ///< 1 where a run begins; whole words, zero after the row
+  std::vector<std::uint8_t> is_start;  ///< 1 where a run begins; padded with zeros to whole words
   std::vector<std::uint32_t> starts;   ///< columns where runs begin, then the number of columns
   std::vector<std::uint16_t> no_labels;
 
   void resize(std::size_t columns);
 };
 
-/// Assigns every usable sample of a frame to a cell, in scan order. Samples nearer than `min_range` [voxels] say
-/// nothing; rays end at `max_range`.
+/// Assigns every usable sample of a frame to a cell, in scan order. Samples nearer than `min_range` [voxels] are
+/// ignored; rays end at `max_range` [voxels].
 void find_runs(const CompactFrame& frame, const FrameProjector& projector, const FrameBox& box, double min_range,
                double max_range, RowMemory& memory, std::vector<SampleRun>& runs);
 

@@ -7,7 +7,7 @@
 
 namespace lapis::mapping {
 
-/// Stable sort by cell: least significant digit radix sort, about ten times faster here than std::stable_sort.
+/// Stable sort by cell: a least-significant-digit radix sort, about ten times faster here than std::stable_sort.
 template <class Entry>
 void sort_by_cell(std::vector<Entry>& entries, std::vector<Entry>& sorted, std::size_t cell_count) {
   constexpr unsigned kDigitBits = 11;

@@ -64,7 +64,7 @@ void read_hits(files::ByteReader& in, std::uint64_t classes, std::uint32_t unit,
 }
 
 VoxelBlock read_voxels(files::ByteReader& reader, std::uint32_t unit) {
-  files::ByteReader in = reader;  // the compiler keeps a local one in registers: late joiners wait for this loop
+  files::ByteReader in = reader;  // a local copy stays in registers: late joiners wait for this loop
   std::array<std::uint32_t, kBlockVoxels> misses{};
   thread_local std::vector<HitVote> hits;
   hits.clear();

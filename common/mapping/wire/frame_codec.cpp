@@ -10,7 +10,7 @@ namespace {
 
 constexpr int kFrameCompressionLevel = 1;
 
-/// What a packed frame begins with.
+/// Header of a packed frame.
 struct FrameHeader {
   geometry::PinholeCamera camera;
   std::uint64_t labels_out_of_list;
@@ -21,14 +21,14 @@ struct FrameHeader {
   std::size_t bytes_per_sample() const { return 2u + (has_labels ? 2u : 0u) + (has_confidence ? 1u : 0u); }
 };
 
-/// What packed votes begin with.
+/// Header of packed votes.
 struct VotesHeader {
   std::uint64_t blocks;
   std::uint64_t hits;
 };
 
-/// Buffer of this thread for the content before compression. It is kept, because fresh memory from the system would
-/// cost more time than the compression.
+/// Buffer of this thread for the uncompressed content. It is kept because new memory from the system would cost more
+/// time than the compression.
 std::span<std::uint8_t> scratch(std::size_t size) {
   thread_local std::vector<std::uint8_t> buffer;
   if (buffer.size() < size) buffer.resize(size);
@@ -68,7 +68,7 @@ void read_differences(const std::uint8_t* bytes, std::size_t count, std::uint16_
   for (std::size_t i = 0; i < count; ++i) values[i] = left = static_cast<std::uint16_t>(values[i] + left);
 }
 
-/// Copies field after field of an array of structures: equal fields side by side compress best.
+/// Writes an array of structures field by field, because equal fields side by side compress best.
 class Columns {
  public:
   explicit Columns(std::uint8_t* at) : at_(at) {}

@@ -10,11 +10,11 @@
 
 namespace lapis::mapping {
 
-/// A compact frame as it waits for corrections of its pose: differences along the row, compressed with zstd level 1;
-/// some 20 to 55 kB for 640x360 at stride 2. Exact, for the same machine and version only.
+/// Packs a compact frame, which is kept for later corrections of its pose: differences along the row, compressed with
+/// zstd level 1; about 20 to 55 kB for 640x360 at stride 2. Lossless, but only for the same machine and version.
 std::vector<std::uint8_t> pack(const CompactFrame& frame);
 
-/// The votes of a frame, likewise.
+/// Packs the votes of a frame in the same way.
 std::vector<std::uint8_t> pack(const FrameVotes& votes);
 
 /// Inverse of pack; nothing when the bytes are damaged.

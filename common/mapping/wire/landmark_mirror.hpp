@@ -9,26 +9,28 @@
 
 namespace lapis::mapping {
 
-/// Mirror of slam's landmarks in another process. Tiles and states may come in any order, repeated, late, and across a
-/// restart of slam; tiles() are always one version as a whole: the newest whose tiles were all there together.
+/// Mirror of slam's landmarks in another process. Tiles and states may arrive in any order, repeatedly, late, and
+/// across a restart of slam. tiles() are always one complete version: the newest one whose tiles were all present at
+/// the same time.
 class LandmarkMirror {
  public:
-  /// False, and nothing changes, when the session is over or the tile is known as new as that or newer.
+  /// Returns false, and changes nothing, when the session is over or this version of the tile or a newer one is known
+  /// already.
   bool apply_tile(std::int64_t session, LandmarkTile tile);
   void apply_state(const LandmarkState& state);
 
   /// True when tiles() are the newest announced version.
   bool is_consistent() const { return served_ && newest_ && is_same(*served_, *newest_); }
-  /// The last consistent version; empty before the first.
+  /// Tiles of the last consistent version; empty before the first.
   const std::map<TileIndex, LandmarkTile>& tiles() const { return tiles_; }
-  /// State that tiles() belong to; nothing before the first.
+  /// State of tiles(); nothing before the first consistent version.
   const std::optional<LandmarkState>& state() const { return served_; }
 
  private:
   static bool is_same(const LandmarkState& a, const LandmarkState& b) {
     return a.session == b.session && a.graph_version == b.graph_version;
   }
-  /// False when `session` is over; a newer one starts from nothing.
+  /// Returns false when `session` is over; a newer session starts without tiles.
   bool enter_session(std::int64_t session);
   void serve_if_complete();
 

@@ -49,7 +49,7 @@ void MapMirror::replace_map(double resolution_m) {
 }
 
 void MapMirror::apply(const TileIndex& index, PendingTile& tile) {
-  auto next = tile.blocks.begin();  // sorted, as blocks_of is
+  auto next = tile.blocks.begin();  // sorted in the same order as blocks_of
   for (const BlockIndex& block : blocks_of(index, tile.blocks_per_edge)) {
     const VoxelBlock* before = map_->find(block);
     const bool is_there = next != tile.blocks.end() && next->first == block;

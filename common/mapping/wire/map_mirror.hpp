@@ -15,22 +15,23 @@
 
 namespace lapis::mapping {
 
-/// What the mapper says about a version of its map, after having published the tiles of that version.
+/// State of a version of the mapper's map; the mapper publishes it after the tiles of that version.
 struct MapState {
   std::int64_t epoch = 0;  ///< grows when a mapper starts a new map
   std::uint64_t version = 0;
   std::uint32_t tiles = 0;     ///< tiles that exist in this version
   std::uint64_t checksum = 0;  ///< sum of tile_hash(index, version that last changed it), modulo 2^64
   double resolution_m = 0.0;
-  std::int64_t session = 0;      ///< of slam, in whose map frame it is
-  std::uint64_t frames_off = 0;  ///< in the map more than a voxel from where the newest graph has them, so far
+  std::int64_t session = 0;  ///< session of slam, whose map frame the map uses
+  /// Number of frames that are still in the map more than a voxel away from their pose in the newest graph.
+  std::uint64_t frames_off = 0;
 };
 
 enum class TileResult { kAccepted, kOutdated, kDamaged };
 
-/// Mirror of the mapper's map in another process. Tiles and states may come in any order, repeated, late, and across a
-/// restart of the mapper; map() is always one version of the mapper's map as a whole: the newest whose tiles were all
-/// there together.
+/// Mirror of the mapper's map in another process. Tiles and states may arrive in any order, repeatedly, late, and
+/// across a restart of the mapper. map() is always one complete version of the mapper's map: the newest one whose tiles
+/// were all present at the same time.
 class MapMirror {
  public:
   TileResult apply_tile(std::int64_t epoch, const TileIndex& index, std::uint64_t version,
@@ -41,12 +42,11 @@ class MapMirror {
   bool is_consistent() const { return served_ && newest_ && is_same(*served_, *newest_); }
   /// The last consistent version; null before the first.
   const VoxelMap* map() const { return map_ ? &*map_ : nullptr; }
-  /// State that map() belongs to; nothing before the first.
+  /// State of map(); nothing before the first consistent version.
   const std::optional<MapState>& state() const { return served_; }
-  /// Blocks whose content in map() is another one than at the last call, in the canonical order; those that are gone
-  /// are among them.
+  /// Blocks whose content in map() has changed since the last call, in canonical order. Removed blocks are among them.
   std::vector<BlockIndex> take_changed_blocks();
-  /// Newest state that was announced; nothing before the first.
+  /// Newest announced state; nothing before the first.
   const std::optional<MapState>& newest_state() const { return newest_; }
 
  private:
@@ -56,7 +56,7 @@ class MapMirror {
   };
 
   static bool is_same(const MapState& a, const MapState& b) { return a.epoch == b.epoch && a.version == b.version; }
-  /// False when `epoch` is over; a newer one starts from nothing.
+  /// Returns false when `epoch` is over; a newer epoch starts without tiles.
   bool enter_epoch(std::int64_t epoch);
   void serve_if_complete();
   void replace_map(double resolution_m);

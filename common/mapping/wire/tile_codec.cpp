@@ -10,7 +10,7 @@
 namespace lapis::mapping {
 namespace {
 
-constexpr std::size_t kHeaderBytes = 12;  // four bytes and the resolution
+constexpr std::size_t kHeaderBytes = 12;  // four single bytes and the resolution
 constexpr std::uint8_t kTileMagic = 'L', kTileFormatVersion = 1, kCompressed = 1;
 constexpr std::size_t kCompressAbove = std::size_t{256} << 10;
 constexpr std::size_t kMaxBodyBytes = std::size_t{64} << 20;
@@ -27,7 +27,7 @@ void read_blocks(files::ByteReader& in, const TileIndex& index, DecodedTile& til
   if (in.remaining() > 0) in.fail();
 }
 
-/// Whoever keeps the map in an array of its extent would need memory without end.
+/// A distant tile would make a receiver that stores the map in an array of its extent allocate unbounded memory.
 bool is_within_reach(const TileIndex& index, const DecodedTile& tile) {
   const double edge_m = tile.blocks_per_edge * kBlockEdge * tile.resolution_m;
   const auto is_near = [&](std::int32_t i) { return std::abs(static_cast<double>(i)) * edge_m <= kMaxReach_m; };
@@ -38,7 +38,7 @@ bool is_within_reach(const TileIndex& index, const DecodedTile& tile) {
 
 int blocks_per_tile_edge(double resolution_m, double tile_edge_m) {
   const double blocks = tile_edge_m / (resolution_m * kBlockEdge);
-  // The small slack keeps 0.8 m at 0.1 m one block in spite of rounding.
+  // The small tolerance makes a tile of 0.8 m at 0.1 m one block in spite of rounding.
   const int count = std::max(1, static_cast<int>(std::ceil(blocks - 1e-6)));
   if (!(blocks <= kMaxBlocksPerTileEdge + 1e-6))
     throw std::runtime_error("tile edge is more than 16 blocks of 8 voxels; choose a smaller tile edge");
@@ -51,7 +51,7 @@ TileIndex tile_of(const BlockIndex& block, int blocks_per_edge) {
 }
 
 std::vector<BlockIndex> blocks_of(const TileIndex& tile, int blocks_per_edge) {
-  // Unsigned arithmetic: an index from the wire may be anything, and must not overflow.
+  // Unsigned arithmetic, because an index from the wire may have any value and must not overflow.
   const auto first = [blocks_per_edge](std::int32_t i) {
     return static_cast<std::uint32_t>(i) * static_cast<std::uint32_t>(blocks_per_edge);
   };

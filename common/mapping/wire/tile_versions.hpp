@@ -9,11 +9,11 @@
 
 namespace lapis::mapping {
 
-/// The version of each tile and the checksum over all, which does not depend on the order in which they came: two sides
-/// with equal number of tiles and equal checksum have the same versions.
+/// The version of each tile and the checksum over all, which does not depend on the order of arrival: two sides with
+/// the same number of tiles and the same checksum have the same versions.
 class TileVersions {
  public:
-  /// False, and nothing changes, when the tile has this version already or a newer one.
+  /// Returns false, and changes nothing, when the tile has this version already or a newer one.
   bool set(const TileIndex& tile, std::uint64_t version) {
     const auto [known, is_new] = versions_.try_emplace(tile, version);
     if (!is_new) {

@@ -11,7 +11,8 @@ namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
 
-// Contexts and the buffer live as long as their thread: memory from the system costs more time than the compression.
+// Contexts and the buffer live as long as their thread, because new memory from the system costs more time than the
+// compression.
 struct Compressor {
   std::unique_ptr<ZSTD_CCtx, decltype(&ZSTD_freeCCtx)> context{ZSTD_createCCtx(), &ZSTD_freeCCtx};
   std::vector<std::uint8_t> packed;
@@ -64,7 +65,7 @@ std::span<const std::uint8_t> ZstdReader::peek(std::size_t size) {
   return std::span(window_).subspan(begin_);
 }
 
-/// Makes the window that large, if the content is.
+/// Fills the window up to `size` bytes, or up to the end of the content.
 void ZstdReader::unpack(std::size_t size) {
   std::size_t filled = window_.size();
   window_.resize(size);

@@ -11,20 +11,20 @@ struct ZSTD_DCtx_s;
 
 namespace lapis::mapping {
 
-/// One zstd frame that records its content size. Same input and library, same bytes.
+/// One zstd frame that records its content size. The same input and library version give the same bytes.
 std::vector<std::uint8_t> zstd_compress(std::span<const std::uint8_t> bytes, int level);
 
-/// Nothing when the input is damaged, has no content size, or would unpack to more than `max_bytes`.
+/// Returns nothing when the input is damaged, has no content size, or would unpack to more than `max_bytes`.
 std::optional<std::vector<std::uint8_t>> zstd_decompress(std::span<const std::uint8_t> bytes, std::size_t max_bytes);
 
-/// Size of the content; nothing when the input is no zstd frame or does not say.
+/// Size of the content [bytes]; nothing when the input is not a zstd frame or does not record its content size.
 std::optional<std::size_t> zstd_content_size(std::span<const std::uint8_t> bytes);
 
 /// Fills `content`; false when the input is damaged or does not unpack to exactly that many bytes.
 [[nodiscard]] bool zstd_decompress_into(std::span<const std::uint8_t> bytes, std::span<std::uint8_t> content);
 
-/// Unpacks one zstd frame piece by piece: memory goes by the piece that is looked at, not by what the frame claims to
-/// hold. The frame has to outlive the reader.
+/// Unpacks one zstd frame piece by piece: the memory depends on the size of the piece that is read, not on the size
+/// that the frame claims. The frame must outlive the reader.
 class ZstdReader {
  public:
   explicit ZstdReader(std::span<const std::uint8_t> frame);
@@ -32,7 +32,7 @@ class ZstdReader {
   ZstdReader(const ZstdReader&) = delete;
   ZstdReader& operator=(const ZstdReader&) = delete;
 
-  /// The next bytes of the content: at least `size`, or all that is left. Valid until the next call.
+  /// The next bytes of the content: at least `size`, or all remaining ones. Valid until the next call.
   std::span<const std::uint8_t> peek(std::size_t size);
   void skip(std::size_t size) { begin_ += size; }
   /// True when all of an undamaged frame was skipped and nothing follows it.
@@ -45,7 +45,7 @@ class ZstdReader {
   std::span<const std::uint8_t> frame_;  ///< not yet unpacked
   std::vector<std::uint8_t> window_;     ///< unpacked from begin_ on, not yet skipped
   std::size_t begin_ = 0;
-  bool is_done_ = false;  ///< the frame is at its end, or damaged from here on
+  bool is_done_ = false;  ///< the frame is at its end, or the rest is damaged
   bool is_whole_ = false;
 };
 

@@ -8,19 +8,20 @@
 namespace lapis::controller {
 namespace {
 
-constexpr double kLongestStep_s = 0.2;   // of acceleration, however long the last step is ago
-constexpr double kTrackWindow_m = 1.0;   // of the path ahead in which the robot is looked for
+constexpr double kLongestStep_s = 0.2;   // longest time step for limits of acceleration
+constexpr double kTrackWindow_m = 1.0;   // length of path ahead that is searched for the robot's position
 constexpr double kTurnGain = 1.5;        // [1/s]
-constexpr double kSlowTurn_rad_s = 0.2;  // the slowest that drives do evenly
-constexpr double kTurnShare = 0.9;       // of the turn rate that is used on arcs
-constexpr double kAside_rad = 0.2;       // off the goal: who is blocked turns towards it
+constexpr double kSlowTurn_rad_s = 0.2;  // slowest turn rate that the drives execute smoothly
+constexpr double kTurnShare = 0.9;       // share of the largest turn rate that is used on arcs
+constexpr double kAside_rad = 0.2;       // a blocked robot turns to the goal when its heading is off by more
 constexpr double kCreep_m_s = 0.08;
-constexpr double kJump_m = 0.15;  // a pose that is farther from the last one than the robot can have driven
+// A pose is a jump when it is farther from the last one than the robot can have driven, by more than this.
+constexpr double kJump_m = 0.15;
 constexpr double kJump_rad = 0.15;
-constexpr double kLongestBlind_s = 1.0;   // for which the robot may have moved without a pose; then it stands
-constexpr double kMoved_m = 0.3;          // less is no progress
-constexpr double kRearRoom_m = 0.15;      // that has to be free to back up
-constexpr double kPhasePatience_s = 5.0;  // of turning and backing up, if the robot does not do it
+constexpr double kLongestBlind_s = 1.0;   // without a pose, the robot is assumed to move for at most this long
+constexpr double kMoved_m = 0.3;          // less motion is no progress
+constexpr double kRearRoom_m = 0.15;      // length behind the robot that must be free to back up
+constexpr double kPhasePatience_s = 5.0;  // longest duration of turning or backing up, should the robot not move
 
 /// Distance to the nearest point that is not behind the robot [m]; infinity without any.
 double nearest_ahead(const Obstacles& obstacles) {
@@ -110,7 +111,8 @@ Decision Controller::decide(time::Time now, double elapsed_s) {
 
 Decision Controller::stop_for(Input stale) const { return {State::kStopped, watchdog_.describe(stale), {}, 0.0, {}}; }
 
-/// A disc that turns on the spot touches nothing; somebody has to want it, and to see something by it.
+/// A disc that turns on the spot cannot collide, so a turn only needs the planner that wants it and a camera that sees
+/// something.
 Decision Controller::turn(time::Time now, double elapsed_s) {
   const double commanded_rad = last_.turn_rad_s * elapsed_s;
   turned_rad_ += commanded_rad;
@@ -136,7 +138,7 @@ Decision Controller::follow(time::Time now, double elapsed_s) {
   return recovery_ == Recovery::kNone ? drive(around.obstacles, elapsed_s) : recover(elapsed_s);
 }
 
-/// As the path asks for at its beginning; at one rate, through headings that lie between.
+/// Turns to the next of the headings at the path's beginning, at a constant rate.
 Decision Controller::turn_first(double error_rad, double elapsed_s) {
   local_path_.reset();
   moved_at_.reset();
@@ -145,7 +147,7 @@ Decision Controller::turn_first(double error_rad, double elapsed_s) {
   return {State::kFollowing, "turns as the path begins", ramped(last_, wanted, elapsed_s, limits_), 0.0, {}};
 }
 
-/// Where the path ends the robot turns to the last pose's heading.
+/// At the end of the path, turns the robot to the heading of the last pose.
 Decision Controller::align(double elapsed_s) {
   local_path_.reset();
   moved_at_.reset();
@@ -158,8 +160,8 @@ Decision Controller::align(double elapsed_s) {
   return {State::kFollowing, "turns to the heading at the path's end", command, 0.0, {}};
 }
 
-/// Towards a point some distance ahead on the path; where no free path leads there, towards one beyond what may stand
-/// in the way, or towards a nearer one.
+/// Finds a free path towards a point some distance ahead on the planner's path; otherwise towards a point beyond a
+/// possible obstacle, or towards a nearer point.
 std::optional<LocalPath> Controller::find_local_path(const Surroundings& around) const {
   for (const double share : {1.0, 2.0, 0.5}) {
     if (auto local_path = planner_.choose(around, goal_ahead(share * config_.look_ahead_m), local_path_))
@@ -181,7 +183,8 @@ Decision Controller::drive(const Obstacles& obstacles, double elapsed_s) const {
   return decision;
 }
 
-/// The robot can stop before the end of the path, of the free path, and of what it drives on until it has steered.
+/// Speed [m/s] from which the robot can stop before the end of the planner's path, of the free local path, and of the
+/// arc on which it drives until it has steered.
 double Controller::speed_limit(const LocalPath& local_path, const Obstacles& obstacles) const {
   double limit = limits_.max_speed_m_s;
   const double most_rad_s = kTurnShare * turn_limit();
@@ -263,7 +266,7 @@ Decision Controller::recover(double elapsed_s) const {
   return decision;
 }
 
-/// Who is blocked looks where it wants to go, so that it sees when the path is free again.
+/// A blocked robot turns to where it wants to go, so that it sees when the path is free again.
 Velocity Controller::recovery_velocity() const {
   const double aside_rad = bearing(goal_ahead(config_.look_ahead_m));
   switch (recovery_) {
@@ -274,7 +277,7 @@ Velocity Controller::recovery_velocity() const {
   }
 }
 
-/// True when the mapper has seen the floor behind the robot, and nothing is there now.
+/// True when the mapper has seen the area behind the robot to be free, and no obstacle is there now.
 bool Controller::may_back_up(const Obstacles& obstacles) const {
   const double radius_m = limits_.radius_m + config_.fan.margin_m;
   const Eigen::Vector2d behind(-kRearRoom_m, 0.0);
@@ -288,12 +291,12 @@ bool Controller::may_back_up(const Obstacles& obstacles) const {
   });
 }
 
-/// True near the place where recovery was of no use.
+/// True near the place where recovery has failed.
 bool Controller::has_tried() const {
   return tried_at_ && (T_map_base_.translation() - *tried_at_).norm() < config_.back_up_m + kMoved_m;
 }
 
-/// True when the robot has been on its way for long without getting anywhere.
+/// True when the robot has tried to move for longer than progress_timeout_s without progress.
 bool Controller::is_stuck(time::Time now) {
   const Eigen::Vector2d& here = T_map_base_.translation();
   if (!moved_at_ || (here - moved_to_).norm() > kMoved_m) {

@@ -9,22 +9,22 @@
 namespace lapis::controller {
 namespace {
 
-constexpr double kEdge_m = 0.05;       // of a voxel
-constexpr double kNearest_m = 0.1;     // depth below is none
-constexpr double kBehind_m = 0.15;     // a surface is looked through when the image sees so much farther,
-constexpr double kBehind = 0.02;       // and this share of the depth, at it
-constexpr int kAround_px = 2;          // and at the pixels so far around it: edges are ragged
-constexpr double kTouch_m = 0.05;      // a point this near to a cell explains it
-constexpr double kFoot_m = 0.07;       // by so much wider may be what is below an image
-constexpr double kFootHeight_m = 0.2;  // what was seen from here down has shown its foot
-constexpr double kStands_m_s = 0.03, kStands_rad_s = 0.05;  // poses of a robot that stands differ by less
+constexpr double kEdge_m = 0.05;       // edge of a voxel
+constexpr double kNearest_m = 0.1;     // smaller depths are no measurements
+constexpr double kBehind_m = 0.15;     // an image sees through a point if its depth is larger by this,
+constexpr double kBehind = 0.02;       // plus this share of the point's depth,
+constexpr int kAround_px = 2;          // at its pixel and this far around it, because edges are ragged
+constexpr double kTouch_m = 0.05;      // a point this near to an occupied cell explains it
+constexpr double kFoot_m = 0.07;       // an obstacle may be wider by this below the image
+constexpr double kFootHeight_m = 0.2;  // an obstacle seen down to this height has shown its foot
+constexpr double kStands_m_s = 0.03, kStands_rad_s = 0.05;  // poses of a standing robot change less
 
-/// Of a voxel, along any axis.
+/// Index of a voxel along any axis.
 std::int32_t index_of(double metres) { return static_cast<std::int32_t>(std::floor(metres / kEdge_m)); }
 double center_of(std::int32_t index) { return (index + 0.5) * kEdge_m; }
 
 Eigen::Vector2d center_of(const PointColumn& column) { return {center_of(column.x), center_of(column.y)}; }
-/// Of the column in which a point lies.
+/// Centre of the column that contains a point.
 Eigen::Vector2d center_of_column(const Eigen::Vector2d& p_map) {
   return {center_of(index_of(p_map.x())), center_of(index_of(p_map.y()))};
 }
@@ -33,12 +33,12 @@ const auto is_before = [](const auto& a, const auto& b) {
   return std::pair(a.p_map.x(), a.p_map.y()) < std::pair(b.p_map.x(), b.p_map.y());
 };
 
-/// What is kept is within a distance of the robot; what a wide image adds beyond it may take the place of what is kept
-/// on the other side, for the moment until it is forgotten.
+/// Columns are kept within a distance of the robot. A wide image may add columns beyond it, which displace kept columns
+/// on the opposite side until they are forgotten.
 int reach_cells(double kept_m) { return static_cast<int>(std::ceil(4.0 * kept_m / kEdge_m)); }
 
-/// True when a depth image sees nothing at, or in front of, this point of the optical frame; false, too, when it does
-/// not know.
+/// True when a depth image sees nothing at or in front of this point of the optical frame; also false when it cannot
+/// tell.
 bool looks_through(const DepthView& view, const Eigen::Vector3d& p_camera) {
   if (p_camera.z() < kNearest_m) return false;
   const Eigen::Vector2d pixel = view.camera.project(p_camera);
@@ -75,7 +75,7 @@ void LocalMap::add(const DepthView& view, const PlanarPose& T_map_base, time::Ti
   add_hits(view, T_map_base);
 }
 
-/// Where time begins again, nothing is known.
+/// Advances the time that counts for the memory. Forgets all points when stamps go back.
 void LocalMap::pass_time(const PlanarPose& T_map_base, time::Time stamp, bool has_path) {
   if (last_) {
     const PlanarPose T_last_base = last_->T_map_base.inverse() * T_map_base;
@@ -137,7 +137,7 @@ void LocalMap::add_hits(const DepthView& view, const PlanarPose& T_map_base) {
   }
 }
 
-/// Within a distance of a place; each column once, by x and then y.
+/// Columns within a distance of a point, sorted by x and then y.
 std::vector<LocalMap::Column> LocalMap::columns_near(const Eigen::Vector2d& p_map, double distance_m) const {
   std::vector<Column> columns;
   for (const PointColumn& column : points_.columns()) {
@@ -167,10 +167,11 @@ Surroundings LocalMap::near(const PlanarPose& T_map_base, double distance_m) con
   return around;
 }
 
-/// On each side of a column, but where another one stands, or this one between it and the robot.
+/// Adds a point on each side of a column, except where another column stands or where this column is between the point
+/// and the robot.
 void LocalMap::add_unseen_feet(const Column& column, const std::vector<Column>& columns, const PlanarPose& T_base_map,
                                std::vector<Eigen::Vector2d>& points) const {
-  const double shown_m = std::max(kFootHeight_m, config_.min_height_m + 2.0 * kEdge_m);  // what is lower is not kept
+  const double shown_m = std::max(kFootHeight_m, config_.min_height_m + 2.0 * kEdge_m);  // lower points are not kept
   if (column.lowest_m < shown_m) return;
   const double behind_m = (T_base_map * column.p_map).norm() + 0.5 * kFoot_m;
   for (const int quarter : {0, 1, 2, 3}) {

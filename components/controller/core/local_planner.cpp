@@ -7,14 +7,13 @@
 namespace lapis::controller {
 namespace {
 
-constexpr int kHeadings = 24;            // on the circle; the first is straight on
-constexpr double kWidestGoal_rad = 1.3;  // from a heading: no path leads farther to the side
-constexpr double kScale_m = 0.1;         // a path that misses the goal by this much more counts 1/e
-constexpr double kTurnScale_rad = 1.0;   // so does turning on the spot by this much more
-constexpr double kProgress =
-    0.3;  // share of the distance to the goal: a path that brings the robot nearer by less is none
-constexpr double kDoubt = 0.5;  // a path past what may stand there counts so much
-constexpr double kFaith = 1.2;  // what was chosen before counts so much more, or two equal paths alternate
+constexpr int kHeadings = 24;            // on the full circle; the first is straight ahead
+constexpr double kWidestGoal_rad = 1.3;  // off a heading: no path leads farther to the side
+constexpr double kScale_m = 0.1;         // the weight of a path falls to 1/e per this distance from the goal
+constexpr double kTurnScale_rad = 1.0;   // and per this angle of a turn on the spot
+constexpr double kProgress = 0.3;        // a path must shorten the distance to the goal by at least this share
+constexpr double kDoubt = 0.5;           // weight of a path that passes unseen feet
+constexpr double kFaith = 1.2;           // weight of the previous choice, so that two equal paths do not alternate
 constexpr double kSameHeading_rad = 0.3;
 
 struct Approach {
@@ -22,7 +21,7 @@ struct Approach {
   std::size_t pose;
 };
 
-/// Where the free part of a path comes nearest to the goal.
+/// The pose at which the free part of a path is nearest to the goal.
 Approach nearest_to(const Eigen::Vector2d& goal, const FanPath& path, std::size_t free_poses) {
   Approach best{std::numeric_limits<double>::infinity(), 0};
   for (std::size_t i = 0; i < free_poses; ++i) {
@@ -47,7 +46,7 @@ std::optional<LocalPath> LocalPlanner::choose(const Surroundings& around, const 
     if (!last) break;
     const bool is_same_turn = std::abs(candidate.heading_rad - last->heading_rad) < kSameHeading_rad;
     const bool is_same_group = fan_.paths()[candidate.path].group == last->group;
-    // While it turns, its side counts; while it drives, its group.
+    // During a turn the heading must be the same; while driving, the group, too.
     if (last->heading_rad != 0.0 ? is_same_turn : is_same_turn && is_same_group) candidate.score *= kFaith;
   }
   const auto best = std::max_element(candidates.begin(), candidates.end(),
@@ -56,8 +55,8 @@ std::optional<LocalPath> LocalPlanner::choose(const Surroundings& around, const 
   return local_path_of(*best);
 }
 
-/// Adds the groups that have a free path to the goal. A path that an obstacle cuts while it comes nearer does not
-/// count, unless it is there already: it leads to the obstacle, not past it.
+/// Adds the groups that have a free path towards the goal. A path that an obstacle cuts while it still approaches the
+/// goal does not count, unless it is already there: it leads to the obstacle, not past it.
 void LocalPlanner::rate_groups(const Surroundings& around, const Eigen::Vector2d& goal, double heading_rad,
                                std::vector<Candidate>& candidates) const {
   const auto free = fan_.free_poses(around.obstacles, heading_rad);

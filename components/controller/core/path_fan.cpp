@@ -9,7 +9,7 @@
 namespace lapis::controller {
 namespace {
 
-constexpr double kGrowth = 1.6;  // curvatures are denser near 0, where the robot mostly drives
+constexpr double kGrowth = 1.6;  // curvatures are denser near 0, which the robot drives most
 
 void require(bool is_met, const std::string& what) {
   if (!is_met) throw std::runtime_error("fan: " + what);
@@ -87,7 +87,7 @@ std::uint8_t PathFan::free_poses(const FanPath& path, const Eigen::Vector2d& obs
   return static_cast<std::uint8_t>(path.poses.size());
 }
 
-/// The table's row of the cell that holds a point; null outside.
+/// Entries of the table for the cell that contains a point; null outside the table.
 const std::uint8_t* PathFan::cell(const Eigen::Vector2d& p) const {
   const double half = 0.5 * cells_per_side_;
   const int column = static_cast<int>(std::floor(p.x() / kStep_m + half));

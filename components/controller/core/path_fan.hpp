@@ -11,12 +11,12 @@
 namespace lapis::controller {
 
 struct FanConfig {
-  double length_m = 1.5;             ///< of a path
-  double max_curvature_per_m = 2.5;  ///< of the tightest path
-  int groups = 19;                   ///< curvatures at the start
-  int branches = 7;                  ///< curvatures after half of a path
-  double max_bearing_rad = 1.05;     ///< a path ends where it leaves this angle to either side
-  double margin_m = 0.05;            ///< kept between the robot's disc and obstacles
+  double length_m = 1.5;             ///< length of a path
+  double max_curvature_per_m = 2.5;  ///< curvature of the tightest path
+  int groups = 19;                   ///< number of curvatures at the start; odd
+  int branches = 7;                  ///< number of curvatures after half of a path; odd
+  double max_bearing_rad = 1.05;     ///< a path ends where its bearing exceeds this to either side
+  double margin_m = 0.05;            ///< clearance between the robot's disc and obstacles
 };
 
 template <class Field>
@@ -31,22 +31,22 @@ void describe(Field& field, FanConfig& c) {
         "of clearance besides the robot's disc, from 0.4 m ahead on; half of it nearer [m]");
 }
 
-/// A path of the fan in base_link at its beginning.
+/// A path of the fan, in the frame of base_link at the beginning of the path.
 struct FanPath {
   std::size_t group = 0;
   double curvature_per_m = 0.0;   ///< at the start, to the left
   double later_per_m = 0.0;       ///< curvature of the second half
-  std::vector<PlanarPose> poses;  ///< PathFan::kStep_m apart; the first is the robot itself
+  std::vector<PlanarPose> poses;  ///< PathFan::kStep_m apart; the first is the robot's pose
 };
 
-/// Paths that the robot may drive, and for every cell around it how far an obstacle there lets it drive each of them:
-/// computed once, so that a cycle only looks up [Zhang, Hu, Chadha, Singh, "FALCO", J. Field Robotics 2020]. A path is
-/// two arcs; those that begin alike form a group.
+/// Paths that the robot may drive, and for every cell around it the distance that it can drive on each path when an
+/// obstacle is in that cell. This table is computed once, so that a cycle only looks it up [Zhang, Hu, Chadha, Singh,
+/// "FALCO", J. Field Robotics 2020]. A path consists of two arcs; paths with the same first arc form a group.
 class PathFan {
  public:
-  static constexpr double kStep_m = 0.05;     ///< along paths, and edge of a cell
-  static constexpr double kRamp_m = 0.4;      ///< along a path until the whole margin is asked for
-  static constexpr double kLeastShare = 0.5;  ///< of the margin, at its beginning: points and cells are 5 cm wide
+  static constexpr double kStep_m = 0.05;     ///< between poses of a path; also the edge of a cell
+  static constexpr double kRamp_m = 0.4;      ///< distance along a path from which the whole margin is required
+  static constexpr double kLeastShare = 0.5;  ///< share of the margin at the beginning: points and cells are 5 cm wide
   static constexpr double kNearer_m = 0.01;
 
   /// Throws std::runtime_error naming the value that is out of range.
@@ -54,14 +54,14 @@ class PathFan {
 
   std::size_t groups() const { return groups_; }
   const std::vector<FanPath>& paths() const { return paths_; }
-  /// Distance from the robot beyond which no obstacle matters [m].
+  /// Distance from the robot beyond which obstacles have no effect [m].
   double reach_m() const { return reach_m_; }
-  /// Number of poses of every path that are free when the robot first turns by `heading_rad`; points in base_link.
-  /// A pose is blocked by a point that is nearer than radius and margin. The margin grows from kLeastShare along the
-  /// first kRamp_m, and a point that is too near already blocks only what brings it nearer still: so the robot gets
-  /// away.
+  /// Number of free poses of every path when the robot first turns by `heading_rad`; `obstacles` are points in
+  /// base_link. A point blocks a pose when it is nearer than radius plus margin. The margin grows from kLeastShare over
+  /// the first kRamp_m, and a point that is already too near only blocks poses that are still nearer to it, so that the
+  /// robot can drive away.
   std::vector<std::uint8_t> free_poses(std::span<const Eigen::Vector2d> obstacles, double heading_rad) const;
-  /// The path whose curvature is nearest to this one, first at its start and then later.
+  /// Index of the path whose curvature is nearest to this one: first compared at the start, then in the second half.
   std::size_t path_along(double curvature_per_m) const;
 
  private:
@@ -73,10 +73,10 @@ class PathFan {
 
   std::size_t groups_;
   std::vector<FanPath> paths_;
-  std::vector<std::uint8_t> lengths_;  // poses of each path
+  std::vector<std::uint8_t> lengths_;  // number of poses of each path
   double reach_m_;
   int cells_per_side_;
-  std::vector<std::uint8_t> table_;  // cell by cell, the free poses of every path
+  std::vector<std::uint8_t> table_;  // for each cell, the number of free poses of every path
 };
 
 }  // namespace lapis::controller

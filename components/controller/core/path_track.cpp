@@ -9,7 +9,7 @@ namespace lapis::controller {
 namespace {
 
 constexpr double kOnTheSpot_m = 0.01;
-constexpr double kTurned_rad = 0.3;  // what is left of a first turn is turned while driving
+constexpr double kTurned_rad = 0.3;  // the rest of a first turn is done while driving
 
 }  // namespace
 
@@ -37,7 +37,7 @@ PathTrack::PathTrack(std::vector<PlanarPose> poses) : poses_(std::move(poses)), 
   if (turns) turns_ = static_cast<std::size_t>(leaves - poses_.begin());
 }
 
-// Who has turned on while the path was made is beyond its first headings.
+// Skips headings that the robot has passed already, because it continued to turn while the path was planned.
 std::optional<double> PathTrack::next_heading(double yaw_rad) {
   const auto off_rad = [&](std::size_t i) { return std::abs(wrapped(yaw_of(poses_[i]) - yaw_rad)); };
   const auto is_beyond = [&] { return turned_ + 1 < turns_ && off_rad(turned_ + 1) < off_rad(turned_); };
@@ -65,7 +65,7 @@ void PathTrack::advance(const Eigen::Vector2d& position, double window_m) {
 Eigen::Vector2d PathTrack::point_at(double along_m) const {
   const auto next = std::upper_bound(along_m_.begin(), along_m_.end(), along_m);
   if (next == along_m_.end()) return poses_.back().translation();
-  const auto i = static_cast<std::size_t>(next - along_m_.begin());  // at least 1: the first pose lies at 0
+  const auto i = static_cast<std::size_t>(next - along_m_.begin());  // at least 1, because the first pose is at 0
   const double share = (along_m - along_m_[i - 1]) / (along_m_[i] - along_m_[i - 1]);
   return poses_[i - 1].translation() + share * (poses_[i].translation() - poses_[i - 1].translation());
 }

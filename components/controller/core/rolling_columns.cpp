@@ -35,7 +35,7 @@ ColumnPoint& RollingColumns::at(std::int32_t x, std::int32_t y, std::int32_t z) 
              : column.points.emplace_back(ColumnPoint{z, -std::numeric_limits<double>::infinity(), 0});
 }
 
-/// The last column moves into the gap.
+/// Removes a column; the last column fills the gap.
 void RollingColumns::remove(std::size_t column) {
   column_at_[place_of(columns_[column].x, columns_[column].y)] = kNone;
   if (column + 1 != columns_.size()) {

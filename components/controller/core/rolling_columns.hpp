@@ -6,31 +6,33 @@
 
 namespace lapis::controller {
 
-/// A point of a column, remembered.
+/// A remembered point of a column.
 struct ColumnPoint {
-  std::int32_t z = 0;   ///< of the voxel
-  double seen_s = 0.0;  ///< time that counts of the last hit; minus infinity: none yet
-  int misses = 0;       ///< images that looked through it since
+  std::int32_t z = 0;   ///< index of the voxel
+  double seen_s = 0.0;  ///< time of the last hit (LocalMap's time that counts); minus infinity: none yet
+  int misses = 0;       ///< images that saw through it since then
 };
 
-/// Points above one cell of the plane, in the order in which they came.
+/// Points above one cell of the plane, in the order of insertion.
 struct PointColumn {
-  std::int32_t x = 0, y = 0;  ///< of the cell
+  std::int32_t x = 0, y = 0;  ///< index of the cell
   std::vector<ColumnPoint> points;
 };
 
-/// Columns around a place that moves, found by a dense grid that rolls along: cells that are a whole turn of it apart
-/// share a place, and the newer column takes it from the older one. Without gaps, so that a pass over all is fast.
+/// Columns around a moving position. A dense grid that wraps around maps cells to columns: cells that are a whole
+/// period apart share a place, where the newer column replaces the older one. The columns are stored without gaps, so
+/// that iterating over them is fast.
 class RollingColumns {
  public:
-  /// @param reach_cells columns of less than this distance in x and in y never take each other's place, at least 1
+  /// @param reach_cells columns less than this distance apart in x and in y never replace each other; at least 1
   explicit RollingColumns(int reach_cells);
 
-  /// The point of this voxel; made when it was not there.
+  /// The point of this voxel, which is added if it is missing.
   ColumnPoint& at(std::int32_t x, std::int32_t y, std::int32_t z);
-  /// Of at least one point each, in no particular order.
+  /// All columns, in no particular order; each has at least one point.
   const std::vector<PointColumn>& columns() const { return columns_; }
-  /// Calls keep(column), which may take points away; a column for which it is false, or that has no points left, goes.
+  /// Calls keep(column), which may remove points; columns for which it returns false, or that have no points left, are
+  /// removed.
   template <class Keep>
   void keep_if(const Keep& keep) {
     for (std::size_t i = 0; i < columns_.size();) {
@@ -48,7 +50,7 @@ class RollingColumns {
   void remove(std::size_t column);
 
   unsigned mask_;
-  std::vector<std::int32_t> column_at_;  ///< by place; -1: none
+  std::vector<std::int32_t> column_at_;  ///< index in columns_ by place; -1: none
   std::vector<PointColumn> columns_;
 };
 

@@ -11,31 +11,32 @@
 namespace lapis::controller {
 
 struct WatchdogConfig {
-  // In [0.05, 60]; with a period of 20 Hz after 0.22 s, a command of 0 within 0.3 s.
+  // In [0.05, 60]. At 20 Hz, 0.22 s gives a command of 0 within 0.3 s.
   double pose_timeout_s = 0.22;
   double camera_timeout_s = 0.22;
   double map_timeout_s = 0.22;
   double planner_timeout_s = 0.22;
 };
 
-/// What the robot must not move without: depth images, its pose, a depth image that could be used together with a pose,
-/// the mapper's obstacles, and a planner.
+/// Inputs without which the robot must not move: depth images, its pose, a depth image that could be used together with
+/// a pose, the mapper's obstacles, and a planner.
 enum class Input : std::size_t { kCamera, kPose, kView, kMap, kPlanner };
 inline constexpr std::initializer_list<Input> kAllInputs{Input::kCamera, Input::kPose, Input::kView, Input::kMap,
                                                          Input::kPlanner};
 
-/// Knows how old every input is. Times of arrival are given by the caller on any one clock; stamps are those of the
-/// data, and are compared with the camera's newest: so an input that lags behind is old, too, however late it came.
-/// Both are compared in both directions: after a clock has jumped everything is old until it comes anew.
+/// Monitors the age of every input. The caller gives times of arrival on any one clock. Stamps are those of the data
+/// and are compared with the camera's newest stamp, so that an input that lags behind is old even when it has just
+/// arrived. Both comparisons use absolute differences: after a clock has jumped, every input is old until it arrives
+/// again.
 class Watchdog {
  public:
   explicit Watchdog(const WatchdogConfig& config);
 
-  /// Something new arrived. The same stamp again is nothing new: its source, or its clock, has stopped.
+  /// Notes an arrival. A repeated stamp does not count as new, because the source or its clock has stopped.
   void note(Input input, time::Time arrival, std::optional<time::Time> stamp = std::nullopt);
   /// The first of these inputs that is too old; nothing when all are fresh.
   std::optional<Input> stale(time::Time now, std::initializer_list<Input> needed = kAllInputs) const;
-  /// "no pose for more than 0.22 s"
+  /// Text such as "no pose for more than 0.22 s".
   std::string describe(Input input) const;
 
  private:

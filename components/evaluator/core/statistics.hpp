@@ -6,13 +6,13 @@
 
 namespace lapis::evaluator {
 
-/// Figures of a set of errors, in their unit.
+/// Statistics of a set of errors, in the unit of the errors.
 struct ErrorStatistics {
   std::size_t count = 0;
   double rmse = 0.0;
   double mean = 0.0;
   double median = 0.0;  ///< mean of the two middle values of an even count
-  double std = 0.0;     ///< around the mean, divided by the count
+  double std = 0.0;     ///< standard deviation around the mean, with division by the count
   double min = 0.0;
   double max = 0.0;
 };

@@ -28,7 +28,7 @@ octomap::OcTreeKey octree_key(const VoxelIndex& v) {
   return {key(v.x), key(v.y), key(v.z)};
 }
 
-/// A leaf of the binary tree. Each three bits of the path, highest first, name the octant of a level.
+/// A leaf of the binary tree. Each three bits of the path, the highest first, name the octant at one level.
 struct OctreeVoxel {
   std::uint64_t path = 0;
   bool is_occupied = false;
@@ -43,8 +43,9 @@ std::uint64_t octree_path(const VoxelIndex& v) {
   return path;
 }
 
-/// Writes the node that holds these sorted voxels, and all below it: two bits per child (0 unknown, 1 free, 2 occupied,
-/// 3 inner), then the inner children. Returns the number of nodes. (liboctomap's own writer prints to the terminal.)
+/// Writes the node that holds these sorted voxels, and all nodes below it: two bits per child (0 unknown, 1 free, 2
+/// occupied, 3 inner), then the inner children. Returns the number of nodes. (liboctomap's own writer prints to the
+/// terminal.)
 std::size_t write_inner_node(std::span<const OctreeVoxel> voxels, int depth, files::ByteWriter& out) {
   const int shift = 3 * (kOctreeDepth - 1 - depth);
   const bool has_leaves = depth == kOctreeDepth - 1;
@@ -67,7 +68,7 @@ std::size_t write_inner_node(std::span<const OctreeVoxel> voxels, int depth, fil
 
 std::vector<std::uint8_t> to_bytes(const std::string& text) { return {text.begin(), text.end()}; }
 
-/// OctoMap takes 0 for occupied and we do not, so that a free voxel is always below.
+/// Log-odds of a voxel. OctoMap takes 0 for occupied, Lapis for free, so a free voxel always gets less than 0.
 float octree_log_odds(const mapping::BeliefReader& reader, const VoxelCounts& counts) {
   constexpr float kLeast = std::numeric_limits<float>::min();
   const auto log_odds = static_cast<float>(reader.occupancy_log_odds(counts));

@@ -13,7 +13,7 @@
 
 namespace lapis::semantic_mapper {
 
-/// Centre of an occupied voxel in the map frame [m].
+/// Occupied voxel: its centre in the map frame [m].
 struct LabelledPoint {
   Eigen::Vector3f position = Eigen::Vector3f::Zero();
   geometry::Rgb8 color;  ///< of the class
@@ -28,10 +28,10 @@ std::vector<LabelledPoint> occupied_points(const mapping::VoxelMap& map, const m
 /// Binary little-endian PLY: vertices x y z (float), red green blue (uchar), label (ushort), probability (float).
 std::vector<std::uint8_t> encode_ply(std::span<const LabelledPoint> points);
 
-/// The map as OctoMap ColorOcTree: one leaf per observed voxel at the same grid, value = occupancy log-odds, colour =
-/// the class' for occupied voxels and white for free ones. Leaves are not pruned: OctoMap would merge equal occupancy
-/// of different classes and mix their colours. Voxels further than 32,768 cells from the origin do not fit and are left
-/// out.
+/// The map as an OctoMap ColorOcTree: one leaf per observed voxel on the same grid. The value of a leaf is the
+/// occupancy log-odds; its colour is that of the class for occupied voxels, and white for free ones. Leaves are not
+/// pruned, because OctoMap would merge equal occupancy of different classes and mix their colours. Voxels further than
+/// 32,768 cells from the origin do not fit and are left out.
 struct Octree {
   std::vector<std::uint8_t> file;  ///< content of a .ot file
   std::vector<std::uint8_t> tree;  ///< the nodes alone, without the file's header

@@ -12,23 +12,23 @@
 
 namespace lapis::semantic_mapper {
 
-/// Projection of a map onto the ground (column_projection.hpp). Only columns of blocks that were named since the last
-/// projection are looked at again.
+/// Projection of a map onto the ground (column_projection.hpp). Only columns of blocks that were marked since the last
+/// projection are projected again.
 class FloorPlan {
  public:
   explicit FloorPlan(const mapping::HeightBand& band) : band_(band) {}
 
-  /// The content of these blocks may have changed.
+  /// Marks blocks whose content may have changed.
   void mark_changed(std::span<const mapping::BlockIndex> blocks);
-  /// The plan of `map`, equal to that of a new FloorPlan provided that all changes were marked. With another sensor
-  /// model than the last time everything is projected again, and so it is the first time.
+  /// The plan of `map`, equal to that of a new FloorPlan provided that all changes were marked. The first time, and
+  /// when the sensor model is not that of the last time, everything is projected.
   OccupancyGrid project(const mapping::VoxelMap& map, const mapping::BeliefReader& reader);
 
  private:
   void mark_all(const mapping::VoxelMap& map);
 
   mapping::HeightBand band_;
-  std::map<mapping::BlockColumn, mapping::ColumnCells> columns_;  ///< with at least one cell that is known
+  std::map<mapping::BlockColumn, mapping::ColumnCells> columns_;  ///< only those with a known cell
   std::set<mapping::BlockColumn> changed_;
   std::optional<mapping::SensorModel> model_;  ///< of the last projection
 };

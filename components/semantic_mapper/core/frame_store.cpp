@@ -48,7 +48,7 @@ bool FrameStore::replace_votes(std::size_t index, const mapping::FrameVotes& vot
   return !record.is_let_go;
 }
 
-/// Moves bytes from memory to disk; false, with the reason in problem_, when there is no place.
+/// Moves bytes from memory to disk; false, with the reason in problem_, when there is no room.
 bool FrameStore::spill(Bytes& bytes) {
   if (!file_.is_open()) {
     if (const auto reason = file_.open(config_.spill_dir)) {

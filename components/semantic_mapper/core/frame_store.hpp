@@ -13,12 +13,12 @@
 namespace lapis::semantic_mapper {
 
 struct FrameStoreConfig {
-  int memory_mb = 1024;                ///< of packed frames and votes; the oldest beyond go to disk
+  int memory_mb = 1024;                ///< for packed frames and votes; the oldest ones beyond it go to disk
   std::string spill_dir = "/var/tmp";  ///< folder of the unnamed file for them
 };
 
-/// The frames of a map and the votes that each has in it, packed, in order of integration. Beyond the memory budget the
-/// oldest wait on disk. A frame that the disk does not take is let go: its votes stay in the map for good.
+/// The frames of a map and the votes that each has in it, packed, in order of integration. Beyond the memory budget,
+/// the oldest ones are on disk. A frame that the disk does not take is let go: its votes stay in the map for good.
 class FrameStore {
  public:
   explicit FrameStore(FrameStoreConfig config) : config_(std::move(config)) {}
@@ -27,10 +27,10 @@ class FrameStore {
   std::size_t size() const { return records_.size(); }
   /// False when the frame was let go.
   bool has(std::size_t index) const { return !records_[index].is_let_go; }
-  /// Nothing, and the frame is let go, when the disk does not give it back.
+  /// Nothing, and the frame is let go, when it cannot be read back from disk.
   std::optional<mapping::CompactFrame> frame(std::size_t index);
   std::optional<mapping::FrameVotes> votes(std::size_t index);
-  /// False, and the frame is let go, when they have to go to disk and it does not take them.
+  /// False, and the frame is let go, when the votes have to go to disk and the disk does not take them.
   [[nodiscard]] bool replace_votes(std::size_t index, const mapping::FrameVotes& votes);
 
   std::size_t memory_bytes() const { return memory_bytes_; }
@@ -58,7 +58,7 @@ class FrameStore {
 
   FrameStoreConfig config_;
   std::vector<Record> records_;
-  std::size_t first_in_memory_ = 0;  ///< all before are on disk or let go
+  std::size_t first_in_memory_ = 0;  ///< all records before it are on disk or let go
   std::size_t memory_bytes_ = 0;
   std::size_t let_go_ = 0;
   std::string problem_;

@@ -21,7 +21,7 @@ using mapping::VoxelIndex;
 
 constexpr double kOnGridTolerance = 1e-6;
 
-/// A voxel that contains a point given in voxels.
+/// The voxel that contains a point, whose coordinates are in voxels.
 VoxelIndex voxel_of(const Eigen::Vector3d& p_voxels) {
   const auto cell = [](double x) { return static_cast<std::int32_t>(std::floor(x)); };
   return {cell(p_voxels.x()), cell(p_voxels.y()), cell(p_voxels.z())};
@@ -35,7 +35,7 @@ std::uint32_t checked_sum(std::uint32_t a, std::uint32_t b) {
   return a + b;
 }
 
-/// Blocks of the sum that the other map reaches, as they will be.
+/// Blocks that the other map reaches, as they are in the sum.
 class Sum {
  public:
   explicit Sum(const mapping::VoxelMap& map) : map_(map) {}
@@ -66,7 +66,7 @@ class Sum {
   VoxelCounts before_;
 };
 
-/// Calls visit(voxel) for all voxels that a block may reach when it is moved. In voxels.
+/// Calls visit(voxel) for all voxels that a block may reach when T moves it. The translation of T is in voxels.
 template <class Visitor>
 void for_each_reached(const BlockIndex& index, const geometry::Pose& T, Visitor&& visit) {
   const VoxelIndex first = mapping::voxel_at(index, 0);

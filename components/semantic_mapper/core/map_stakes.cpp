@@ -57,7 +57,7 @@ void MapStakes::subtract(std::uint64_t keyframe, const Eigen::Vector3d& p_map_ke
   });
 }
 
-/// What was occupied may be free by now.
+/// Voxels with a miss may be free by now.
 void MapStakes::touch_missed(const mapping::BlockVotes& votes) {
   const auto known = known_.find(votes.block);
   if (known == known_.end()) return;
@@ -67,7 +67,7 @@ void MapStakes::touch_missed(const mapping::BlockVotes& votes) {
   }
 }
 
-/// The parts are rounded so that they sum to the whole voxel.
+/// The parts are rounded so that their sum is exactly one voxel.
 void MapStakes::count(Surface& surface, bool is_counted) {
   surface.is_counted = is_counted;
   std::int64_t whole = 0, before = 0, sum = 0;

@@ -18,20 +18,20 @@ struct ObstacleConfig {
   int misses_to_clear = 3;  ///< frames that must look through an obstacle before it is gone
 };
 
-/// What stands in the way now, beside a map that takes the world to be static: newest evidence wins. A voxel of the
+/// What stands in the way now, beside a map that takes the world to be static: the newest evidence wins. A voxel of the
 /// band is occupied from a hit on until `misses_to_clear` frames have looked through it without another hit, or until
-/// it has not been seen for `window_s`. The poses are those at which the frames were integrated; a correction of the
-/// pose graph reaches the layer with the frames that follow.
+/// it has not been seen for `window_s`. Poses are those at which the frames were integrated; a correction of the pose
+/// graph affects only the frames that follow.
 class ObstacleLayer {
  public:
-  /// Throws std::runtime_error naming the value that is out of range.
+  /// Throws std::runtime_error that names the value that is out of range.
   ObstacleLayer(const ObstacleConfig& config, const mapping::HeightBand& band, double resolution_m);
 
-  /// What a frame says (integration.hpp); stamps must not go back.
+  /// Adds the votes of a frame (integration.hpp); stamps must not go back.
   void add(time::Time stamp, const mapping::FrameVotes& votes);
-  /// A column with any occupied voxel is occupied; otherwise one with a voxel seen within the window is free.
+  /// A column with any occupied voxel is occupied; any other with a voxel that was seen within the window is free.
   OccupancyGrid grid() const;
-  /// Memory [bytes]: bounded by the space of the band that can be seen within the window.
+  /// Memory [bytes], bounded by the part of the band that can be seen within the window.
   std::size_t bytes() const { return blocks_.size() * (sizeof(Block) + sizeof(mapping::BlockIndex)); }
 
  private:
@@ -39,7 +39,7 @@ class ObstacleLayer {
     Block() { seen.fill(std::numeric_limits<std::int64_t>::min()); }
     std::int64_t newest = 0;                                             ///< stamp of the last vote [ns]
     std::array<std::int64_t, mapping::kBlockVoxels> seen;                ///< stamp of the voxel's last vote [ns]
-    std::array<std::uint8_t, mapping::kBlockVoxels> misses_since_hit{};  ///< misses_to_clear: free
+    std::array<std::uint8_t, mapping::kBlockVoxels> misses_since_hit{};  ///< misses_to_clear = free
   };
 
   bool touches_band(const mapping::BlockIndex& index) const;

@@ -10,7 +10,8 @@ namespace lapis::semantic_mapper {
 
 using mapping::kFree, mapping::kOccupied, mapping::kUnknown;
 
-/// Plan in the map frame. Cell (column, row) covers [origin + column * resolution, + resolution) and so on.
+/// Grid in the map frame. Cell (column, row) covers [x, x + resolution_m) from x = origin_x_m + column * resolution_m,
+/// and the same in y with origin_y_m and row.
 struct OccupancyGrid {
   double resolution_m = 0.0;
   double origin_x_m = 0.0;
@@ -22,14 +23,14 @@ struct OccupancyGrid {
   bool operator==(const OccupancyGrid&) const = default;
 };
 
-/// What is known of a column of voxels.
+/// State of a column of voxels.
 struct GridCell {
   std::int32_t x = 0;  ///< as VoxelIndex
   std::int32_t y = 0;
   std::int8_t value = kUnknown;
 };
 
-/// The smallest grid that holds all cells; of several at one place the largest value counts.
+/// The smallest grid that holds all cells; of several cells at one place, the largest value counts.
 OccupancyGrid make_grid(std::span<const GridCell> cells, double resolution_m);
 
 }  // namespace lapis::semantic_mapper

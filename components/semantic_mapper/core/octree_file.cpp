@@ -25,7 +25,7 @@ struct Header {
   std::size_t bytes = 0;
 };
 
-/// Lines of text up to "data"; nothing when they do not say what is needed.
+/// Reads the lines of text up to "data"; nothing when the title or "data" is missing.
 std::optional<Header> read_header(std::span<const std::uint8_t> bytes) {
   const auto text_size = std::min(bytes.size(), kMaxHeaderBytes);
   std::istringstream text(std::string(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(text_size)));
@@ -42,12 +42,12 @@ std::optional<Header> read_header(std::span<const std::uint8_t> bytes) {
     if (key == "size") words >> header.nodes;
     if (key == "res") words >> header.file.resolution_m;
   }
-  if (text.fail() || text.eof()) return std::nullopt;  // no line after "data"
+  if (text.fail() || text.eof()) return std::nullopt;  // no complete line "data"
   header.bytes = static_cast<std::size_t>(text.tellg());
   return header;
 }
 
-/// The nodes, depth first; children in the order of their octant (bit 0: upper half in x, bit 1: y, bit 2: z).
+/// Reads the nodes, depth first; children in the order of their octant (bit 0: upper half in x, bit 1: y, bit 2: z).
 class NodeReader {
  public:
   NodeReader(std::span<const std::uint8_t> bytes, OctreeFile& file)
@@ -69,7 +69,7 @@ class NodeReader {
     file_.leaves.push_back({corner, 1 << (kDepth - depth), is_occupied, probability, color});
   }
 
-  /// .bt: an inner node says in two bits per child: 0 unknown, 1 free, 2 occupied, 3 inner.
+  /// .bt: an inner node has two bits per child: 0 unknown, 1 free, 2 occupied, 3 inner.
   void read_states(const VoxelIndex& corner, int depth) {
     ++file_.nodes;
     if (depth == kDepth) return in_.fail();
@@ -86,7 +86,7 @@ class NodeReader {
     }
   }
 
-  /// .ot: log-odds, colour if there is one, and a byte that says which children follow.
+  /// .ot: log-odds, colour if there is one, and a byte whose bits name the children that follow.
   void read_node(const VoxelIndex& corner, int depth) {
     ++file_.nodes;
     const float log_odds = in_.f32();

@@ -12,16 +12,16 @@
 
 namespace lapis::semantic_mapper {
 
-/// A cube of voxels of one content.
+/// A cube of voxels with the same content.
 struct OctreeLeaf {
   mapping::VoxelIndex corner;    ///< its voxel of least x, y, z; (0, 0, 0) begins at the origin of the map frame
   std::int32_t edge_voxels = 1;  ///< a power of two
   bool is_occupied = false;
-  double probability = 0.0;  ///< P(occupied); a .bt file says no more than 0 or 1
+  double probability = 0.0;  ///< P(occupied); only 0 or 1 from a .bt file
   geometry::Rgb8 color{};    ///< of a ColorOcTree; grey otherwise
 };
 
-/// What an OctoMap file holds, be it written by Lapis or by others.
+/// Content of an OctoMap file, written by Lapis or by others.
 struct OctreeFile {
   std::string kind;  ///< "OcTree" or "ColorOcTree"
   bool is_binary = false;
@@ -31,8 +31,7 @@ struct OctreeFile {
 };
 
 /// Reads the bytes of a .bt file (OcTree) or of a .ot file (OcTree, ColorOcTree). Nothing, with the reason in `error`,
-/// for anything that is not whole. Unlike liboctomap it does not trust its input: depth and number of nodes are
-/// checked.
+/// for anything that is not whole. Unlike liboctomap, it does not trust its input: it checks depth and number of nodes.
 std::optional<OctreeFile> decode_octree(std::span<const std::uint8_t> bytes, std::string& error);
 
 }  // namespace lapis::semantic_mapper

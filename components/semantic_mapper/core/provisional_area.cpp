@@ -6,7 +6,7 @@ namespace {
 using mapping::BlockVotes;
 using mapping::kBlockEdge;
 
-/// Voxels of a block of which a frame says anything.
+/// Voxels of a block that a frame has observed.
 mapping::BlockMask observed(const BlockVotes& votes, const mapping::FrameVotes& frame) {
   mapping::BlockMask mask = votes.misses;
   for (const mapping::HitVote& hit : frame.hits_of(votes))

@@ -13,19 +13,19 @@
 
 namespace lapis::semantic_mapper {
 
-/// Where frames have looked that are not whole in the map yet: the columns of the robot's height band of which each of
-/// them says anything, be it free or occupied. Whoever chooses views need not choose these again.
+/// Where frames have looked that are not whole in the map yet: the columns of the robot's height band in which any of
+/// them has observed a voxel, free or occupied. A process that chooses views need not choose these again.
 class ProvisionalArea {
  public:
   ProvisionalArea(const mapping::HeightBand& band, double resolution_m) : band_(band), resolution_m_(resolution_m) {}
 
-  /// What a frame says without regard to its drift; in place of what it said before.
+  /// Sets what a frame has observed, without regard to its drift; it replaces what was set before.
   void set(std::size_t frame, const mapping::FrameVotes& votes);
   void erase(std::size_t frame) { changes_ += seen_.erase(frame); }
   bool contains(std::size_t frame) const { return seen_.contains(frame); }
   std::size_t size() const { return seen_.size(); }
   std::uint64_t changes() const { return changes_; }
-  /// kFree where any of the frames has looked, else kUnknown; without frames a grid without cells.
+  /// kFree where any of the frames has looked, else kUnknown; without frames, a grid without cells.
   OccupancyGrid grid() const;
 
  private:

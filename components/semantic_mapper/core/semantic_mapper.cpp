@@ -11,18 +11,18 @@ namespace {
 
 using geometry::Pose;
 
-/// Most frames that a voxel's 32-bit counts of 1/256 votes can hold.
+/// Largest number of frames for which a voxel's 32-bit counts of 1/256 votes cannot overflow.
 constexpr std::size_t kMaxFrames = (std::size_t{1} << 24) - 1;
 /// Keeps voxel indices far inside 32 bits at any resolution.
 constexpr double kMaxDistance_m = 10'000.0;
-/// With an edge of 0.8 m (voxels of 0.1 m) these are 1,000 m3, with 2 m (0.25 m) 16,000 m3.
+/// With an edge of 0.8 m (voxels of 0.1 m) these cover 1,000 m3, with 2 m (0.25 m) 16,000 m3.
 constexpr std::size_t kMaxTiles = 2000;
-/// 512 blocks, for each of which mapping::kMaxTileBytes leaves 2 kB: a block full of surfaces takes 1.5 kB.
+/// 512 blocks, for each of which mapping::kMaxTileBytes leaves 2 kB; a block full of surfaces takes 1.5 kB.
 constexpr int kMaxBlocksPerEnlargedEdge = 8;
 
 bool is_near(const Pose& T_map_a) { return T_map_a.translation().norm() <= kMaxDistance_m; }
 
-/// At which the frame has put its votes into the map.
+/// Position of the key-frame in the map at which the frame's votes were put into it.
 Eigen::Vector3d position_of_keyframe(const StoredFrame& frame) {
   return frame.T_map_camera * frame.T_keyframe_camera.inverse().translation();
 }
@@ -41,7 +41,7 @@ const MapperConfig& validated(const MapperConfig& config) {
   return config;
 }
 
-/// Votes of the voxel that has most of one kind.
+/// Largest count of one kind in any voxel, in whole votes, rounded up.
 std::size_t most_votes(const mapping::VoxelMap& map) {
   std::uint32_t most = 0;
   map.for_each_observed([&most](const mapping::VoxelIndex&, const mapping::VoxelCounts& counts) {
@@ -80,7 +80,7 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   if (frames_before_ + frames_integrated_ >= kMaxFrames) return {IntegrationStatus::kMapIsFull, {}};
   const bool is_newer = input.graph_version >= graph_version_, is_known = keyframe_poses_.contains(input.keyframe_id);
   if (is_newer || !is_known) move_keyframe(input.keyframe_id, input.T_map_keyframe);
-  // The graph says so, too, but later.
+  // The graph reports this, too, but later.
   if (!is_known && input.is_keyframe) is_drifting_[input.keyframe_id] = !input.drift.is_none();
 
   StoredFrame stored{input.stamp, input.keyframe_id, input.T_keyframe_camera, Pose::Identity()};
@@ -106,10 +106,10 @@ mapping::FrameVotes SemanticMapper::votes_of(const mapping::CompactFrame& sample
   return mapping::compute_votes(samples, T_map_camera, config_.integration, config_.resolution_m, drift);
 }
 
-/// Of the newest frame, which is in the map in part.
+/// Keeps what is missing of the newest frame, which is in the map in part.
 void SemanticMapper::keep_rest(std::uint64_t keyframe_id, const mapping::FrameVotes& whole) {
   const std::size_t index = frames_.size() - 1;
-  const auto known = is_drifting_.find(keyframe_id);  // nobody has said yet: the graph will
+  const auto known = is_drifting_.find(keyframe_id);  // if it is not known yet, the graph will report it
   const bool is_held = known != is_drifting_.end() && !known->second;
   if (!config_.re_anchor || !store_.has(index) || is_held) {
     ++frames_in_part_;
@@ -181,7 +181,7 @@ std::uint64_t SemanticMapper::frames_far_off() const {
       std::count_if(off_.begin(), off_.end(), [&](std::size_t index) { return is_far_off(index); }));
 }
 
-/// False when the frame was let go, so that it stays where it is.
+/// False when the frame was let go; its votes then stay where they are.
 bool SemanticMapper::move_frame(std::size_t index) {
   const bool is_whole_now = corrected_.erase(index) > 0;
   if (is_whole_now) provisional_.erase(index);

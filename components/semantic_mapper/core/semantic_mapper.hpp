@@ -29,13 +29,13 @@ struct MapperConfig {
   double resolution_m = mapping::kDefaultResolution_m;  ///< edge of a voxel
   double tile_edge_m = mapping::kDefaultTileEdge_m;     ///< least edge of a tile; see enlarge_tiles
   mapping::IntegrationConfig integration;
-  /// A frame is moved when a point at its median depth is off by more than this, in [0, 10] voxels.
+  /// A frame is moved when a point at its median depth is off by more than this [voxels], in [0, 10].
   double re_anchor_threshold_voxels = 0.2;
   /// False: frames stay where they were first put (the paper's frozen map) and are not stored.
   bool re_anchor = true;
   FrameStoreConfig stored_frames;
   mapping::HeightBand band = {};  ///< of the provisional area
-  /// By which stakes() knows what is occupied; nothing: they are not kept.
+  /// Sensor model by which stakes() decides what is occupied; nothing: no stakes are kept.
   std::optional<mapping::SensorModel> stakes_model = std::nullopt;
 };
 
@@ -55,7 +55,7 @@ struct AnchoredFrame {
 struct KeyframePose {
   std::uint64_t id = 0;
   geometry::Pose T_map_keyframe = geometry::Pose::Identity();
-  bool is_drifting = false;  ///< odometry alone knows it, and nothing has corrected it since
+  bool is_drifting = false;  ///< odometry alone connects it, and nothing has corrected it since
 };
 
 /// A frame in the map; FrameStore has its samples and votes.
@@ -65,14 +65,14 @@ struct StoredFrame {
   geometry::Pose T_keyframe_camera = geometry::Pose::Identity();
   geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< at which its votes are in the map now
   double median_depth_m = 0.0;
-  std::size_t work = 0;       ///< of moving it: its samples and votes
-  mapping::Drift drift = {};  ///< within which its votes are in the map now
+  std::size_t work = 0;       ///< cost of moving it: number of its samples and votes
+  mapping::Drift drift = {};  ///< drift that its votes in the map now allow for
 };
 
 struct TileUpdate {
   mapping::TileIndex index;
   std::uint64_t version = 0;
-  std::vector<std::uint8_t> bytes;  ///< tile_codec.hpp
+  std::vector<std::uint8_t> bytes;  ///< encoded as in tile_codec.hpp
 };
 
 enum class IntegrationStatus {
@@ -87,59 +87,60 @@ struct IntegrationReport {
   mapping::FrameVotes votes;  ///< of the whole frame at its pose; those of a frame with drift are not all in the map
 };
 
-/// Semantic map that follows the pose graph. Every integrated frame is kept in compact form with the pose at which it
-/// is in the map and the votes that it has there (but for MapperConfig::re_anchor); when the graph moves its key-frame,
-/// the difference between these votes and those at the new pose is put into the map. At any instant the map equals, bit
-/// for bit, one built from the stored frames at their recorded poses, plus the map that it began with.
+/// Semantic map that follows the pose graph. Every integrated frame is kept in compact form, with the pose at which it
+/// is in the map and the votes that it has there (unless MapperConfig::re_anchor is false). When the graph moves its
+/// key-frame, the difference between these votes and those at the new pose is put into the map. At any instant the map
+/// equals, bit for bit, one built from the stored frames at their recorded poses, plus the map that it began with.
 ///
-/// Of a frame with drift only that enters the map which its drift allows (integration.hpp). What is left waits when its
-/// key-frame drifts, too, and comes in at the corrected pose as soon as the graph says that it does not any more. On
-/// any other key-frame nothing will ever correct the frame, and it stays in the map in part.
+/// Of a frame with drift, only what its drift allows enters the map (integration.hpp). When its key-frame drifts, too,
+/// the rest waits, and enters at the corrected pose as soon as the graph reports that the key-frame does not drift any
+/// more. On any other key-frame nothing will ever correct the frame, and it stays in the map in part.
 class SemanticMapper {
  public:
-  /// Throws std::runtime_error naming the value that is out of range.
+  /// Throws std::runtime_error that names the value that is out of range.
   explicit SemanticMapper(const MapperConfig& config);
-  /// Resumes the map of an earlier run: its frames are not known any more, so that its counts stay where they are.
-  /// Throws also when its voxels are not of config.resolution_m.
+  /// Resumes the map of an earlier run. Its frames are not known any more, so its counts stay where they are. Throws,
+  /// too, when its voxels are not of config.resolution_m.
   SemanticMapper(const MapperConfig& config, mapping::VoxelMap base);
 
   /// Puts a frame into the map at its key-frame's newest known pose.
   IntegrationReport integrate(AnchoredFrame input);
   /// Newest poses of the graph, and which of them drift. Key-frames that are not listed keep theirs; older versions are
-  /// ignored. Moves nothing yet.
+  /// ignored. Does not move frames yet.
   void update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses);
   /// Moves frames that are off by more than the threshold or were corrected while they waited, nearest to the newest
-  /// frame first, until their StoredFrame::work exceeds `max_work` (at least one); returns how many. Frames that are
-  /// off by less than a voxel wait when, over time, moving such frames would cost more work than integrating new ones:
-  /// bundle adjustment may correct its key-frames again and again.
+  /// frame first, until their StoredFrame::work reaches `max_work` (at least one); returns how many. Frames that are
+  /// off by less than a voxel wait when, over time, moving such frames would cost more than 3/4 of the work of
+  /// integrating new ones, because bundle adjustment may correct their key-frames again and again.
   std::size_t re_anchor(std::size_t max_work);
-  /// Moves every frame that is off at all or was corrected while it waited: afterwards the map equals a build at the
+  /// Moves every frame that is off at all or was corrected while it waited: afterwards the map equals one built at the
   /// graph's poses. Returns how many.
   std::size_t flush();
-  /// Frames that re_anchor has still to move.
+  /// Number of frames that re_anchor has yet to move.
   std::size_t frames_off() const { return off_.size(); }
-  /// Frames that are in the map in part and will come in whole once they are corrected.
+  /// Number of frames that are in the map in part, and will be integrated whole once they are corrected.
   std::size_t frames_waiting() const { return provisional_.size(); }
-  /// Frames with drift that are in the map in part for good.
+  /// Number of frames with drift that stay in the map in part for good.
   std::size_t frames_in_part() const { return frames_in_part_; }
   /// Where the waiting frames have looked.
   OccupancyGrid provisional_area() const { return provisional_.grid(); }
-  /// Grows with every change of the area.
+  /// Grows with every change of that area.
   std::uint64_t provisional_changes() const { return provisional_.changes(); }
 
   const mapping::VoxelMap& map() const { return map_; }
-  /// What of the map hangs on which key-frame, if MapperConfig::stakes_model asks for it. Of frames that stay where
-  /// they were first put, too.
+  /// How much of the map depends on which key-frame, also by frames that stay where they were first put; null unless
+  /// MapperConfig::stakes_model is set.
   const MapStakes* stakes();
   /// Samples of a stored frame; nothing when it was let go (FrameStore).
   std::optional<mapping::CompactFrame> stored_frame(std::size_t index) { return store_.frame(index); }
   const FrameStore& store() const { return store_; }
   const std::vector<StoredFrame>& frames() const { return frames_; }
-  /// Frames that integrate took, stored or not.
+  /// Number of frames that integrate has accepted, stored or not.
   std::size_t frames_integrated() const { return frames_integrated_; }
   const MapperConfig& config() const { return config_; }
   std::uint64_t graph_version() const { return graph_version_; }
-  /// That lie in the map more than a voxel from where this version has them: re_anchor() has not moved them yet.
+  /// Number of frames that re_anchor() has yet to move and that are off by more than a voxel at this graph version, or
+  /// were corrected while they waited.
   std::uint64_t frames_far_off() const;
   /// Memory of the stored frames [bytes].
   std::size_t frame_bytes() const { return store_.memory_bytes() + frames_.size() * sizeof(StoredFrame); }
@@ -148,20 +149,20 @@ class SemanticMapper {
   /// Blocks of the tiles that the next take_changed_tiles will look at, in any order.
   std::vector<mapping::BlockIndex> changed_blocks() const;
   /// Doubles the edge of the tiles while there are too many for a late joiner: the cost of reliable samples grows with
-  /// the square of their number (docs/decisions/0029-late-joiners.md). When it returns true, all tiles are other ones
-  /// and will be published again: the caller has to begin a new epoch.
+  /// the square of their number (docs/decisions/0029-late-joiners.md). When it returns true, all tiles are new ones and
+  /// will be published again: the caller has to begin a new epoch.
   bool enlarge_tiles();
-  /// Edge of the tiles now [m]; at least config().tile_edge_m.
+  /// Present edge of the tiles [m]; at least config().tile_edge_m.
   double tile_edge_m() const { return blocks_per_tile_edge_ * mapping::kBlockEdge * config_.resolution_m; }
-  /// Makes a new version of what changed since the last call and returns its tiles in canonical order; without changes
-  /// the version stays and nothing is returned.
+  /// Makes a new version of what changed since the last call, and returns its tiles in canonical order. Without changes
+  /// the version stays, and nothing is returned.
   std::vector<TileUpdate> take_changed_tiles();
   /// All tiles of the current version.
   std::vector<TileUpdate> all_tiles() const;
-  /// Version that take_changed_tiles made last; its epoch is left to the caller.
+  /// State of the version that take_changed_tiles made last; the caller sets its epoch.
   mapping::MapState state() const;
   std::uint64_t version() const { return version_; }
-  /// Tiles that could not be encoded within mapping::kMaxTileBytes, since the start.
+  /// Number of tiles since the start that could not be encoded within mapping::kMaxTileBytes.
   std::size_t tiles_too_large() const { return tiles_too_large_; }
 
  private:
@@ -181,7 +182,7 @@ class SemanticMapper {
   MapperConfig config_;
   int blocks_per_tile_edge_;
   mapping::VoxelMap map_;
-  std::size_t frames_before_ = 0;  ///< at least so many gave the map that it began with its counts
+  std::size_t frames_before_ = 0;  ///< least number of frames that can have given the initial map its counts
   std::size_t frames_integrated_ = 0;
   std::vector<StoredFrame> frames_;  ///< in order of integration
   FrameStore store_;
@@ -195,8 +196,8 @@ class SemanticMapper {
 
   std::unordered_map<std::uint64_t, bool> is_drifting_;                  ///< of key-frames, as far as it is known
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> waiting_;  ///< frames, by key-frames that drift
-  std::unordered_set<std::size_t> corrected_;  ///< frames that have waited and can come in whole
-  ProvisionalArea provisional_;                ///< of the frames of both
+  std::unordered_set<std::size_t> corrected_;  ///< frames that have waited and can be integrated whole
+  ProvisionalArea provisional_;                ///< of the frames in waiting_ and corrected_
   std::optional<MapStakes> stakes_;
   std::size_t frames_in_part_ = 0;
 

@@ -10,11 +10,11 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr float kNearlyBlack_m = 8.0F;  // and beyond: nearly black
+constexpr float kNearlyBlack_m = 8.0F;  // this depth and all greater ones are nearly black
 constexpr int kCaption_px = 16;
 
 cv::Mat view_of(const geometry::ColorImage& image) {
-  return {image.height, image.width, CV_8UC3, const_cast<geometry::Rgb8*>(image.pixels.data())};  // only read
+  return {image.height, image.width, CV_8UC3, const_cast<geometry::Rgb8*>(image.pixels.data())};  // is only read
 }
 
 geometry::Rgb8 depth_color(float depth_m) {

@@ -12,9 +12,9 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kPlaceSpacing_m = 1.0;  // of the places
-constexpr double kOverlapping = 0.75;    // of the field of view: turn from a view to the next
-constexpr int kVersion = 1;              // to be raised when other views or other code give another map
+constexpr double kPlaceSpacing_m = 1.0;  // between neighbouring places
+constexpr double kOverlapping = 0.75;    // turn from one view to the next, as a share of the field of view
+constexpr int kVersion = 1;              // has to be raised when other views or other code change the map
 
 int views_all_round(const geometry::PinholeCamera& camera) {
   const double field_rad = 2.0 * std::atan(0.5 * camera.width / camera.fx);

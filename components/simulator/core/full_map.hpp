@@ -16,16 +16,16 @@ struct FullMapConfig {
   geometry::PinholeCamera camera;
   geometry::CameraMount mount;
   double robot_radius_m = 0.2;
-  std::stop_token cancelled{};  ///< once asked to stop, the result is worthless and comes soon
+  std::stop_token cancelled{};  ///< after a request to stop, the result comes soon and is incomplete
 };
 
-/// The map that the mapper would make of the whole building if depth and labels were exact and every pose true, of a
-/// robot that looks all round in every square metre that it can get to: what the paper compares maps with. In the run's
-/// map frame.
+/// The map that the mapper would build of the whole building if depth and labels were exact, every pose were true, and
+/// the robot looked all round in every square metre that it can reach. The paper compares maps with it. It is in the
+/// run's frame `map`.
 /// @throws std::runtime_error when the robot does not fit at its start
 IdealMap make_full_map(const World& world, const geometry::Pose& T_world_base, const FullMapConfig& config);
 
-/// All that a full map depends on, as text: equal texts, equal maps.
+/// Text of everything that a full map depends on: equal texts mean equal maps.
 std::string made_of(const World& world, const geometry::Pose& T_world_base, const FullMapConfig& config);
 
 }  // namespace lapis::simulator

@@ -22,7 +22,8 @@ Sensors::Sensors(const SensorConfig& config, const geometry::PinholeCamera& came
       labels_(config.labels, labels, seed), odometry_(config.odometry, seed), imu_(config.imu, seed) {}
 
 CameraImages Sensors::see(const RenderedFrame& ideal, const View& view) const {
-  // A camera that turns left sees the world move right; what driving adds is small and differs from pixel to pixel.
+  // A camera that turns left sees the world move right. The flow of driving forwards is small and differs from pixel to
+  // pixel: it is neglected.
   const Eigen::Vector2d flow_px(focal_px_ * view.turn_rad, 0.0);
   return {color_.apply(ideal.color, view.tick, flow_px), depth_.apply(ideal.depth, ideal.cosines, focal_px_, view.tick),
           labels_.apply(ideal.labels, ideal.instances, ideal.depth, view.T_world_camera, view.tick)};

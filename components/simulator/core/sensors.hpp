@@ -28,22 +28,22 @@ struct SensorConfig {
   bool has_imu = false;
 };
 
-/// Makes localisation as hard as the preset says: visual difficulty and noise of odometry together.
+/// Makes localisation as hard as the preset says: changes texture, blur, depth noise and odometry noise together.
 void apply_drift(DriftPreset preset, SensorConfig& config);
 
-/// What the camera and a segmentation of its images give.
+/// Images of the camera, and their segmentation.
 struct CameraImages {
   geometry::ColorImage color;
-  geometry::Image<std::uint16_t> depth_mm;  ///< 0: none
+  geometry::Image<std::uint16_t> depth_mm;  ///< [mm]; 0: no depth
   geometry::LabelImage labels;
 };
 
-/// Wheel odometry: pose since the start, in the frame in which the robot began.
+/// A sample of wheel odometry; the pose is relative to the one where the robot began.
 struct OdometrySample {
   time::Time stamp;
   Eigen::Vector2d position{0, 0};
   double yaw_rad = 0.0;
-  Eigen::Matrix3d pose_covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, yaw)
+  Eigen::Matrix3d pose_covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, yaw) [m, m, rad]
   DriveCommand velocity;                                      ///< mean since the last sample
   Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Zero();
 };
@@ -51,19 +51,19 @@ struct OdometrySample {
 struct ImuSample {
   time::Time stamp;
   Eigen::Vector3d turn_rate_rad_s{0, 0, 0};    ///< about the axes of base_link
-  Eigen::Vector3d acceleration_m_s2{0, 0, 0};  ///< with gravity
+  Eigen::Vector3d acceleration_m_s2{0, 0, 0};  ///< in base_link, as an accelerometer measures it: +g along z at rest
   double turn_rate_variance = 0.0;
   double acceleration_variance = 0.0;
 };
 
-/// When and from where a frame was seen.
+/// Number and camera pose of a frame.
 struct View {
   std::uint64_t tick = 0;
   geometry::Pose T_world_camera;
-  double turn_rad = 0.0;  ///< of the camera about its vertical axis since the last frame, to the left
+  double turn_rad = 0.0;  ///< turn of the camera about the vertical axis since the last frame; positive to the left
 };
 
-/// The robot's sensors with their noise. Images depend on their own frame only; odometry and IMU drift.
+/// The robot's sensors with their noise. The noise of an image depends on its own frame only; odometry and IMU drift.
 class Sensors {
  public:
   /// @param labels the classes that the segmentation knows
@@ -71,11 +71,11 @@ class Sensors {
           std::uint64_t seed);
 
   CameraImages see(const RenderedFrame& ideal, const View& view) const;
-  /// The robot has moved: added up until odometry and IMU are read.
+  /// Notes a motion of the robot. Motions add up until odometry and IMU are read.
   void feel(const Motion& motion);
-  /// Odometry of what the wheels rolled in the period that ends now.
+  /// Reads odometry: the motion of the wheels in the period that ends now, at `stamp`.
   OdometrySample read_odometry(time::Time stamp, time::Duration period);
-  /// Mean of what the body felt in the period that ends now.
+  /// Reads the IMU: mean turn rate and acceleration of the body in the period that ends now, at `stamp`.
   ImuSample read_imu(time::Time stamp, time::Duration period);
 
  private:
@@ -85,7 +85,7 @@ class Sensors {
   LabelNoise labels_;
   WheelOdometry odometry_;
   ImuNoise imu_;
-  double rolled_m_ = 0.0;  // since the last odometry
+  double rolled_m_ = 0.0;  // since the last reading of odometry
   double turned_rad_ = 0.0;
   double felt_turn_rad_ = 0.0;           // since the last reading of the IMU
   Eigen::Vector2d felt_push_m_s_{0, 0};  // change of velocity, along and across the heading

@@ -28,7 +28,7 @@ Simulation::Simulation(const World& world, const SimulationConfig& config, const
     : world_(world), config_(config), robot_(world.nav_map(), config.robot, at_rest(start)),
       sensors_(config.sensors, config.camera, world.scene().labels, config.seed) {}
 
-/// Whole nanoseconds, computed from the number of the frame alone.
+/// Time in whole nanoseconds, computed from the number of the frame alone, so that rounding errors do not add up.
 time::Time Simulation::stamp_of(std::uint64_t tick) const {
   return {std::llround(static_cast<double>(tick) * 1e9 / config_.camera_rate_hz)};
 }
@@ -51,7 +51,7 @@ SensorFrame Simulation::next(const std::optional<DriveCommand>& command) {
   return frame;
 }
 
-/// Drives from one sample of a sensor to the next.
+/// Drives in steps, from one sample of a sensor to the next.
 void Simulation::drive_to(time::Time stamp, SensorFrame& frame) {
   while (robot_.state().stamp < stamp) {
     const time::Time now = robot_.state().stamp;

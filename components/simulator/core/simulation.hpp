@@ -22,7 +22,7 @@ struct SimulationConfig {
   SensorConfig sensors;
 };
 
-/// All that is sensed between two frames, and the truth of it.
+/// Everything that is sensed between two frames, and its ground truth.
 struct SensorFrame {
   std::uint64_t tick = 0;
   time::Time stamp;
@@ -33,22 +33,23 @@ struct SensorFrame {
   geometry::Pose T_world_base;
   double turn_rate_rad_s = 0.0;  ///< of the base
   bool is_in_contact = false;
-  double push_m_s = 0.0;  ///< greatest speed towards what it touches
+  double push_m_s = 0.0;  ///< greatest speed towards a touched object since the last frame
   std::vector<OdometrySample> odometry;
   std::vector<ImuSample> imu;
 };
 
-/// A robot that drives in a world and senses it. Time goes from frame to frame: frame k is at k / rate. A pure function
-/// of world, configuration, start, and the commands so far.
+/// A robot that drives in a world and senses it. Time advances from frame to frame: frame k is at k / rate. The result
+/// is a pure function of world, configuration, start, and the commands so far.
 class Simulation {
  public:
   /// @param world must outlive the simulation.
   /// @throws std::runtime_error when the robot does not fit at the start.
   Simulation(const World& world, const SimulationConfig& config, const StartPose& start);
 
-  /// The next frame. `command` was given at the time of the last one; without any the watchdog may stop the robot.
+  /// The next frame. `command` was given at the time of the last one; without commands the watchdog stops the robot
+  /// after RobotConfig::command_timeout.
   SensorFrame next(const std::optional<DriveCommand>& command);
-  /// Commands that were not finite.
+  /// Number of commands that were refused because they were not finite.
   std::uint64_t commands_refused() const { return commands_refused_; }
 
  private:

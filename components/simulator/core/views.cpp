@@ -13,9 +13,9 @@ constexpr double kSpacing_m = 0.4;  // between candidate places
 constexpr int kHeadings = 12;
 constexpr double kRoomAround_m = 0.15;
 constexpr int kThumbnail_px = 48;
-constexpr float kFarEnough_m = 8.0F;  // seeing farther is not seeing more
+constexpr float kFarEnough_m = 8.0F;  // greater depths add no interest
 
-/// How much a view has in sight: different things, each weighted by the root of its pixels.
+/// Measure of how much a view has in sight: the sum over instances of the root of their pixels, times the mean depth.
 double interest(const RenderedFrame& frame) {
   std::vector<int> pixels(65536, 0);
   double depth = 0.0;
@@ -85,7 +85,7 @@ std::vector<ViewPoint> choose_views(const World& world, const geometry::PinholeC
       const auto best = *std::max_element(candidates.begin(), candidates.end(),
                                           [](const auto& a, const auto& b) { return a.interest < b.interest; });
       views.push_back({room.id + "_" + std::to_string(i), best.position, best.yaw_rad});
-      // The next one looks elsewhere.
+      // The next view has to look in another direction.
       std::erase_if(candidates, [&](const Candidate& c) { return std::cos(c.yaw_rad - best.yaw_rad) > -0.2; });
     }
   }

@@ -9,19 +9,19 @@
 
 namespace lapis::simulator {
 
-/// A place to look from.
+/// Place and heading of a view.
 struct ViewPoint {
   std::string name;  ///< room and number: "kitchen_1"
   Eigen::Vector2d position{0, 0};
   double yaw_rad = 0.0;
 };
 
-/// Views from which much of every room is seen, `per_room` each: where the robot can stand, those that have the most
-/// in sight among a fixed set of candidates. A scene without rooms is one room. Deterministic.
+/// Chooses `per_room` views in each room that show much of it: those with the most in sight among a fixed set of
+/// candidates where the robot can stand. A scene without rooms counts as one room. The choice is deterministic.
 std::vector<ViewPoint> choose_views(const World& world, const geometry::PinholeCamera& camera,
                                     const geometry::CameraMount& mount, double robot_radius_m, int per_room);
 
-/// Pose of the camera of a robot that stands there.
+/// Pose of the camera of a robot that stands at `position` [m] with this yaw.
 geometry::Pose T_world_camera(const World& world, const geometry::CameraMount& mount, const Eigen::Vector2d& position,
                               double yaw_rad);
 

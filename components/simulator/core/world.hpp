@@ -15,10 +15,11 @@ namespace lapis::simulator {
 struct WorldConfig {
   int threads = 1;                              ///< for rendering, and for baking light
   std::filesystem::path light_folder;           ///< where baked light is kept; empty: nowhere
-  std::vector<std::uint16_t> passable_classes;  ///< of instances that the robot drives through (closed doors)
+  std::vector<std::uint16_t> passable_classes;  ///< of instances that the robot drives through, such as closed doors
 };
 
-/// A scene with what rendering and driving need of it. Immutable; all functions may be called from several threads.
+/// A scene with the structures that rendering and driving need. It is immutable, and all functions may be called from
+/// several threads.
 class World {
  public:
   /// @throws std::runtime_error naming the scene when its mesh is empty or broken, or has no floor.
@@ -38,9 +39,10 @@ class World {
   std::unique_ptr<NavMap> nav_map_;
 };
 
-/// Where the robot begins: the seed chooses among the scene's starts, or any place with room around it when the scene
-/// names none.
-/// @throws std::runtime_error naming the scene when a disc of `radius_m` does not fit there, or nowhere.
+/// Pose where the robot begins: the seed chooses among the scene's starts or, when the scene names none, among all
+/// places with room around them.
+/// @throws std::runtime_error naming the scene when a disc of `radius_m` does not fit at the chosen start, or fits
+///   nowhere.
 StartPose draw_start(const World& world, double radius_m, std::uint64_t seed);
 
 }  // namespace lapis::simulator

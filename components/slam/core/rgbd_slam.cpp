@@ -22,7 +22,7 @@ namespace {
 using geometry::Matrix6d;
 using geometry::Pose;
 
-// Key-frames after which the graph is analysed anew.
+// Number of new key-frames after which the marginals of the graph are computed again.
 constexpr std::size_t kAnalysedTogether = 10;
 
 template <class Pixel>
@@ -31,7 +31,7 @@ bool has_size(const geometry::Image<Pixel>& image, const geometry::PinholeCamera
          image.pixels.size() == static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
 }
 
-// Why a frame cannot be used, if so.
+// Why a frame cannot be used; nothing when it can.
 std::optional<std::string> find_fault(const RgbdFrame& frame, const NoiseConfig& noise) {
   if (!geometry::is_valid(frame.camera)) return "invalid camera";
   if (!has_size(frame.gray, frame.camera)) return "colour image size differs from the camera's";
@@ -59,7 +59,7 @@ class RgbdSlam::Implementation {
     builder_ = MapBuilder(config, map_.keyframes().size());
     if (state.wheels.motions > 0.0) motion_.resume_wheels(state.wheels);
     front_end_.resume(map_, state.reference);
-    must_optimize_ = graph_.count(EdgeType::kLoopClosure) > 0;  // it may have been under way
+    must_optimize_ = graph_.count(EdgeType::kLoopClosure) > 0;  // an optimisation may have been under way
     optimize();
   }
 
@@ -85,8 +85,8 @@ class RgbdSlam::Implementation {
     return motion_.add_odometry(stamp, T_odom_base);
   }
 
-  // Front end: where is the frame? Mapping: does the map grow by it? Loops: was it here before? Graph: then all of the
-  // map moves, a fixed number of frames later.
+  // The front end locates the frame; mapping extends the map with it; loop detection finds out whether the camera was
+  // here before; the graph then moves all of the map, a fixed number of frames later.
   TrackingResult process(const RgbdFrame& input) {
     ++frame_count_;
     take_results(frame_count_);
@@ -161,7 +161,7 @@ class RgbdSlam::Implementation {
     optimization_.start(due(), [graph = pose_graph()] { return correct_graph(graph); });
   }
 
-  // Between optimisations, too, all edges say how well the newest key-frames are known.
+  // Between optimisations, too, the covariances of the newest key-frames follow from all edges.
   void analyse() {
     if (optimization_.is_busy() || analysis_.is_busy()) return;
     if (map_.keyframes().size() < graph_.analysed() + kAnalysedTogether) return;
@@ -169,7 +169,7 @@ class RgbdSlam::Implementation {
                     [graph = pose_graph(), weights = graph_.weights()] { return graph_marginals(graph, weights); });
   }
 
-  // An analysis that is under way began before the optimisation that is, and is due before it.
+  // An analysis under way was started before the optimisation under way, and is due no later.
   void take_results(std::uint64_t frame) {
     if (const auto marginals = analysis_.take(frame)) graph_.learn(map_, *marginals);
     if (const auto correction = optimization_.take(frame)) correct(*correction);
@@ -182,7 +182,7 @@ class RgbdSlam::Implementation {
     optimize();
   }
 
-  // The frame is its own reference.
+  // The frame becomes its own reference.
   void become_keyframe(KeyframeId id, TrackingResult& result) const {
     result.is_keyframe = true;
     result.keyframe_id = id;
@@ -203,7 +203,7 @@ class RgbdSlam::Implementation {
   DueResult<GraphCorrection> optimization_;
   DueResult<GraphMarginals> analysis_;
   std::optional<time::Time> last_loop_;
-  bool must_optimize_ = false;  // there are edges that no optimisation knows
+  bool must_optimize_ = false;  // there are edges that no optimisation has included
   std::uint64_t frame_count_ = 0;
   std::uint64_t version_ = 0;
   bool has_odometry_ = false;

@@ -21,51 +21,52 @@ namespace lapis::slam {
 
 /// Loops that the map has closed.
 struct LoopSummary {
-  std::size_t closures = 0;        ///< edges of the graph
+  std::size_t closures = 0;        ///< edges in the graph
   std::optional<time::Time> last;  ///< stamp of the key-frame that found the newest
-  std::vector<Revisit> revisits;   ///< recognised and confirmed, more than there are edges
-  std::size_t removed = 0;         ///< closed, and found to be wrong later
+  std::vector<Revisit> revisits;   ///< recognised and confirmed; not all of them made an edge
+  std::size_t removed = 0;         ///< loops that were closed, and later found to be wrong
 };
 
 /// RGB-D SLAM: features and surfaces aligned with a local map, local bundle adjustment, loop closure, pose graph.
 /// Deterministic: the same frames give the same bits, although the graph is optimised in another thread.
 class RgbdSlam {
  public:
-  /// `T_map_first_camera`: pose given to the first key-frame; `T_base_camera`: where the camera is on the robot, for
+  /// `T_map_first_camera`: pose given to the first key-frame; `T_base_camera`: pose of the camera on the robot, for
   /// wheel odometry.
   RgbdSlam(const SlamConfig& config, const geometry::Pose& T_map_first_camera,
            const geometry::Pose& T_base_camera = geometry::Pose::Identity());
-  /// Resumes a saved map; `state` is sound (find_fault) and has the configuration's scale factor. It is lost until
-  /// it finds its place in that map. Ids and graph version continue.
+  /// Resumes a saved map; `state` is sound (find_fault) and has the configuration's scale factor. Tracking is lost
+  /// until the camera has been located in that map. Ids and graph version continue.
   RgbdSlam(const SlamConfig& config, const geometry::Pose& T_base_camera, SlamState state);
   ~RgbdSlam();
 
-  /// Wheel odometry: the pose of base_link in a frame that may drift. Readings come in the order of their stamps and,
-  /// to be of use for a frame, before it. False when the reading cannot be used.
+  /// Wheel odometry: the pose of base_link in a frame that may drift. Readings come in the order of their stamps; a
+  /// reading is of use for a frame only if it comes before it. False when the reading cannot be used.
   bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base);
-  /// Tracks one frame; frames come in the order of their stamps. Bad frames give a result with a reason.
+  /// Tracks one frame; frames come in the order of their stamps. A frame that cannot be used gives a result with a
+  /// reason.
   TrackingResult process(const RgbdFrame& frame);
 
-  /// T_odom_base at a stamp, where there is odometry.
+  /// T_odom_base at a stamp; nothing where there is no odometry.
   std::optional<geometry::Pose> odometry_at(time::Time stamp) const;
-  /// What to report of a frame that cannot be processed: it has the pose of dead reckoning or none.
+  /// Result for a frame that cannot be processed: it has a pose by dead reckoning, or none.
   TrackingResult skip(time::Time stamp, const std::string& reason) const;
-  /// Waits for optimisations under way and applies them: what the map is at the end.
+  /// Waits for optimisations under way and applies them, so that the map is the final one.
   void settle();
   PoseGraphSnapshot pose_graph() const;
   LoopSummary loops() const;
-  /// What has to be kept to continue later. The large parts are shared with the map, not copied.
+  /// What has to be saved to continue later. The large parts are shared with the map, not copied.
   SlamState state() const;
   /// Grows with every new key-frame and every change of a key-frame's pose.
   std::uint64_t graph_version() const;
   std::size_t keyframe_count() const;
   std::size_t landmark_count() const;
   const Map& map() const;
-  /// Motions of odometry between key-frames that were left out (OdometryConfig::max_disagreement).
+  /// Number of motions of odometry between key-frames that were left out as slip (OdometryConfig::max_disagreement).
   std::size_t slip_count() const;
-  /// What is known of the wheels; none as long as there is no odometry.
+  /// Calibration of the wheels; nothing as long as there is no odometry.
   std::optional<WheelCalibration> wheels() const;
-  /// Recognised places that were not believed, because odometry contradicted them.
+  /// Number of recognised places that were not believed because odometry contradicted them.
   std::size_t places_doubted() const;
 
  private:

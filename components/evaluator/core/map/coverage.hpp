@@ -8,10 +8,10 @@
 namespace lapis::evaluator {
 
 struct Coverage {
-  double explored_volume_m3 = 0.0;  ///< free and occupied
+  double explored_volume_m3 = 0.0;  ///< free plus occupied
   double free_volume_m3 = 0.0;
   double occupied_volume_m3 = 0.0;
-  /// Share of the reference's known voxels that the map knows, whatever it holds them for; none without a reference
+  /// Share of the reference's known voxels that the map knows, whether as free or as occupied; none without a reference
   /// or with an empty one.
   std::optional<double> explored_share;
 };
@@ -20,7 +20,8 @@ Coverage coverage(const KnownSpace& map);
 /// Throws std::invalid_argument when the resolutions differ.
 Coverage coverage(const KnownSpace& reference, const KnownSpace& map);
 
-/// What a map knew at several times, kept as changes, so that it can be compared when the run is over.
+/// The known voxels of a map at several times, stored as changes, so that they can be compared with a reference when
+/// the run is over.
 class KnownHistory {
  public:
   void add(const KnownSpace& map);
@@ -31,7 +32,7 @@ class KnownHistory {
   struct Change {
     std::vector<VoxelIndex> added, removed;
   };
-  std::vector<VoxelIndex> known_;  ///< by the newest map, sorted
+  std::vector<VoxelIndex> known_;  ///< known voxels of the newest map, sorted
   std::vector<Change> changes_;
 };
 

@@ -60,7 +60,7 @@ std::optional<GroundTruth> load_ground_truth(const std::filesystem::path& folder
 }
 
 bool is_same_frame(const geometry::Pose& T_map_world, const geometry::Pose& other) {
-  const geometry::Pose difference = T_map_world * other.inverse();  // between two maps, near whose origins the run is
+  const geometry::Pose difference = T_map_world * other.inverse();  // between two map frames; the run is near both
   return difference.translation().norm() <= kMaxOffset_m &&
          geometry::rotation_angle(difference.linear()) <= kMaxTurn_rad;
 }

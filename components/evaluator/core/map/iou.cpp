@@ -11,7 +11,7 @@ struct Counts {
   std::size_t reference = 0;
   std::size_t estimate = 0;
   std::size_t common = 0;
-  std::size_t matched_reference = 0;  // with a voxel of the label in the estimate, at most one step away
+  std::size_t matched_reference = 0;  // with a voxel of the same label in the estimate, at most one step away
   std::size_t matched_estimate = 0;
 };
 using CountsByLabel = std::map<std::uint16_t, Counts>;

@@ -6,8 +6,8 @@
 
 namespace lapis::evaluator {
 
-/// What a semantic map knows: every observed voxel, occupied where P(occupied) > 0.5 and free elsewhere, with the most
-/// probable class. Throws std::invalid_argument for a voxel beyond kMaxVoxelIndex.
+/// The known space of a semantic map: every observed voxel, as occupied with its most probable class where P(occupied)
+/// > 0.5, and as free elsewhere. Throws std::invalid_argument for a voxel beyond kMaxVoxelIndex.
 KnownSpace to_known_space(const mapping::VoxelMap& map, const mapping::BeliefReader& beliefs);
 
 }  // namespace lapis::evaluator

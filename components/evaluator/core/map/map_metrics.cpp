@@ -20,7 +20,7 @@ std::vector<VoxelIndex> indices(const LabelledVoxels& map) {
   return result;
 }
 
-// From the centre of each voxel of `from` to the nearest of `to`; empty when `to` is.
+// Distances from the centre of each voxel of `from` to the nearest centre of `to` [m]; empty when `to` is empty.
 std::vector<double> distances_m(const LabelledVoxels& from, const LabelledVoxels& to) {
   std::vector<double> result;
   if (to.voxels.empty()) return result;
@@ -37,7 +37,7 @@ std::optional<double> mean(const std::vector<double>& values) {
   return statistics ? std::optional(statistics->mean) : std::nullopt;
 }
 
-// Share of `count` voxels whose partner is near enough; without any voxel there is nothing to share.
+// Share of `count` voxels whose partner is near enough; none without any voxel.
 std::optional<double> share_within(const std::vector<double>& distances_m, std::size_t count, double tolerance_m) {
   if (count == 0) return std::nullopt;
   const auto hits = std::count_if(distances_m.begin(), distances_m.end(),

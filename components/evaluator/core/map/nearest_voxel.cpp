@@ -7,7 +7,7 @@
 namespace lapis::evaluator {
 namespace {
 
-// Below this size a range is scanned: faster than descending further.
+// Ranges up to this size are scanned, which is faster than descending further.
 constexpr std::size_t kLeafSize = 8;
 
 std::int64_t squared(const VoxelIndex& d) { return d.cast<std::int64_t>().squaredNorm(); }

@@ -10,7 +10,7 @@ namespace lapis::evaluator {
 /// Exact nearest-neighbour search among voxels: a balanced k-d tree stored in one array, integer distances.
 class NearestVoxel {
  public:
-  /// Takes a copy to reorder; must not be empty (throws std::invalid_argument).
+  /// Takes a copy, which it reorders. Throws std::invalid_argument when there are no voxels.
   explicit NearestVoxel(std::vector<VoxelIndex> voxels);
 
   /// Squared distance [voxels^2] from `query` to the nearest voxel.

@@ -16,7 +16,7 @@ std::int32_t floor_to_int(double value) {
   return truncated - (value < static_cast<double>(truncated) ? 1 : 0);
 }
 
-/// The indices are within kMaxVoxelIndex.
+/// Packs three indices, which must be within kMaxVoxelIndex, into one key.
 std::uint64_t pack(std::int32_t x, std::int32_t y, std::int32_t z) {
   const auto part = [](std::int32_t i) { return static_cast<std::uint64_t>(i + kOffset); };
   return (part(x) << (2 * kBits)) | (part(y) << kBits) | part(z);
@@ -51,11 +51,11 @@ std::vector<double> column_rays(const geometry::PinholeCamera& camera) {
   return rays;
 }
 
-/// Coordinate along one axis of the voxels that the pixels of a row lie in.
-/// @param origin, row_ray, column_ray that coordinate of the camera, and of rays [voxels]
+/// Voxel indices along one axis of the points of a row of pixels.
+/// @param origin, row_ray, column_ray coordinate along this axis of the camera and of the rays [voxels]
 void locate(const float* depth_m, const std::vector<double>& ray_x, double origin, double row_ray, double column_ray,
             std::vector<std::int32_t>& indices) {
-  constexpr double kFarAway = 1e9;  // far beyond any range
+  constexpr double kFarAway = 1e9;  // [voxels]; far beyond any range
   for (std::size_t u = 0; u < ray_x.size(); ++u) {
     const double coordinate = origin + static_cast<double>(depth_m[u]) * (row_ray + column_ray * ray_x[u]);
     indices[u] = floor_to_int(std::clamp(coordinate, -kFarAway, kFarAway));

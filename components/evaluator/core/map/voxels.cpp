@@ -12,7 +12,7 @@ std::string to_string(const VoxelIndex& v) {
   return "(" + std::to_string(v.x()) + ", " + std::to_string(v.y()) + ", " + std::to_string(v.z()) + ")";
 }
 
-// `sorted` must hold each voxel once, within bounds.
+// Throws std::invalid_argument unless `sorted` contains each voxel once, within bounds.
 template <class Voxels, class IndexOf>
 void check_sorted(const Voxels& sorted, IndexOf index_of) {
   for (std::size_t i = 0; i < sorted.size(); ++i) {

@@ -27,19 +27,20 @@ struct LabelledVoxels {
   std::vector<LabelledVoxel> voxels;
 };
 
-/// What a map knows of space. `free` is sorted, each voxel once, none of them occupied.
+/// The observed space of a map. `free` is sorted and contains each voxel once, none of them occupied.
 struct KnownSpace {
   LabelledVoxels occupied;
   std::vector<VoxelIndex> free;
 };
 
-/// Sorts and checks. Throws std::invalid_argument when the resolution is not positive, a voxel is there twice or
-/// beyond kMaxVoxelIndex.
+/// Sorts and checks the voxels. Throws std::invalid_argument when the resolution is not positive, or when a voxel
+/// occurs twice or is beyond kMaxVoxelIndex.
 LabelledVoxels make_labelled_voxels(double resolution_m, std::vector<LabelledVoxel> voxels);
-/// Sorts and checks, as above; also throws when a voxel is both free and occupied.
+/// Sorts and checks the voxels, as above; also throws when a voxel is both free and occupied.
 KnownSpace make_known_space(LabelledVoxels occupied, std::vector<VoxelIndex> free);
 
-/// Throws std::invalid_argument, naming both, when two maps have different resolutions: their grids do not coincide.
+/// Throws std::invalid_argument, which names both resolutions, when they differ, because then the grids do not
+/// coincide.
 void require_same_grid(const LabelledVoxels& reference, const LabelledVoxels& estimate);
 
 }  // namespace lapis::evaluator

@@ -7,19 +7,19 @@
 
 namespace lapis::evaluator {
 
-/// What a planner says of its decisions so far.
+/// What a planner reports of its decisions so far.
 struct DecisionCounts {
   std::uint64_t decisions = 0;
-  double last_time_s = 0.0;    ///< wall time that the last one took
-  std::uint64_t failures = 0;  ///< goals that were not reached, or looked at in vain
+  double last_time_s = 0.0;    ///< wall-clock time of the last decision
+  std::uint64_t failures = 0;  ///< goals that were not reached, or that were viewed in vain
 };
 
-/// The decisions of a run, from what the planner reports after each of them.
+/// The decisions of a run, from the planner's report after each of them.
 class DecisionRecord {
  public:
-  /// Counts that are smaller than before are those of a planner that was restarted.
+  /// Counts smaller than before come from a planner that was restarted.
   void add(const DecisionCounts& reported);
-  /// Fills in what RunMetrics has of decisions.
+  /// Fills in the figures of decisions.
   void write_to(RunMetrics& metrics) const;
 
  private:

@@ -4,11 +4,11 @@
 
 namespace lapis::evaluator {
 
-/// What held slam's pose of a frame, each worse than the one before; kNone: there was no pose.
+/// The source of slam's pose of a frame, from best to worst; kNone: there was no pose.
 enum class PoseTier : std::uint8_t { kVision, kSurfaces, kOdometry, kNone };
 inline constexpr int kPoseTiers = 4;
 
-/// As files have it: vision, surfaces, odometry or none.
+/// The name in files: vision, surfaces, odometry or none.
 constexpr const char* name_of(PoseTier tier) {
   switch (tier) {
     case PoseTier::kVision: return "vision";

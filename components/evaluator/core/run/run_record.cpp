@@ -7,7 +7,7 @@
 namespace lapis::evaluator {
 namespace {
 
-constexpr double kLostAtEnd_s = 5.0;  // without a pose to the end: the run is lost
+constexpr double kLostAtEnd_s = 5.0;  // longer than this without a pose at the end: the run is lost
 
 }  // namespace
 
@@ -48,10 +48,10 @@ bool RunRecord::add(const FrameRecord& frame) {
   return is_judged;
 }
 
-/// The time since the frame before is of the tier that this frame has; before slam's first answer there was no pose.
+/// Counts the time since the previous frame for this frame's tier; before slam's first answer, there was no pose.
 void RunRecord::count_time(time::Time stamp, PoseTier tier) {
   if (!first_stamp_) first_stamp_ = last_stamp_ = stamp;
-  if (stamp <= last_stamp_) return;  // a source that began anew goes back
+  if (stamp <= last_stamp_) return;  // the stamps of a restarted source go back
   const PoseTier held_by = frames_.empty() ? PoseTier::kNone : tier;
   seconds_of_tier_[static_cast<std::size_t>(held_by)] += (stamp - last_stamp_).seconds();
   last_stamp_ = stamp;
@@ -101,7 +101,7 @@ bool RunRecord::is_lost() const {
   return estimate_.empty() || (end() - estimate_.back().stamp).seconds() > kLostAtEnd_s;
 }
 
-/// What the camera took after slam's last answer has no pose, either.
+/// The time of camera frames after slam's last answer counts as time without a pose, too.
 void RunRecord::write_times(RunMetrics& m) const {
   if (!first_stamp_) return;
   const auto seconds_of = [&](PoseTier tier) { return seconds_of_tier_[static_cast<std::size_t>(tier)]; };

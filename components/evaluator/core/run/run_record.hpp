@@ -10,49 +10,50 @@
 
 namespace lapis::evaluator {
 
-/// What slam published of one frame. Poses are of the camera's optical frame.
+/// What slam published for one frame. Poses are those of the camera's optical frame.
 struct FrameRecord {
   time::Time stamp;
-  std::int64_t session = 0;  ///< of slam
+  std::int64_t session = 0;  ///< session of slam
   PoseTier tier = PoseTier::kNone;
-  std::optional<geometry::Pose> T_map_camera;    ///< none: slam had no pose, whatever the tier
-  std::optional<geometry::Pose> T_world_camera;  ///< true pose; none: not published
-  std::optional<double> position_sigma_m;        ///< as TimelineRow; none: not published
+  std::optional<geometry::Pose> T_map_camera;    ///< none: slam had no pose, whatever `tier` says
+  std::optional<geometry::Pose> T_world_camera;  ///< true pose; none: it was not published
+  std::optional<double> position_sigma_m;        ///< as in TimelineRow; none: it was not published
 };
 
-/// What became of a run's frames: what held slam's pose of them, and where the camera was, by slam's word and in truth.
-/// The run is judged in the frame of slam's first map: poses of a later session have another origin.
+/// Record of a run's frames: the source of slam's pose of each frame, and the estimated and true poses of the camera.
+/// The run is judged in the frame of slam's first map, because poses of a later session have another origin.
 class RunRecord {
  public:
-  /// A frame of the camera, whether slam publishes it or not: one that it had to drop, or never got, is a frame without
-  /// a pose. Lock-step may repeat a stamp.
+  /// Counts a frame of the camera, whether or not slam answers it: a frame that slam dropped or never received is a
+  /// frame without a pose. Lock-step may repeat a stamp.
   void count_camera_frame(time::Time stamp);
-  /// Published on change, and lock-step may repeat it: a collision is the beginning of a contact.
+  /// Counts collisions, each of which is the beginning of a contact. Contacts are published on change, and lock-step
+  /// may repeat them.
   void count_contact(bool is_in_contact);
-  /// False for a frame of a later session: it counts as lost.
+  /// Adds a frame. Returns false for a frame of a later session, which counts as lost.
   bool add(const FrameRecord& frame);
 
   bool is_empty() const { return frames_total_ == 0 && frames_judged_ == 0; }
   std::int64_t frames_judged() const { return frames_judged_; }
   std::int64_t collisions() const { return collisions_.value_or(0); }
-  /// Of slam, in which the run is judged; none before the first frame.
+  /// Session of slam in which the run is judged; none before the first frame.
   std::optional<std::int64_t> session() const { return session_; }
   /// A row for each frame that slam answered.
   const std::vector<FrameRow>& frames() const { return frames_; }
-  /// The one fixed transform, from the first frame that has both poses.
+  /// Fixed transform from the first frame that has both an estimated and a true pose.
   const std::optional<geometry::Pose>& T_map_world() const { return T_map_world_; }
   const Trajectory& estimate() const { return estimate_; }
   Trajectory truth_in_map() const;
-  /// Of the newest frame that slam answered, since the run's first one [s].
+  /// Time of the newest frame that slam answered, since the run's first frame [s].
   double time_s() const { return (last_stamp_ - *first_stamp_).seconds(); }
-  /// Of the newest frame [m]; none when slam has no pose of it, or there is no true one.
+  /// Position error of the newest frame [m]; none without an estimated or a true pose.
   std::optional<double> position_error_m() const;
-  /// Of the true path so far [m].
+  /// Length of the true path so far [m].
   std::optional<double> path_length_m() const { return path_length_m_; }
 
-  /// Fills in what RunMetrics has of frames, trajectories and collisions.
-  /// @param keyframes final poses, in the map
-  /// @param frames_missed camera frames lost on their way here
+  /// Fills in the figures of frames, trajectories and collisions.
+  /// @param keyframes final poses in the map frame
+  /// @param frames_missed camera frames that were lost in transit
   void write_to(RunMetrics& metrics, const Trajectory& keyframes, std::int64_t frames_missed, bool has_ended) const;
 
  private:
@@ -64,19 +65,19 @@ class RunRecord {
   std::int64_t frames_of(PoseTier tier) const { return frames_of_tier_[static_cast<std::size_t>(tier)]; }
 
   std::optional<std::int64_t> session_;
-  Trajectory estimate_;     // T_map_camera, as published at its time
+  Trajectory estimate_;     // T_map_camera as published at the time of each frame
   Trajectory truth_world_;  // T_world_camera
   std::optional<geometry::Pose> T_map_world_;
   std::optional<double> path_length_m_;
-  std::optional<time::Time> first_stamp_;   // of the camera or of slam
-  time::Time last_stamp_;                   // of slam
-  std::optional<time::Time> camera_stamp_;  // newest
-  std::int64_t frames_total_ = 0;           // of the camera
-  std::int64_t frames_judged_ = 0;          // that slam answered, with a pose or without
+  std::optional<time::Time> first_stamp_;   // first frame of the camera or of slam
+  time::Time last_stamp_;                   // newest frame of slam
+  std::optional<time::Time> camera_stamp_;  // newest frame of the camera
+  std::int64_t frames_total_ = 0;           // frames of the camera
+  std::int64_t frames_judged_ = 0;          // frames that slam answered, with or without a pose
   std::array<std::int64_t, kPoseTiers> frames_of_tier_{};
   std::array<double, kPoseTiers> seconds_of_tier_{};
   std::vector<FrameRow> frames_;
-  std::optional<std::int64_t> collisions_;  // none when nobody publishes contacts
+  std::optional<std::int64_t> collisions_;  // none when no contacts are published
   bool is_in_contact_ = false;
 };
 

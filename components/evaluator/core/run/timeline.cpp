@@ -50,7 +50,7 @@ std::string to_csv(const std::vector<FrameRow>& rows) {
 }
 
 void mark_stalls(std::vector<TimelineRow>& rows) {
-  std::size_t from = 0;  // the newest row that is a whole window older
+  std::size_t from = 0;  // the newest row that is at least a whole window older
   for (std::size_t i = 0; i < rows.size(); ++i) {
     rows[i].is_stalled = false;
     if (!share_of(rows[i])) continue;

@@ -20,16 +20,16 @@ struct AssociationConfig {
   time::Duration max_difference = time::Duration::from_seconds(0.02);
 };
 
-/// An estimate's pose with the true pose that belongs to it.
+/// A pose of the estimate and its true pose.
 struct Match {
-  std::size_t estimate_index = 0;  ///< into the estimate's trajectory
-  time::Time stamp;                ///< the estimate's
+  std::size_t estimate_index = 0;  ///< index into the estimate's trajectory
+  time::Time stamp;                ///< stamp of the estimate
   geometry::Pose T_world_estimate = geometry::Pose::Identity();
   geometry::Pose T_world_reference = geometry::Pose::Identity();
 };
 
-/// Matches in the order of the estimate's stamps; poses without a partner are left out. Nothing is extrapolated: with
-/// kInterpolate a stamp before the first or after the last reference pose has no partner.
+/// Matches in the order of the estimate's stamps; poses without a partner are left out. There is no extrapolation: with
+/// kInterpolate, a stamp before the first or after the last reference pose has no partner.
 std::vector<Match> associate(const Trajectory& reference, const Trajectory& estimate, const AssociationConfig& config);
 
 }  // namespace lapis::evaluator

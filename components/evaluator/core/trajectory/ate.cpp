@@ -48,7 +48,7 @@ geometry::Pose align_points(std::span<const Eigen::Vector3d> p_a, std::span<cons
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
   for (std::size_t i = 0; i < p_a.size(); ++i) covariance += (p_a[i] - mean_a) * (p_b[i] - mean_b).transpose();
   const Eigen::JacobiSVD<Eigen::Matrix3d> svd(covariance, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  // S turns the reflection that an SVD may give into the best proper rotation (eq. 43).
+  // S replaces a reflection, which the SVD may give, by the best proper rotation (eq. 43).
   Eigen::Vector3d S = Eigen::Vector3d::Ones();
   if (svd.matrixU().determinant() * svd.matrixV().determinant() < 0.0) S.z() = -1.0;
   geometry::Pose T_a_b = geometry::Pose::Identity();

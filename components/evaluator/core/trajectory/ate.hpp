@@ -11,7 +11,7 @@ namespace lapis::evaluator {
 
 enum class Alignment {
   kNone,    ///< both trajectories share a frame
-  kOrigin,  ///< the first matched poses are made equal
+  kOrigin,  ///< aligned so that the first matched poses are equal
   kSe3,     ///< least squares over all positions, without scale
 };
 
@@ -19,8 +19,8 @@ enum class Alignment {
 struct PoseError {
   time::Time stamp;
   double position_m = 0.0;
-  /// Turn about the vertical (z) axis of the reference frame that separates the two attitudes, in (-pi, pi]. It is the
-  /// twist part of R_estimate * R_reference', so it does not depend on which axes the moving frame has.
+  /// Rotation about the vertical (z) axis of the reference frame between the two attitudes, in (-pi, pi]. It is the
+  /// twist part of R_estimate * R_reference', so that it does not depend on the axes of the moving frame.
   double heading_rad = 0.0;
 };
 
@@ -31,9 +31,9 @@ struct AbsoluteError {
   ErrorStatistics heading_rad;  ///< of the absolute values
 };
 
-/// Rigid transform T_a_b that minimises the sum of |p_a - T_a_b * p_b|^2 over corresponding points
-/// (eq. 40-43 in [Umeyama, PAMI 1991] with scale 1). Always a proper rotation; when the points do not determine it
-/// (all on a line), one of the best. Throws std::invalid_argument when the counts differ or are zero.
+/// Rigid transform T_a_b that minimises the sum of |p_a - T_a_b * p_b|^2 over corresponding points (eq. 40-43 in
+/// [Umeyama, PAMI 1991] with scale 1). The rotation is always proper; when the points do not determine it (all on a
+/// line), it is one of the best. Throws std::invalid_argument when the counts differ or are zero.
 geometry::Pose align_points(std::span<const Eigen::Vector3d> p_a, std::span<const Eigen::Vector3d> p_b);
 
 /// Absolute trajectory error of matched poses; std::nullopt without a match.

@@ -7,7 +7,7 @@
 namespace lapis::evaluator {
 namespace {
 
-// What a pose has behind it since the start of the trajectory (seconds, metres or frames), and its match if any.
+// Distance of a pose from the start of the trajectory (in seconds, metres or frames), and its match, if any.
 struct Milestone {
   double travelled = 0.0;
   const Match* match = nullptr;

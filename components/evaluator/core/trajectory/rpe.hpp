@@ -15,11 +15,12 @@ enum class DeltaUnit {
   kFrames,   ///< of matched poses
 };
 
-/// With A the estimate's motion over the interval and B the true one, seen from the body at its start:
+/// Error of the motion over an interval. A is the estimated motion and B the true motion, seen from the body at the
+/// start:
 enum class MotionError {
-  /// A * B^-1: what the TUM benchmark's evaluate_rpe tool computes; its published figures are these.
+  /// A * B^-1: computed by the TUM benchmark's tool evaluate_rpe and used in its published figures.
   kBenchmark,
-  /// B^-1 * A: eq. 2 of [Sturm et al., IROS 2012], and evo's. The translation part has the length |t_A - t_B|.
+  /// B^-1 * A: eq. 2 of [Sturm et al., IROS 2012], also used by evo. The translation part has the length |t_A - t_B|.
   kPaper,
 };
 
@@ -44,9 +45,9 @@ struct RelativeError {
 };
 
 /// Relative pose error over intervals of fixed length. Each pose starts an interval that ends at the pose nearest to
-/// start + delta. Over seconds and metres an interval that would end at the last pose is left out, because there the
-/// nearest pose may be far too early (the benchmark's rule). Over seconds the ends are chosen among all poses of the
-/// estimate, and an interval counts when both ends are matched. std::nullopt when no interval remains; throws
+/// start + delta. In seconds and metres, an interval that would end at the last pose is left out, because there the
+/// nearest pose may be far too early (the benchmark's rule). In seconds, the ends are chosen among all poses of the
+/// estimate, and an interval counts when both ends are matched. Returns std::nullopt when no interval remains; throws
 /// std::invalid_argument for a delta that is not positive.
 std::optional<RelativeError> relative_error(const Trajectory& estimate, std::span<const Match> matches,
                                             const RelativeErrorConfig& config);

@@ -14,10 +14,11 @@ namespace {
 
 constexpr std::string_view kMagic = "LAPISSIT";
 constexpr std::uint32_t kFormatVersion = 1;
-constexpr double kFarthest_m = 20'000.0;        // of a pose from the origin; conversions.hpp refuses poses beyond 10 km
-constexpr std::int32_t kFarthestCell = 40'000;  // from the origin, along an axis
-constexpr int kMostDimensions = 6;              // of the information of an edge
-constexpr double kRounding = 1e-6;              // tolerance for rotation matrices
+constexpr double kFarthest_m = 20'000.0;  // of a pose from the origin; conversions.hpp refuses poses beyond 10 km
+// Of a cell from the origin, along an axis: kMaxReach_m in the smallest voxels, and the cell that ends there.
+constexpr auto kFarthestCell = static_cast<std::int32_t>(kMaxReach_m / mapping::kMinResolution_m) + 1;
+constexpr int kMostDimensions = 6;  // of the information of an edge
+constexpr double kRounding = 1e-6;  // tolerance for rotation matrices
 
 /// Writes the parts that the functions below list.
 struct Encoder {

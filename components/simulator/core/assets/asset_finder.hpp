@@ -10,19 +10,19 @@
 
 namespace lapis::simulator {
 
-/// Finds the files that a model file names, although the name is often right on its author's machine only.
+/// Finds the files that a model file names, even where the name is right on its author's machine only.
 class AssetFinder {
  public:
   struct Found {
     std::string name;  ///< in the store
     std::vector<std::uint8_t> bytes;
-    bool is_guess = false;  ///< has another name: the only image there is
+    bool is_guess = false;  ///< it has another name, but is the only image beside the model
   };
 
   /// `model` is the model file; names are relative to its folder. The store must outlive the finder.
   AssetFinder(const AssetStore& store, const std::string& model);
 
-  /// The file of that name; failing that, one whose name differs in upper and lower case only.
+  /// The file of that name; failing that, one whose name differs only in upper and lower case.
   std::optional<Found> file(std::string_view written);
   /// As file(); failing that, a file of that base name beside the model; failing that, the only image beside it.
   std::optional<Found> image(std::string_view written);
@@ -33,7 +33,7 @@ class AssetFinder {
   const std::vector<std::string>& names();
 
   const AssetStore& store_;
-  std::string folder_;                             ///< with '/' at its end, or empty
+  std::string folder_;                             ///< ends with '/', or is empty
   std::optional<std::vector<std::string>> names_;  ///< listed when first needed
 };
 

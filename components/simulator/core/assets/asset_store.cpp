@@ -17,7 +17,7 @@ bool leaves_folder(const fs::path& normal) { return normal.empty() || normal.is_
 std::optional<std::vector<std::uint8_t>> FolderStore::read(const std::string& name) const {
   const fs::path normal = fs::path(name).lexically_normal();
   if (leaves_folder(normal)) return std::nullopt;
-  std::string reason;  // what needs the file says so
+  std::string reason;  // unused: whoever needs the file reports it
   return files::read_file((folder_ / normal).string(), reason);
 }
 

@@ -17,11 +17,11 @@ class AssetStore {
   virtual std::optional<std::vector<std::uint8_t>> read(const std::string& name) const = 0;
   /// All file names, sorted.
   virtual std::vector<std::string> names() const = 0;
-  /// For messages.
+  /// Path of the folder or archive, for messages.
   virtual std::string description() const = 0;
 };
 
-/// The files below a folder. Names that leave it ("../x", "/x") are never read.
+/// The files below a folder. Names that lead out of it ("../x", "/x") are never read.
 class FolderStore final : public AssetStore {
  public:
   explicit FolderStore(std::filesystem::path folder) : folder_(std::move(folder)) {}

@@ -50,7 +50,7 @@ std::optional<Size> jpeg_size(Bytes bytes) {
   return std::nullopt;
 }
 
-// What the header promises: a decoder would allocate that much before it finds out that the data are not there.
+// The size in the header. It is checked first, because a decoder allocates that much before it notices missing data.
 std::optional<Size> announced_size(Bytes bytes) {
   if (starts_with(bytes, {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n'}) && bytes.size() >= 24)
     return Size{big_endian(bytes, 16, 4), big_endian(bytes, 20, 4)};
@@ -74,7 +74,7 @@ cv::Mat decode(Bytes bytes) {
   }
 }
 
-// To 8 bits and the channels R, G, B, A. Empty when there is no such thing.
+// Converts to 8 bits and the channels R, G, B, A. Empty when the format has no such conversion.
 cv::Mat to_rgba8(cv::Mat image) {
   if (image.depth() == CV_16U) image.convertTo(image, CV_8U, 1.0 / 257);
   if (image.depth() != CV_8U) return {};

@@ -9,12 +9,12 @@
 
 namespace lapis::simulator {
 
-/// All textures of a model may have as many texels (4 GiB).
+/// Greatest number of texels of all textures of a model together (4 GiB).
 inline constexpr std::size_t kMaxTexels = std::size_t{1} << 30U;
 
-/// Decodes PNG, JPEG or BMP with 8 or 16 bits; pixels stay where the file has them, whatever its EXIF tag says.
-/// Shrinks to at most `max_px` on the longer side (averaging). Row 0 is the upper edge of the picture. Null when it is
-/// no such image or has more than 8192 x 8192 pixels.
+/// Decodes PNG, JPEG or BMP with 8 or 16 bits per channel. An orientation in its EXIF data is ignored. The image is
+/// shrunk to at most `max_px` on the longer side (by averaging). Row 0 is the upper edge of the picture. Null when it
+/// is no such image or has more than 8192 x 8192 pixels.
 std::shared_ptr<const TextureImage> decode_texture(std::span<const std::uint8_t> bytes, int max_px);
 
 /// True when some texel has alpha below 128.

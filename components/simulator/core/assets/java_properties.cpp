@@ -30,7 +30,7 @@ void append_utf8(std::uint32_t code, std::string& text) {
   }
 }
 
-// Takes the natural line off `text`: '\n', '\r' and "\r\n" end it.
+// Removes the first natural line from `text` and returns it: '\n', '\r' and "\r\n" end a line.
 std::string_view take_natural_line(std::string_view& text) {
   const std::size_t end = text.find_first_of("\r\n");
   const std::string_view line = text.substr(0, end);
@@ -53,7 +53,7 @@ bool is_continued(std::string_view line) {
   return backslashes % 2 == 1;
 }
 
-// A natural line and those that continue it; empty for comments and empty lines.
+// Removes a natural line and those that continue it; the result is empty for comments and empty lines.
 std::string take_logical_line(std::string_view& text) {
   std::string_view line = without_leading_blanks(take_natural_line(text));
   if (line.starts_with('#') || line.starts_with('!')) return {};
@@ -76,14 +76,14 @@ std::size_t key_end(std::string_view line) {
   return line.size();
 }
 
-// What follows the key, without the one '=' or ':' and the blanks around it.
+// The text after the key, without the one '=' or ':' and the blanks around it.
 std::string_view value_of(std::string_view line, std::size_t end_of_key) {
   std::string_view value = without_leading_blanks(line.substr(end_of_key));
   if (value.starts_with('=') || value.starts_with(':')) value = without_leading_blanks(value.substr(1));
   return value;
 }
 
-// Takes the four digits after "\u" off `text`.
+// Removes the four digits after "\u" from `text`.
 std::uint32_t take_code_unit(std::string_view& text) {
   const std::string_view digits = text.substr(0, 4);
   std::uint32_t code = 0;

@@ -7,11 +7,11 @@
 
 namespace lapis::simulator {
 
-/// A model as its file has it: own units and axes. Triangle::part indexes `groups`.
+/// A model in the units and axes of its file. Triangle::part is an index into `groups`.
 struct Model {
   Mesh mesh;
   std::vector<std::string> groups;    ///< OBJ groups or glTF nodes; at least one
-  std::vector<std::string> warnings;  ///< a texture that is missing, faces that were left out, ...; one line each
+  std::vector<std::string> warnings;  ///< missing textures, faces that were left out, ...; one line each
 };
 
 }  // namespace lapis::simulator

@@ -18,13 +18,13 @@ void read_color(std::string_view numbers, geometry::Rgb8& color) {
   if (r && g && b) color = {to_byte(*r), to_byte(*g), to_byte(*b)};
 }
 
-// How many words follow an option of a texture map, at most; -o, -s and -t may have fewer.
+// Greatest number of words after an option of a texture map; -o, -s and -t may have fewer.
 std::size_t option_length(std::string_view option) {
   if (option == "-o" || option == "-s" || option == "-t") return 3;
   return option == "-mm" ? 2 : 1;
 }
 
-// The file name after the options; it may hold blanks.
+// The file name after the options; it may contain blanks.
 std::string_view texture_name(std::string_view text) {
   text = trimmed(text);
   while (text.starts_with('-')) {

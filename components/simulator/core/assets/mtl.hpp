@@ -9,11 +9,11 @@
 
 namespace lapis::simulator {
 
-/// What an MTL file says about a material, as far as it can be seen.
+/// The visible properties of a material in an MTL file.
 struct MtlMaterial {
-  geometry::Rgb8 color{204, 204, 204};  ///< Kd; where there is none, what modellers show by default
+  geometry::Rgb8 color{204, 204, 204};  ///< Kd; without one, the grey that modelling programs show
   float opacity = 1.0F;                 ///< d, or 1 - Tr
-  std::string texture;                  ///< file name in map_Kd as written there, without options; empty: none
+  std::string texture;                  ///< file name of map_Kd as it is written, without options; empty: none
 };
 
 /// Materials by name. Lines that make no sense are ignored.

@@ -31,7 +31,7 @@ bool has_area(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::V
   return ab.cross(ac).squaredNorm() > 0;
 }
 
-// What `usemtl` names. The mesh gets a material when a triangle first needs it.
+// A material that `usemtl` names. It is added to the mesh when a triangle first needs it.
 struct UsedMaterial {
   MtlMaterial look;
   std::uint32_t plain = kNone;     ///< in Mesh::materials, for faces without texture coordinates
@@ -46,7 +46,7 @@ struct Corner {
   std::uint32_t texture = kNone;
 };
 
-// Mesh vertices, one per pair of position and texture coordinate. Those of one position form a list.
+// Mesh vertices, one per pair of position and texture coordinate. Those of one position form a linked list.
 class VertexMerger {
  public:
   std::uint32_t index_of(const Corner& corner) {
@@ -75,9 +75,9 @@ class VertexMerger {
  private:
   struct Vertex {
     Corner corner;
-    std::uint32_t next;  ///< of the same position, or kNone
+    std::uint32_t next;  ///< next vertex of the same position, or kNone
   };
-  std::vector<std::uint32_t> first_;  ///< per position
+  std::vector<std::uint32_t> first_;  ///< first vertex of the list, per position
   std::vector<Vertex> vertices_;
 };
 
@@ -122,7 +122,7 @@ class ObjReader {
   std::size_t texels_ = 0;
   std::map<std::string, std::uint32_t> groups_;
   std::string group_name_ = "default";
-  std::uint32_t group_ = kNone;  ///< index of group_name_ in Model::groups; kNone: not yet there
+  std::uint32_t group_ = kNone;  ///< index of group_name_ in Model::groups; kNone: not looked up yet
 };
 
 Model ObjReader::read() {
@@ -197,7 +197,7 @@ void ObjReader::read_face(std::string_view line) {
   }
 }
 
-// "v", "v/vt", "v/vt/vn" or "v//vn"
+// Reads "v", "v/vt", "v/vt/vn" or "v//vn".
 Corner ObjReader::read_corner(std::string_view word) const {
   Corner corner;
   const char* at = word.data();
@@ -218,7 +218,7 @@ Corner ObjReader::read_corner(std::string_view word) const {
   return corner;
 }
 
-// Numbers count from 1, or backwards from the last one with -1.
+// Positive numbers count from 1, negative ones backwards from the last element, which is -1.
 std::uint32_t ObjReader::to_index(std::int64_t number, std::size_t count) const {
   const auto size = static_cast<std::int64_t>(count);
   if (number == 0 || number > size || number < -size) {
@@ -232,7 +232,7 @@ void ObjReader::add_triangle(const std::array<std::uint32_t, 3>& corners, bool h
   model_.mesh.triangles.push_back({corners, material_index(has_texture_coordinates), group_index()});
 }
 
-// One file whose name may hold blanks, or several files; failing that, the one called like the model.
+// Reads one file whose name may contain blanks, or several files; failing that, the file with the model's name.
 void ObjReader::read_materials(std::string_view files) {
   if (read_material_file(files)) return;
   bool is_found = false;

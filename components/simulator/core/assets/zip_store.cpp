@@ -64,13 +64,13 @@ std::optional<std::vector<std::uint8_t>> ZipStore::read(const std::string& name)
   const std::unique_ptr<zip_file, CloseEntry> entry(zip_fopen_index(archive_.get(), found->second.index, 0));
   if (!entry) return std::nullopt;
   std::vector<std::uint8_t> bytes;
-  while (bytes.size() < found->second.size) {  // no memory for what the archive promises and does not hold
+  while (bytes.size() < found->second.size) {  // in steps: the announced size may be far more than the data
     const std::size_t had = bytes.size();
     bytes.resize(std::min<std::size_t>(found->second.size, had + std::max(had, kLeastStep)));
     const std::size_t wanted = bytes.size() - had;
     if (zip_fread(entry.get(), bytes.data() + had, wanted) != static_cast<zip_int64_t>(wanted)) return std::nullopt;
   }
-  std::uint8_t beyond = 0;  // reading on checks the CRC, and finds files longer than the archive says
+  std::uint8_t beyond = 0;  // reading past the end checks the CRC, and finds files longer than announced
   if (zip_fread(entry.get(), &beyond, 1) != 0) return std::nullopt;
   return bytes;
 }

@@ -15,12 +15,12 @@ struct zip;
 
 namespace lapis::simulator {
 
-/// The files in a zip archive. It stays open; files of more than kMaxEntryBytes once unpacked are not read.
+/// The files in a zip archive, which stays open. Files that are larger than kMaxEntryBytes when unpacked are not read.
 class ZipStore final : public AssetStore {
  public:
   static constexpr std::uint64_t kMaxEntryBytes = 256ULL << 20;
 
-  /// @throws std::runtime_error with file and remedy when it is missing, empty, truncated, no archive, or encrypted.
+  /// @throws std::runtime_error naming file and remedy when it is missing, empty, truncated, no archive, or encrypted.
   explicit ZipStore(const std::filesystem::path& file);
   std::optional<std::vector<std::uint8_t>> read(const std::string& name) const override;
   std::vector<std::string> names() const override;

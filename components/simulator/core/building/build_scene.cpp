@@ -110,7 +110,7 @@ class SceneBuilder {
     for (std::size_t i = 0; i < models.size(); ++i) add_item(spec_.furniture[i], models[i], poses[i].T_world_item());
   }
 
-  /// One instance, and one more for every other class that the item's parts have.
+  /// Adds one instance, and another one for every further class that the item's parts have.
   void add_item(const FurnitureSpec& item, const SourcedModel& model, const Eigen::Affine3f& T_world_item) {
     const std::size_t first = scene_.mesh.triangles.size();
     std::map<std::string, std::uint32_t> part_of_class{
@@ -146,7 +146,7 @@ class SceneBuilder {
     return std::make_shared<const TextureImage>(make_picture(*picture.motif, aspect, options_.texture_richness));
   }
 
-  /// A flat face on a board of 2 cm, whose rim of 3 cm is its frame.
+  /// Adds a flat face on a board that is 2 cm thick and whose rim of 3 cm is the frame.
   void add_picture(std::size_t index, double along_m) {
     constexpr float kRim_m = 0.03F, kThickness_m = 0.02F, kGap_m = 0.002F;
     constexpr std::array<geometry::Rgb8, 4> kFrames{{{60, 44, 34}, {186, 150, 90}, {232, 230, 224}, {40, 40, 44}}};
@@ -160,7 +160,7 @@ class SceneBuilder {
     const float x0 = x - half.x(), x1 = x + half.x(), z0 = z - half.y(), z1 = z + half.y();
     shapes.box({x0, kGap_m, z0}, {x1, kThickness_m, z1},
                shapes.material("frame", kFrames[*picture.motif % kFrames.size()]));
-    // In front of the frame: behind its rim it would lie in the dark.
+    // The face is in front of the frame, because behind its rim it would be dark.
     shapes.picture({x1 - kRim_m, kThickness_m + 0.001F, z0 + kRim_m}, {x0 - x1 + 2 * kRim_m, 0, 0},
                    {0, 0, z1 - z0 - 2 * kRim_m}, shapes.material("face", {255, 255, 255}, face_of(picture)));
   }

@@ -13,8 +13,8 @@
 namespace lapis::simulator {
 
 struct BuildOptions {
-  std::uint64_t seed = 0;         ///< of the jitter, and of which pictures are left out
-  bool with_jitter = true;        ///< movable furniture by 5 cm and 10 degrees, pictures by 10 cm along their wall
+  std::uint64_t seed = 0;         ///< of the jitter, and of the choice of pictures that are left out
+  bool with_jitter = true;        ///< moves furniture by up to 5 cm and 10 degrees, pictures by up to 10 cm
   double texture_richness = 1.0;  ///< 0 to 2: contrast of walls, floors, ceilings and pictures
   double pictures_density = 1.0;  ///< 0 to 1: share of the pictures that hang
 };
@@ -23,22 +23,22 @@ struct BuildOptions {
 struct SourcedModel {
   Mesh mesh;                        ///< Triangle::part indexes `groups`
   std::vector<std::string> groups;  ///< names that FurnitureSpec::parts may use, beside those of materials
-  double elevation_m = 0.0;         ///< where things of this kind hang
+  double elevation_m = 0.0;         ///< usual height of its lowest point above the floor
   std::optional<Credit> credit;
   std::vector<std::string> warnings;  ///< one line each
 };
 
-/// Why there is no model; one line, which becomes a warning of the scene.
+/// The reason why there is no model, in one line, which becomes a warning of the scene.
 struct SourceRefusal {
   std::string reason;
 };
 
-/// Finds the model of an item; asked only for items that name one. An empty function: there is no catalogue.
+/// Finds the model of an item; it is called only for items that name one. It is empty when there is no catalogue.
 using FurnitureSource = std::function<std::variant<SourcedModel, SourceRefusal>(const FurnitureSpec&)>;
 
-/// Builds the rooms of a spec and furnishes them. Furniture without a model, or whose model cannot be had, is made of
-/// simple shapes at the size that the spec or its class gives; the scene then has one warning per cause. The result is
-/// a function of the arguments alone.
+/// Builds the rooms of a spec and furnishes them. Furniture without a model, or whose model is not available, is made
+/// of simple shapes, with the size of the spec or, failing that, of its class; each cause of a missing model gives one
+/// warning of the scene. The result is a function of the arguments alone.
 /// @throws std::runtime_error with one line that names the scene's file and the item that makes no sense
 Scene build_scene(const SceneSpec& spec, const FurnitureSource& furniture, const BuildOptions& options = {});
 

@@ -11,7 +11,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kReach_m = 0.5;  // of an opening to its wall, and between the walls of two rooms
+constexpr double kReach_m = 0.5;  // greatest distance of an opening from its wall, and between the walls of two rooms
 
 Wall wall_of(const std::vector<Eigen::Vector2d>& polygon, std::size_t edge) {
   Wall wall;
@@ -75,7 +75,7 @@ class OpeningCutter {
     return nearest;
   }
 
-  /// The nearest wall that looks the other way behind `front` and best covers the opening.
+  /// The wall behind `front` that faces the other way, with the least sum of distance and uncovered opening width.
   std::optional<WallRef> wall_behind(const WallRef& front, const OpeningSpec& opening) const {
     std::optional<WallRef> nearest;
     double best = std::numeric_limits<double>::infinity();
@@ -84,7 +84,8 @@ class OpeningCutter {
       if (candidate.inward.dot(wall(front).inward) > -0.999) return;
       const double distance = gap(wall(front), candidate), half = 0.5 * opening.width_m;
       const double along = (opening.at - candidate.start).dot(candidate.direction);
-      const double left = along + half, right = candidate.length_m - along + half;  // of the opening's two ends
+      // Distance from either end of the wall to the opening's farther end.
+      const double left = along + half, right = candidate.length_m - along + half;
       if (distance < -1e-3 || distance > kReach_m || left < 0.0 || right < 0.0) return;
       const double uncovered = std::max({0.0, opening.width_m - left, opening.width_m - right});
       if (distance + uncovered >= best) return;

@@ -6,9 +6,9 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kDoor_m = 0.7;   // in front of a door: a robot's width, and room to turn
-constexpr double kPath_m = 0.35;  // around starts and paths: a robot's radius, and what planners keep besides
+constexpr double kPath_m = 0.35;  // around starts and paths: a robot's radius, and the clearance of planners
 
-/// All points that are, along and across, no farther than kPath_m from the line.
+/// Rectangle of the points that are, along and across it, no farther than kPath_m from the line.
 Polygon strip(const Eigen::Vector2d& a, const Eigen::Vector2d& b) {
   const Eigen::Vector2d span = b - a;
   return rectangle(0.5 * (a + b), {span.norm() + 2.0 * kPath_m, 2.0 * kPath_m}, std::atan2(span.y(), span.x()));

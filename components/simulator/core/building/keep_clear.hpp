@@ -7,7 +7,7 @@
 
 namespace lapis::simulator {
 
-/// Convex pieces of floor into which the seed moves nothing: in front of doors and passages, around the starts, and
+/// Convex pieces of floor into which jitter moves nothing: in front of doors and passages, around the starts, and
 /// along the straight lines between the waypoints of the bundled tour.
 /// @param spec normalised
 std::vector<Polygon> keep_clear(const SceneSpec& spec, const std::vector<RoomPlan>& plan);

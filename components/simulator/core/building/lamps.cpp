@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kAreaPerLamp_m2 = 12.0, kBelowCeiling_m = 0.35, kFromWall_m = 0.25;
 
-/// Points on a grid of 0.25 m inside a polygon, row by row along its longer side.
+/// Points on a grid of at most 0.25 m inside a polygon, row by row along its longer side.
 std::vector<Eigen::Vector2d> floor_points(const Polygon& polygon) {
   Eigen::AlignedBox2d box;
   for (const auto& corner : polygon) box.extend(corner);
@@ -33,7 +33,7 @@ bool is_far_from_walls(const Polygon& polygon, const Eigen::Vector2d& p) {
   return contains(polygon, p) && distance_to_border(polygon, p) > kFromWall_m;
 }
 
-/// Moves what is too near to a wall to the nearest point that is not, if there is one.
+/// Moves each centre that is too near to a wall to the nearest of `points` that is not, if there is one.
 void leave_walls(std::vector<Eigen::Vector2d>& centers, std::vector<Eigen::Vector2d> points, const Polygon& polygon) {
   std::erase_if(points, [&](const auto& point) { return !is_far_from_walls(polygon, point); });
   for (Eigen::Vector2d& center : centers) {
@@ -44,7 +44,7 @@ void leave_walls(std::vector<Eigen::Vector2d>& centers, std::vector<Eigen::Vecto
   }
 }
 
-/// `count` centres that share the floor among them, by Lloyd's algorithm.
+/// `count` centres that divide the floor among them, by Lloyd's algorithm.
 std::vector<Eigen::Vector2d> spread(const Polygon& polygon, std::size_t count) {
   const auto points = floor_points(polygon);
   std::vector<Eigen::Vector2d> centers;
@@ -62,7 +62,7 @@ std::vector<Eigen::Vector2d> spread(const Polygon& polygon, std::size_t count) {
       counts[i] += 1.0;
     }
     for (std::size_t i = 0; i < centers.size(); ++i) {
-      // The middle of a bent share may lie in a wall, or outside of the room; such a lamp stays where it is.
+      // The centroid of a share that is not convex may be in a wall or outside the room; then the lamp stays.
       const Eigen::Vector2d middle = counts[i] > 0.0 ? sums[i] / counts[i] : centers[i];
       if (is_far_from_walls(polygon, middle)) centers[i] = middle;
     }
@@ -91,7 +91,7 @@ void add_lamp(Scene& scene, const SceneSpec& spec, const LampSpec& lamp) {
   const auto top = static_cast<float>(ceiling),
              z = static_cast<float>(lamp.height_m.value_or(ceiling - kBelowCeiling_m));
   const Eigen::Vector3f foot(static_cast<float>(lamp.at.x()), static_cast<float>(lamp.at.y()), z);
-  // Below its shade, which would keep the light to itself otherwise.
+  // The light is below its shade, which would block it otherwise.
   scene.lamps.push_back({foot - kGap_m * Eigen::Vector3f::UnitZ(), static_cast<float>(lamp.intensity)});
   Shapes shapes(scene.mesh);
   shapes.part = add_instance(scene, "lighting", "lamp " + std::to_string(scene.lamps.size()));

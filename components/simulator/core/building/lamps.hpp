@@ -7,10 +7,10 @@
 
 namespace lapis::simulator {
 
-/// The lamps of a normalised spec; where it names none, one per 12 m2 of every room, spread over its floor.
+/// The lamps of a normalised spec; when it names none, each room has one per 12 m2, spread over its floor.
 std::vector<LampSpec> lamps_of(const SceneSpec& spec);
 
-/// Adds a light and the lamp it comes from, which hangs from the ceiling.
+/// Adds a light, and the lamp from which it comes, which hangs from the ceiling.
 void add_lamp(Scene& scene, const SceneSpec& spec, const LampSpec& lamp);
 
 }  // namespace lapis::simulator

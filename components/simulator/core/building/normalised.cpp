@@ -10,10 +10,11 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kMaxReach_m = 1000.0, kMaxLength_m = 100.0, kMaxArea_m2 = 2000.0;  // for the sake of cells of 0.2 m
-constexpr double kMinSize_m = 0.001, kMaxSize_m = 50.0;                             // of furniture
+// These bound the number of cells of 0.2 m.
+constexpr double kMaxReach_m = 1000.0, kMaxLength_m = 100.0, kMaxArea_m2 = 2000.0;
+constexpr double kMinSize_m = 0.001, kMaxSize_m = 50.0;  // of furniture
 
-/// Checks a spec and fills in what was left out, list by list.
+/// Checks a spec, and fills in values that were left out, list by list.
 class Normaliser {
  public:
   explicit Normaliser(SceneSpec& spec) : spec_(spec) {}
@@ -72,7 +73,7 @@ class Normaliser {
     }
   }
 
-  /// Reverses the corners, and counts walls and places on them anew.
+  /// Reverses the corners, and converts the numbers of walls and the places on them.
   void turn_clockwise_rooms() {
     std::set<std::string> turned;
     for (const RoomSpec& room : spec_.rooms) {
@@ -164,7 +165,7 @@ class Normaliser {
   };
 
   void check_range(const char* key, double value, const Range& range, const std::string& item) const {
-    if (value >= range.low && value <= range.high) return;  // not for NaN
+    if (value >= range.low && value <= range.high) return;  // false for NaN, which is refused
     std::ostringstream problem;
     problem << key << " must be from " << range.low << " to " << range.high;
     refuse(spec_, item, problem.str());
@@ -175,7 +176,7 @@ class Normaliser {
     for (const double value : values) check_range(key, value, range, item);
   }
 
-  /// The room that the point lies in.
+  /// The room that contains the point.
   const RoomSpec& check_inside(const Eigen::Vector2d& at, const std::string& item) const {
     const auto room = std::find_if(spec_.rooms.begin(), spec_.rooms.end(),
                                    [&](const RoomSpec& candidate) { return contains(candidate.polygon, at); });

@@ -12,8 +12,8 @@ namespace {
 
 constexpr double kMaxMove_m = 0.05, kMaxTurn_rad = 10.0 * std::numbers::pi / 180.0;
 constexpr double kMaxPictureMove_m = 0.1;
-constexpr double kFlat_m = 0.03;           // what is lower (a rug) is in nobody's way
-constexpr double kOpeningMargin_m = 0.07;  // of doors and windows
+constexpr double kFlat_m = 0.03;           // lower items, such as rugs, are in nobody's way
+constexpr double kOpeningMargin_m = 0.07;  // around doors and windows
 
 /// Places items one after another; `OnItem` refers to earlier ones.
 class FurniturePlacer {
@@ -91,7 +91,8 @@ class FurniturePlacer {
     return overlap(a.footprint(extents_[i]), b.footprint(extents_[k]));
   }
 
-  /// What stands on an item, on that in turn, and so on: it comes later in the list, and has not been moved itself.
+  /// Moves the items that stand on an item, those that stand on them, and so on. They come later in the list, and have
+  /// not been moved by themselves yet.
   void take_along(std::size_t moved) {
     for (std::size_t i = moved + 1; i < poses_.size(); ++i) {
       if (std::holds_alternative<OnItem>(spec_.furniture[i].place)) poses_[i] = pose(i);
@@ -121,7 +122,7 @@ class FurniturePlacer {
   std::vector<ItemPose> poses_;
 };
 
-/// What is in the way of a picture at a place along its wall: "" when nothing is.
+/// Names what is in the way of a picture at a place along its wall; "" when nothing is.
 std::string obstacle(const SceneSpec& spec, const std::vector<RoomPlan>& plan, const std::vector<double>& places,
                      std::size_t index, double along_m) {
   const PictureSpec& picture = spec.pictures[index];
@@ -182,7 +183,8 @@ std::vector<double> place_pictures_with_jitter(const SceneSpec& spec, const std:
   std::vector<double> places = place_pictures(spec, plan);
   for (std::size_t i = 0; i < places.size(); ++i) {
     const auto has_its_motif = [&](const PictureSpec& other) { return other.motif == spec.pictures[i].motif; };
-    if (std::count_if(spec.pictures.begin(), spec.pictures.end(), has_its_motif) > 1) continue;  // in copies of a room
+    // Pictures with the same motif are in copies of a room, which have to stay alike.
+    if (std::count_if(spec.pictures.begin(), spec.pictures.end(), has_its_motif) > 1) continue;
     const Random random(seed, RandomStream::kPictures, i);
     const double move = random.uniform(0, -kMaxPictureMove_m, kMaxPictureMove_m);
     for (const double share : {1.0, 0.5, 0.25}) {

@@ -63,7 +63,7 @@ class RoomBuilder {
     build_area(roof, mirrored, ceiling);
   }
 
-  /// A polygon, in cells where it covers them and in pieces along slanting borders.
+  /// Adds a polygon: as cells where it covers them completely, and as pieces along slanting borders.
   void build_area(const Sheet& sheet, const Polygon& polygon, std::uint32_t material) {
     std::vector<double> us, vs;
     for (const auto& corner : polygon) {
@@ -90,7 +90,7 @@ class RoomBuilder {
   }
 
   void build_wall(const Wall& wall, std::size_t index, std::uint32_t material) {
-    // The sheet is seen from u x v, the inside; so u runs from the wall's last corner to its first one.
+    // A sheet is visible from the side of u x v, here the inside; so u runs from the wall's last corner to its first.
     Sheet sheet{{static_cast<float>(wall.length_m), 0.0F, 0.0F},
                 -Vector::UnitX(),
                 Vector::UnitZ(),
@@ -112,7 +112,7 @@ class RoomBuilder {
     shapes_.sheet(sheet, grid_lines(us, kCell_m), grid_lines(vs, kCell_m), is_solid, material);
   }
 
-  /// A rectangle from `corner` along two sides, in cells; seen from a x b.
+  /// Adds a rectangle of cells with the sides a and b from `corner`; it is visible from the side of a x b.
   void panel(const Vector& corner, const Vector& a, const Vector& b, std::uint32_t material, double period_m = 1.0) {
     const Sheet sheet{corner, a.normalized(), b.normalized(), period_m};
     shapes_.sheet(
@@ -172,7 +172,7 @@ class RoomBuilder {
   static float width(const WallOpening& opening) { return static_cast<float>(opening.to_m - opening.from_m); }
   static float height(const WallOpening& opening) { return static_cast<float>(opening.top_m - opening.bottom_m); }
 
-  /// The sides of a hole through the wall, its top, and its bottom when that is above the floor.
+  /// Adds the sides of a hole through the wall, its top, and its bottom when that is above the floor.
   void jambs(const WallOpening& opening, std::uint32_t material, double period_m) {
     if (opening.depth_m < 1e-3) return;
     const auto x0 = static_cast<float>(opening.from_m), x1 = static_cast<float>(opening.to_m);
@@ -184,7 +184,7 @@ class RoomBuilder {
     if (opening.bottom_m > 0.0) panel(Vector(x0, 0, z0) - inward, right, inward, material, period_m);
   }
 
-  /// Boards round the opening on the room's side; below a window a sill.
+  /// Adds boards around the opening on the room's side, and a sill below a window.
   void frame(const WallOpening& opening) {
     const auto x0 = static_cast<float>(opening.from_m), x1 = static_cast<float>(opening.to_m);
     const auto z0 = static_cast<float>(opening.bottom_m), z1 = static_cast<float>(opening.top_m);
@@ -196,7 +196,7 @@ class RoomBuilder {
     if (z0 > 0.0F) shapes_.box({x0 - t, 0, z0 - 0.03F}, {x1 + t, 0.06F, z0}, frame_material_);
   }
 
-  /// A bright view with bars before it, at the far end of the hole.
+  /// Adds a bright view with bars in front of it, near the far end of the hole.
   void pane(const WallOpening& opening) {
     const auto x0 = static_cast<float>(opening.from_m), x1 = static_cast<float>(opening.to_m);
     const auto z0 = static_cast<float>(opening.bottom_m), z1 = static_cast<float>(opening.top_m);
@@ -212,7 +212,7 @@ class RoomBuilder {
     for (const float z : {z0, z1 - bar}) shapes_.box({x0, y, z}, {x1, y + bar, z + bar}, frame_material_);
   }
 
-  /// A closed door with two panels and a handle.
+  /// Adds a closed door with two panels and a handle.
   void leaf(const WallOpening& opening) {
     const auto x0 = static_cast<float>(opening.from_m), x1 = static_cast<float>(opening.to_m);
     const auto z0 = static_cast<float>(opening.bottom_m), z1 = static_cast<float>(opening.top_m);

@@ -12,7 +12,7 @@
 
 namespace lapis::simulator {
 
-/// Of a whole scene: 2 GB with what renders them.
+/// Greatest number of triangles of a scene: 2 GB of memory, with the structures for rendering.
 inline constexpr std::size_t kMaxTriangles = 20'000'000;
 
 /// Appends an instance and returns its index, which is the `part` of its triangles.
@@ -20,8 +20,8 @@ inline constexpr std::size_t kMaxTriangles = 20'000'000;
 std::uint32_t add_instance(Scene& scene, const std::string& class_name, const std::string& name);
 
 /// Adds walls, floors, ceilings, doors and windows of all rooms to a scene: one instance per wall, floor, and ceiling
-/// of a room, and one per door and window. Every room has walls of its own, seen from its inside; they are cut into
-/// cells of 0.2 m, so that they can carry light.
+/// of a room, and one per door and window. Every room has walls of its own, which are visible from its inside. Walls,
+/// floors and ceilings are cut into cells of 0.2 m, so that they can carry light.
 void add_structure(Scene& scene, const SceneSpec& spec, const std::vector<RoomPlan>& plan, TextureLibrary& textures);
 
 }  // namespace lapis::simulator

@@ -7,7 +7,7 @@
 namespace lapis::simulator {
 namespace {
 
-/// Folds of cloth: upright strips that lie in front and behind by turns.
+/// Folds of cloth: upright strips that slant forwards and backwards by turns.
 void curtain(Workshop& s) {
   const auto cloth = s.fabric();
   const int folds = std::max(4, static_cast<int>(s.w / 0.08F));
@@ -101,7 +101,7 @@ void mirror(Workshop& s) {
   framed(s, frame, s.textured("mirror"));
 }
 
-/// A pane of glass between two posts on feet: no camera sees it, and nothing passes it.
+/// A pane of glass between two posts on feet: no camera sees it, and nothing passes through it.
 void glass_screen(Workshop& s) {
   const auto steel = s.metal();
   const float post = 0.03F;
@@ -122,7 +122,7 @@ void picture(Workshop& s) {
   framed(s, frame, s.painting(s.w / s.h));
 }
 
-/// Tray, two walls of frames, a pole with its head. Panes would be invisible.
+/// A tray, a frame in front, a tiled back wall, and a pole with its head. There are no panes: they would be invisible.
 void shower(Workshop& s) {
   const auto white = s.white(), steel = s.metal();
   s.box(-s.w / 2, s.w / 2, -s.d / 2, s.d / 2, 0, 0.06F, white);

@@ -6,16 +6,17 @@
 
 namespace lapis::simulator {
 
-/// How things of a class are made, and their usual size.
+/// The usual size of things of a class, and the function that makes their shape.
 struct FurnitureClass {
   const char* name;
   double width_m, depth_m, height_m;
   void (*make)(Workshop&);
 };
 
-/// What people put into a room: seats, tables, beds, storage, small things.
+/// Classes of things that people put into a room: seats, tables, beds, storage, small things.
 std::span<const FurnitureClass> movable_classes();
-/// What belongs to the building or hangs on it: bathroom, kitchen appliances, stairs, curtains, pictures, lamps.
+/// Classes of things that belong to the building or hang on it: bathroom, kitchen appliances, stairs, curtains,
+/// pictures, lamps.
 std::span<const FurnitureClass> fixture_classes();
 
 }  // namespace lapis::simulator

@@ -146,9 +146,9 @@ void books(Workshop& s, float z, float height) {
   }
 }
 
-constexpr float kPallet_m = 0.75F;  // shelves so deep carry pallets, and so do things so large
+constexpr float kPallet_m = 0.75F;  // shelves at least this deep carry pallets; objects larger than this are pallets
 
-/// A pallet with cartons in layers, each a little smaller or larger.
+/// A pallet with layers of cartons, each layer a little smaller or larger.
 void pallet(Workshop& s, const Eigen::AlignedBox3f& space) {
   const Eigen::Vector3f& low = space.min();
   const Eigen::Vector3f size = space.sizes();
@@ -176,7 +176,7 @@ void pallet(Workshop& s, const Eigen::AlignedBox3f& space) {
   }
 }
 
-/// A rack of posts and beams; on the floor and on its decks stand pallets, and some places are empty.
+/// A rack of posts and beams. Pallets stand on the floor and on its decks; some places are empty.
 void pallet_rack(Workshop& s) {
   const auto post = s.plain(44, 78, 140), beam = s.plain(214, 104, 38), deck = s.metal();
   const float t = 0.09F;

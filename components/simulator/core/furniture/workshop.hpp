@@ -11,7 +11,7 @@
 
 namespace lapis::simulator {
 
-/// What a shape function of parametric_furniture.cpp works with: the size it has to fill, materials, and boxes.
+/// Tools of the functions that make furniture (FurnitureClass::make): the size to fill, materials, and boxes.
 class Workshop {
  public:
   Workshop(Mesh& mesh, const Eigen::Vector3d& size_m, std::uint64_t variant, TextureLibrary& textures)
@@ -21,7 +21,7 @@ class Workshop {
 
   std::uint32_t wood();
   std::uint32_t fabric();
-  /// Any even colour.
+  /// A random plain colour.
   std::uint32_t paint() { return shapes.material("paint", to_rgb(dice.color(0.15, 0.7))); }
   std::uint32_t plain(std::uint8_t r, std::uint8_t g, std::uint8_t b) { return shapes.material("plain", {r, g, b}); }
   std::uint32_t white() { return plain(240, 240, 236); }
@@ -33,10 +33,10 @@ class Workshop {
   std::uint32_t shining(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
     return shapes.emissive_material("lamp", {r, g, b});
   }
-  /// A picture of its own.
+  /// A picture with a random motif.
   std::uint32_t painting(double aspect);
 
-  /// Limits in metres; x and y from the middle of the footprint.
+  /// Adds a box. Limits are in metres; x and y count from the middle of the footprint, z from the lowest point.
   void box(float x0, float x1, float y0, float y1, float z0, float z1, std::uint32_t material) {
     shapes.box({x0, y0, z0}, {x1, y1, z1}, material);
   }
@@ -44,10 +44,10 @@ class Workshop {
                 int sides = 12) {
     shapes.cylinder({x, y, z}, {radius, radius}, {top_radius, top_radius}, height, material, sides);
   }
-  /// Legs in the corners of the footprint, `inset` from its border.
+  /// Adds legs in the corners of the footprint, `inset` from its border. All lengths are in metres.
   void legs(float thickness, float height, float inset, std::uint32_t material);
 
-  const float w, d, h;
+  const float w, d, h;  ///< width, depth and height to fill [m]
   Dice dice;
   Shapes shapes;
 

@@ -4,7 +4,7 @@
 
 namespace lapis::simulator {
 
-/// What can take each other's place in a room.
+/// Groups of articles that can replace each other in a room.
 enum class Stock {
   kSofas,
   kArmchairs,
@@ -49,8 +49,8 @@ enum class Stock {
   kPanes
 };
 
-/// A piece of furniture that generated rooms may get: its model in the catalogue of sweethome3d-furniture, nullptr for
-/// parametric furniture, and the size that it has with and without the catalogue.
+/// A piece of furniture that generated rooms may get: its model in the catalogue of sweethome3d-furniture (nullptr for
+/// parametric furniture), and its size, which is the same with and without the catalogue.
 struct Article {
   Stock stock;
   const char* class_name;

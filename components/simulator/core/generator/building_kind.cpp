@@ -31,7 +31,7 @@ std::optional<BuildingName> parse_building_name(const std::string& text) {
   if (kind == kinds.end() || error != std::errc()) return std::nullopt;
   name.has_panes = end != last;
   name.kind = static_cast<BuildingKind>(kind - kinds.begin());
-  if (to_string(name) != text) return std::nullopt;  // "office_007", "office_7x"
+  if (to_string(name) != text) return std::nullopt;  // such as "office_007" or "office_7x"
   return name;
 }
 

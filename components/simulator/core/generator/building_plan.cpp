@@ -5,7 +5,7 @@
 namespace lapis::simulator {
 namespace {
 
-/// The wall of `room` that carries an opening, if one does.
+/// An opening in the frame of `room`, if one of its walls carries it.
 std::optional<LocalOpening> seen_from(const BuildingPlan& plan, const PlannedRoom& room, const OpeningSpec& opening) {
   const Eigen::Vector2d p = room.frame.local(opening.at);
   for (std::size_t i = 0; i < room.polygon.size(); ++i) {

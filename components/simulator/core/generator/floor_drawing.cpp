@@ -8,7 +8,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kDoor_m = 0.9, kDoorMargin_m = 0.25;  // between a door's opening and a corner
-constexpr double kLongWall_m = 4.5;                    // has two windows
+constexpr double kLongWall_m = 4.5;                    // walls of this length or more have two windows
 
 const char* name_of(RoomUse use) {
   constexpr std::array<const char*, 16> kNames{"hallway",  "hallway",     "living",  "dining",  "kitchen", "bedroom",
@@ -43,7 +43,7 @@ std::vector<std::size_t> FloorDrawing::add_strip(const Strip& strip, std::vector
     const bool is_copy = makes_copies && fits;
     const bool is_mirrored = is_copy && (added.size() - *original + added.front()) % 2 == 1;
     if (!is_copy) door = cm(dice_(0.5 * kDoor_m + kDoorMargin_m, width - 0.5 * kDoor_m - kDoorMargin_m));
-    // What rounding leaves over is the wall beyond a copy.
+    // A copy keeps the width of its original; what rounding leaves over is added to the wall beyond it.
     const double copied = is_copy ? plan_.rooms[*original].polygon[1].x() : width;
     PlannedRoom& room = place(strip, rooms[i].use, from, std::min(copied, width), is_mirrored);
     if (is_copy && copied <= width) room.copy_of = original;

@@ -20,7 +20,7 @@ void add_on_table(RoomFurnisher& room, std::size_t table, bool has_screen) {
   if (room.dice().chance(0.5)) room.on(table, room.any(Stock::kDeskThings), {-side, -0.05});
 }
 
-/// A desk at a wall with a chair before it.
+/// Adds a desk at a wall, with a chair in front of it.
 void add_desk(RoomFurnisher& room) {
   const Index desk = room.against_wall(room.any(Stock::kDesks));
   if (!desk) return;
@@ -29,7 +29,8 @@ void add_desk(RoomFurnisher& room) {
   room.hang_above(*desk, room.dice().chance(0.4) ? "board_panel" : "picture", {0.9, 0.6}, 1.6);
 }
 
-/// A table with chairs along its long sides, nearer to a wall where there is little space. False when it does not fit.
+/// Adds a table with chairs along its long sides, nearer to a wall where there is little space. False when it does not
+/// fit.
 bool add_table(RoomFurnisher& room, Stock tables, Stock chairs) {
   const Article& article = room.any(tables);
   const Article& chair = room.any(chairs);
@@ -50,7 +51,7 @@ bool add_table(RoomFurnisher& room, Stock tables, Stock chairs) {
   return true;
 }
 
-/// The first of its kind that fits.
+/// Adds the first article of its kind that fits.
 Index put_one(RoomFurnisher& room, Stock stock) {
   for (const Article& article : articles(stock)) {
     if (const Index added = room.against_wall(article, true)) return added;
@@ -237,7 +238,7 @@ bool is_home(RoomUse use) {
   return std::find(kRooms.begin(), kRooms.end(), use) != kRooms.end();
 }
 
-/// How much of its bare stretches gets large pictures, so that a camera near the wall finds something on it.
+/// Share of the bare stretches of wall that gets large pictures, so that a camera near the wall finds features on it.
 double covered_share(const PlannedRoom& room) {
   const bool has_pattern = room.wall.texture == "brick" || room.wall.texture == "wall_tiles";
   if (room.use == RoomUse::kHall) return has_pattern ? 0.4 : 0.75;

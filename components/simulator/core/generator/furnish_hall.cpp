@@ -9,7 +9,7 @@ namespace {
 
 constexpr double kBetweenRacks_m = 0.04, kCrossAisle_m = 2.2, kPallet_m = 1.1, kBelowCeiling_m = 0.8;
 
-/// A rectangle of the hall and how the rows of racks run in it.
+/// A rectangle of the hall, and the direction of the rows of racks in it.
 struct Field {
   Eigen::AlignedBox2d area;
   bool is_along_y = false;
@@ -19,16 +19,16 @@ struct Field {
   Eigen::Vector2d at(double along_m, double across_m) const {
     return area.min() + (is_along_y ? Eigen::Vector2d(across_m, along_m) : Eigen::Vector2d(along_m, across_m));
   }
-  /// Of a rack whose front looks back to where `across` begins.
+  /// Yaw of a rack whose front looks towards smaller values of `across`.
   int yaw_deg() const { return is_along_y ? 270 : 0; }
 };
 
-/// What one hall has in common.
+/// Properties that all racks of one hall have in common.
 struct RackStyle {
   Article rack;
   double aisle_m = 2.4;
   bool is_double = false;  ///< two rows, back to back
-  int blocks = 1;          ///< that cross aisles divide a row into
+  int blocks = 1;          ///< number of blocks into which cross aisles divide a row
 };
 
 RackStyle draw_style(RoomFurnisher& room, double length_m) {
@@ -40,7 +40,7 @@ RackStyle draw_style(RoomFurnisher& room, double length_m) {
   return style;
 }
 
-/// A row from `from` to `to`; some places stay empty.
+/// Adds a row of racks from `from` to `to`; some places stay empty.
 void add_row(RoomFurnisher& room, const Field& field, const RackStyle& style, double from, double to, double across) {
   const Article& rack = style.rack;
   for (double x = from + 0.5 * rack.width_m; x + 0.5 * rack.width_m <= to; x += rack.width_m + kBetweenRacks_m) {
@@ -64,7 +64,7 @@ void add_racks(RoomFurnisher& room, const Field& field) {
   }
 }
 
-/// Pallets side by side on the floor.
+/// Adds pallets side by side on the floor.
 void add_pallets(RoomFurnisher& room, const Eigen::AlignedBox2d& yard) {
   const Article& goods = room.any(Stock::kPallets);
   const int columns = room.dice().whole(1, 4), rows = room.dice().whole(1, 2), yaw_deg = 90 * room.dice().whole(0, 3);
@@ -79,7 +79,7 @@ void add_pallets(RoomFurnisher& room, const Eigen::AlignedBox2d& yard) {
   }
 }
 
-/// The side of a box, 0 to 3 from the south on, that has most loading doors.
+/// The side of a box that has most loading doors: 0 to 3 for south, east, north and west.
 std::size_t side_of_gates(const RoomFurnisher& room, const Eigen::AlignedBox2d& box) {
   std::array<int, 4> gates{};
   for (const LocalOpening& opening : room.openings()) {
@@ -92,7 +92,7 @@ std::size_t side_of_gates(const RoomFurnisher& room, const Eigen::AlignedBox2d& 
   return static_cast<std::size_t>(std::max_element(gates.begin(), gates.end()) - gates.begin());
 }
 
-/// Cuts a strip off one side of a box.
+/// Cuts a strip off one side of a box, and returns it.
 Eigen::AlignedBox2d cut_off(Eigen::AlignedBox2d& box, std::size_t side, double depth_m) {
   const int axis = side % 2 == 0 ? 1 : 0;
   Eigen::AlignedBox2d strip = box;
@@ -112,7 +112,7 @@ void furnish_hall(RoomFurnisher& room) {
   Dice& dice = room.dice();
   const double shorter = free.sizes().minCoeff();
   const Eigen::AlignedBox2d yard = cut_off(free, side_of_gates(room, free), dice(0.2, 0.4) * shorter);
-  // The other sides: an aisle, or racks at the wall.
+  // On every side, either an aisle remains free or racks stand at the wall.
   for (std::size_t side = 0; side < 4; ++side) cut_off(free, side, dice.chance(0.4) ? 0.05 : dice(1.6, 2.2));
   const int blocks = std::max(2, static_cast<int>(yard.volume() / 14.0));
   if (dice.chance(0.85)) {

@@ -4,7 +4,8 @@
 
 namespace lapis::simulator {
 
-/// Racks in rows, a yard with pallets before the loading doors, and a counter: no two halls are arranged alike.
+/// Adds rows of racks, a yard with pallets in front of the loading doors, and a counter: no two halls are arranged
+/// alike.
 void furnish_hall(RoomFurnisher& room);
 
 }  // namespace lapis::simulator

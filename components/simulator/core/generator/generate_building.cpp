@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kHallLampSpacing_m = 5.5, kLampMargin_m = 0.3;
 
-/// Whole centimetres, without negative zeros.
+/// A point rounded to whole centimetres, without negative zeros.
 Eigen::Vector2d rounded(const Eigen::Vector2d& p) { return {cm(p.x()) + 0.0, cm(p.y()) + 0.0}; }
 
 class BuildingGenerator {
@@ -87,7 +87,7 @@ class BuildingGenerator {
     }
   }
 
-  /// The first motif of a room: a number of its own, but for copies.
+  /// Number of the first motif of a room: copies of a room share it, other rooms have numbers of their own.
   std::size_t index_of_motif(std::size_t room) {
     if (plan_.rooms[room].copy_of) {
       first_motifs_.push_back(first_motifs_[*plan_.rooms[room].copy_of]);
@@ -123,7 +123,7 @@ class BuildingGenerator {
     return room.id + "." + std::to_string(index + 1);
   }
 
-  /// High halls need fewer lamps than one per 12 m2.
+  /// Adds the lamps of a warehouse: high halls need fewer than one per 12 m2.
   void add_lamps() {
     for (const PlannedRoom& room : plan_.rooms) {
       Eigen::AlignedBox2d box;

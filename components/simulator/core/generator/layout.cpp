@@ -12,7 +12,7 @@ namespace {
 constexpr double kGate_m = 3.0;
 constexpr std::size_t kEast = 1, kNorth = 2, kWest = 3;  // walls of a hall
 
-/// Draws one building; the corridor of the simple kinds begins in the origin and runs along x.
+/// Draws one building. The corridor of the simple kinds begins at the origin and runs along x.
 class Layout {
  public:
   explicit Layout(const BuildingName& name)
@@ -31,7 +31,7 @@ class Layout {
                 below = side({0, 0}, {1, 0}, {0, -1}, length, south);
     draw_.add_strip(above, upper, false);
     const std::size_t kitchen = draw_.add_strip(below, lower, false).back();
-    // At the end of the hallway: living room in the south, another one in the north.
+    // At the end of the hallway are the living room in the south and another room in the north.
     const double x = cm(length + wall()), top = cm(c + wall());
     const std::size_t living = draw_.add_rectangle(RoomUse::kLiving, {x, -south - wall()}, {cm(x + wide), c});
     const std::size_t dining = draw_.add_rectangle(dice_.chance(0.6) ? RoomUse::kDining : RoomUse::kOffice, {x, top},
@@ -40,7 +40,7 @@ class Layout {
     const OpeningKind between = dice_.chance(0.5) ? OpeningKind::kPassage : OpeningKind::kDoor;
     const double at = cm(x + dice_(0.3, 0.7) * wide);
     draw_.add_opening(between, {at, c + 0.5 * wall()}, cm(dice_(0.9, 1.4)));
-    if (dice_.chance(0.7)) {  // a ring: hallway, living room, kitchen
+    if (dice_.chance(0.7)) {  // closes a ring of hallway, living room and kitchen
       const double y = cm(-wall() - dice_(0.35, 0.75) * south);
       if (plan_.rooms[kitchen].polygon[1].x() > 1.5)
         draw_.add_opening(OpeningKind::kDoor, {length + 0.5 * wall(), y}, 0.9);
@@ -104,7 +104,7 @@ class Layout {
  private:
   double wall() const { return plan_.wall_m; }
 
-  /// Rooms beyond the wall of a corridor that begins in `begin`.
+  /// Strip of rooms beyond the wall of a corridor that begins at `begin`.
   Strip side(const Eigen::Vector2d& begin, const Eigen::Vector2d& along, const Eigen::Vector2d& away, double length_m,
              double depth_m) const {
     return {begin + wall() * away, along, away, length_m, depth_m, true};
@@ -114,7 +114,7 @@ class Layout {
     return {begin, along, away, length_m, depth_m, false};
   }
 
-  /// Rooms of one strip: a row of equal ones, and others.
+  /// Adds the rooms of one strip: a row of equal ones, and others.
   void add_offices(const Strip& strip, bool is_clinic) {
     const double width = strip.length_m < 4.0 ? strip.length_m : dice_(2.7, 3.7);
     const RoomUse usual = !is_clinic ? RoomUse::kOffice : dice_.chance(0.75) ? RoomUse::kWard : RoomUse::kExamination;
@@ -140,7 +140,7 @@ class Layout {
     }
   }
 
-  /// A second corridor that leaves the first one in the north, with rooms on both sides of it.
+  /// Adds a second corridor that branches off the first one to the north, with rooms on both sides of it.
   void add_branch(double length_m, double c, bool is_clinic) {
     const double width = cm(dice_(1.7, 2.2)), depth = cm(dice_(3.4, 4.4)), long_m = cm(dice_(8.0, 13.0));
     const double low = cm(dice_(0.4, 0.6) * length_m - 0.5 * width), y = cm(c + wall());
@@ -156,7 +156,7 @@ class Layout {
     if (length_m - right > 2.4) add_offices(side({right, c}, {1, 0}, {0, 1}, cm(length_m - right), shallow), is_clinic);
   }
 
-  /// In the outer wall of a corridor, where a strip of rooms might have been.
+  /// Adds windows to the outer wall of a corridor, in place of a strip of rooms.
   void add_corridor_windows(const Strip& strip) {
     const double spacing = dice_(3.5, 5.5);
     const int count = std::max(1, static_cast<int>(strip.length_m / spacing));
@@ -166,7 +166,7 @@ class Layout {
     }
   }
 
-  /// Two halves of a corridor round an island, which fire doors join where no other door is.
+  /// Adds the two halves of a corridor around an island. Passages join them, far from other doors.
   void add_ring_corridor(double x, double y, double c) {
     const double south = gap_in_doors(0.0, c, x), north = gap_in_doors(y - c, y, x), t = 0.5 * wall();
     draw_.add_room(RoomUse::kCorridor, {},
@@ -190,7 +190,7 @@ class Layout {
     }
   }
 
-  /// The x in the middle of a corridor along x that is farthest from all doors. @param low, high its walls' y
+  /// The x in the middle part of a corridor along x that is farthest from all openings. @param low, high its walls' y
   double gap_in_doors(double low, double high, double length_m) const {
     double best = 0.5 * length_m, most = -1.0;
     for (double x = 0.3 * length_m; x < 0.7 * length_m; x += 0.1) {
@@ -213,7 +213,7 @@ class Layout {
     for (const std::size_t room : draw_.add_strip(strip, rooms, false)) plan_.rooms[room].height_m = 2.6;
   }
 
-  /// Offices stand before the hall's southern wall.
+  /// Adds a hall with offices outside its southern wall.
   std::size_t hall_beside_offices(double width, double depth) {
     const std::size_t hall = draw_.add_rectangle(RoomUse::kHall, {0, 0}, {width, depth});
     const double length = cm(std::min(width, dice_(7.0, 13.0))), from = cm(dice_(0.0, width - length));
@@ -221,7 +221,7 @@ class Layout {
     return hall;
   }
 
-  /// Offices fill the hall's south-western corner.
+  /// Adds a hall whose south-western corner is filled by offices.
   std::size_t hall_around_offices(double width, double depth) {
     const double length = cm(std::min(width - 4.0, dice_(7.0, 12.0))), x = cm(length + wall()),
                  y = cm(dice_(3.4, 4.2) + wall());
@@ -231,7 +231,7 @@ class Layout {
     return hall;
   }
 
-  /// In the east of the first one; one wide passage joins them, or two.
+  /// Adds a hall to the east of the first one; one or two wide passages join them.
   std::size_t add_second_hall(double width, double depth) {
     const double x = cm(width + wall()), low = cm(dice_(0.0, 0.5) * depth);
     const std::size_t hall = draw_.add_rectangle(RoomUse::kHall, {x, low}, {cm(x + dice_(7.0, 11.0)), depth});
@@ -245,7 +245,7 @@ class Layout {
     return hall;
   }
 
-  /// One to three loading doors.
+  /// Adds one to three loading doors.
   void add_gates(std::size_t room, std::size_t edge) {
     const PlannedRoom& hall = plan_.rooms[room];
     const Eigen::Vector2d a = hall.polygon[edge], b = hall.polygon[(edge + 1) % hall.polygon.size()];
@@ -256,7 +256,7 @@ class Layout {
     }
   }
 
-  /// Where no loading door is.
+  /// Adds windows high in a wall that has no loading door.
   void add_high_windows(std::size_t room, std::size_t edge) {
     const PlannedRoom& hall = plan_.rooms[room];
     const auto has_gates = [&](const LocalOpening& o) { return o.kind == OpeningKind::kLeaf && o.wall == edge; };
@@ -283,13 +283,13 @@ class Layout {
     return std::move(plan_);
   }
 
-  /// Whether nothing is built within a metre before a window.
+  /// True when nothing is built within about a metre in front of a window.
   bool leads_outside(const OpeningSpec& window) const {
     const auto is_in_a_room = [&](const Eigen::Vector2d& p) {
       return std::any_of(plan_.rooms.begin(), plan_.rooms.end(),
                          [&](const PlannedRoom& room) { return contains(room.polygon, room.frame.local(p)); });
     };
-    // One side of the wall is the window's room; which way the wall runs is where both sides are walls.
+    // The window is on the border of its room: along the wall's normal, one side is in the room and the other is not.
     const double half = 0.5 * window.width_m;
     for (const Eigen::Vector2d& normal : {Eigen::Vector2d(1, 0), Eigen::Vector2d(0, 1)}) {
       const Eigen::Vector2d along(normal.y(), normal.x());
@@ -375,7 +375,8 @@ class Layout {
 
   static bool is_quadrilateral(const PlannedRoom& room) { return room.polygon.size() == 4; }
 
-  /// Corridors have no copies: their frame need not be mirrored.
+  /// Gives a room the building's frame. Rooms with more than four corners have no copies: their frame need not be
+  /// mirrored.
   static void make_right_handed(PlannedRoom& room) {
     for (auto& corner : room.polygon) corner = room.frame.at(corner);
     std::reverse(room.polygon.begin(), room.polygon.end());

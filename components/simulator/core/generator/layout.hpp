@@ -5,8 +5,8 @@
 
 namespace lapis::simulator {
 
-/// Draws rooms, doors and windows of a building: a pure function of its name. The building as a whole is turned by
-/// quarters, and mirrored or not.
+/// Draws rooms, doors and windows of a building: a pure function of its name. The building as a whole is rotated by a
+/// random multiple of 90 degrees, and mirrored or not.
 BuildingPlan lay_out(const BuildingName& name);
 
 }  // namespace lapis::simulator

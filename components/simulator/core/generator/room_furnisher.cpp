@@ -11,10 +11,10 @@ namespace lapis::simulator {
 namespace {
 
 constexpr int kTries = 12;
-constexpr double kStep_m = 0.15;  // along the walls, when the dice have found nothing
+constexpr double kStep_m = 0.15;  // along the walls, when no random place was free
 constexpr double kWallGap_m = 0.02, kBeside_m = 0.04;
 constexpr double kPictureMargin_m = 0.15;
-constexpr double kLowest_m = 0.15;  // what leaves less below the ceiling does not fit
+constexpr double kLowest_m = 0.15;  // an item that leaves less below the ceiling does not fit
 
 Eigen::AlignedBox2d area_of(const Article& article, const Eigen::Vector2d& at, int yaw_deg) {
   const bool is_turned = std::abs(yaw_deg) % 180 == 90;
@@ -23,7 +23,7 @@ Eigen::AlignedBox2d area_of(const Article& article, const Eigen::Vector2d& at, i
   return {at - half, at + half};
 }
 
-/// Where the front looks, for yaws of whole quarters.
+/// Direction in which the front looks, for yaws that are multiples of 90 degrees.
 Eigen::Vector2d front_of(int yaw_deg) {
   const double yaw = yaw_deg * std::numbers::pi / 180.0;
   return {std::round(std::sin(yaw)), -std::round(std::cos(yaw))};
@@ -186,7 +186,7 @@ void RoomFurnisher::hang_low(const char* class_name, double share) {
         if (dice_.chance(share)) {
           contents_.pictures.push_back(hung);
         } else {
-          along += width;  // stays bare
+          along += width;  // this stretch stays bare
         }
         break;
       }

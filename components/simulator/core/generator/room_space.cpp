@@ -9,13 +9,13 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kCell_m = 0.1;
-constexpr double kRobot_m = 0.42;    // half the width that has to stay free: the validator wants 0.8 m
+constexpr double kRobot_m = 0.42;    // half the width that has to stay free: the validator demands 0.8 m
 constexpr double kGap_m = 0.03;      // between items
-constexpr double kFlat_m = 0.03;     // rugs: in nobody's way
-constexpr double kOverhead_m = 1.4;  // what hangs higher is passed under
+constexpr double kFlat_m = 0.03;     // lower items are rugs, which are in nobody's way
+constexpr double kOverhead_m = 1.4;  // the robot passes under what hangs higher
 constexpr double kBeforeDoor_m = 0.95, kBeforeWindow_m = 0.35;
-constexpr double kLeastShare = 0.25;        // of the empty room's floor that stays reachable
-constexpr std::size_t kLargestPocket = 40;  // cells that the robot would fit into but does not reach: 0.4 m2
+constexpr double kLeastShare = 0.25;        // of the floor that is reachable in the empty room
+constexpr std::size_t kLargestPocket = 40;  // cells where the robot fits, but which it does not reach: 0.4 m2
 
 }  // namespace
 
@@ -121,7 +121,7 @@ std::size_t RoomSpace::reachable(const geometry::GrayImage& blocked, bool& reach
     visit(doors_.front());
   }
   std::size_t next = 0;
-  while (next < open.size()) {  // it grows meanwhile
+  while (next < open.size()) {  // visit() appends to it
     const Eigen::Vector2i c = open[next++];
     for (const Eigen::Vector2i& step : std::array<Eigen::Vector2i, 4>{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}})
       visit(c + step);

@@ -19,14 +19,14 @@ namespace {
 
 constexpr double kFloorCell_m = 0.1, kRobotRadius_m = 0.3;
 constexpr double kPlaceSpacing_m = 5.0;  // in large rooms
-constexpr double kEnough_m = 0.9;        // what is farther from everything is no better
-constexpr double kStartRoom_m = 0.45;    // around a start
-constexpr double kLow_m = 1.3;           // what hangs higher is passed under
+constexpr double kEnough_m = 0.9;        // more distance from obstacles makes a place no better
+constexpr double kStartRoom_m = 0.45;    // free distance around a start
+constexpr double kLow_m = 1.3;           // the robot passes under what hangs higher
 constexpr std::size_t kStarts = 5;
 
 using Distances = geometry::Image<float>;
 
-/// The floor plan as cells, with the distance to what is in the way.
+/// The floor plan as cells, with their distances to the nearest obstacle.
 class FloorGrid {
  public:
   explicit FloorGrid(const SceneSpec& spec) {
@@ -57,7 +57,7 @@ class FloorGrid {
   double distance_m(Cell c) const { return distance_(c.column, c.row); }
   bool is_free(Cell c) const { return grid_.contains(c) && distance_m(c) >= kRobotRadius_m; }
 
-  /// Path lengths in cells from one cell; -1 where none leads.
+  /// Lengths of the shortest paths from one cell, in cells; -1 where there is no path.
   geometry::Image<int> lengths_from(Cell from) const {
     geometry::Image<int> lengths(grid_.width, grid_.height);
     std::fill(lengths.pixels.begin(), lengths.pixels.end(), -1);
@@ -76,7 +76,7 @@ class FloorGrid {
   }
 
  private:
-  /// Of a door in walls along x or y.
+  /// Extents along x and y of the hole of a door, for walls along x or y [m].
   static Eigen::Vector2d hole_of(const SceneSpec& spec, const OpeningSpec& opening) {
     const double through = spec.wall_thickness_m + 2.0 * kFloorCell_m;
     for (const RoomSpec& room : spec.rooms) {
@@ -125,7 +125,7 @@ class FloorGrid {
   Distances distance_;
 };
 
-/// The most open free cell of each square of kPlaceSpacing_m of a room, near the square's middle.
+/// For each square of about kPlaceSpacing_m of a room, the free cell near its middle with most room around it.
 std::vector<Cell> places_in(const FloorGrid& floor, const Polygon& polygon) {
   Eigen::AlignedBox2d box;
   for (const auto& corner : polygon) box.extend(corner);
@@ -179,7 +179,7 @@ Eigen::Vector2d point(const FloorGrid& floor, Cell c) {
   return {cm(p.x()) + 0.0, cm(p.y()) + 0.0};
 }
 
-/// A place from which the robot gets to more than half of all, else the one with most.
+/// Index of a place from which the robot reaches more than half of all places; failing that, of the one with most.
 std::size_t central_place(const FloorGrid& floor, const std::vector<Cell>& places) {
   std::size_t best = 0, most = 0;
   for (std::size_t i = 0; i < places.size() && 2 * most <= places.size(); ++i) {
@@ -193,7 +193,7 @@ std::size_t central_place(const FloorGrid& floor, const std::vector<Cell>& place
   return best;
 }
 
-/// All places that can be reached from a central one: always the nearest that is left.
+/// All places that can be reached from a central one, in driving order: the next one is the nearest that is left.
 std::vector<Cell> in_driving_order(const FloorGrid& floor, std::vector<Cell> places) {
   std::swap(places.front(), places[central_place(floor, places)]);
   std::vector<Cell> order{places.front()};
@@ -237,7 +237,7 @@ RoundTrip plan_round_trip(const SceneSpec& spec, const Random& random) {
                [&](Cell c) { return floor.distance_m(c) >= kStartRoom_m; });
   const std::size_t count = std::min(kStarts, open.size());
   for (std::size_t i = 0; i < count; ++i) {
-    // One of each fifth of the tour.
+    // One start in each fifth of the tour.
     const std::size_t first = i * open.size() / count, last = (i + 1) * open.size() / count;
     const std::size_t pick = first + random.bits(i) % (last - first);
     trip.starts.push_back({point(floor, open[pick]), longest_view_rad(floor, open[pick])});

@@ -8,13 +8,14 @@
 namespace lapis::simulator {
 
 struct RoundTrip {
-  std::vector<Eigen::Vector2d> waypoints;  ///< the last one is the first start
+  std::vector<Eigen::Vector2d> waypoints;  ///< [m]; the last one is the first one again
   std::vector<StartPose> starts;
 };
 
-/// Places with room around them in all rooms, several in large ones, nearest first; and up to five starts among them
-/// that look along the longest free line. Knows furniture by the boxes of its size.
-/// @param spec without OnItem places that matter: what stands on something is in nobody's way
+/// Plans a tour through places with room around them in all rooms (several places in large rooms), which always goes on
+/// to the nearest place that is left, and up to five starts at such places, which look along the longest free line.
+/// Furniture counts as boxes of its size.
+/// @param spec its items on other items (OnItem) are ignored, as they are in nobody's way
 /// @throws std::runtime_error naming building and room when a room has no place, or none that can be reached
 RoundTrip plan_round_trip(const SceneSpec& spec, const Random& random);
 

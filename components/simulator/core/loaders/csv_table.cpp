@@ -9,7 +9,8 @@
 namespace lapis::simulator {
 namespace {
 
-// Takes a field in quotes off `rest`; false, and nothing is taken, when the closing quote is not where it should be.
+// Removes a quoted field from `rest`. Returns false and removes nothing when the closing quote is missing, or when
+// neither the separator nor the end of the line follows it.
 bool take_quoted(std::string_view& rest, char separator, std::string& field) {
   std::string text;
   for (std::size_t i = 1; i < rest.size(); ++i) {

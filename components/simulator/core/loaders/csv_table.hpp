@@ -7,18 +7,18 @@
 
 namespace lapis::simulator {
 
-/// Fields of one line. A field in double quotes may hold the separator, and "" for a quote.
+/// Fields of one line. A field in double quotes may contain the separator, and "" for a quote.
 std::vector<std::string> split_fields(std::string_view line, char separator);
 
 /// A text table whose first line names the columns. Empty lines are left out.
 class CsvTable {
  public:
   struct Row {
-    std::size_t line = 0;  ///< in the file, from 1
+    std::size_t line = 0;  ///< line number in the file, from 1
     std::vector<std::string> fields;
   };
 
-  /// `file` is for messages. Columns after those that the header names are ignored.
+  /// `file` is the name that messages show. Fields beyond the columns that the header names are ignored.
   CsvTable(std::string_view text, char separator, std::string file);
 
   const std::vector<Row>& rows() const { return rows_; }

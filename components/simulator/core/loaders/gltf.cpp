@@ -20,11 +20,11 @@ using nlohmann::json;
 
 constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
 constexpr double kLeastOpacity = 0.35;
-// A mesh may be shown by many nodes: a small file could ask for any amount of memory.
+// Many nodes may show one mesh: without a limit, a small file could demand any amount of memory.
 constexpr std::size_t kMostElements = 30'000'000;
-constexpr std::size_t kMostImageBytes = std::size_t{1} << 30U;  // of all images that are shown, as the file has them
+constexpr std::size_t kMostImageBytes = std::size_t{1} << 30U;  // of all visible images, encoded as in the file
 
-// IEC 61966-2-1; from 0..1 to 0..255.
+// Encodes linear light as sRGB (IEC 61966-2-1), from 0..1 to 0..255.
 std::uint8_t to_srgb(double linear) {
   const double v = std::clamp(linear, 0.0, 1.0);
   const double encoded = v <= 0.0031308 ? 12.92 * v : 1.055 * std::pow(v, 1.0 / 2.4) - 0.055;
@@ -51,7 +51,7 @@ std::vector<std::array<std::uint32_t, 3>> to_triangles(const std::vector<std::ui
   return result;
 }
 
-// Follows every node upwards, as far as no earlier node has been.
+// Walks upwards from every node, as far as no earlier walk has been.
 bool has_cycle(const std::vector<int>& parents) {
   std::vector<int> first_walk(parents.size(), -1);
   for (std::size_t i = 0; i < parents.size(); ++i) {
@@ -120,7 +120,7 @@ GltfModel GltfReader::read() {
   return std::move(scene_);
 }
 
-// A file may only be shown by who knows all extensions that it requires [section 3.12].
+// A reader must support all extensions that a file requires, or refuse the file [section 3.12].
 void GltfReader::refuse_extensions() const {
   constexpr std::array<std::string_view, 2> kRead{"KHR_materials_unlit", "KHR_mesh_quantization"};
   for (const auto& extension : array_member(file_.root(), "extensionsRequired", scene_.file)) {
@@ -167,7 +167,7 @@ void GltfReader::link_children() {
   if (has_cycle(scene_.parents)) file_.fail("the nodes make no tree; export the scene again");
 }
 
-// Those of the default scene; of a file without scenes the nodes that have no parent.
+// Root nodes of the default scene; in a file without scenes, the nodes that have no parent.
 std::vector<std::size_t> GltfReader::root_nodes() const {
   std::vector<std::size_t> roots;
   if (array_member(file_.root(), "scenes", scene_.file).empty()) {
@@ -186,7 +186,7 @@ std::vector<std::size_t> GltfReader::root_nodes() const {
   return roots;
 }
 
-// A matrix (column by column), or T * R * S [section 3.5.3].
+// Transform of a node: a matrix (column by column), or T * R * S [section 3.5.3].
 Eigen::Affine3d GltfReader::transform(const json& node) const {
   Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
   read_numbers(node, "matrix", scene_.file, {matrix.data(), 16});
@@ -278,7 +278,7 @@ std::vector<geometry::Rgb8> GltfReader::read_colors(std::size_t accessor) const 
 }
 
 std::optional<std::uint32_t> GltfReader::material(std::size_t index) {
-  static const json kDefault;  // no copy of the other: a value that is nested too deep cannot be copied
+  static const json kDefault;  // an lvalue, so that ?: copies nothing: copies of deeply nested values fail
   const auto [entry, is_new] = materials_.try_emplace(index);
   if (is_new) entry->second = make_material(index == kNone ? kDefault : file_.item("materials", index));
   return entry->second;
@@ -329,7 +329,7 @@ void GltfReader::add_image(std::size_t index) {
   scene_.image_names.push_back(std::move(name));
 }
 
-// The magic numbers of KTX 2 and of .basis files.
+// True for data that begin with the magic number of KTX 2 or of .basis files.
 bool is_basis(const std::vector<std::uint8_t>& bytes) {
   constexpr std::array<std::uint8_t, 7> kKtx2{0xAB, 'K', 'T', 'X', ' ', '2', '0'};
   constexpr std::array<std::uint8_t, 2> kBasis{'s', 'B'};
@@ -339,7 +339,7 @@ bool is_basis(const std::vector<std::uint8_t>& bytes) {
   return starts_with(kKtx2) || starts_with(kBasis);
 }
 
-// Decodes the images. Returns per image the index of the texture, or -1.
+// Decodes the images. Returns the index of the texture of each image, or -1.
 std::vector<int> decode_images(GltfModel& scene, int max_texture_px) {
   Mesh& mesh = scene.model.mesh;
   std::vector<int> texture_of(scene.images.size(), -1);

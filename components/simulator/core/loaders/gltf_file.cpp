@@ -50,7 +50,7 @@ Number read_little_endian(std::span<const std::uint8_t> bytes, std::size_t at) {
   return value;
 }
 
-// Whole numbers stand for 0..1 or -1..1 [section 3.6.2.2, equations for normalised integers].
+// Normalised integers stand for 0..1 or -1..1 [section 3.6.2.2, equations for normalised integers].
 template <class Number>
 double read_integer(std::span<const std::uint8_t> bytes, std::size_t at, bool is_normalized) {
   const auto value = static_cast<double>(read_little_endian<Number>(bytes, at));

@@ -15,7 +15,7 @@
 namespace lapis::simulator {
 
 /// The container of a glTF 2.0 scene, .gltf or .glb: its JSON text and the numbers and bytes that it points to, all
-/// checked [Khronos, glTF 2.0 Specification, sections 3.6 and 4.4]. Errors are std::runtime_error in one line that
+/// checked [Khronos, glTF 2.0 Specification, sections 3.6 and 4.4]. Errors are std::runtime_error with one line that
 /// names the file.
 class GltfFile {
  public:
@@ -27,12 +27,12 @@ class GltfFile {
   /// Element `index` of the array `array` of the root.
   const nlohmann::json& item(const char* array, std::size_t index) const;
 
-  /// An accessor of vectors with `Width` components; normalised whole numbers become fractions.
+  /// Values of an accessor of vectors with `Width` components; normalised integers become fractions.
   template <std::size_t Width>
   std::vector<std::array<float, Width>> vectors(std::size_t accessor) const;
-  /// An accessor of single whole numbers.
+  /// Values of an accessor of single integers.
   std::vector<std::uint32_t> indices(std::size_t accessor) const;
-  /// Content of an image as the file has it; empty when it names a file that is not there.
+  /// Content of an image, encoded as in the file; empty when the image is in a file that is missing.
   std::vector<std::uint8_t> image(std::size_t index) const;
 
   [[noreturn]] void fail(const std::string& what) const;
@@ -57,7 +57,7 @@ class GltfFile {
   double component(const Numbers& numbers, std::size_t element, std::size_t index) const;
 
   const AssetStore& store_;
-  std::string folder_;  ///< of the file in the store, with '/' at its end, or empty
+  std::string folder_;  ///< of the file in the store; ends with '/', or is empty
   std::string file_;
   nlohmann::json root_;
   std::vector<std::uint8_t> binary_;  ///< the BIN chunk of a .glb

@@ -36,7 +36,7 @@ std::uint32_t code(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
   return std::uint32_t{r} << 16 | std::uint32_t{g} << 8 | b;
 }
 
-// The texel there, without filtering; textures repeat.
+// The texel at a texture coordinate, without filtering; textures repeat.
 std::uint32_t texel(const TextureImage& texture, const Eigen::Vector2f& at) {
   if (!at.allFinite()) return kNoColor;
   const auto index = [](float coordinate, int size) {
@@ -47,7 +47,7 @@ std::uint32_t texel(const TextureImage& texture, const Eigen::Vector2f& at) {
   return code(t.r, t.g, t.b);
 }
 
-// The most frequent one; of equally frequent ones the first.
+// The most frequent colour; among equally frequent ones, the first.
 template <std::size_t Count>
 std::uint32_t most_frequent(const std::array<std::uint32_t, Count>& colors) {
   return *std::max_element(colors.begin(), colors.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -55,7 +55,8 @@ std::uint32_t most_frequent(const std::array<std::uint32_t, Count>& colors) {
   });
 }
 
-// Barycentric coordinates: the centroid first, three points towards the corners, three towards the edges.
+// Samples the texture at seven points, in barycentric coordinates: the centroid first, then three points towards the
+// corners, and three towards the edges.
 std::uint32_t textured_color(const Mesh& mesh, const Triangle& triangle, const TextureImage& texture) {
   static const std::array<Eigen::Vector3f, 7> kPoints{
       Eigen::Vector3f(1, 1, 1) / 3, {0.6F, 0.2F, 0.2F},   {0.2F, 0.6F, 0.2F},  {0.2F, 0.2F, 0.6F},
@@ -70,7 +71,7 @@ std::uint32_t textured_color(const Mesh& mesh, const Triangle& triangle, const T
   return most_frequent(colors);
 }
 
-// Colours of all triangles; kNoColor where there is none. The textures are decoded one after the other: they are large.
+// Colours of all triangles; kNoColor where there is none. Textures are decoded one at a time, because they are large.
 std::vector<std::uint32_t> triangle_colors(const GltfModel& scene) {
   const Mesh& mesh = scene.model.mesh;
   std::vector<std::uint32_t> colors(mesh.triangles.size(), kNoColor);
@@ -203,7 +204,7 @@ void Hm3dLoader::choose_looks(GltfModel& semantic, const std::vector<std::uint32
   scene_.mesh = std::move(semantic.model.mesh);
 }
 
-// A plain material per colour in the place of the textures.
+// Replaces the textures by one plain material per colour.
 void Hm3dLoader::show_instances(Mesh& mesh, const std::vector<std::uint32_t>& colors) {
   mesh.colors.clear();
   mesh.texture_coordinates.clear();

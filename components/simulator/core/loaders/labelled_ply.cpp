@@ -21,20 +21,20 @@ namespace {
 constexpr std::size_t kLargestClassId = std::numeric_limits<std::uint16_t>::max();
 constexpr float kBoxTolerance_m = 1e-3F;
 
-// What instances.csv says about the looks of an instance.
+// The model of an instance in instances.csv, and its pose.
 struct Placement {
   std::string model;
   Eigen::Affine3f T_world_model = Eigen::Affine3f::Identity();
 };
 
-// False for triangles that are a line but for rounding: models are written with a few decimals only.
+// False for triangles that are a line except for rounding: models are written with few decimals.
 bool has_area(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
   constexpr double kLeastHeight_m = 1e-4;
   const Eigen::Vector3d ab = (b - a).cast<double>(), ac = (c - a).cast<double>(), bc = ac - ab;
   return ab.cross(ac).norm() > kLeastHeight_m * std::max({ab.norm(), ac.norm(), bc.norm()});
 }
 
-// Copies vertices from a PLY file into a mesh, once per colour that its faces give it.
+// Copies vertices from a PLY file into a mesh, once per colour that the faces of a vertex give it.
 class VertexDivider {
  public:
   VertexDivider(const PlyMesh& ply, Mesh& mesh) : ply_(ply), mesh_(mesh), first_(ply.positions.size(), kNone) {}
@@ -53,8 +53,8 @@ class VertexDivider {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   const PlyMesh& ply_;
   Mesh& mesh_;
-  std::vector<std::uint32_t> first_;  ///< copy of each vertex of the file in the mesh
-  std::vector<std::uint32_t> next_;   ///< copy of the same vertex
+  std::vector<std::uint32_t> first_;  ///< newest copy in the mesh, per vertex of the file
+  std::vector<std::uint32_t> next_;   ///< another copy of the same vertex, per vertex of the mesh
 };
 
 class LabelledPlyLoader {
@@ -86,9 +86,9 @@ class LabelledPlyLoader {
   std::vector<std::uint8_t> bytes_;
   Scene scene_;
   InstanceList instances_;
-  std::map<std::int64_t, std::uint32_t> index_by_id_;                             ///< as instances.csv has them
-  std::map<std::pair<std::int64_t, std::int64_t>, std::uint32_t> index_by_pair_;  ///< of instance and class id
-  std::vector<std::vector<std::size_t>> triangles_;                               ///< of the PLY, per instance
+  std::map<std::int64_t, std::uint32_t> index_by_id_;                             ///< by id in instances.csv
+  std::map<std::pair<std::int64_t, std::int64_t>, std::uint32_t> index_by_pair_;  ///< by instance id and class id
+  std::vector<std::vector<std::size_t>> triangles_;                               ///< indices in the PLY file, per instance
   std::map<std::uint32_t, Placement> placements_;
   std::map<std::string, std::optional<Model>> models_;
   std::size_t divided_ = 0;
@@ -200,8 +200,8 @@ void LabelledPlyLoader::build_mesh(const PlyMesh& ply) {
   }
 }
 
-// True when the model is the surface that the PLY file has for the instance. The reader of models leaves out triangles
-// without area.
+// True when the model is the same surface as the instance in the PLY file. Triangles without area may be missing,
+// because the reader of models leaves them out.
 bool LabelledPlyLoader::has_fitting_model(std::uint32_t index, const PlyMesh& ply) {
   const auto placement = placements_.find(index);
   if (placement == placements_.end() || triangles_[index].empty()) return false;

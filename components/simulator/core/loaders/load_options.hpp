@@ -4,9 +4,9 @@
 
 namespace lapis::simulator {
 
-/// What the loaders of users' own scenes may be given.
+/// Options of the loaders of users' own scenes.
 struct LoadOptions {
-  mapping::LabelList labels;  ///< the classes that scenes name, such as mpcat40; empty: the scene's own names
+  mapping::LabelList labels;  ///< classes that scenes may name, such as mpcat40; empty: the scene's own
   int max_texture_px = 2048;  ///< longer side; larger textures are shrunk
 };
 

@@ -24,10 +24,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// In the order in which they are looked for.
+// In the order of precedence.
 enum class Layout { kMatterport, kHm3d, kReplica, kModel, kLabelledPly };
 
-/// A scene that is in the folder: `id` is what its files begin with, its folder with '/', or its one file.
+/// A scene in the folder. `id` is the beginning of its files' names, its sub-folder with '/', or the name of its file.
 struct Candidate {
   Layout layout;
   std::string id;
@@ -57,7 +57,7 @@ Names list_files(const fs::path& folder) {
   return names;
 }
 
-// The scene that a file belongs to.
+// The scene to which a file belongs.
 std::optional<Candidate> scene_of(const std::string& file, const Names& names) {
   for (const char* ending : {".house", "_semantic.ply", ".glb"}) {
     const auto id = without_ending(file, ending);
@@ -83,7 +83,7 @@ Candidate only_scene(const fs::path& folder, const Names& names) {
     const auto scene = scene_of(name, names);
     if (scene && std::find(found.begin(), found.end(), *scene) == found.end()) found.push_back(*scene);
   }
-  // A labelled PLY file may have models beside it in its own folder, and other scenes stray PLY files.
+  // A labelled PLY file may have models beside it, and other scenes may have stray PLY files.
   const auto usual = std::find(found.begin(), found.end(), Candidate{Layout::kLabelledPly, "scene_labelled.ply"});
   if (usual != found.end()) return *usual;
   if (found.empty()) {
@@ -98,7 +98,7 @@ Candidate only_scene(const fs::path& folder, const Names& names) {
   return found[0];
 }
 
-// The table is often kept once for all scenes, one or two folders further up.
+// Often one table serves all scenes; it is then one or two folders further up.
 std::optional<std::map<std::string, std::string>> find_mapping(const fs::path& folder) {
   const std::string name = "hm3dsem_category_mappings.tsv";
   const fs::path above = folder.parent_path();

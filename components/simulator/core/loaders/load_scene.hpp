@@ -7,8 +7,8 @@
 
 namespace lapis::simulator {
 
-/// Reads a user's own building; the names of the files decide how. `path` is the folder, or one of
-/// these files in it (several scenes in one folder: the file). Of a folder scene_labelled.ply counts first, then:
+/// Reads a user's own building; the names of the files decide how. `path` is the folder, or one of these files in it
+/// (the file, when the folder holds several scenes). In a folder, scene_labelled.ply comes first, then, in this order:
 ///
 /// | files | layout |
 /// | --- | --- |
@@ -18,7 +18,7 @@ namespace lapis::simulator {
 /// | NAME.obj, NAME.glb or NAME.gltf, semantics.json | see load_model_scene() |
 /// | NAME.ply, instances.csv, classes.csv | see load_labelled_ply() |
 ///
-/// @throws std::runtime_error in one line that names the file and the remedy.
+/// @throws std::runtime_error with one line that names the file and the remedy.
 Scene load_scene(const std::filesystem::path& path, const LoadOptions& options);
 
 }  // namespace lapis::simulator

@@ -12,10 +12,10 @@
 
 namespace lapis::simulator {
 
-/// What a .house file of Matterport3D says about objects and their classes.
+/// The objects and their classes in a .house file of Matterport3D.
 struct House {
   struct Category {
-    std::string name;     ///< as people wrote it
+    std::string name;     ///< as the annotators wrote it
     std::string mpcat40;  ///< the class
   };
   std::map<std::int64_t, Category> categories;
@@ -23,13 +23,13 @@ struct House {
   std::vector<std::string> warnings;
 };
 
-/// Reads the header and the records O and C of "ASCII 1.1" [Matterport3D, data_organization.md]; the others are left
-/// out. @throws std::runtime_error naming `file` and line.
+/// Reads the header and the records O and C of "ASCII 1.1" [Matterport3D, data_organization.md], and skips the others.
+/// @throws std::runtime_error naming `file` and line.
 House parse_house(std::string_view text, const std::string& file);
 
 /// Reads ID_semantic.ply (z up, metres; faces with object_id) and ID.house. Instance ids are object ids plus 1. The
-/// colours are those of the vertices; the textures of ID.glb are not used, which a warning says.
-/// @throws std::runtime_error in one line with the remedy.
+/// colours are those of the vertices; a warning says that the textures of ID.glb are not used.
+/// @throws std::runtime_error with one line that names the remedy.
 Scene load_matterport(const AssetStore& store, const std::string& id, const LoadOptions& options);
 
 }  // namespace lapis::simulator

@@ -46,7 +46,7 @@ std::optional<Type> parse_type(std::string_view name) {
 struct Property {
   std::string name;
   Type type = Type::kFloat32;       ///< of the value, or of the items of a list
-  std::optional<Type> length_type;  ///< of a list
+  std::optional<Type> length_type;  ///< of the length of a list; nothing: no list
 };
 
 struct Element {
@@ -67,7 +67,7 @@ struct Header {
   std::vector<Element> elements;
 };
 
-// One vertex or face: the numbers, with 0 in the place of lists, and the items of the list of vertex indices.
+// One vertex or face: the numbers, with 0 in place of lists, and the items of the list of vertex indices.
 struct Row {
   std::vector<double> values;
   std::vector<double> indices;
@@ -205,7 +205,8 @@ void PlyReader::read_property_line(std::string_view line) {
   header_.elements.back().properties.push_back(std::move(property));
 }
 
-// The smallest size that the rows can have: a list is at least its length, a number in a text one digit and a blank.
+// Refuses a file that is shorter than its rows can be: a list has at least its length, and a number in a text has at
+// least one digit and a blank.
 void PlyReader::check_size(const Element& element) const {
   std::size_t row_size = 0;
   for (const auto& property : element.properties)
@@ -311,7 +312,7 @@ std::optional<std::array<std::size_t, 3>> PlyReader::find_color(const Element& e
 }
 
 geometry::Rgb8 color_of(const Row& row, const std::array<std::size_t, 3>& channels) {
-  const auto byte = [&](std::size_t i) {  // what an ascii file calls uchar may be anything
+  const auto byte = [&](std::size_t i) {  // a uchar in an ascii file may have any value
     const double value = row.values[channels[i]];
     return value >= 0 && value <= 255 ? static_cast<std::uint8_t>(value) : std::uint8_t{0};
   };

@@ -33,7 +33,7 @@ std::map<std::uint16_t, std::string> read_classes(const json& root, const std::s
   return names;
 }
 
-// Classes that are negative or not listed stand for "none".
+// Reads class and name of the objects. Classes that are negative or not listed mean "none".
 std::map<std::int64_t, ObjectLabel> read_objects(const json& root, const std::map<std::uint16_t, std::string>& classes,
                                                  const std::string& file) {
   std::map<std::int64_t, ObjectLabel> objects;

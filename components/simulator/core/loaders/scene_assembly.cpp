@@ -24,7 +24,7 @@ std::size_t drop_unsound_triangles(Mesh& mesh) {
   return before - mesh.triangles.size();
 }
 
-// Vertices that no triangle uses any more take the place of one that is used, so that bounds() is right.
+// Moves unsound vertices, which no triangle uses any more, to a vertex that is used, so that bounds() is right.
 void move_unsound_vertices(Mesh& mesh) {
   const Eigen::Vector3f used = mesh.positions[mesh.triangles.front().vertices[0]];
   for (auto& p : mesh.positions) {
@@ -32,7 +32,7 @@ void move_unsound_vertices(Mesh& mesh) {
   }
 }
 
-// There are some in exports: a picture that is wrong there is better than none.
+// Some exported files have unsound coordinates: a picture that is wrong there is better than none.
 void clear_unsound_texture_coordinates(Mesh& mesh) {
   constexpr float kLargest = 1e4F;
   for (auto& uv : mesh.texture_coordinates) {
@@ -40,8 +40,8 @@ void clear_unsound_texture_coordinates(Mesh& mesh) {
   }
 }
 
-// Area of horizontal floor per 5 cm of height. Closed slabs have a lower side too: where normals look up, only those
-// count. Nothing when no instance of the class "floor" is level.
+// Lowest height at which there is a fifth of the level floor, by its area per 5 cm of height. Closed slabs have a lower
+// side, too: when some normals point up, only their triangles count. Nothing when nothing of class "floor" is level.
 std::optional<double> find_floor(const Scene& scene) {
   constexpr double kBin_m = 0.05;
   const auto floor = scene.labels.id_of("floor");

@@ -60,7 +60,7 @@ mapping::LabelList parse_labels(const json& source, const std::string& file) {
   }
 }
 
-// A model and what its nodes are below of; an OBJ file knows no such order.
+// A model, and per group its parent node and its class; in an OBJ file, groups have neither.
 struct SourceModel {
   Model model;
   std::vector<int> parents;
@@ -86,7 +86,8 @@ class Labeller {
  public:
   Labeller(const SourceModel& source, const Semantics& semantics, const LoadOptions& options, const std::string& file);
 
-  /// Sets Triangle::part in `scene.mesh`, which still has the groups there, and the instances, labels and warnings.
+  /// Replaces Triangle::part in `scene.mesh`, which is still the group, by the instance; sets the instances and labels,
+  /// and adds warnings.
   void label(Scene& scene);
 
  private:
@@ -100,9 +101,9 @@ class Labeller {
   const std::string& file_;
   mapping::LabelList labels_;
   InstanceList instances_;
-  std::vector<std::uint32_t> entry_index_;             ///< of each entry among the instances
-  std::vector<bool> is_used_;                          ///< same
-  std::map<std::uint32_t, std::uint32_t> node_index_;  ///< of nodes with extras.class among the instances
+  std::vector<std::uint32_t> entry_index_;             ///< index of each entry among the instances
+  std::vector<bool> is_used_;                          ///< per entry: some triangle belongs to it
+  std::map<std::uint32_t, std::uint32_t> node_index_;  ///< index of nodes with extras.class among the instances
 };
 
 Labeller::Labeller(const SourceModel& source, const Semantics& semantics, const LoadOptions& options,

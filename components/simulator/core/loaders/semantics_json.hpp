@@ -14,7 +14,7 @@ namespace lapis::simulator {
 
 enum class UpAxis { kY, kZ };
 
-/// What semantics.json says about the model beside it:
+/// Content of semantics.json, which labels the model beside it:
 ///
 ///     {"instances": [{"id": 1, "class": "chair", "node": "Chair.001"}, {"id": 2, "class": "wall", "material":
 ///     "paint"}],
@@ -26,22 +26,23 @@ struct Semantics {
     std::int64_t id = 0;
     std::string class_name;
     std::string name;                     ///< of the instance; default: node, group or material
-    std::optional<std::string> node;      ///< "node" of glTF or "group" of OBJ; what hangs below the node belongs to it
-    std::optional<std::string> material;  ///< with a node as well, both must fit
+    std::optional<std::string> node;      ///< "node" of glTF, with all nodes below it, or "group" of OBJ
+    std::optional<std::string> material;  ///< when there is a node as well, both must match
   };
   std::vector<Entry> instances;
   mapping::LabelList labels;  ///< empty when the file has none
   UpAxis up = UpAxis::kY;
 };
 
-/// @throws std::runtime_error naming `file` and the entry in one line.
+/// Reads a semantics.json. @throws std::runtime_error with one line that names `file` and the entry.
 Semantics parse_semantics(std::string_view text, const std::string& file);
 
 /// Reads an .obj, .gltf or .glb file with the semantics.json beside it. A triangle belongs to the first entry that
-/// fits; else, in glTF, to the nearest node above it with extras.class; else to nothing. The classes are those of
-/// "labels", of the options, or, when both are empty, all that are named. Up is "up", else y. Without semantics.json
-/// and extras.class nothing is labelled, with a warning.
-/// @throws std::runtime_error in one line with the remedy.
+/// matches; failing that, in glTF, to its own or the nearest higher node with extras.class; failing that, to no
+/// instance. The classes are those of "labels", failing that those of the options, and failing that all that are named.
+/// The axis that points up is "up", by default y. Without semantics.json and extras.class nothing is labelled, with a
+/// warning.
+/// @throws std::runtime_error with one line that names the remedy.
 Scene load_model_scene(const AssetStore& store, const std::string& name, const LoadOptions& options);
 
 }  // namespace lapis::simulator

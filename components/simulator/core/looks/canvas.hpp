@@ -10,10 +10,10 @@
 
 namespace lapis::simulator {
 
-/// Linear sRGB-encoded colour, 0 to 1 (may leave the range while one is painting).
+/// sRGB-encoded colour, 0 to 1 (it may leave this range while the picture is being painted).
 using Paint = Eigen::Vector3f;
 
-/// Hue (wraps), saturation and value, each 0 to 1.
+/// Hue (which wraps), saturation and value, each from 0 to 1.
 struct Hsv {
   double hue, saturation, value;
 };
@@ -23,7 +23,7 @@ Paint hsv(const Hsv& color);
 class TiledNoise {
  public:
   TiledNoise(const Random& random, int cells);
-  /// @param u, v 0 to 1 over one period; others wrap
+  /// @param u, v 0 to 1 over one period; other values wrap
   float at(float u, float v) const;
 
  private:
@@ -49,13 +49,13 @@ struct PaintedTriangle {
   Eigen::Vector2d a, b, c;
   Paint paint;
 };
-/// From one colour at the top to another one at the bottom of a band.
+/// A band whose colour changes from top to bottom.
 struct PaintedGradient {
   double y0, y1;
   Paint top, bottom;
 };
 
-/// An image that is painted in the unit square: (0, 0) is its upper left corner, x right, y down.
+/// An image that is painted in the unit square: (0, 0) is its upper left corner, x points right, y down.
 class Canvas {
  public:
   Canvas(int width_px, int height_px, const Paint& fill);
@@ -80,7 +80,7 @@ class Canvas {
   std::size_t index(int column, int row) const {
     return static_cast<std::size_t>(row) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(column);
   }
-  /// Calls paint(column, row) for the pixels whose middle lies in the box.
+  /// Calls function(column, row) for the pixels whose middle is in the box.
   template <class Function>
   void for_box(double x0, double y0, double x1, double y1, const Function& function);
 

@@ -90,7 +90,7 @@ void skyline(Canvas& canvas, Dice& dice) {
   }
 }
 
-/// Rectangles within rectangles, in the manner of De Stijl.
+/// Divides a rectangle into coloured ones, again and again, in the manner of De Stijl.
 void split(Canvas& canvas, Dice& dice, double x0, double y0, double x1, double y1, int depth) {
   if (depth == 0 || (depth < 5 && dice.chance(0.15))) {
     canvas.rectangle({x0, y0, x1, y1, kInk});
@@ -317,7 +317,7 @@ using Motif = void (*)(Canvas&, Dice&);
 constexpr std::array<Motif, 15> kMotifs{landscape, rectangles, portrait, map,    flowers,  text,  circles,   skyline,
                                         sea,       tone_grid,  waves,    mosaic, branches, chart, still_life};
 
-/// Brush strokes and grain, so that no area is quite even.
+/// Adds brush strokes, so that no area is uniform, and a signature.
 void finish(Canvas& canvas, Dice& dice, const Random& random) {
   const TiledNoise strokes(random, 60);
   for (int row = 0; row < canvas.height(); ++row) {

@@ -62,7 +62,7 @@ void Shapes::face(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eige
   const float width = (b - a).norm(), height = (d - a).norm();
   const auto cells = [&](float length) { return std::clamp(static_cast<int>(std::ceil(length / cell_m)), 1, 64); };
   const int columns = cells(width), rows = cells(height);
-  // Where on the texture a face begins depends on where it is, so that faces differ.
+  // The point of the texture where a face begins depends on the face's position, so that faces differ.
   const Eigen::Vector2f start(0.37F * (a.x() + a.y()) + 0.11F * a.z(), 0.53F * a.z() + 0.29F * (a.x() - a.y()));
   std::vector<std::uint32_t> vertices;
   for (int row = 0; row <= rows; ++row) {

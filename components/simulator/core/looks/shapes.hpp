@@ -13,15 +13,16 @@
 
 namespace lapis::simulator {
 
-/// A flat piece of surface that is cut into cells, so that it can carry light: points are origin + a * u + b * v with
-/// unit vectors u and v; it is seen from the side to which u x v points.
+/// A flat piece of surface that is cut into cells, so that it can carry light: points are origin + a * u + b * v [m],
+/// with unit vectors u and v; it is visible from the side to which u x v points.
 struct Sheet {
   Eigen::Vector3f origin, u, v;
-  double texture_period_m = 1.0;                             ///< length that a texture covers
+  double texture_period_m = 1.0;                             ///< length that one copy of the texture covers
   Eigen::Vector2f texture_offset = Eigen::Vector2f::Zero();  ///< in periods
 };
 
-/// Adds simple shapes to a mesh. They are given in the frame `T_mesh_shape` and belong to `part`.
+/// Adds simple shapes to a mesh. Coordinates [m] are in the shape's frame, which T_mesh_shape maps to the mesh. The
+/// triangles belong to `part`.
 class Shapes {
  public:
   explicit Shapes(Mesh& mesh) : mesh_(mesh) {}
@@ -37,22 +38,21 @@ class Shapes {
                          std::shared_ptr<const TextureImage> texture = nullptr);
   std::uint32_t emissive_material(const std::string& name, const geometry::Rgb8& color,
                                   std::shared_ptr<const TextureImage> texture = nullptr);
-  /// Neither colour nor depth show it.
+  /// A material that neither colour nor depth shows.
   std::uint32_t glass(const std::string& name);
 
-  /// Six sides.
   void box(const Eigen::Vector3f& low, const Eigen::Vector3f& high, std::uint32_t material);
-  /// A box whose corners were moved: `corners` are those of the bottom (counter-clockwise from above), then of the top.
+  /// A box with any corners: first those of the bottom (counter-clockwise as seen from above), then those of the top.
   void block(const std::array<Eigen::Vector3f, 8>& corners, std::uint32_t material);
-  /// Upright, round, or a frustum; ends are closed. Sizes are radii along x and y.
+  /// An upright cylinder or frustum with closed ends; radii are along x and y.
   void cylinder(const Eigen::Vector3f& foot, const Eigen::Vector2f& radius, const Eigen::Vector2f& top_radius,
                 float height, std::uint32_t material, int sides = 12);
   void ball(const Eigen::Vector3f& center, const Eigen::Vector3f& radius, std::uint32_t material, int sides = 10);
-  /// One rectangle with the whole texture on it: from `corner` along `across` and `up`; seen from across x up.
+  /// One rectangle that shows the whole texture: from `corner` along `across` and `up`; it is visible from the side to
+  /// which across x up points.
   void picture(const Eigen::Vector3f& corner, const Eigen::Vector3f& across, const Eigen::Vector3f& up,
                std::uint32_t material);
-  /// The cells between neighbouring lines for which `keeps`(cell) holds. Cells share their
-  /// corners.
+  /// The cells between neighbouring lines for which keeps(cell) is true. Neighbouring cells share vertices.
   void sheet(const Sheet& sheet, const std::vector<double>& lines_u, const std::vector<double>& lines_v,
              const std::function<bool(const Eigen::AlignedBox2d&)>& keeps, std::uint32_t material);
   /// A convex piece of a sheet; corners counter-clockwise.
@@ -68,8 +68,8 @@ class Shapes {
   Mesh& mesh_;
 };
 
-/// `values` sorted, without those that are nearer than 1 mm to another one, and filled up so that neighbours are at
-/// most `max_step` apart.
+/// `values` [m], sorted, without those that are nearer than 1 mm to another one, and with others between them, so that
+/// neighbours are at most `max_step` apart.
 std::vector<double> grid_lines(std::vector<double> values, double max_step);
 
 }  // namespace lapis::simulator

@@ -14,7 +14,7 @@ namespace {
 
 constexpr float kPi = std::numbers::pi_v<float>;
 
-/// Random lightness per pixel.
+/// Adds random lightness to every pixel.
 void add_grain(Canvas& canvas, const Random& random, float amplitude) {
   std::uint64_t index = 0;
   for (int row = 0; row < canvas.height(); ++row) {
@@ -23,7 +23,7 @@ void add_grain(Canvas& canvas, const Random& random, float amplitude) {
   }
 }
 
-/// Smooth lightness; the noise is stretched when its numbers of cells differ.
+/// Adds smooth variations of lightness.
 void add_clouds(Canvas& canvas, const Random& random, int cells, float amplitude) {
   const TiledNoise noise(random, cells);
   for (int row = 0; row < canvas.height(); ++row) {
@@ -34,7 +34,7 @@ void add_clouds(Canvas& canvas, const Random& random, int cells, float amplitude
   }
 }
 
-/// A line, and its copies where it leaves the square, so that it repeats.
+/// Draws a line, and its copies in the neighbouring squares, so that the texture repeats.
 void wrapped_line(Canvas& canvas, double x0, double y0, double x1, double y1, double thickness, const Paint& paint) {
   for (const int dx : {-1, 0, 1}) {
     for (const int dy : {-1, 0, 1}) canvas.line({x0 + dx, y0 + dy, x1 + dx, y1 + dy, thickness, paint});
@@ -100,11 +100,11 @@ void wallpaper_dots(Canvas& canvas, const Random& random) {
   add_grain(canvas, random, 0.012F);
 }
 
-/// Rows of rectangles with joints; every second row is shifted by half a piece. One tone each.
+/// Rows of rectangles with joints; each rectangle has one tone.
 struct Pieces {
   int rows, columns;
-  float joint;  ///< width, in units of the square
-  bool shifted;
+  float joint;   ///< width, in units of the square
+  bool shifted;  ///< every second row by half a piece
   float spread;  ///< of the tone, relative
   Paint tone, joint_tone;
 };
@@ -147,7 +147,7 @@ void floor_tiles(Canvas& canvas, const Random& random) {
   add_grain(canvas, random, 0.012F);
 }
 
-/// Lines of wood along x, at a row of the square.
+/// Grain of wood along x, at a point of the square.
 float wood_lines(const TiledNoise& noise, float x, float y, float rings) {
   const float bend = noise.at(x, y);
   return std::sin(2.0F * kPi * (rings * y + 1.5F * bend)) * 0.5F + 0.5F * noise.at(x * 2.0F, y * 5.0F);
@@ -159,7 +159,7 @@ struct Plank {
   float offset;
 };
 
-/// The planks of a row; lengths and tones differ, and the first one continues where the last one ends.
+/// The planks of a row. Lengths and tones differ; the last plank ends where the first one begins, so that rows repeat.
 std::vector<Plank> row_of_planks(Dice& dice, int per_row, const Paint& tone) {
   std::vector<Plank> planks;
   double x = dice(0.0, 1.0);
@@ -260,7 +260,7 @@ void leaves(Canvas& canvas, const Random& random) {
   }
 }
 
-/// Dishes, boxes, bottles: what stands about.
+/// Dishes, boxes, bottles: things that stand about.
 void clutter(Canvas& canvas, const Random& random) {
   Dice dice(random);
   for (int i = 0; i < 40; ++i) {
@@ -271,7 +271,7 @@ void clutter(Canvas& canvas, const Random& random) {
   }
 }
 
-/// What is seen through a window: sky, hills, trees and houses.
+/// The view through a window: sky, hills, trees and houses.
 void outdoor(Canvas& canvas, const Random& random) {
   Dice dice(random);
   canvas.gradient({0.0, 0.62, {0.62F, 0.8F, 1.0F}, {0.95F, 0.97F, 1.0F}});

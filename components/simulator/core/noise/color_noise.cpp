@@ -17,7 +17,7 @@ using geometry::Rgb8;
 constexpr double kUnit = 256.0;  // fixed point: brightness in 1/256 of a grey level
 constexpr double kMiddleGrey = 127.5;
 
-/// Brightness of every grey level after contrast, half a level added for rounding.
+/// Brightness of every grey level after contrast, with half a level added for rounding.
 std::array<std::int32_t, 256> response(double contrast) {
   std::array<std::int32_t, 256> table;
   for (int level = 0; level < 256; ++level) {

@@ -14,12 +14,12 @@ struct ColorNoiseConfig {
   double shutter = 0.0;   ///< share of the time between frames that the shutter is open, 0 to 1
 };
 
-/// Turns ideal colour into what a camera gives: blur by motion, contrast, noise. Frames are independent of each other.
+/// Turns ideal colour into a camera's image: motion blur, contrast, noise. Frames are independent of each other.
 class ColorNoise {
  public:
   ColorNoise(const ColorNoiseConfig& config, std::uint64_t seed) : config_(config), seed_(seed) {}
 
-  /// @param flow_px how far the image moved since the last frame, mean over the image (x right, y down)
+  /// @param flow_px mean motion of the image since the last frame (x right, y down)
   geometry::ColorImage apply(const geometry::ColorImage& ideal, std::uint64_t tick,
                              const Eigen::Vector2d& flow_px = {0, 0}) const;
 

@@ -35,7 +35,7 @@ struct PixelDraw {
   std::uint64_t bits;
 };
 
-/// Where the ray of a pixel goes when it is jittered; slots 0 and 1 of the bits.
+/// The pixel to which the ray of a pixel goes when it is jittered, by slots 0 and 1 of the bits.
 struct Source {
   int column, row;
 };
@@ -91,7 +91,7 @@ struct Kinect {
   }
 };
 
-/// The simulated Kinect of Redwood: depth of every second pixel, jittered; disparity with noise, in steps of 1/8.
+/// The simulated Kinect of Redwood: jittered depth of every second pixel; disparity with noise, in steps of 1/8.
 struct Redwood {
   float multiplier;
   const NormalTable& normal = NormalTable::get();
@@ -133,7 +133,7 @@ void find_edges(const DepthImage& ideal, int row, float slope, std::vector<std::
   }
 }
 
-/// Dropouts compare 16 bits with these.
+/// A pixel drops out when 16 random bits are less than this.
 std::uint32_t threshold(double share) {
   return static_cast<std::uint32_t>(std::lround(std::clamp(share, 0.0, 1.0) * 65536.0));
 }

@@ -2,10 +2,10 @@
 
 namespace lapis::simulator {
 
-/// How hard it is to stay localised: what the camera sees and odometry get worse together.
+/// How hard localisation is: camera images and odometry get worse together.
 enum class DriftPreset { kNominal, kHard };
 
-/// What a drift preset changes.
+/// The changes that a drift preset makes.
 struct DriftScales {
   double texture = 1.0;   ///< factor on the contrast of colour images (ColorNoiseConfig::contrast)
   double dropout = 0.0;   ///< additional share of depth pixels without depth (DepthNoiseConfig::extra_dropout)

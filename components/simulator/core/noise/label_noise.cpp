@@ -17,7 +17,7 @@ namespace {
 using geometry::Image;
 using geometry::LabelImage;
 
-/// Classes that are easily taken for each other.
+/// Groups of classes that are easily confused with each other.
 const std::vector<std::vector<std::string_view>>& groups() {
   static const std::vector<std::vector<std::string_view>> all{
       {"chair", "sofa", "stool", "seating", "bed", "cushion"},
@@ -51,7 +51,7 @@ double value_of(std::string_view name, const std::array<NamedValue, N>& values, 
   return found == values.end() ? otherwise : found->value;
 }
 
-// Values of the prototype behind the default configuration.
+// Values of the prototype on which the default configuration is based.
 constexpr std::array<NamedValue, 11> kBonus{{{"wall", 0.10},
                                              {"floor", 0.12},
                                              {"ceiling", 0.10},
@@ -67,7 +67,7 @@ constexpr std::array<NamedValue, 4> kAppeal{{{"wall", 2.0}, {"objects", 1.2}, {"
 constexpr double kOtherAppeal = 0.15, kSharedGroup = 4.0;
 constexpr double kMinAccuracy = 0.05;
 
-/// Smooth random displacement of every pixel: normal numbers at 20 x 12 nodes, interpolated with a variance that is
+/// Smooth random displacement of every pixel: normal numbers at 20 x 12 nodes, interpolated so that their variance is
 /// the same everywhere.
 class BoundaryFlow {
  public:
@@ -82,7 +82,7 @@ class BoundaryFlow {
       across_[static_cast<std::size_t>(column)] = between(column, width, kColumns);
   }
 
-  /// Index of the pixel that is seen at every pixel of a row.
+  /// For every pixel of a row, the index of the pixel whose label it shows.
   void sources(int row, std::vector<std::size_t>& indices) const {
     const Between y = between(row, height_, kRows);
     std::array<Offset, kColumns> nodes;
@@ -106,8 +106,8 @@ class BoundaryFlow {
     float x, y;
   };
   struct Between {
-    std::size_t node;     // and the next one
-    float first, second;  // their weights; the squares sum to 1
+    std::size_t node;     // the first of two neighbouring nodes
+    float first, second;  // weights of the two; their squares sum to 1
   };
   static Between between(int pixel, int pixels, int nodes) {
     const double position = static_cast<double>(pixel) * (nodes - 1) / std::max(pixels - 1, 1);
@@ -121,7 +121,7 @@ class BoundaryFlow {
   std::vector<Between> across_;
 };
 
-/// Names the cell of 1 m x 1 m x 45 degrees from which a camera looks, and the run.
+/// Key of a run, and of the cell of 1 m x 1 m x 45 degrees from which the camera looks.
 std::uint64_t cell_key(std::uint64_t seed, const geometry::Pose& T_world_camera) {
   constexpr double kCell_m = 1.0, kOctants = 8.0;
   const Eigen::Vector3d forward = T_world_camera.linear().col(2);
@@ -130,7 +130,7 @@ std::uint64_t cell_key(std::uint64_t seed, const geometry::Pose& T_world_camera)
                              std::floor(T_world_camera.translation().y() / kCell_m),
                              octant - kOctants * std::floor(octant / kOctants));
   std::uint64_t key = seed;
-  for (const double part : cell)  // + 0.0: minus zero is the same cell
+  for (const double part : cell)  // + 0.0, because minus zero is the same cell
     key = Random(key, RandomStream::kLabelConfusion, std::bit_cast<std::uint64_t>(part + 0.0)).bits(0);
   return key;
 }
@@ -173,7 +173,7 @@ double LabelNoise::confusion(std::uint16_t class_id, std::uint16_t other) const 
   return sum > 0.0 ? weight(*truth, *taken) / sum : 0.0;
 }
 
-/// The class at which the cumulative confusion passes `share`.
+/// The class at which the cumulative confusion exceeds `share`.
 std::uint16_t LabelNoise::draw_other(const Class& truth, double share) const {
   double sum = 0.0;
   for (const Class& c : classes_) sum += weight(truth, c);
@@ -188,7 +188,7 @@ std::uint16_t LabelNoise::draw_other(const Class& truth, double share) const {
   return drawn;
 }
 
-/// Sums up every instance in the image, run by run.
+/// Class, number of pixels and depth of every instance in the image; it sums up runs of pixels of one instance.
 std::vector<LabelNoise::Sight> LabelNoise::look(const LabelImage& labels, const Image<std::uint16_t>& instances,
                                                 const geometry::DepthImage& depth) {
   std::vector<Sight> sights(1);
@@ -212,7 +212,7 @@ std::vector<LabelNoise::Sight> LabelNoise::look(const LabelImage& labels, const 
   return sights;
 }
 
-/// What one instance is taken for in a frame.
+/// The class that one instance gets in a frame.
 std::uint16_t LabelNoise::recognise(const Sight& sight, const Random& in_cell, const Random& in_frame) const {
   const Class* truth = find(sight.class_id);
   if (truth == nullptr) return sight.class_id;

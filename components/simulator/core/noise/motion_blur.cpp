@@ -12,9 +12,9 @@ using geometry::ColorImage;
 using geometry::Rgb8;
 
 constexpr int kMaxHalf_px = 32;
-constexpr int kPadding = kMaxHalf_px + 1;  // columns that continue a row on either side
+constexpr int kPadding = kMaxHalf_px + 1;  // columns by which a row is extended on either side
 
-// Sums of the three channels in one number; a row of 8000 pixels fits.
+// The sums of the three channels are in one number; the sums of a row of 8000 pixels fit.
 constexpr unsigned kChannelBits = 21;
 constexpr std::uint64_t kChannelMask = (std::uint64_t{1} << kChannelBits) - 1;
 
@@ -43,7 +43,7 @@ std::vector<Run> runs_of(const Eigen::Vector2d& line_px, int half) {
   return runs;
 }
 
-/// Sums over each row from the left: entry c holds the columns before c - kPadding.
+/// Sums over each row from the left: entry c is the sum of the columns before c - kPadding.
 class RowSums {
  public:
   explicit RowSums(const ColorImage& image)
@@ -66,7 +66,7 @@ class RowSums {
   std::vector<std::uint64_t> sums_;
 };
 
-/// Divides the packed sums of `count` pixels by their number; exact for counts up to 65.
+/// Divides the packed sums of `count` pixels by `count`; exact for counts up to 65.
 class Mean {
  public:
   explicit Mean(int count)

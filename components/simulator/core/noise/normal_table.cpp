@@ -6,7 +6,7 @@
 namespace lapis::simulator {
 namespace {
 
-/// x with Phi(x) = p, for p in [0.5, 1), by Newton's method; from 0 it never overshoots, for Phi is concave there.
+/// x with Phi(x) = p, for p in [0.5, 1), by Newton's method; from 0 it never overshoots, because Phi is concave there.
 double normal_quantile(double p) {
   double x = 0.0;
   for (int i = 0; i < 40; ++i) {

@@ -6,14 +6,14 @@
 
 namespace lapis::simulator {
 
-/// Standard normal numbers for images, where logarithms cost too much: 4096 equally probable values, the quantiles of
-/// the normal distribution scaled to a variance of exactly 1. Tails end at 3.67 standard deviations.
+/// Standard normal numbers for images, where logarithms take too long: 4096 equally probable values, which are the
+/// quantiles of the normal distribution, scaled to a variance of exactly 1. Tails end at 3.67 standard deviations.
 class NormalTable {
  public:
   static constexpr unsigned kBits = 12;
   static constexpr std::size_t kSize = std::size_t{1} << kBits;
 
-  /// The one table; computed at the first call.
+  /// The only table, which is computed at the first call.
   static const NormalTable& get();
 
   /// Value for the `slot`-th group of 12 bits; slots 0 to 4 of one number are independent.

@@ -6,8 +6,8 @@
 
 namespace lapis::simulator {
 
-/// Sensors and other consumers of randomness; each has streams of its own, so that switching one off, another number
-/// of threads or a skipped frame never shifts the numbers of another.
+/// Sensors and other consumers of random numbers. Each has streams of its own, so that switching one off, changing the
+/// number of threads or skipping a frame never shifts the numbers of another.
 enum class RandomStream : std::uint64_t {
   kStartPose = 1,
   kFurniture,
@@ -35,7 +35,7 @@ class Random {
       : key_(mix(mix(mix(seed) + static_cast<std::uint64_t>(stream)) + counter)) {}
 
   std::uint64_t bits(std::uint64_t index) const { return mix(key_ + index * kGolden); }
-  /// In [0, 1), a multiple of 2^-53.
+  /// A number in [0, 1), which is a multiple of 2^-53.
   double uniform(std::uint64_t index) const { return static_cast<double>(bits(index) >> 11U) * 0x1.0p-53; }
   double uniform(std::uint64_t index, double low, double high) const { return low + (high - low) * uniform(index); }
   /// Standard normal by Box and Muller; uses the indices 2 * index and 2 * index + 1 of the stream.

@@ -9,7 +9,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kStraight_rad = 1e-4;    // a step that turns less ends a turn
-constexpr std::uint64_t kFirstTurn = 10;  // of the numbers that are drawn once per run
+constexpr std::uint64_t kFirstTurn = 10;  // index of the first turn's number; lower ones are drawn once per run
 
 }  // namespace
 
@@ -43,7 +43,7 @@ OdometryStep WheelOdometry::step(double distance_m, double turn_rad) {
   return step;
 }
 
-/// What odometry counts of a turn over what was turned: the same until the robot drives straight or turns back.
+/// Measured turn over true turn; it stays the same until the robot drives straight or turns back.
 double WheelOdometry::slip_of(double turn_rad) {
   const int sign = std::abs(turn_rad) < kStraight_rad ? 0 : turn_rad > 0.0 ? 1 : -1;
   if (sign != 0 && sign != turn_sign_) ++turns_;
@@ -52,12 +52,12 @@ double WheelOdometry::slip_of(double turn_rad) {
   return 1.0 + Random(seed_, RandomStream::kOdometrySystematic).uniform(kFirstTurn + turns_, 0.0, config_.turn_slip);
 }
 
-/// P <- F P F' + G Q G', with the pose's derivatives by itself and the parameters in F, by the step in G.
+/// P <- F P F' + G Q G'. F has the derivatives of the pose by itself and by the parameters, G those by the step.
 void WheelOdometry::propagate(const OdometryStep& step, double middle_yaw_rad) {
   const double c = std::cos(middle_yaw_rad), s = std::sin(middle_yaw_rad), ds = step.distance_m;
   Eigen::Matrix<double, 3, 2> G;
   G << c, -0.5 * ds * s, s, 0.5 * ds * c, 0, 1;
-  Eigen::Matrix2d by_parameters;  // of the measured step, by wheel and base
+  Eigen::Matrix2d by_parameters;  // derivatives of the measured step by wheel and base
   by_parameters << ds, 0, step.turn_rad, -step.turn_rad;
   Matrix5d F = Matrix5d::Identity();
   F(0, 2) = -ds * s;

@@ -12,14 +12,15 @@ inline bool has_avx2() {
 }
 
 #if defined(__x86_64__)
-/// Runs `work`, compiled for processors with AVX2. Without fused multiply-add, so that results are those of any other.
+/// Runs `work`, compiled for processors with AVX2, but without fused multiply-add, so that results are the same as on
+/// any other processor.
 template <class Work>
 [[gnu::target("avx2"), gnu::flatten]] void with_avx2(const Work& work) {
   work();
 }
 #endif
 
-/// Runs `work` with the widest instructions that the processor has; they change nothing but the time.
+/// Runs `work` with the widest instructions that the processor has; they change only the time that it takes.
 template <class Work>
 void run_wide(const Work& work) {
 #if defined(__x86_64__)

@@ -16,9 +16,9 @@ constexpr float kAmbientRange_m = 1.2F;
 constexpr float kAmbient = 0.42F;
 constexpr float kFloor = 0.06F;
 constexpr float kOffset_m = 0.004F;   // of a ray's origin from its surface
-constexpr float kLampRange_m = 7.0F;  // beyond it a lamp is not asked for
+constexpr float kLampRange_m = 7.0F;  // lamps that are farther away do not count
 constexpr float kGamma = 1.0F / 2.2F;
-constexpr float kCrease = 0.7F;  // cosine of the angle between faces
+constexpr float kCrease = 0.7F;  // least cosine of the angle between faces of a smooth surface
 
 using Directions = std::array<Eigen::Vector3f, kDirections>;
 
@@ -39,7 +39,7 @@ Directions hammersley() {
 
 /// Corners of triangles (3 * triangle + corner) by vertex.
 struct Corners {
-  std::vector<std::uint32_t> first;  // of each vertex, in `corner`; one more at the end
+  std::vector<std::uint32_t> first;  // of each vertex, as an index into `corner`; one more at the end
   std::vector<std::uint32_t> corner;
 };
 
@@ -58,19 +58,20 @@ Corners corners_by_vertex(const Mesh& mesh) {
   return out;
 }
 
-/// Twice the area long.
+/// Normal of a triangle; its length is twice the area.
 Eigen::Vector3f area_normal(const Mesh& mesh, const Triangle& triangle) {
   const auto& [a, b, c] = triangle.vertices;
   return (mesh.positions[b] - mesh.positions[a]).cross(mesh.positions[c] - mesh.positions[a]);
 }
 
-/// Corners at one vertex whose faces pass smoothly into each other.
+/// Corners at one vertex whose faces form a smooth surface.
 struct SmoothGroup {
   Eigen::Vector3f normal;  // area-weighted, not of unit length
   std::vector<std::uint32_t> corners;
 };
 
-/// An edge sharper than kCrease separates what lies on its two sides: the top of a table is not lit as its sides are.
+/// An edge that is sharper than kCrease separates the faces on its two sides: the top of a table is lit in another way
+/// than its sides.
 std::vector<SmoothGroup> smooth_groups(const Mesh& mesh, std::span<const std::uint32_t> corners) {
   std::vector<SmoothGroup> groups;
   for (const std::uint32_t c : corners) {
@@ -90,7 +91,7 @@ class Baker {
   Baker(const Scene& scene, const SceneRaycaster& raycaster)
       : scene_(scene), raycaster_(raycaster), directions_(hammersley()) {}
 
-  /// Irradiance on the side that `normal` points to.
+  /// Irradiance on the side to which `normal` points.
   float irradiance(const Eigen::Vector3f& position, const Eigen::Vector3f& normal) const {
     const Eigen::Vector3f origin = position + kOffset_m * normal;
     return kFloor + kAmbient * openness(origin, normal) + from_lamps(origin, normal);

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kExtension = ".light";
 constexpr std::size_t kChecksumBytes = 4;
-/// Of bake_light() and of what casts its rays: to be raised when either gives other light for the same scene.
+/// Version of bake_light() and of its ray caster: has to be raised when either gives other light for the same scene.
 constexpr std::uint64_t kBakeVersion = 1;
 constexpr std::uintmax_t kKept_bytes = 256U << 20U;  // about 70 furnished scenes
 
@@ -70,7 +70,7 @@ void add_holes(Hash& hash, const Scene& scene) {
   hash.add(scene.mesh.texture_coordinates);
 }
 
-/// What a run takes from a scene beside its looks.
+/// Adds what a run takes from a scene besides its appearance.
 void add_plan(Hash& hash, const Scene& scene) {
   hash.add(scene.floor_z_m);
   hash.add(scene.is_lit);
@@ -103,7 +103,7 @@ std::optional<std::vector<std::uint8_t>> read_light(const std::string& file, std
   return bytes;
 }
 
-/// What the light depends on.
+/// Hash of everything on which the light depends.
 std::uint64_t light_key(const Scene& scene, const SceneRaycaster& raycaster) {
   Hash hash;
   hash.add(kBakeVersion);
@@ -146,7 +146,7 @@ std::vector<std::uint8_t> cached_light(const Scene& scene, const SceneRaycaster&
   bytes.resize(light.size() + kChecksumBytes);
   const std::uint32_t checksum = files::crc32(light);
   std::memcpy(bytes.data() + light.size(), &checksum, kChecksumBytes);
-  static_cast<void>(files::replace_file(file, bytes));  // without it the next start takes longer
+  static_cast<void>(files::replace_file(file, bytes));  // when it fails, the next start only takes longer
   files::keep_newest(folder, kExtension, kKept_bytes);
   return light;
 }

@@ -8,12 +8,13 @@
 
 namespace lapis::simulator {
 
-/// Fingerprint of what a run takes from a scene: geometry, looks, classes, lamps, rooms, starts, tour, floor.
+/// Hash of what a run takes from a scene: geometry, appearance, classes, lamps, rooms, starts, tour, floor.
 std::uint64_t scene_hash(const Scene& scene);
 
-/// bake_light(), or what it gave before for the same geometry, lamps and cut-out textures with this version of it on
-/// the same instruction set: kept in `folder`, a file of a byte per corner each, of which the newest 256 MiB stay. An
-/// empty folder name: nothing is kept. A file that is damaged or cannot be written costs time, nothing else.
+/// Result of bake_light(). It is taken from `folder` when this version has baked it before, for the same geometry,
+/// lamps and cut-out textures, with the same instruction set; otherwise it is baked and kept there. A file has a byte
+/// per corner; the newest 256 MiB of files stay. With an empty folder name nothing is kept. A file that is damaged or
+/// cannot be written costs only time.
 std::vector<std::uint8_t> cached_light(const Scene& scene, const SceneRaycaster& raycaster, int threads,
                                        const std::filesystem::path& folder);
 

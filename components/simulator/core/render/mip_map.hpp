@@ -13,8 +13,8 @@
 
 namespace lapis::simulator {
 
-/// A texture with ever coarser copies of itself [Williams, SIGGRAPH 1983]: every level is half the one before, rounded
-/// down, until one side is a texel.
+/// A texture with ever coarser copies of itself [Williams, SIGGRAPH 1983]: every level has half the size of the one
+/// before, rounded down, until one side is a single texel.
 class MipMap {
  public:
   explicit MipMap(std::shared_ptr<const TextureImage> texture);
@@ -23,21 +23,21 @@ class MipMap {
   /// Size of level 0 [texels].
   int width() const { return finest_->width; }
   int height() const { return finest_->height; }
-  /// What N bilinear samples mix.
+  /// Texels that N bilinear samples mix, and their weights.
   template <std::size_t N>
   struct Neighbours {
-    std::array<std::array<std::uint32_t, N>, 4> texels;  ///< the bytes of each in one word; row by row
+    std::array<std::array<std::uint32_t, N>, 4> texels;  ///< row by row; the bytes of each are in one word
     std::array<std::uint32_t, N> right, down;            ///< weights of the second column and row, in 1/256
   };
-  /// At coordinates that repeat with period 1; (0, 0) is the lower left corner. Weights are in fixed point, so the same
-  /// on every machine. In loops over samples, so that a compiler can take several at once.
+  /// Neighbours at coordinates that repeat with period 1; (0, 0) is the lower left corner. Weights are in fixed point,
+  /// so they are the same on every machine. The loops run over samples, so that a compiler can vectorise them.
   template <std::size_t N>
   Neighbours<N> neighbours(int level_index, const std::array<float, N>& x, const std::array<float, N>& y) const {
     const TextureImage& image = level(level_index);
     Neighbours<N> out;
     std::array<std::array<int, N>, 4> index;
     for (std::size_t i = 0; i < N; ++i) {
-      // The subtraction of the floor keeps huge coordinates in range; rounding may still give exactly 1.
+      // Subtracting the floor keeps huge coordinates in range; rounding may still give exactly 1.
       const Pair u = pair(std::min(x[i] - std::floor(x[i]), 0.999999F), image.width);
       const Pair v = pair(std::min(1.0F - (y[i] - std::floor(y[i])), 0.999999F), image.height);
       index[0][i] = v.first * image.width + u.first;
@@ -55,7 +55,7 @@ class MipMap {
   }
 
  private:
-  static constexpr int kOne = 256;  // a texel
+  static constexpr int kOne = 256;  // one texel in fixed point
 
   /// Neighbours on one axis, and the weight of the second.
   struct Pair {

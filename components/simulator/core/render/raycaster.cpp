@@ -14,13 +14,13 @@
 #include "simulator/core/render/avx2.hpp"
 #include "simulator/core/render/texel.hpp"
 
-// Embree, version 3 or 4, is known in this file only.
+// Only this file uses Embree, version 3 or 4.
 namespace lapis::simulator {
 namespace {
 
 constexpr int kN = SceneRaycaster::kPacket;
 constexpr unsigned int kOpaque = 0;  // geometry of triangles without holes
-constexpr unsigned int kCutOut = 1;  // geometry of those that may have some
+constexpr unsigned int kCutOut = 1;  // geometry of triangles that may have holes
 
 #if RTC_VERSION_MAJOR >= 4
 void intersect(RTCScene scene, RTCRayHit& ray) { rtcIntersect1(scene, &ray); }

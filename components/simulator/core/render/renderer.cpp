@@ -19,7 +19,7 @@ constexpr std::size_t kSize = RayPacket::kSize;
 static_assert(kColumns * kRows == RayPacket::kSize);
 constexpr float kFarthest_m = 200.0F;
 
-/// All that shading needs of a triangle, in one cache line.
+/// Everything that shading needs of a triangle, in one cache line.
 struct alignas(64) Facet {
   std::array<Eigen::Vector2f, 3> texture_coordinates;
   Eigen::Vector3f normal;
@@ -46,7 +46,7 @@ geometry::Rgb8 times(geometry::Rgb8 a, geometry::Rgb8 b) { return {times(a.r, b.
 
 float area(const Eigen::Vector2f& a, const Eigen::Vector2f& b) { return std::abs(a.x() * b.y() - a.y() * b.x()); }
 
-/// What rays meet that leave the scene: black, of no class.
+/// The facet for rays that leave the scene: black, without a class.
 Facet nothing() {
   Facet facet;
   facet.texture_coordinates.fill(Eigen::Vector2f::Zero());
@@ -54,8 +54,8 @@ Facet nothing() {
   return facet;
 }
 
-/// What the rays of a packet met. `kOne`: all of them the same, as most often, so that loops over rays have nothing to
-/// gather.
+/// The facets that the rays of a packet hit. With `kOne`, the most frequent case, all rays hit the same one, so that
+/// loops over rays have nothing to gather.
 template <bool kOne>
 struct Met {
   std::array<const Facet*, kOne ? 1 : kSize> facets;
@@ -67,7 +67,7 @@ struct Corner {
   int column, row;
 };
 
-/// What a packet's colours are made of. Channels are bytes of words.
+/// The factors of a packet's colours. Channels are bytes of words.
 struct Look {
   Words color;
   Words light;  // 0 to 255
@@ -145,8 +145,8 @@ RenderedFrame empty_frame(int width, int height, bool with_color) {
   return frame;
 }
 
-/// Rays through all pixels. Their directions have z-depth 1, so that distances are z-depths; every one is the sum of a
-/// part that depends on the column and one that depends on the row.
+/// Rays through all pixels. Their directions have z-depth 1, so that distances are z-depths; every direction is the sum
+/// of a part that depends on the column and one that depends on the row.
 class PixelRays {
  public:
   PixelRays(const geometry::PinholeCamera& camera, const geometry::Pose& T_world_camera)
@@ -161,7 +161,7 @@ class PixelRays {
       rows_.emplace_back(y * rotation.col(1) + rotation.col(2));
     }
   }
-  /// Those of the pixels at and after a column and a row.
+  /// The rays of the packet whose first pixel has this column and row.
   RayPacket operator()(int column, int row) const {
     RayPacket rays{origin_};
     for (std::size_t i = 0; i < kSize; ++i) {
@@ -194,13 +194,13 @@ Floats cosines_of(const Met<kOne>& met, const RayPacket& rays) {
   return cosines;
 }
 
-/// A value between those at a triangle's corners.
+/// Interpolates between the values at a triangle's corners.
 float blend(const HitPacket& hits, std::size_t i, float a, float b, float c) {
   return (1.0F - hits.u[i] - hits.v[i]) * a + hits.u[i] * b + hits.v[i] * c;
 }
 
 std::uint32_t word(std::uint8_t r, std::uint8_t g, std::uint8_t b) {
-  static_assert(std::endian::native == std::endian::little);  // as the words of texels
+  static_assert(std::endian::native == std::endian::little);  // the same order as in the words of texels
   return r | std::uint32_t{g} << 8U | std::uint32_t{b} << 16U;
 }
 geometry::Rgb8 pixel_of(std::uint32_t word) {
@@ -217,7 +217,7 @@ std::uint32_t plain_color(const Facet& facet, const HitPacket& hits, std::size_t
               static_cast<std::uint8_t>(blend(hits, i, a.b, b.b, c.b)));
 }
 
-/// Texture, times colour, times light; in fixed point, so the same on every machine.
+/// Texture times colour times light, in fixed point, so that it is the same on every machine.
 Words mixed(const Look& look) {
   Words out{};
   for (unsigned shift = 0; shift < 24; shift += 8) {
@@ -246,7 +246,7 @@ Words plain_colors(const Met<kOne>& met, const HitPacket& hits) {
   return out;
 }
 
-/// Levels of the textures: the binary logarithm, rounded.
+/// Levels of the mip maps: the binary logarithm of texels per pixel, rounded.
 Levels levels_of(const Floats& texels_per_pixel) {
   Levels levels;
   for (std::size_t i = 0; i < kSize; ++i)
@@ -300,7 +300,7 @@ Words Renderer::Implementation::shade(const Met<kOne>& met, const HitPacket& hit
   Look look;
   Floats texels_per_pixel;
   for (std::size_t i = 0; i < kSize; ++i) {
-    // Between the footprint's short side and its long one, which is 1 / cosine times as long.
+    // Geometric mean of the footprint's short side and its long one, which is 1 / cosine times as long.
     texels_per_pixel[i] = met[i].texels_per_m * (hits.distance[i] * pixel) / std::sqrt(std::max(cosines[i], 0.05F));
   }
   for (std::size_t i = 0; i < kSize; ++i) {
@@ -312,7 +312,7 @@ Words Renderer::Implementation::shade(const Met<kOne>& met, const HitPacket& hit
   return mixed(look);
 }
 
-/// What the hits of a packet say, as far as its pixels lie in the image.
+/// Stores the hits of a packet, for those of its pixels that are in the image.
 void Renderer::Implementation::store(const Corner& corner, const RayPacket& rays, const HitPacket& hits, float pixel,
                                      RenderedFrame& frame) const {
   std::uint32_t difference = 0;
@@ -352,7 +352,7 @@ RenderedFrame Renderer::render(const geometry::PinholeCamera& camera, const geom
   const auto& self = *implementation_;
   RenderedFrame frame = empty_frame(camera.width, camera.height, with_color);
   const PixelRays rays_of(camera, T_world_camera);
-  const auto pixel = static_cast<float>(1.0 / std::sqrt(camera.fx * camera.fy));  // side, at 1 m [m]
+  const auto pixel = static_cast<float>(1.0 / std::sqrt(camera.fx * camera.fy));  // side of a pixel at 1 m [m]
   std::atomic<int> next_row{0};
   const auto work = [&] {
     HitPacket hits;

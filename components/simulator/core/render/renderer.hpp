@@ -12,9 +12,9 @@
 
 namespace lapis::simulator {
 
-/// What an ideal RGB-D camera sees, and what it is. All images have the camera's size.
+/// Images of an ideal RGB-D camera, and what they show. All images have the camera's size.
 struct RenderedFrame {
-  geometry::ColorImage color;                ///< empty unless asked for
+  geometry::ColorImage color;                ///< empty when it was not asked for
   geometry::DepthImage depth;                ///< z-depth [m]; 0: nothing hit
   geometry::LabelImage labels;               ///< class ids; 0: nothing hit, or unlabelled
   geometry::Image<std::uint16_t> instances;  ///< instance ids; 0: nothing hit
@@ -22,10 +22,10 @@ struct RenderedFrame {
 };
 
 struct RendererConfig {
-  int threads = 1;  ///< 1 to 16; the images do not depend on it
+  int threads = 1;  ///< at least 1; the images do not depend on it
 };
 
-/// Renders a scene. View-independent light, so that features stay where they are.
+/// Renders a scene. Light does not depend on the view, so that features stay in place.
 class Renderer {
  public:
   /// @param light at the corners of every triangle (bake_light); empty: colours as they are

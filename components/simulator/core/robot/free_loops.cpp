@@ -27,7 +27,7 @@ struct Island {
 /// the island when it crosses the line an odd number of times.
 struct Cut {
   Cell from;          ///< a cell of the island
-  int direction = 1;  ///< along the columns
+  int direction = 1;  ///< 1 or -1, along the columns
 
   bool is_beyond(double column) const { return (column - from.column) * direction > 0; }
   bool is_crossed(Cell a, Cell b) const {
@@ -79,7 +79,7 @@ Cut cheapest_cut(const Island& island, const geometry::GrayImage& reachable) {
   Cut best;
   int fewest = std::numeric_limits<int>::max();
   int row = -1;
-  std::vector<int> before(static_cast<std::size_t>(reachable.width) + 1);  // free cells left of each column
+  std::vector<int> before(static_cast<std::size_t>(reachable.width) + 1);  // number of free cells left of each column
   for (const Cell c : island.cells) {
     if (c.row != row) {
       row = c.row;
@@ -96,8 +96,8 @@ Cut cheapest_cut(const Island& island, const geometry::GrayImage& reachable) {
   return best;
 }
 
-/// Searches loops on two layers: a step across the cut changes the layer, so a path from a cell to itself on the other
-/// layer winds around the island.
+/// Searches for loops on two layers: a step across the cut changes the layer, so a path from a cell to itself on the
+/// other layer winds around the island.
 class LoopSearch {
  public:
   LoopSearch(const geometry::GrayImage& reachable, const Cut& cut)
@@ -139,7 +139,7 @@ class LoopSearch {
   }
 
   /// Length of the shortest loop through `seed` [cells]; infinite when that is not below `bound`. A*: the rest of a
-  /// loop is at least the straight path back.
+  /// loop is at least as long as the straight line back.
   double search(Cell seed, double bound) {
     using Entry = std::pair<double, std::size_t>;
     std::priority_queue<Entry, std::vector<Entry>, std::greater<>> open;

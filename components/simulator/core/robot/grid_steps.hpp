@@ -15,14 +15,14 @@ inline bool is_set(const geometry::GrayImage& cells, Cell c) {
   return c.column >= 0 && c.row >= 0 && c.column < cells.width && c.row < cells.height && cells(c.column, c.row) != 0;
 }
 
-/// True when a step leads to a free cell; diagonal ones do not cut corners, so that steps join what is 4-connected.
+/// True when a step leads to a free cell. Diagonal steps do not cut corners, so that steps join only 4-connected cells.
 inline bool can_step(const geometry::GrayImage& free_cells, Cell from, Cell step) {
   const Cell to{from.column + step.column, from.row + step.row};
   return is_set(free_cells, to) && is_set(free_cells, {to.column, from.row}) &&
          is_set(free_cells, {from.column, to.row});
 }
 
-/// In cells.
+/// Length of a step [cells].
 inline double step_length(Cell step) { return std::hypot(step.column, step.row); }
 
 }  // namespace lapis::simulator

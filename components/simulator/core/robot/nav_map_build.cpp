@@ -12,7 +12,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr Slab kFloorSlab{-0.1, 0.05};  // about the floor's height [m]
+constexpr Slab kFloorSlab{-0.1, 0.05};  // relative to the floor's height [m]
 constexpr double kLevel = 0.7071;       // least |z| of a floor's unit normal
 constexpr int kMargin = 2;              // cells
 constexpr double kMaxCells = 4e7;
@@ -48,7 +48,7 @@ std::vector<SlabPolygon> floor_polygons(const Mesh& mesh, const Slab& slab) {
   return floor;
 }
 
-/// Its cells begin at multiples of the resolution, so that maps of the same floor coincide.
+/// The grid over a floor. Its cells begin at multiples of the resolution, so that maps of the same floor coincide.
 Grid grid_over(const std::vector<SlabPolygon>& floor, double resolution_m, double floor_z_m) {
   Eigen::AlignedBox2d box;
   for (const auto& polygon : floor) {

@@ -9,8 +9,8 @@
 
 namespace lapis::simulator {
 
-/// One pixel per cell, north (+y) up: free white, obstacles and outside black, cells of `reachable` (one pixel per
-/// cell, may be empty) tinted, `lines` (tours, loops) drawn in colours of their own.
+/// A picture with one pixel per cell, north (+y) up: free cells are white, obstacles and the outside black, cells of
+/// `reachable` (one pixel per cell, may be empty) tinted, and `lines` (tours, loops) have colours of their own.
 geometry::ColorImage draw_nav_map(const NavMap& map, const geometry::GrayImage& reachable,
                                   const std::vector<Path>& lines = {});
 

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kSnap_m = 0.15;
 constexpr double kLineSample_m = 0.025;  // between points of a line that are tested
-constexpr double kSlack = 1.001;         // a line may cost so much more than the path that it replaces
+constexpr double kSlack = 1.001;         // a line may cost this factor more than the path that it replaces
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::size_t index_of(const Grid& grid, Cell c) {
@@ -144,7 +144,7 @@ Path PathPlanner::search(Cell from, Cell to) const {
   return path;
 }
 
-/// From each point to the last one that a straight line reaches at no higher cost; repeated while that helps.
+/// Replaces parts of a path by straight lines, from each point as far as that costs no more; repeated while it helps.
 Path PathPlanner::shorten(const Path& path) const {
   Path out{path.front()};
   for (std::size_t i = 0; i + 1 < path.size();) {

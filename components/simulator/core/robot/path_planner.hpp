@@ -15,10 +15,10 @@ double length_m(const Path& path);
 
 struct PathConfig {
   double radius_m = 0.20;        ///< of the robot
-  double margin_m = 0.05;        ///< kept besides
+  double margin_m = 0.05;        ///< additional clearance
   double resolution_m = 0.05;    ///< of the cells that are searched
-  double comfort_m = 0.30;       ///< between disc and obstacle: from here on nearness costs nothing
-  double nearness_weight = 2.0;  ///< a metre that touches obstacles costs 1 + this
+  double comfort_m = 0.30;       ///< gap between disc and obstacle from which on nearness costs nothing
+  double nearness_weight = 2.0;  ///< a metre of path that touches obstacles costs 1 + this
 };
 
 /// Shortest paths that prefer to keep away from obstacles: A* over 8 neighbours, then shortened where a straight line
@@ -28,10 +28,10 @@ class PathPlanner {
   /// @param map must outlive the planner.
   PathPlanner(const NavMap& map, const PathConfig& config);
 
-  /// Path whose first point is `from`, and whose last is `to` or, where that is too close to an obstacle, the nearest
-  /// place that is not. Nothing when there is none, or when one of the ends is more than 0.15 m from such a place.
+  /// Path whose first point is `from`, and whose last is `to` or, when that is too close to an obstacle, the nearest
+  /// place that is not. Nothing when there is no path, or when one of the ends is more than 0.15 m from such a place.
   std::optional<Path> plan(const Eigen::Vector2d& from, const Eigen::Vector2d& to) const;
-  /// The nearest free cell's centre within 0.15 m.
+  /// Centre of the nearest free cell, if there is one within 0.15 m.
   std::optional<Eigen::Vector2d> nearest_free(const Eigen::Vector2d& p) const;
 
  private:

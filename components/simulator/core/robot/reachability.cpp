@@ -38,7 +38,7 @@ std::optional<Cell> most_open_cell(const NavMap& map, const Room& room) {
   return best;
 }
 
-/// Joins cells in the order of decreasing distance, and notes where groups that hold rooms meet.
+/// Joins cells in the order of decreasing distance from obstacles, and notes where groups that contain rooms meet.
 class PassageFinder {
  public:
   PassageFinder(const NavMap& map, const std::vector<Room>& rooms)
@@ -109,7 +109,7 @@ class PassageFinder {
   const NavMap& map_;
   const std::vector<Room>& rooms_;
   geometry::GrayImage free_;
-  std::vector<std::size_t> parent_;  ///< union-find over cells; kNone: not yet taken up
+  std::vector<std::size_t> parent_;  ///< union-find over cells; kNone: not visited yet
   std::vector<std::optional<Cell>> middles_;
   std::vector<std::pair<std::size_t, std::size_t>> seeds_;  ///< cell and room
   std::vector<Passage> passages_;

@@ -9,7 +9,7 @@
 
 namespace lapis::simulator {
 
-/// Which neighbours belong together. Free space uses 4 and obstacles 8, so that the two never cross.
+/// The neighbours that belong to one region. Free space uses 4 and obstacles 8, so that the two never cross.
 enum class Neighbours { kFour, kEight };
 
 /// Connected regions of the cells that are not 0.

@@ -7,7 +7,7 @@
 
 namespace lapis::simulator {
 
-/// What /cmd_vel asks for.
+/// Speed and turn rate, as commanded by /cmd_vel.
 struct DriveCommand {
   double speed_m_s = 0.0;
   double turn_rate_rad_s = 0.0;  ///< to the left
@@ -20,35 +20,35 @@ struct RobotConfig {
   double lag_s = 0.15;  ///< time constant of both drives, > 0
   double max_acceleration_m_s2 = 1.5;
   double max_turn_acceleration_rad_s2 = 4.0;
-  time::Duration command_timeout{500'000'000};  ///< without a command for so long the robot stops
+  time::Duration command_timeout{500'000'000};  ///< after this time without a command the robot stops
 };
 
-/// Pose and motion at one moment. World frame; angles to the left.
+/// Pose and motion at one moment, in the world frame; angles are positive to the left.
 struct RobotState {
   time::Time stamp;
   Eigen::Vector2d position{0, 0};  ///< of the disc's centre [m]
   double yaw_rad = 0.0;            ///< in [-pi, pi]
-  DriveCommand drive;              ///< what the drives do, contact or not
-  Eigen::Vector2d velocity{0, 0};  ///< what the body really does, forwards and to the left [m/s]
+  DriveCommand drive;              ///< speed and turn rate of the drives, in contact or not
+  Eigen::Vector2d velocity{0, 0};  ///< true velocity of the body, forwards and to the left [m/s]
   DriveCommand target;             ///< last accepted command, within the limits
   time::Time target_stamp;         ///< when it was given
 };
 
-/// What really happened over an interval: the truth behind wheel odometry and IMU.
+/// True motion over an interval, which wheel odometry and IMU measure.
 struct Motion {
   double duration_s = 0.0;
-  double distance_m = 0.0;             ///< along the heading: what wheels roll
-  double turn_rad = 0.0;               ///< what wheels turn
-  double slide_m = 0.0;                ///< to the left, along an obstacle: wheels do not notice
+  double distance_m = 0.0;             ///< along the heading: the wheels roll this far
+  double turn_rad = 0.0;               ///< the wheels turn the robot by this angle
+  double slide_m = 0.0;                ///< to the left, along an obstacle: the wheels do not measure it
   Eigen::Vector2d acceleration{0, 0};  ///< mean, forwards and to the left at the middle of the turn [m/s2]
   double turn_rate_rad_s = 0.0;        ///< mean
-  bool is_in_contact = false;          ///< at some time
-  double push_m_s = 0.0;               ///< then: greatest speed towards the obstacle
+  bool is_in_contact = false;          ///< at some time of the interval
+  double push_m_s = 0.0;               ///< greatest speed towards an obstacle while in contact
 };
 
 /// A disc with differential drive. Speed and turn rate follow commands with a first-order lag and limited
-/// acceleration; the pose is integrated along arcs in steps of at most 5 ms. Where the disc would enter an obstacle, it
-/// is put back to the free side and so slides along. Deterministic; copies are independent.
+/// acceleration; the pose is integrated along arcs in steps of at most 5 ms. When the disc would enter an obstacle, it
+/// is moved back to the free side, and so slides along it. The motion is deterministic; copies are independent.
 class Robot {
  public:
   /// @param map must outlive the robot.
@@ -59,7 +59,7 @@ class Robot {
   /// From now on the robot follows `command`, clamped to the limits. A command that is not finite is refused (false)
   /// and stops the robot.
   [[nodiscard]] bool command(const DriveCommand& command);
-  /// Moves on to `until`; nothing happens when that is not later than the state.
+  /// Moves the robot until the time `until`; nothing happens when that is not later than the state.
   Motion advance(time::Time until);
 
  private:

@@ -15,8 +15,8 @@ struct Slab {
   double low = 0.0, high = 0.0;
 };
 
-/// The convex polygon that a slab leaves of a triangle: at most five corners (the first cut leaves two new ones beside
-/// each other on its plane, which the second one does not touch), none when they do not meet. low < high.
+/// The convex part of a triangle that is inside a slab (low < high). It has at most five corners, because the first cut
+/// adds two adjacent corners on its plane, whose edge the second cut does not touch; none when they do not meet.
 struct SlabPolygon {
   std::array<Eigen::Vector3d, 5> corners;
   std::size_t size = 0;
@@ -25,8 +25,8 @@ struct SlabPolygon {
 /// Clips a triangle exactly to low <= z <= high [Sutherland, Hodgman, CACM 1974].
 SlabPolygon clip(const std::array<Eigen::Vector3d, 3>& triangle, const Slab& slab);
 
-/// Sets every cell that the polygon, seen from above, has a point in common with (cells are half-open: a line on the
-/// border of two belongs to the upper or right one) to 255. Parts outside the grid are left out.
+/// Sets every cell to 255 that has a point in common with the polygon as seen from above (cells are half-open: a line on
+/// the border of two belongs to the upper or right one). Parts outside the grid are left out.
 void mark(const SlabPolygon& polygon, const Grid& grid, geometry::GrayImage& cells);
 
 }  // namespace lapis::simulator

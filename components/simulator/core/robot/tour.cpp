@@ -10,8 +10,8 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kSharp_rad = 0.7;  // the follower turns on the spot from here on
-constexpr double kStop_s = 1.0;     // lost by slowing down, stopping, and speeding up
+constexpr double kSharp_rad = 0.7;  // the follower turns on the spot for larger angles
+constexpr double kStop_s = 1.0;     // time lost by slowing down, stopping, and speeding up
 constexpr double kCrawl_m_s = 0.15;
 constexpr double kSpeedPerGap = 1.5;  // [1/s]
 constexpr double kTourSample_m = 0.05;
@@ -39,7 +39,7 @@ Path plan_leg(const PathPlanner& planner, const NavMap& map, const Eigen::Vector
   return *path;
 }
 
-/// Angle between the directions of a path before and after point i of it.
+/// Angle between the directions of a path from a to b and from b to c.
 double bend(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c) {
   const Eigen::Vector2d before = b - a, after = c - b;
   return std::abs(std::atan2(before.x() * after.y() - before.y() * after.x(), before.dot(after)));

@@ -18,7 +18,7 @@ struct TourConfig {
 /// The path to one waypoint.
 struct TourLeg {
   Path path;
-  bool stops = false;  ///< at its end: to turn sharply, or because the tour ends
+  bool stops = false;  ///< the robot stops at its end: to turn sharply, or because the tour ends
 };
 
 struct Tour {
@@ -32,7 +32,7 @@ struct Tour {
 Tour plan_tour(const NavMap& map, const Eigen::Vector2d& start, const std::vector<Eigen::Vector2d>& waypoints,
                const TourConfig& config);
 
-/// Speed that a tour allows itself at this distance from obstacles: slower where it is narrow.
+/// Greatest speed of a tour at this distance of the robot's centre from obstacles: lower in narrow places.
 double speed_limit_m_s(const TourConfig& config, double distance_m);
 
 }  // namespace lapis::simulator

@@ -23,7 +23,7 @@ using geometry::Pose;
 
 constexpr std::size_t kInformationNumbers = 21;
 constexpr double kMaxCoordinate = 1e9, kMaxInformation = 1e18;
-// Rounding of decimals may make an eigenvalue of zero this negative, as a share of the trace; it becomes zero again.
+// Rounding of decimals may make a zero eigenvalue as negative as this share of the trace; it becomes zero again.
 constexpr double kRounding = 1e-6;
 
 // Forms of a vertex: g2o's and TORO's, in the plane and in space.
@@ -46,7 +46,7 @@ std::size_t pose_numbers(Form form) {
 }
 std::size_t information_numbers(Form form) { return is_planar(form) ? 6 : kInformationNumbers; }
 
-// Scale of row or column i between a rotation vector (ours) and the vector part of a quaternion (the file's).
+// Scale of row or column i from a rotation vector (in memory) to the vector part of a quaternion (in the file).
 double file_scale(int i) { return i < 3 ? 1.0 : 2.0; }
 
 // Shortest decimal that reads back as the same double.
@@ -94,7 +94,7 @@ std::optional<Number> parse(std::string_view word) {
   return value;
 }
 
-// Parses one line's words; errors are thrown inside this file only and become a value in read_g2o.
+// Parses the words of one line. Errors are thrown inside this file only; read_g2o returns them as a value.
 class LineReader {
  public:
   explicit LineReader(std::vector<std::string_view> words) : words_(std::move(words)) {}
@@ -210,7 +210,7 @@ void read_line(std::string_view line, Reading& reading) {
   }
 }
 
-// getline that keeps no more than it may; throws for a longer line.
+// getline with a limit on the length of a line; throws for a longer one.
 bool next_line(std::istream& stream, std::string& line) {
   line.clear();
   for (auto c = stream.rdbuf()->sbumpc(); c != std::istream::traits_type::eof(); c = stream.rdbuf()->sbumpc()) {

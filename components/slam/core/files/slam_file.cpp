@@ -18,15 +18,15 @@ using geometry::Pose;
 
 constexpr std::string_view kMagic = "LAPISLAM";
 constexpr std::uint32_t kFormatVersion = 2;
-constexpr std::uint32_t kWithoutWheels = 1;  // the version before, which is still read
+constexpr std::uint32_t kWithoutWheels = 1;  // the previous version, which can still be read
 constexpr std::size_t kTagSize = 4;
-constexpr double kUnit16 = 32767.0;  // a direction's component 1
+constexpr double kUnit16 = 32767.0;  // stands for a component of 1
 
 template <class T, class Plain>
 concept Is = std::same_as<std::remove_const_t<T>, Plain>;
 
-// What the file holds, in this order, for writing and reading alike: a new field is a line here, one in
-// docs/slam_file.md and its check in find_fault(). A change of these lines is a new kFormatVersion.
+// Content of the file, in this order, for writing and reading alike. A new field needs a line here, one in
+// docs/slam_file.md and a check in find_fault(). A change of these lines needs a new kFormatVersion.
 
 void fields(auto& data, Is<geometry::PinholeCamera> auto& camera) {
   data(camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
@@ -120,7 +120,7 @@ class Encoder {
   files::ByteWriter& out_;
 };
 
-// Bytes that an element takes at least: all numbers have fixed sizes, and lists may be empty.
+// Least number of bytes of an element: all numbers have fixed sizes, and lists may be empty.
 template <class T>
 std::size_t least_size() {
   static const std::size_t size = [] {
@@ -131,7 +131,7 @@ std::size_t least_size() {
   return size;
 }
 
-// A number that is malformed gives zero and makes the reader fail for good (files::ByteReader).
+// A malformed number is read as zero, and the reader fails for good (files::ByteReader).
 class Decoder {
  public:
   explicit Decoder(files::ByteReader& in) : in_(in) {}
@@ -183,7 +183,7 @@ class Decoder {
   files::ByteReader& in_;
 };
 
-// A section is its tag, a CRC-32 of what follows, the size of its content, the content.
+// A section consists of its tag, a CRC-32 of what follows, the size of its content, and the content.
 class SectionWriter {
  public:
   explicit SectionWriter(files::ByteWriter& out) : out_(out) {}
@@ -204,7 +204,7 @@ class SectionWriter {
   files::ByteWriter& out_;
 };
 
-// Stops at the first problem, which it keeps.
+// Stops at the first problem and keeps it.
 class SectionReader {
  public:
   explicit SectionReader(std::span<const std::uint8_t> bytes) : bytes_(bytes) {}
@@ -226,7 +226,7 @@ class SectionReader {
     if (!content_reader.is_good() || content_reader.remaining() > 0) return fail(tag, "is malformed");
     bytes_ = bytes_.last(in.remaining());
   }
-  /// Empty when all was well and nothing is left.
+  /// Empty when everything was read without a problem and nothing is left.
   std::string problem() const { return problem_.empty() && !bytes_.empty() ? "has bytes after its end" : problem_; }
 
  private:
@@ -243,7 +243,7 @@ struct Content {
   std::span<const std::uint8_t> bytes;
 };
 
-/// What follows the header; nothing with a reason otherwise.
+/// Content after the header; nothing, with the reason in `error`, when the header is not valid.
 std::optional<Content> check_header(std::span<const std::uint8_t> bytes, std::string& error) {
   files::ByteReader in(bytes);
   const auto magic = in.raw(kMagic.size());

@@ -13,7 +13,7 @@ using geometry::Matrix6d;
 using Fault = std::optional<std::string>;
 
 constexpr int kMostOctaves = 32;
-constexpr double kNormalTolerance = 1e-3;  // of its length
+constexpr double kNormalTolerance = 1e-3;  // of a normal's length
 
 template <class Part, class Check>
 Fault first_fault(const std::vector<Part>& parts, const std::string& name, Check check) {
@@ -38,7 +38,7 @@ Fault find_surface_fault(const SurfaceSample& sample) {
   return std::nullopt;
 }
 
-// Ids of landmarks that exist, none twice.
+// Fault of the landmarks that a key-frame shows: each has to exist, and none may occur twice.
 Fault find_link_fault(const Keyframe& keyframe, std::size_t landmarks) {
   if (keyframe.landmarks.size() != keyframe.features.size()) return "its features and their landmarks differ in number";
   std::vector<LandmarkId> shown;
@@ -70,7 +70,7 @@ Fault find_landmark_fault(const LandmarkState& landmark) {
   return std::nullopt;
 }
 
-// Of an edge or a link.
+// Fault of an edge or a link.
 template <class Relation>
 Fault find_relation_fault(const Relation& relation, std::size_t keyframes) {
   if (relation.from >= keyframes || relation.to >= keyframes) return "joins a key-frame that does not exist";

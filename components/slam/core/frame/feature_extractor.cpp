@@ -12,7 +12,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr int kPatchRadius = 15;
-constexpr int kBorder = 19;  // that features keep from the level's edge: the descriptor reads a rotated 31 px patch
+constexpr int kBorder = 19;  // distance of features from the level's edge: the descriptor reads a rotated 31 px patch
 
 struct Level {
   cv::Mat image;
@@ -21,8 +21,8 @@ struct Level {
   double ratio_y = 1.0;
 };
 
-// Column and row of each pixel of a disc relative to its centre, 0 outside of it. A row has 32 pixels, the first 15
-// left of the centre, so that compilers can take whole registers.
+// Column and row of each pixel of a disc relative to its centre; 0 outside of the disc. A row has 32 pixels, 15 of them
+// left of the centre, so that compilers can use whole registers.
 constexpr int kPatchWidth = 2 * kPatchRadius + 2;
 struct Disc {
   std::array<std::array<std::int16_t, kPatchWidth>, 2 * kPatchRadius + 1> column{}, row{};
@@ -41,7 +41,7 @@ struct Disc {
   }
 };
 
-// Direction [degrees] from a corner to the intensity centroid of the disc around it. Eq. 1-3 in [Rublee 2011]
+// Direction [degrees] from a corner to the intensity centroid of the disc around it. Eq. 1-3 in [Rublee 2011].
 float corner_angle(const cv::Mat& image, int x, int y) {
   static const Disc kDisc;
   int moment_x = 0;
@@ -61,9 +61,9 @@ bool is_better(const Corner& a, const Corner& b) {
   return std::tuple(-a.score, a.y, a.x) < std::tuple(-b.score, b.y, b.x);
 }
 
-// Whether the image fixes the position of a corner in both directions, by the eigenvalues of the structure tensor of
-// its neighbourhood [Harris 1988]. What noise makes a corner of on a straight edge slides along it, wherever the camera
-// goes.
+// Whether the image determines the position of a corner in both directions, by the eigenvalues of the structure tensor
+// of its neighbourhood [Harris 1988]. A corner that noise makes on a straight edge slides along the edge when the
+// camera moves.
 bool is_fixed(const cv::Mat& image, int x, int y, double least_share) {
   constexpr int kRadius = 3;
   if (least_share <= 0.0) return true;
@@ -156,7 +156,7 @@ struct FeatureExtractor::Implementation {
     orb->compute(level.image, points, descriptors);
     for (std::size_t i = 0; i < points.size(); ++i) {
       Feature feature;
-      // cv::resize aligns the borders of the images, and the level's size is rounded.
+      // cv::resize aligns the borders of the images, not pixel centres, and the level's size is rounded.
       feature.pixel = {(points[i].pt.x + 0.5) * level.ratio_x - 0.5, (points[i].pt.y + 0.5) * level.ratio_y - 0.5};
       feature.octave = octave;
       std::memcpy(feature.descriptor.data(), descriptors.ptr(static_cast<int>(i)), sizeof(Descriptor));
@@ -166,7 +166,7 @@ struct FeatureExtractor::Implementation {
 };
 
 FeatureExtractor::FeatureExtractor(const FeatureConfig& config) : implementation_(new Implementation{config, {}}) {
-  // It only describes, one level at a time: the pyramid is built once, here.
+  // ORB only computes descriptors, one level at a time: the pyramid is built once, in this class.
   implementation_->orb = cv::ORB::create(config.max_features, static_cast<float>(config.scale_factor), 1,
                                          kPatchRadius + 1, 0, 2, cv::ORB::HARRIS_SCORE, 2 * kPatchRadius + 1);
 }

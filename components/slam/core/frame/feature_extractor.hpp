@@ -15,7 +15,7 @@ namespace lapis::slam {
 /// 256 bits of an ORB descriptor.
 using Descriptor = std::array<std::uint64_t, 4>;
 
-/// Corner with a direction, at pixel coordinates of the full image.
+/// Corner with its ORB descriptor, at pixel coordinates of the full image.
 struct Feature {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();  ///< [px]
   int octave = 0;                                   ///< pyramid level, 0 = finest
@@ -29,8 +29,9 @@ struct Corner {
   float score = 0.0F;
 };
 
-/// Takes at most `count` corners such that every cell of a grid with about `count` cells gets its best corner before
-/// any cell gets its second best. Order: rank in the cell, then score, then position; independent of the input order.
+/// Chooses at most `count` corners: every cell of a grid with about `count` cells gets its best corner before any cell
+/// gets its second best. They are in the order of rank in the cell, then score, then position, whatever the order of
+/// the input.
 std::vector<Corner> spread_corners(const std::vector<Corner>& corners, int width, int height, int count);
 
 /// FAST corners on a pyramid, spread over a grid, with ORB descriptors [Rublee 2011].
@@ -39,7 +40,7 @@ class FeatureExtractor {
   explicit FeatureExtractor(const FeatureConfig& config);
   ~FeatureExtractor();
 
-  /// Features of an image, coarser levels last; depths are left 0.
+  /// Features of an image, coarser levels last; their depths are 0.
   std::vector<Feature> extract(const geometry::GrayImage& image) const;
 
  private:

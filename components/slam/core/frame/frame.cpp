@@ -10,7 +10,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr double kCellSize_px = 20.0;
-// Neighbouring pixels whose depths differ by more than this share lie on different surfaces.
+// Neighbouring pixels whose depths differ by more than this share belong to different surfaces.
 constexpr float kMaxDepthStep = 0.05F;
 
 int clamped_cell(double coordinate, int cells) {
@@ -42,7 +42,7 @@ void FeatureIndex::find(const Eigen::Vector2d& pixel, double radius_px, std::vec
   std::size_t first = cell_of(pixel - reach);
   const std::size_t last = cell_of(pixel + reach);
   const std::size_t width = last % columns - first % columns;
-  for (; first <= last; first += columns) {  // the cells of a row lie one after the other
+  for (; first <= last; first += columns) {  // the cells of a row are contiguous
     for (std::size_t i = begins_[first]; i < begins_[first + width + 1]; ++i) {
       const Entry& entry = entries_[i];
       if (std::abs(entry.pixel.x() - pixel.x()) <= radius_px && std::abs(entry.pixel.y() - pixel.y()) <= radius_px) {

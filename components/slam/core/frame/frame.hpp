@@ -37,10 +37,10 @@ class FeatureIndex {
   int columns_ = 0;
   int rows_ = 0;
   std::vector<Entry> entries_;       // cell after cell, row by row
-  std::vector<std::size_t> begins_;  // of each cell in entries_, and the end
+  std::vector<std::size_t> begins_;  // begin of each cell in entries_, and the end of the last one
 };
 
-/// What tracking needs to know of one RgbdFrame. Refers to its images; the RgbdFrame must outlive it.
+/// What tracking uses of an RgbdFrame. It refers to the images of the RgbdFrame, which must outlive it.
 struct Frame {
   const RgbdFrame* input = nullptr;
   std::vector<Feature> features;

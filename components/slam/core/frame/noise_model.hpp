@@ -8,7 +8,7 @@ namespace lapis::slam {
 inline double depth_sigma(const NoiseConfig& config, double depth_m) {
   return config.depth_sigma_m + config.depth_sigma_per_m * depth_m * depth_m;
 }
-/// True when a depth [m] is a measurement inside the range in use.
+/// True when a depth [m] is within the configured range.
 inline bool is_depth(const NoiseConfig& config, double depth_m) {
   return depth_m >= config.min_depth_m && depth_m <= config.max_depth_m;  // false for NaN
 }

@@ -12,14 +12,14 @@ namespace lapis::slam {
 namespace {
 
 constexpr double kMinIncidence = 0.1;  // cosine between the normal and the viewing ray
-constexpr double kLeastShare = 0.6;    // of a cell's pixels with depth
-// Sigmas of the depth noise by which a cell (RMS), and each of its rows and columns (mean), may differ from its plane:
-// a plane through a step takes up most of it, and leaves the lines beside the step far off.
+constexpr double kLeastShare = 0.6;    // least share of a cell's pixels that have depth
+// Largest difference of a cell (RMS), and of each of its rows and columns (mean), from the cell's plane, in sigmas of
+// the depth noise. A plane through a step takes up most of it, but leaves the lines beside the step far off.
 constexpr double kMostSigmas = 1.5;
 
-// The plane through a cell of the depth image, by least squares: on a plane inverse depth is linear in the pixel, and
-// its noise the same all over a cell. A cell's pixels together are needed, since the difference of
-// two depths a few pixels apart is noise from some metres on, and the normal with it.
+// Sums for the plane through a cell of the depth image, by least squares: on a plane, inverse depth is linear in the
+// pixel, and its noise is the same all over a cell. All pixels of a cell are needed: from some metres on, the
+// difference of two depths a few pixels apart is noise, and so is a normal from it.
 struct CellSums {
   double n = 0.0, x = 0.0, y = 0.0, xx = 0.0, xy = 0.0, yy = 0.0, w = 0.0, xw = 0.0, yw = 0.0, ww = 0.0;
 
@@ -37,7 +37,8 @@ struct CellSums {
   }
 };
 
-// Mean differences of rows and columns from the plane (slopes, and inverse depth in the middle).
+// Whether the mean difference of a row or column from the plane exceeds `most` [1/m]. `plane`: slopes of the inverse
+// depth by column and row, and its value in the middle.
 bool has_step(const NoiseConfig& noise, const geometry::DepthImage& depth, int left, int top, int size,
               const Eigen::Vector3d& plane, double most) {
   struct Line {

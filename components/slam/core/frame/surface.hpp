@@ -16,8 +16,8 @@ struct SurfaceSample {
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();  ///< unit, towards the camera
 };
 
-/// The planes through the cells of a regular grid of a depth image (SurfaceConfig::grid_step_px), where the surface is
-/// plane and not seen edge-on.
+/// Fits a plane to each cell of a regular grid on the depth image (edge SurfaceConfig::grid_step_px), and returns those
+/// where the surface is flat and not seen edge-on.
 std::vector<SurfaceSample> sample_surface(const SurfaceConfig& config, const NoiseConfig& noise,
                                           const geometry::PinholeCamera& camera, const geometry::DepthImage& depth);
 

@@ -29,8 +29,8 @@ void set_pose(const Known& known, const RelativeCamera& camera, TrackingResult& 
       compound_covariance(known.graph.covariance(camera.reference), camera.T_reference_camera, camera.covariance);
 }
 
-// Vision and odometry together, each as sure as it is: a bare wall says nothing of the path along it. Odometry of
-// wheels that slip loses its weight (Huber).
+// Fuses vision and odometry, each weighted with its information: a bare wall says nothing about the path along it.
+// Odometry loses weight where it is further from vision than kMostApart_sigmas, as when wheels slip (Huber).
 RelativeCamera fuse(const Map& map, const RelativeCamera& seen, const std::optional<RelativeCamera>& reckoned) {
   constexpr double kMostApart_sigmas = 3.0;
   if (!reckoned) return seen;
@@ -47,7 +47,8 @@ RelativeCamera fuse(const Map& map, const RelativeCamera& seen, const std::optio
 }  // namespace
 
 FrameOutcome FrontEnd::begin(const Known& known, const Frame& frame) {
-  // Without odometry a map of few features, or of surfaces, would be lost for ever as soon as they tell too little.
+  // Without odometry, a map of few features, or of surfaces, would be lost for ever as soon as they do not determine a
+  // pose.
   const time::Time stamp = frame.input->stamp;
   const bool has_odometry = known.motion.odometry_at(stamp).has_value();
   const int alone = std::min(config_.tracker.min_first_features, config_.features.max_features / 2);
@@ -111,7 +112,8 @@ void FrontEnd::resume(const Map& map, KeyframeId reference) {
   renew(map);
 }
 
-// Near where motion leads, or else anywhere in the map; believed only when motion or the next frames agree.
+// Searches near the pose that motion predicts, then in the whole map; the result is believed only when motion or the
+// next frames agree.
 TrackOutcome FrontEnd::find_pose(const Known& known, const Frame& frame) {
   awaits_confirmation_ = false;
   TrackOutcome outcome = tracker_.track(known.map, frame, known.motion.predict(known.map, frame.input->stamp));
@@ -127,8 +129,8 @@ TrackOutcome FrontEnd::find_pose(const Known& known, const Frame& frame) {
   return outcome;
 }
 
-// Vision or surfaces have the pose. Where the camera is back in a part of the map that is tied to the newest by
-// odometry alone, a key-frame closes the circle, and the stretch between can be corrected.
+// Result for a pose by vision or surfaces. When the camera is back in a part of the map that odometry alone connects to
+// the newest key-frame, a key-frame closes the cycle, so that the stretch between can be corrected.
 FrameOutcome FrontEnd::hold(const Known& known, const Frame& frame, TrackOutcome seen, PoseSource source,
                             bool wants_keyframe) {
   contradictions_ = fits_ = 0;
@@ -145,8 +147,8 @@ FrameOutcome FrontEnd::hold(const Known& known, const Frame& frame, TrackOutcome
   return outcome;
 }
 
-// By surfaces where motion leads, else by odometry. When the camera sees enough features to begin with, but knows
-// none of them, the map continues there.
+// Result without features: by surfaces where motion leads, else by odometry. When the camera sees enough features to
+// begin with, but recognises none of them, the map continues there.
 FrameOutcome FrontEnd::continue_without_features(const Known& known, const Frame& frame, const std::string& reason) {
   const bool could_start = frame.features_with_depth >= config_.tracker.min_matches;
   blind_frames_ = could_start ? blind_frames_ + 1 : 0;
@@ -168,8 +170,8 @@ FrameOutcome FrontEnd::continue_without_features(const Known& known, const Frame
   return hold(known, frame, std::move(aligned), PoseSource::kSurfaces, wants_keyframe);
 }
 
-// When there is enough to see, and odometry says where, the map continues there; surfaces that nobody has seen yet
-// become a key-frame's, so that the next frames can be aligned with them.
+// Result by odometry alone. When there is enough to see, the map continues at the pose of odometry. Surfaces that no
+// key-frame has seen yet become those of a new key-frame, so that the next frames can be aligned with them.
 FrameOutcome FrontEnd::continue_blind(const Known& known, const Frame& frame, const std::string& reason,
                                       bool is_new_view) {
   FrameOutcome outcome;
@@ -193,7 +195,8 @@ TrackingResult FrontEnd::result_of(const Known& known, const Frame& frame, const
   const RelativeCamera camera{seen.reference, seen.alignment.T_reference_camera,
                               edge_information(config_.pose_graph, seen.alignment.information).inverse()};
   auto reckoned = known.motion.dead_reckon(frame.input->stamp);
-  if (reckoned && known.graph.are_apart(reckoned->reference, camera.reference)) reckoned.reset();  // it leads astray
+  // Where odometry alone connects the two references, the reckoned pose would lead astray.
+  if (reckoned && known.graph.are_apart(reckoned->reference, camera.reference)) reckoned.reset();
   set_pose(known, fuse(known.map, camera, reckoned), result);
   result.features = static_cast<std::uint32_t>(frame.features.size());
   result.matches = static_cast<std::uint32_t>(seen.matches);
@@ -202,7 +205,7 @@ TrackingResult FrontEnd::result_of(const Known& known, const Frame& frame, const
   return result;
 }
 
-// False when odometry does not reach back to the last pose by vision or surfaces: nobody knows.
+// False when odometry does not reach back to the last pose by vision or surfaces: the drift is then unknown.
 bool FrontEnd::set_drift(const Known& known, time::Time stamp, TrackingResult& result) const {
   const auto motion = held_stamp_ ? known.motion.odometry_between(*held_stamp_, stamp) : std::nullopt;
   if (!motion) return false;
@@ -220,17 +223,17 @@ void FrontEnd::count_contradictions(const TrackOutcome& aligned, bool is_unknown
   fits_ = aligned.is_tracked ? fits_ + 1 : 0;
 }
 
-// The camera does not see what was mapped, for too long. Vision ends that, or surfaces that fit for as long.
+// True when for too long the camera has not seen what was mapped. Vision ends that, or surfaces that fit for as long.
 bool FrontEnd::is_contradicted() const { return contradictions_ >= config_.tracker.max_contradictions; }
 
-// From so near a key-frame with so many landmarks something is seen again, whatever the camera shows.
+// This near a key-frame with this many landmarks, the camera recognises something if it is where odometry says.
 bool FrontEnd::should_be_known(const Map& map, const RelativeCamera& camera) const {
   const auto& landmarks = map.keyframe(camera.reference).landmarks;
   const auto known = std::count_if(landmarks.begin(), landmarks.end(), [](auto id) { return id != kNoLandmark; });
   return known >= 2 * config_.tracker.min_matches && !has_moved(camera.T_reference_camera);
 }
 
-// Far enough from the reference for another key-frame.
+// Whether the camera is far enough from the reference for another key-frame.
 bool FrontEnd::has_moved(const Pose& T_reference_camera) const {
   KeyframeEvidence evidence;
   evidence.frames_since_keyframe = frames_since_keyframe_;

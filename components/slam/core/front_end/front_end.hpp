@@ -18,7 +18,7 @@
 
 namespace lapis::slam {
 
-/// What frames are compared with.
+/// What a frame is compared with.
 struct Known {
   const Map& map;
   const SlamGraph& graph;
@@ -26,16 +26,16 @@ struct Known {
   const MotionModel& motion;
 };
 
-/// What the front end makes of a frame.
+/// Result of the front end for one frame.
 struct FrameOutcome {
-  TrackingResult result;             ///< as long as the frame is no key-frame; without the graph's version
-  std::optional<TrackOutcome> seen;  ///< by vision or surfaces; none: by odometry alone, or there is no pose
+  TrackingResult result;             ///< valid unless the frame becomes a key-frame; without the graph's version
+  std::optional<TrackOutcome> seen;  ///< by vision or surfaces; none if odometry alone gives the pose, or nothing does
   bool wants_keyframe = false;
-  bool ends_drift = false;  ///< a key-frame here closes a circle of which a part is known by odometry alone
+  bool ends_drift = false;  ///< a key-frame here closes a cycle, a part of which odometry alone connects
 };
 
-/// Finds the pose of each frame by the best source that has one (vision, surfaces, odometry), and says which frames are
-/// to become key-frames. It changes nothing but its own memory of the frames before.
+/// Finds the pose of each frame by the best source that has one (vision, surfaces, odometry), and decides which frames
+/// become key-frames. It changes nothing but its own memory of earlier frames.
 class FrontEnd {
  public:
   explicit FrontEnd(const SlamConfig& config)
@@ -45,20 +45,20 @@ class FrontEnd {
   FrameOutcome begin(const Known& known, const Frame& frame);
   /// @pre the map is not empty
   FrameOutcome locate(const Known& known, const Frame& frame);
-  /// What to report of a frame that cannot be used: it has the pose of dead reckoning or none.
+  /// Result for a frame that cannot be used: it has a pose by dead reckoning, or none.
   TrackingResult without_vision(const Known& known, time::Time stamp, const std::string& reason) const;
 
-  /// The frame has become this key-frame, and is the reference of the next ones.
+  /// The frame has become this key-frame, which is the reference of the next frames.
   void enter_keyframe(const Map& map, KeyframeId id);
   /// The map has changed.
   void renew(const Map& map) { tracker_.set_reference(map, reference_); }
-  /// The map is a saved one: there is no pose until the camera has found its place in it.
+  /// The map is a saved one: there is no pose until the camera has been located in it.
   void resume(const Map& map, KeyframeId reference);
 
   KeyframeId reference() const { return reference_; }
   /// Compares frames with any key-frame.
   const Tracker& tracker() const { return tracker_; }
-  /// Recognised places that were not believed, because odometry contradicted them.
+  /// Number of recognised places that were not believed because odometry contradicted them.
   std::size_t places_doubted() const { return relocalizer_.doubted(); }
 
  private:
@@ -82,12 +82,12 @@ class FrontEnd {
   SurfaceTracker surfaces_;
   KeyframeId reference_ = 0;
   int frames_since_keyframe_ = 0;
-  int blind_frames_ = 0;                  // in a row, with enough to see
-  int contradictions_ = 0;                // in a row, of surfaces with odometry
-  int fits_ = 0;                          // in a row, of the same
+  int blind_frames_ = 0;                  // in a row, with enough features but no pose by vision
+  int contradictions_ = 0;                // frames in a row that contradict odometry
+  int fits_ = 0;                          // frames in a row whose surfaces fit
   std::optional<time::Time> held_stamp_;  // of the newest pose by vision or surfaces
-  bool awaits_confirmation_ = false;      // a place was recognised in the newest frame, and is not believed yet
-  bool is_placed_ = true;                 // in a saved map: false until the camera has been found there
+  bool awaits_confirmation_ = false;      // a place was recognised in the newest frame, but is not believed yet
+  bool is_placed_ = true;                 // false in a resumed map until the camera has been located in it
 };
 
 }  // namespace lapis::slam

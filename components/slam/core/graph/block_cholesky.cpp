@@ -51,7 +51,7 @@ struct BlockCholesky::Cholmod {
     common.print = 0;
     common.nmethods = 1;
     common.method[0].ordering = CHOLMOD_NATURAL;
-    common.final_ll = 1;  // LL': finds a matrix that is not positive definite
+    common.final_ll = 1;  // LL' detects a matrix that is not positive definite
     common.quick_return_if_not_posdef = 1;
   }
   ~Cholmod() {
@@ -121,7 +121,7 @@ void BlockCholesky::lay_out(const std::vector<BlockPair>& sorted) {
   values_.assign(rows_.size(), 0.0);
 }
 
-// Of the block at two positions of the elimination order: row, column.
+// Slot of the block at two positions in the elimination order (row, column).
 BlockCholesky::Slot BlockCholesky::slot_of(const std::vector<BlockPair>& sorted, BlockPair place) const {
   const int column = std::max(place.first, place.second), row = std::min(place.first, place.second);
   const auto first = std::lower_bound(sorted.begin(), sorted.end(), BlockPair{column, 0});
@@ -188,7 +188,7 @@ std::vector<Eigen::MatrixXd> BlockCholesky::inverse_diagonal() const {
       factor != nullptr && cholmod_change_factor(CHOLMOD_REAL, 1, 0, 1, 1, factor, &cholmod_->common) != 0;
   if (!is_simplicial) throw std::bad_alloc();
   const std::vector<Eigen::MatrixXd> ordered = slam::inverse_diagonal(block_factor(*factor));
-  const auto* order = static_cast<const int*>(factor->Perm);  // CHOLMOD's own, on top of ours
+  const auto* order = static_cast<const int*>(factor->Perm);  // CHOLMOD's own permutation, applied after ours
   std::vector<std::size_t> place(position_.size());
   for (std::size_t i = 0; i < place.size(); ++i) {
     place[static_cast<std::size_t>(order[i * static_cast<std::size_t>(block_size_)] / block_size_)] = i;
@@ -198,8 +198,8 @@ std::vector<Eigen::MatrixXd> BlockCholesky::inverse_diagonal() const {
   return result;
 }
 
-// CHOLMOD's order is a post-order of the elimination tree: it keeps the rows of a block together, so that the rows of a
-// block's first column, from its own diagonal block on, are whole blocks.
+// CHOLMOD's order is a post-order of the elimination tree. It keeps the rows of a block together, so that the rows of a
+// block's first column, from its diagonal block on, form whole blocks.
 BlockFactor BlockCholesky::block_factor(const cholmod_factor_struct& factor) const {
   const auto *begin = static_cast<const int*>(factor.p), *rows = static_cast<const int*>(factor.i),
              *count = static_cast<const int*>(factor.nz);
@@ -210,7 +210,7 @@ BlockFactor BlockCholesky::block_factor(const cholmod_factor_struct& factor) con
     for (int block = 0; block < blocks; ++block) {
       result.rows.push_back(rows[begin[first] + block * block_size_] / block_size_);
       for (int c = 0; c < block_size_; ++c) {
-        // Column c of the diagonal block has no rows above its own.
+        // Column c of the diagonal block begins at its row c.
         const double* column = values + begin[first + c] + block * block_size_ - c;
         for (int r = 0; r < block_size_; ++r) result.values.push_back(block == 0 && r < c ? 0.0 : column[r]);
       }

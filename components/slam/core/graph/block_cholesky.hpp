@@ -13,18 +13,18 @@ struct cholmod_factor_struct;
 
 namespace lapis::slam {
 
-/// Off-diagonal block of a symmetric matrix of blocks: (row, column), either order.
+/// Off-diagonal block of a symmetric block matrix: (row, column), in either order.
 using BlockPair = std::pair<int, int>;
 
-/// Order in which to eliminate blocks so that little fills in: approximate minimum degree (Amestoy, Davis and Duff,
-/// 1996) of the graph whose edges are `pairs`.
+/// Order in which to eliminate blocks so that there is little fill-in: approximate minimum degree (Amestoy, Davis and
+/// Duff, 1996) of the graph whose edges are `pairs`.
 std::vector<int> elimination_order(int blocks, const std::vector<BlockPair>& pairs);
 
 /// Symmetric positive definite system of square blocks of one size, factorised by CHOLMOD. The pattern is analysed
-/// once; then it is filled, factorised and solved as often as needed.
+/// once; after that the values can be set, factorised and solved any number of times.
 class BlockCholesky {
  public:
-  /// `pairs` may repeat; add_pair names a block by its place in that list. `order` is an elimination_order.
+  /// `pairs` may contain a block more than once; add_pair takes the index in that list. `order`: see elimination_order.
   BlockCholesky(int block_size, const std::vector<int>& order, const std::vector<BlockPair>& pairs);
   ~BlockCholesky();
   BlockCholesky(const BlockCholesky&) = delete;
@@ -53,18 +53,18 @@ class BlockCholesky {
     }
   }
 
-  /// Factorises the matrix with its diagonal times 1 + damping (Marquardt, 1963), where no element of the diagonal
-  /// counts as less than a millionth of the mean. False when the result is not positive definite.
+  /// Factorises the matrix with its diagonal multiplied by 1 + damping (Marquardt, 1963); for the damping, no diagonal
+  /// element counts as less than a millionth of their mean. False when the result is not positive definite.
   bool factorize(double damping);
-  /// Columns in the order of the blocks. After a successful factorize.
+  /// Solves for each column of `right`, whose rows are in the order of the blocks. Only after a successful factorize.
   Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;
-  /// Diagonal blocks of the inverse. After a successful factorize.
+  /// Diagonal blocks of the inverse, by block. Only after a successful factorize.
   std::vector<Eigen::MatrixXd> inverse_diagonal() const;
 
  private:
   struct Slot {
     std::ptrdiff_t offset = 0;  // of the block's first element
-    std::ptrdiff_t stride = 0;  // from a column to the next, less what the triangle adds: the rows above the diagonal
+    std::ptrdiff_t stride = 0;  // entries of a column above the diagonal block; column c has c + 1 more
     bool is_transposed = false;
   };
   struct Cholmod;
@@ -74,7 +74,7 @@ class BlockCholesky {
   BlockFactor block_factor(const cholmod_factor_struct& factor) const;
 
   int block_size_ = 0;
-  std::vector<int> position_;  // in the elimination order, by block
+  std::vector<int> position_;  // place in the elimination order, by block
   // The upper triangle by columns, as CHOLMOD reads it.
   std::vector<int> column_begin_, rows_;
   std::vector<double> values_;

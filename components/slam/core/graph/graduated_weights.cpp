@@ -7,7 +7,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr double kGrowth = 1.4;
-// From here on truncation is as good as sharp.
+// From here on the truncation is practically sharp.
 constexpr double kLastMu = 1e3;
 
 }  // namespace
@@ -32,7 +32,7 @@ bool GraduatedWeights::update(const std::vector<double>& chi2, std::vector<doubl
   return true;
 }
 
-// Equation 14 of the paper; sharp at the end.
+// Equation 14 of the paper; from kLastMu on a step at the gate.
 double GraduatedWeights::weight(double chi2) const {
   if (mu_ >= kLastMu) return chi2 <= gate_ ? 1.0 : 0.0;
   if (chi2 <= mu_ / (mu_ + 1.0) * gate_) return 1.0;

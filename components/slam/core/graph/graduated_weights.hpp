@@ -6,18 +6,18 @@
 
 namespace lapis::slam {
 
-/// chi2 that 99 % of right measurements stay below; of 6 (in space) or 3 (in the plane) degrees of freedom.
+/// 99 % quantile of the chi2 of correct measurements with 6 (in space) or 3 (in the plane) degrees of freedom.
 double chi2_gate(int degrees_of_freedom);
 
-/// Weights of edges for truncated least squares by graduated non-convexity (Yang, Antonante, Tzoumas and Carlone,
-/// RA-L 2020): first all count, then the cost bends towards a constant beyond the gate.
+/// Weights of edges for truncated least squares by graduated non-convexity (Yang, Antonante, Tzoumas and Carlone, RA-L
+/// 2020): at first all edges count; then, step by step, the cost flattens to a constant beyond the gate.
 class GraduatedWeights {
  public:
-  /// `edges`: those that may be wrong.
+  /// `edges`: indices of those that may be wrong. `gate`: chi2 at which the cost is truncated.
   GraduatedWeights(std::vector<std::size_t> edges, double gate) : edges_(std::move(edges)), gate_(gate) {}
 
-  /// Next weights from the chi2 of every edge after optimisation with the last ones, all 1 before the first call. False
-  /// when the last ones are final: all fit, or each is in or out.
+  /// Computes the next weights from the chi2 of every edge after optimisation with the previous weights, which are all
+  /// 1 before the first call. False when the previous ones are final: all edges fit, or each weight is 0 or 1.
   bool update(const std::vector<double>& chi2, std::vector<double>& weights);
   /// True when every weight is 0 or 1.
   bool is_final() const { return is_final_; }

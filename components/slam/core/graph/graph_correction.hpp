@@ -8,15 +8,15 @@
 
 namespace lapis::slam {
 
-/// What an optimisation of the pose graph made of it.
+/// Result of an optimisation of the pose graph.
 struct GraphCorrection {
-  std::vector<geometry::Pose> T_map_camera;  ///< of each key-frame that the optimisation knew
-  std::vector<geometry::Pose> T_map_before;  ///< the same, when it began
-  GraphMarginals marginals;                  ///< of the same
-  std::vector<double> weights;               ///< of each edge that it knew, 0 = an outlier
+  std::vector<geometry::Pose> T_map_camera;  ///< of each key-frame in the optimised graph
+  std::vector<geometry::Pose> T_map_before;  ///< the same before the optimisation
+  GraphMarginals marginals;                  ///< of the same key-frames
+  std::vector<double> weights;               ///< of each edge in the optimised graph; 0 = an outlier
 };
 
-/// Optimal poses of the graph, how well they are known, and which edges are outliers.
+/// Computes optimal poses of the graph and their covariances, and which edges are outliers.
 GraphCorrection correct_graph(PoseGraphSnapshot graph);
 
 }  // namespace lapis::slam

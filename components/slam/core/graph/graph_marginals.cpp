@@ -22,7 +22,7 @@ PoseGraphSnapshot weighted(const PoseGraphSnapshot& graph, const std::vector<dou
   return result;
 }
 
-// From the axes of the map to those of the poses: rows to those of `a`, columns to those of `b`.
+// Rotates a covariance from the axes of the map to those of the poses: rows to those of `a`, columns to those of `b`.
 Matrix6d in_axes_of(const geometry::Pose& a, const geometry::Pose& b, const Matrix6d& covariance) {
   const auto turn = [](const geometry::Pose& T) {
     Matrix6d R = Matrix6d::Zero();

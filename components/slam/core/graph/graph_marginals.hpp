@@ -8,17 +8,17 @@
 
 namespace lapis::slam {
 
-/// How well the whole of a pose graph knows its poses, relative to its first node: covariances in the tangents of right
-/// perturbations (translation, rotation) [m^2, rad^2], from the graph's information at its poses.
+/// Marginal covariances of the poses of a graph relative to its first node, in the tangents of right perturbations
+/// (translation, rotation) [m^2, rad^2], from the information of the whole graph, linearised at its poses.
 struct GraphMarginals {
-  /// Of each node; nothing for one that no weighted edges join with the first.
+  /// Of each node; nothing for a node that no edges with weight connect to the first.
   std::vector<std::optional<geometry::Matrix6d>> covariances;
-  /// Of each node (rows) with the newest one (columns); zero where either has no covariance.
+  /// Cross-covariance of each node (rows) with the newest one (columns); zero where either has no covariance.
   std::vector<geometry::Matrix6d> with_newest;
 };
 
-/// One factorisation for all: the covariances are blocks of its selected inverse.
-/// @param weights of each edge; none: all 1
+/// One factorisation serves all: the covariances are blocks of its selected inverse.
+/// @param weights of each edge; empty: all 1
 GraphMarginals graph_marginals(const PoseGraphSnapshot& graph, const std::vector<double>& weights = {});
 
 }  // namespace lapis::slam

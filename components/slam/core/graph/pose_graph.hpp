@@ -14,7 +14,7 @@ struct PoseGraphNode {
   std::uint64_t id = 0;
   time::Time stamp;
   geometry::Pose T_map_camera = geometry::Pose::Identity();  ///< camera optical frame
-  bool is_drifting = false;  ///< it hangs on odometry alone, and no loop has corrected it since
+  bool is_drifting = false;  ///< odometry alone connects it, and no loop has corrected it since
 };
 
 enum class EdgeType : std::uint8_t { kOdometry, kCovisibility, kLoopClosure, kWheelOdometry, kSurface };
@@ -33,12 +33,12 @@ struct PoseGraphSnapshot {
   std::uint64_t version = 0;
   std::vector<PoseGraphNode> nodes;
   std::vector<PoseGraphEdge> edges;
-  bool is_planar = false;  ///< from a file of poses in the plane: only x, y and the turn about z are free
+  bool is_planar = false;  ///< from a file of planar poses: only x, y and the rotation about z are free
 };
 
-/// Information of an edge from that of an alignment: times the configured share, and bounded.
+/// Information of an edge from that of an alignment: multiplied by the configured share, and bounded.
 geometry::Matrix6d edge_information(const PoseGraphConfig& config, const geometry::Matrix6d& information);
-/// The same matrix with its eigenvalues within the configured bounds, so that no edge is blind or too sure.
+/// The same matrix with its eigenvalues clamped to the configured bounds, so that no direction has none or too much.
 geometry::Matrix6d bounded_information(const PoseGraphConfig& config, const geometry::Matrix6d& information);
 
 }  // namespace lapis::slam

@@ -20,7 +20,7 @@ struct Pattern {
   std::vector<int> order;
 };
 
-constexpr double kSlightDamping = 1e-12;  // for edges without information
+constexpr double kSlightDamping = 1e-12;  // keeps the equations solvable where edges have no information
 
 template <int kDim>
 Eigen::Matrix<double, kDim, kDim> nearest_rotation(const Eigen::Matrix<double, kDim, kDim>& M) {
@@ -36,8 +36,8 @@ Eigen::Matrix<double, kDim, kDim> nearest_rotation(const Eigen::Matrix<double, k
   }
 }
 
-// Rotation of `to` = rotation of `from` * that of the edge, for every edge, where the rotations are any matrices: their
-// rows are independent, so that a row of all nodes is one column of the linear system.
+// Solves rotation of `to` = rotation of `from` * that of the edge, for all edges, with arbitrary matrices for
+// rotations. Their rows are independent, so that one row of all nodes is one column of the linear system.
 template <int kDim>
 void relax_rotations(const PoseGraphTopology& topology, const Pattern& pattern, PoseGraphSnapshot& graph) {
   using Matrix = Eigen::Matrix<double, kDim, kDim>;
@@ -127,7 +127,7 @@ void initialize_by_spanning_tree(PoseGraphSnapshot& graph) {
   const PoseGraphTopology topology = pose_graph_topology(graph);
   const std::vector<std::vector<std::size_t>> edges_of = edges_by_node(topology);
   std::vector<bool> is_reached(graph.nodes.size(), false);
-  std::deque<std::size_t> nodes, loops;  // nodes whose edges come next; loop closures from nodes that were reached
+  std::deque<std::size_t> nodes, loops;  // nodes whose edges come next; loop closures at nodes that were reached
   const auto reach = [&](std::size_t node, const Pose& T_map_node) {
     is_reached[node] = true;
     graph.nodes[node].T_map_camera = T_map_node;

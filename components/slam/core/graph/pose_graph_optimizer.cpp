@@ -11,21 +11,23 @@ namespace lapis::slam {
 namespace {
 
 constexpr double kLeastDamping = 1e-7, kFirstDamping = 1e-5, kLittleDamping = 3e-6, kMostDamping = 1e12;
-// Least squares whose only purpose is to see what does not fit.
+// Iterations of least squares whose only purpose is to find what does not fit.
 constexpr int kLookIterations = 10;
-// A round of graduated non-convexity only has to follow its weights.
+// Iterations of a round of graduated non-convexity, in which the poses only have to follow the weights.
 constexpr int kRoundIterations = 2;
-// Loop closures with more chi2 than this many times the median of those that do not fit wait for the others' verdict.
+// Loop closures with more than this many times the median chi2 of those that do not fit wait until the others are
+// decided.
 constexpr double kSticksOut = 4.0;
 
-/// Levenberg and Marquardt's method; steps are undamped as long as they succeed.
+/// Levenberg-Marquardt method; steps are undamped as long as they succeed.
 template <class Space>
 class Minimizer {
  public:
   Minimizer(const OptimizerOptions& options, const PoseGraphTopology& topology, const PoseGraphSnapshot& graph)
       : options_(options), problem_(topology, graph), poses_(PoseGraphProblem<Space>::poses_of(graph)) {}
 
-  /// Returns true when a step promised or brought too little to continue.
+  /// Returns true when a step with little damping promised too little to continue, or the damping has reached its
+  /// limit.
   bool minimize(const std::vector<double>& weights, int max_iterations) {
     double chi2 = problem_.chi2(poses_, weights);
     bool is_linearized = false;
@@ -63,7 +65,7 @@ class Minimizer {
   int iterations() const { return iterations_; }
 
  private:
-  // Nielsen (IMM-REP-1999-05): the damping follows how much of its promise a step keeps.
+  // Nielsen (IMM-REP-1999-05): the damping follows the ratio of actual to predicted decrease.
   void relax_damping(double kept) {
     damping_ *= std::max(1.0 / 3.0, 1.0 - std::pow(2.0 * kept - 1.0, 3));
     if (damping_ < kLeastDamping) damping_ = 0.0;
@@ -81,9 +83,9 @@ class Minimizer {
   int iterations_ = 0;
 };
 
-/// Decides which loop closures count, and how much odometry counts that they contradict: wheels slip. Loop closures
-/// that stick out wait: with all wrong ones in it from the beginning, a large graph would have dense equations. Each
-/// that does not contradict the result of the others then has its turn.
+/// Decides which loop closures count, and how much odometry counts that they contradict, because wheels slip. Loop
+/// closures that stick out wait: with all wrong ones included from the beginning, the equations of a large graph would
+/// be dense. Later, each of them that does not contradict the result of the others joins.
 template <class Space>
 class RobustMinimizer {
  public:
@@ -108,7 +110,7 @@ class RobustMinimizer {
   const std::vector<double>& weights() const { return weights_; }
 
  private:
-  // Those that fit or do not stick out.
+  // Loop closures that fit, or do not stick out.
   std::vector<std::size_t> take_moderate() {
     const std::vector<double> chi2 = minimizer_.edge_chi2();
     std::vector<double> misfits;
@@ -124,7 +126,7 @@ class RobustMinimizer {
     return result;
   }
 
-  // Optimises with these loop closures, all of them at first.
+  // Optimises with these loop closures, which all have full weight at first.
   bool graduate(const std::vector<std::size_t>& active) {
     for (const std::size_t i : active) weights_[i] = 1.0;
     GraduatedWeights graduated(active, gate_);
@@ -135,9 +137,10 @@ class RobustMinimizer {
     return has_converged || minimizer_.minimize(weights_, options_.max_iterations);
   }
 
-  // Weights of odometry by dynamic covariance scaling (Agarwal, Tipaldi, Spinello, Stachniss and Burgard, ICRA 2013):
-  // a motion that is far off stays, but no longer bends what is measured well. Once, from what least squares leaves: of
-  // two motions that are off alike, further rounds would believe one and blame the other.
+  // Weights of odometry by dynamic covariance scaling (Agarwal, Tipaldi, Spinello, Stachniss and Burgard, ICRA 2013): a
+  // motion that is far off stays, but no longer bends what is measured well. The weights are computed once, from the
+  // residuals of least squares: of two motions that are equally far off, further rounds would believe one and blame the
+  // other.
   bool release_slip() {
     const std::vector<double> chi2 = minimizer_.edge_chi2();
     for (const std::size_t i : wheels_) {
@@ -147,7 +150,7 @@ class RobustMinimizer {
     return wheels_.empty() || minimizer_.minimize(weights_, options_.max_iterations);
   }
 
-  // Loop closures without weight join once. True when there were any.
+  // Loop closures without weight that contradict nothing join, each only once. True when there were any.
   bool join_consistent(std::vector<std::size_t>& active) {
     const std::size_t before = active.size();
     std::erase_if(waiting_, [&](std::size_t i) {
@@ -163,7 +166,7 @@ class RobustMinimizer {
   double gate_;
   std::vector<double> weights_;       // of every edge
   std::vector<std::size_t> waiting_;  // loop closures that may still join
-  std::vector<std::size_t> wheels_;   // edges of odometry
+  std::vector<std::size_t> wheels_;   // edges of wheel odometry
 };
 
 template <class Space>

@@ -9,9 +9,9 @@
 namespace lapis::slam {
 
 struct OptimizerOptions {
-  int max_iterations = 100;         ///< linear systems solved; a robust run may take as many for each of its rounds
-  double relative_decrease = 1e-6;  ///< of chi2; a step that promises or brings less is the last
-  bool is_robust = false;           ///< wrong loop closures are to be expected
+  int max_iterations = 100;         ///< linear systems solved; a robust run may take as many in each of its rounds
+  double relative_decrease = 1e-6;  ///< of chi2; a step that promises no more is the last
+  bool is_robust = false;           ///< expect wrong loop closures
 };
 
 struct OptimizerReport {
@@ -22,18 +22,20 @@ struct OptimizerReport {
   std::vector<double> weights;  ///< of each edge, in [0, 1]; 1 where not robust
 };
 
-/// Moves the nodes to where the sum of e' Omega e over the edges is least, e = (translation, 2 vec q) of
-/// T_from_to^-1 * T_from^-1 * T_to, q its unit quaternion with w >= 0: g2o's chi2. (Planar graphs: translation, angle.)
-/// Levenberg and Marquardt's method on sparse normal equations. The first node of the graph, and of each part that no
-/// edge joins with it, stays where it is.
+/// Moves the nodes to minimise the sum of e' Omega e over the edges, where e = (translation, 2 vec q) of
+/// T_from_to^-1 * T_from^-1 * T_to, and q is its unit quaternion with w >= 0: g2o's chi2. (Planar graphs: translation,
+/// angle.) The method is Levenberg-Marquardt on sparse normal equations. The first node of each connected part stays
+/// where it is.
 ///
-/// Robust: edges of type loop closure lose their weight where their chi2 would stay above the 99 % quantile; truncated
-/// least squares by graduated non-convexity (Yang et al., RA-L 2020). Other edges are trusted.
+/// Robust: edges of type loop closure lose their weight where their chi2 would stay above the 99 % quantile (truncated
+/// least squares by graduated non-convexity, Yang et al., RA-L 2020). Edges of wheel odometry keep a smaller weight
+/// where the remaining loops contradict them. Other edges are trusted.
 ///
-/// Throws std::invalid_argument where an edge names a node that the graph lacks or the same node twice.
+/// Throws std::invalid_argument when an edge names a node that the graph lacks, or the same node twice, or when two
+/// nodes have the same id.
 OptimizerReport optimize_pose_graph(const OptimizerOptions& options, PoseGraphSnapshot& graph);
 
-/// Sum of e' Omega e over all edges, as above, where none counts for more than `most`.
+/// Sum of e' Omega e over all edges, as above, where no edge counts for more than `most`.
 double pose_graph_chi2(const PoseGraphSnapshot& graph, double most = std::numeric_limits<double>::infinity());
 
 }  // namespace lapis::slam

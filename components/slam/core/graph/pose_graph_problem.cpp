@@ -6,12 +6,13 @@ namespace lapis::slam {
 
 namespace {
 
-// The pattern is analysed again when this share of its edges has lost its weight: that costs less than a factorisation.
+// The pattern is analysed again when more than this share of its edges has lost its weight: that costs less than a
+// factorisation.
 constexpr double kMostIdle = 0.02;
 
 template <class Matrix>
 Matrix inverse(const Matrix& symmetric) {
-  // Edges may lack information in some direction: they are uncertain there, but not without bound.
+  // Edges may lack information in some direction: their uncertainty there is large, but bounded.
   const Matrix raised = symmetric + 1e-9 * (symmetric.trace() + 1e-9) * Matrix::Identity();
   return raised.llt().solve(Matrix::Identity());
 }
@@ -135,7 +136,7 @@ Eigen::MatrixXd PoseGraphProblem<Space>::inverse_columns(int free_node) const {
   return equations_->solve(right);
 }
 
-// Edges of a shortest path, by breadth-first search.
+// Edges of a shortest path of edges with weight, by breadth-first search.
 template <class Space>
 std::vector<std::size_t> PoseGraphProblem<Space>::path(std::size_t from, std::size_t to,
                                                        const std::vector<double>& weights) const {
@@ -167,7 +168,7 @@ double PoseGraphProblem<Space>::contradiction(std::size_t edge, const Poses& pos
   const std::vector<std::size_t> edges = path(ends.from, ends.to, weights);
   if (edges.empty()) return 0.0;
   Matrix J;
-  // Where the errors of the path move the edge's end, in the axes of the map.
+  // Covariance of the motion at the edge's end that the errors of the path cause, in the axes of the map.
   Matrix covariance = Matrix::Zero();
   for (const std::size_t i : edges) {
     const Pose& end = poses[edges_[i].ends.to];

@@ -12,7 +12,7 @@
 namespace lapis::slam {
 
 /// Weighted least squares over the free poses of a graph: chi2 = sum of w e' Omega e over its edges, and its normal
-/// equations in Gauss and Newton's approximation.
+/// equations in the Gauss-Newton approximation.
 template <class Space>
 class PoseGraphProblem {
  public:
@@ -26,23 +26,23 @@ class PoseGraphProblem {
   std::vector<double> edge_chi2(const Poses& poses) const;
   double chi2(const Poses& poses, const std::vector<double>& weights) const;
 
-  /// Sets up the normal equations at these poses. Their pattern is analysed again where edges come in, or many fall
-  /// out.
+  /// Sets up the normal equations at these poses. Their sparsity pattern is analysed again when an edge gains weight or
+  /// many edges have lost theirs.
   void linearize(const Poses& poses, const std::vector<double>& weights);
-  /// Gauss-Newton's step with damping; nothing where the equations cannot be solved.
+  /// Gauss-Newton step with damping; nothing when the equations cannot be solved.
   std::optional<Eigen::VectorXd> step(double damping);
   Poses moved(const Poses& poses, const Eigen::VectorXd& step) const;
-  /// By how much chi2 falls with the undamped step if it were quadratic.
+  /// Decrease of chi2 that the quadratic model predicts for a step: exact without damping, a lower bound with damping.
   double predicted_decrease(const Eigen::VectorXd& step) const { return -gradient_.dot(step); }
-  /// Factorises the linearised equations' matrix; false where it has no inverse.
+  /// Factorises the matrix of the linearised equations, without damping; false when it has no inverse.
   bool factorize() { return equations_->factorize(0.0); }
-  /// Columns of the inverse that belong to a free node, and its diagonal blocks by free node. After a successful
+  /// Columns of the inverse that belong to a free node, and its diagonal blocks by free node. Only after a successful
   /// factorize.
   Eigen::MatrixXd inverse_columns(int free_node) const;
   std::vector<Eigen::MatrixXd> inverse_diagonal() const { return equations_->inverse_diagonal(); }
 
-  /// chi2 of an edge that has no part in the poses, if they are as uncertain as the shortest path of edges with weight
-  /// between its ends: a bound from below, as other paths only help. 0 without a path.
+  /// chi2 of an edge that does not contribute to the poses, if their uncertainty is that of the shortest path of edges
+  /// with weight between its ends: a lower bound, because other paths only reduce the uncertainty. 0 without a path.
   double contradiction(std::size_t edge, const Poses& poses, const std::vector<double>& weights) const;
 
  private:
@@ -62,7 +62,7 @@ class PoseGraphProblem {
   FreePairs pattern_;
   std::vector<bool> is_in_pattern_;  // by edge
   std::unique_ptr<BlockCholesky> equations_;
-  Eigen::VectorXd gradient_;  // half of the derivative of chi2 by the free poses
+  Eigen::VectorXd gradient_;  // half of the gradient of chi2 by the free poses
 };
 
 extern template class PoseGraphProblem<SpatialPoses>;

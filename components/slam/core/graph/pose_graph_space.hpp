@@ -4,8 +4,8 @@
 
 namespace lapis::slam {
 
-/// Poses in space, their residuals and derivatives. A pose moves by its tangent (translation, rotation) in the axes of
-/// the map, at its own place: t + v, exp(w) R.
+/// Poses in space, their residuals and derivatives. A pose moves by a tangent (translation v, rotation w) in the axes
+/// of the map, at its own position: t + v, exp(w) R.
 struct SpatialPoses {
   static constexpr int kDof = 6, kDim = 3;
   using Vector = geometry::Vector6d;
@@ -22,10 +22,10 @@ struct SpatialPoses {
   /// Error of a measured relative pose: translation and twice the vector part of the unit quaternion (w >= 0) of
   /// measured^-1 * from^-1 * to. That is g2o's error in units of the tangent (Kuemmerle et al., ICRA 2011).
   static Vector residual(const Pose& from, const Pose& to, const Pose& measured);
-  /// The same with its derivative by the move of `to`.
+  /// The same, with its derivative by the move of `to`.
   static Vector residual(const Pose& from, const Pose& to, const Pose& measured, Matrix& by_to);
-  /// M of: derivative by the move of `from` = -(derivative by the move of `to`) * M, which is what a move of `from`
-  /// does at the place of `to` as its lever.
+  /// Matrix M such that the derivative by the move of `from` = -(derivative by the move of `to`) * M: M is the motion
+  /// at the position of `to` that a move of `from` causes with the offset between them as its lever arm.
   static Matrix lever(const Pose& from, const Pose& to);
 };
 

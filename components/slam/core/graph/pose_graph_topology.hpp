@@ -10,33 +10,33 @@
 
 namespace lapis::slam {
 
-/// Which nodes a pose graph's edges join, by place in `nodes`, and which nodes are free: all but the first node of each
-/// connected part.
+/// Which nodes the edges of a pose graph connect, as indices into `nodes`, and which nodes are free: all but the first
+/// node of each connected part.
 struct PoseGraphTopology {
   struct Edge {
     std::size_t from = 0, to = 0;
   };
   std::vector<Edge> edges;
-  std::vector<std::size_t> part;  ///< place of the first node of a node's part, by node
-  std::vector<int> free;          ///< place among the free nodes, by node; -1: fixed
+  std::vector<std::size_t> part;  ///< index of the first node of a node's part, by node
+  std::vector<int> free;          ///< index among the free nodes, by node; -1: fixed
   int free_count = 0;
 };
 
-/// Throws std::invalid_argument where an edge names a node that the graph lacks, or the same node twice, and where two
-/// nodes have one id.
+/// Throws std::invalid_argument when an edge names a node that the graph lacks, or the same node twice, and when two
+/// nodes have the same id.
 PoseGraphTopology pose_graph_topology(const PoseGraphSnapshot& graph);
 
-/// Places of the edges at each node, in the order of the edges.
+/// Indices of the edges at each node, in the order of the edges.
 std::vector<std::vector<std::size_t>> edges_by_node(const PoseGraphTopology& topology);
 
-/// Off-diagonal blocks of the equations of a graph's free nodes.
+/// Off-diagonal blocks of the normal equations of a graph's free nodes.
 struct FreePairs {
   std::vector<BlockPair> pairs;
-  std::vector<int> of_edge;  ///< place in `pairs`, by edge; -1 without weight or where an end is fixed
+  std::vector<int> of_edge;  ///< index into `pairs`, by edge; -1 without weight or where an end is fixed
 };
 FreePairs free_pairs(const PoseGraphTopology& topology, const std::vector<double>& weights);
 
-/// Place of a node in `nodes`; nothing when the graph lacks it.
+/// Finds the index of a node in `nodes` by its id; nothing when the graph lacks it.
 class NodePlaces {
  public:
   explicit NodePlaces(const PoseGraphSnapshot& graph);

@@ -22,7 +22,7 @@ class Recursion {
   }
 
  private:
-  // With the blocks l = L_rj L_jj^-1 below the diagonal of column j: Z_rj = - sum_m Z_rm l_m over the column's rows m,
+  // With l_r = L_rj L_jj^-1 for the rows r below the diagonal of column j: Z_rj = - sum_m Z_rm l_m over these rows m,
   // and Z_jj = (L_jj L_jj')^-1 - sum_m l_m' Z_mj.
   void solve(std::size_t column) {
     const std::size_t first = begin(column), end = begin(column + 1);
@@ -37,8 +37,8 @@ class Recursion {
     for (std::size_t k = first + 1; k < end; ++k) inverse_[first] -= below_[k - first - 1].transpose() * inverse_[k];
   }
 
-  // What the blocks of the inverse in the column of row k, and their transposes, contribute. The rows below k are among
-  // those of that column: elimination has seen to it.
+  // Contribution of the blocks of the inverse in the column of row k, and of their transposes. That column has all rows
+  // below k that this one has: elimination ensures it.
   void add_column_of(std::size_t k, std::size_t first, std::size_t end) {
     const auto column = static_cast<std::size_t>(factor_.rows[k]);
     std::size_t place = begin(column);
@@ -57,7 +57,7 @@ class Recursion {
 
   const BlockFactor& factor_;
   std::vector<Block> inverse_;  // where the factor has blocks
-  std::vector<Block> below_;    // of the column that is solved
+  std::vector<Block> below_;    // of the column that is being solved
 };
 
 }  // namespace

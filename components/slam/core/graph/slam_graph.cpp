@@ -12,7 +12,7 @@ using geometry::Pose;
 
 namespace {
 
-constexpr double kLeastWeight = 0.5;  // of an edge that stays
+constexpr double kLeastWeight = 0.5;  // of a loop closure that is kept
 
 }  // namespace
 
@@ -20,7 +20,7 @@ SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink>
                      std::vector<Matrix6d> covariances)
     : edges_(std::move(edges)), links_(std::move(links)), parents_(covariances.size()),
       covariances_(std::move(covariances)) {
-  // A key-frame's first edge from an older one is that to its parent.
+  // The first edge to a key-frame that is no loop closure is the one from its parent.
   std::vector<bool> has_parent(parents_.size(), false);
   std::map<std::size_t, Matrix6d> surfaces;  // information of edges to parents
   for (const PoseGraphEdge& edge : edges_) {
@@ -30,7 +30,7 @@ SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink>
     parents_[to] = {edge.from, edge.information.inverse(), edge.type == EdgeType::kWheelOdometry, false};
     if (edge.type == EdgeType::kSurface) surfaces[to] = edge.information;
   }
-  // Surfaces leave directions open, which odometry's edge beside them holds.
+  // Surfaces leave directions open, which the odometry edge from the same parent determines.
   for (const PoseGraphEdge& edge : edges_) {
     const auto found = surfaces.find(static_cast<std::size_t>(edge.to));
     if (found == surfaces.end() || edge.type != EdgeType::kWheelOdometry || edge.from != parents_[found->first].id)
@@ -85,7 +85,7 @@ Matrix6d SlamGraph::chain_covariance(const Map& map, KeyframeId from, KeyframeId
   return move * of_from * move.transpose() + of_to;
 }
 
-// T_from_newest = (T_from exp(f))^-1 T_newest exp(n), with f and n as the marginals know them together.
+// T_from_newest = (T_from exp(f))^-1 T_newest exp(n), with the joint covariance of f and n from the marginals.
 Matrix6d SlamGraph::covariance_to_newest_analysed(const Map& map, KeyframeId from) const {
   const KeyframeId newest = with_newest_.size() - 1;
   const Matrix6d move =
@@ -161,7 +161,7 @@ bool SlamGraph::are_apart(KeyframeId a, KeyframeId b) const {
   return false;
 }
 
-// An edge beside those to the parents closes a circle with them: the two paths to the common ancestor.
+// An edge other than those to parents closes a cycle with them: the two paths to the common ancestor.
 void SlamGraph::hold_circle(const PoseGraphEdge& edge) {
   auto a = static_cast<std::size_t>(edge.from), b = static_cast<std::size_t>(edge.to);
   if (parents_[b].id == edge.from || parents_[a].id == edge.to) return;

@@ -12,56 +12,60 @@
 
 namespace lapis::slam {
 
-/// Edges between the key-frames of a map, and what follows from them: how well each pose is known. Every key-frame but
-/// the first has a parent, the older key-frame that its pose was found from; so the graph is connected.
+/// Edges between the key-frames of a map, and the covariances of their poses. Every key-frame but the first has a
+/// parent, the older key-frame relative to which its pose was found, so the graph is connected.
 class SlamGraph {
  public:
   SlamGraph() = default;
-  /// From what was saved.
+  /// Restores a saved graph; `covariances` are those of the key-frames' poses in the map.
   SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink> links,
             std::vector<geometry::Matrix6d> covariances);
 
-  /// The first key-frame: its pose is the gauge.
+  /// Adds the first key-frame, whose pose is the gauge.
   void add_root();
-  /// The next key-frame, with the edge to its parent, and how well it is known relative to that, by this edge and
-  /// others beside it.
+  /// Adds the next key-frame with the edge to its parent. `covariance` is that of its pose relative to the parent
+  /// (right perturbation), by this edge and others beside it.
   void add_keyframe(const PoseGraphEdge& edge, const geometry::Matrix6d& covariance);
   void add_keyframe(const PoseGraphEdge& edge) { add_keyframe(edge, edge.information.inverse()); }
   void add_edge(const PoseGraphEdge& edge) { edges_.push_back(edge); }
   void add_link(const KeyframeLink& link) { links_.push_back(link); }
 
-  /// Visual edges are what the local map says: those of key-frames that bundle adjustment has moved follow.
+  /// Recomputes the edges of vision and surfaces at key-frames that bundle adjustment has moved, from the poses in the
+  /// map.
   void follow(const Map& map, const std::vector<KeyframeId>& moved);
-  /// Covariance of T_from_to by the parents' edges alone, as if no loop were closed: an upper bound.
+  /// Covariance of T_from_to by the edges to parents alone, as if no loop were closed: an upper bound.
   geometry::Matrix6d chain_covariance(const Map& map, KeyframeId from, KeyframeId to) const;
-  /// Covariance of T_from_to: of the parents' edges alone, or of all edges of the graph as the last marginals knew it
-  /// and the parents' edges from the newest key-frame that they knew; whichever is surer of the position.
+  /// Covariance of T_from_to: either by the edges to parents alone, or by all edges of the graph as of the last
+  /// marginals, continued along the edges to parents from the newest key-frame in these; the one with the smaller sigma
+  /// of position.
   geometry::Matrix6d relative_covariance(const Map& map, KeyframeId from, KeyframeId to) const;
-  /// Moves key-frames and landmarks of the map; younger key-frames follow their parents. Edges that turned out to be
-  /// outliers are removed.
+  /// Moves the key-frames and landmarks of the map; key-frames younger than the correction follow their parents.
+  /// Removes loop closures that turned out to be outliers.
   void apply(const GraphCorrection& correction, Map& map);
-  /// Of a snapshot of this graph, with its weights; younger key-frames are known by what they hang on.
+  /// Takes over the marginals of a snapshot of this graph, computed with its weights; the covariance of a younger
+  /// key-frame is that of its parent compounded with that of the edge between them.
   void learn(const Map& map, const GraphMarginals& marginals);
-  /// How many key-frames, the oldest ones, the last marginals knew.
+  /// Number of key-frames, the oldest ones, in the last marginals.
   std::size_t analysed() const { return with_newest_.size(); }
 
   const std::vector<PoseGraphEdge>& edges() const { return edges_; }
-  /// Of the edges, by the last correction, in (0, 1]: odometry that loops contradict counts for less.
+  /// Weight of each edge after the last correction, in (0, 1]: odometry that loops contradict counts for less.
   std::vector<double> weights() const;
   const std::vector<geometry::Matrix6d>& covariances() const { return covariances_; }
   std::size_t count(EdgeType type) const;
-  /// Whether the key-frame hangs on odometry alone: no vision or surface ties it to another one, and no optimisation
-  /// has known a circle of edges that it lies on.
+  /// Whether odometry alone connects the key-frame: neither vision nor surfaces tie it to another one, and no
+  /// optimisation has included a cycle of edges through it.
   bool is_drifting(KeyframeId id) const {
     const Parent& parent = parents_[static_cast<std::size_t>(id)];
     return parent.is_bridge && !parent.has_child;
   }
-  /// Whether on the path of edges between two key-frames there is one of odometry alone that nothing has corrected.
+  /// Whether the path between two key-frames along parents contains an edge of odometry alone that nothing has
+  /// corrected.
   bool are_apart(KeyframeId a, KeyframeId b) const;
-  /// Loop closures that were accepted, and found to be outliers later.
+  /// Number of loop closures that were accepted and later found to be outliers.
   std::size_t loops_removed() const { return loops_removed_; }
   const std::vector<KeyframeLink>& links() const { return links_; }
-  /// Of the key-frame's pose in the map.
+  /// Covariance of the key-frame's pose in the map.
   const geometry::Matrix6d& covariance(KeyframeId id) const { return covariances_[static_cast<std::size_t>(id)]; }
   PoseGraphSnapshot snapshot(const Map& map, std::uint64_t version) const;
 
@@ -69,18 +73,18 @@ class SlamGraph {
   struct Parent {
     KeyframeId id = 0;
     geometry::Matrix6d covariance = geometry::Matrix6d::Zero();  // of T_parent_keyframe
-    bool is_bridge = false;  // the edge is of odometry, and no optimisation has known a circle that it lies on
-    bool has_child = false;  // by vision or surfaces
+    bool is_bridge = false;  // the edge is of odometry, and no optimisation has included a cycle through it
+    bool has_child = false;  // a younger key-frame by vision or surfaces
   };
   void hold_circle(const PoseGraphEdge& edge);
   geometry::Matrix6d covariance_to_newest_analysed(const Map& map, KeyframeId from) const;
 
   std::vector<PoseGraphEdge> edges_;
-  std::vector<double> weights_;  // of the edges that the last correction knew
+  std::vector<double> weights_;  // of the edges in the last correction
   std::vector<KeyframeLink> links_;
   std::vector<Parent> parents_;                  // of each key-frame; the first is its own
   std::vector<geometry::Matrix6d> covariances_;  // of each key-frame's pose in the map
-  std::vector<geometry::Matrix6d> with_newest_;  // of each key-frame with the newest one that marginals knew
+  std::vector<geometry::Matrix6d> with_newest_;  // cross-covariances with the newest key-frame in the last marginals
   std::size_t loops_removed_ = 0;
 };
 

@@ -12,11 +12,11 @@ namespace {
 using geometry::Matrix6d;
 using geometry::Pose;
 
-// A key-frame has up to four edges that use an observation of its (two along the path, a pair of loops), where a chain
-// has two: docs/decisions/0025.
+// Up to four edges use an observation of a key-frame (two along the path, a pair of loops), where in a chain two do:
+// docs/decisions/0025.
 constexpr double kLoopShare = 0.5;
-// Squared Mahalanobis distance of a loop from what the graph says: 99.9 % of six degrees of freedom. What is optimised
-// has a stricter one (graduated_weights.hpp).
+// Bound on the squared Mahalanobis distance of a loop from the graph: 99.9 % quantile of six degrees of freedom. The
+// optimiser has a stricter one (graduated_weights.hpp).
 constexpr double kPlausible = 22.46;
 
 double path_m(const Map& map, KeyframeId from, KeyframeId to) {
@@ -65,7 +65,7 @@ std::vector<PoseGraphEdge> LoopDetector::add(const Map& map, const SlamGraph& gr
   return loops;
 }
 
-// By appearance, and the one that the map itself says is seen again.
+// Candidates by appearance, and the nearest key-frame according to the map.
 std::vector<LoopDetector::Candidate> LoopDetector::candidates(const Map& map, const Frame& frame, KeyframeId id) const {
   std::vector<Candidate> found;
   const auto gap = static_cast<KeyframeId>(config_.loop.min_gap);
@@ -112,7 +112,7 @@ std::optional<PoseGraphEdge> LoopDetector::verify(const Map& map, const SlamGrap
   return std::nullopt;
 }
 
-// Both loops together with the map's own view of the key-frames between form a circle, which must close.
+// The two loops and the map's relative poses between their key-frames form a cycle, which must close.
 bool LoopDetector::agrees(const Map& map, const PoseGraphEdge& earlier, const PoseGraphEdge& later) const {
   const auto T_map = [&](KeyframeId id) { return map.keyframe(id).T_map_camera; };
   const Pose T_expected = T_map(later.from).inverse() * T_map(earlier.from) * earlier.T_from_to *

@@ -7,17 +7,17 @@
 namespace lapis::slam {
 namespace {
 
-constexpr std::uint32_t kSeed = 20241;   // any: the sampled bits are a property of the method
-constexpr std::size_t kCommonWord = 16;  // votes of words that fewer entries have always count
-constexpr double kCommonShare = 0.25;    // of the key-frames: a word with more entries says nothing
-constexpr KeyframeId kNeighbours = 2;    // in time, of a better candidate
+constexpr std::uint32_t kSeed = 20241;   // arbitrary, but fixed: the sampled bits are a property of the method
+constexpr std::size_t kCommonWord = 16;  // words with at most this many entries always count
+constexpr double kCommonShare = 0.25;    // of the key-frames: a word with more entries is ignored
+constexpr KeyframeId kNeighbours = 2;    // distance in time of key-frames of which only the best is returned
 
 bool is_near(KeyframeId a, KeyframeId b) { return (a > b ? a - b : b - a) <= kNeighbours; }
 
 }  // namespace
 
 PlaceIndex::PlaceIndex() : words_(kTables << kBits) {
-  std::mt19937 engine(kSeed);  // the standard fixes its numbers
+  std::mt19937 engine(kSeed);  // the C++ standard fixes its numbers
   for (auto& table : bits_) {
     for (auto& bit : table) bit = static_cast<std::uint8_t>(engine() % (8 * sizeof(Descriptor)));
   }

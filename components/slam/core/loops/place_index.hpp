@@ -13,7 +13,7 @@ namespace lapis::slam {
 
 /// Finds key-frames that show what a frame shows, by votes of their binary descriptors: locality-sensitive hashing by
 /// sampled bits (Gionis, Indyk, Motwani, VLDB 1999), each vote weighted with the rarity of its word (inverse document
-/// frequency; Sivic, Zisserman, ICCV 2003). Grows on-line, needs no vocabulary, is the same in every run.
+/// frequency; Sivic, Zisserman, ICCV 2003). It grows on-line, needs no vocabulary, and is the same in every run.
 class PlaceIndex {
  public:
   struct Candidate {
@@ -22,10 +22,10 @@ class PlaceIndex {
   };
 
   PlaceIndex();
-  /// Adds a key-frame; ids come in ascending order. Only features with depth count: the others show no landmark.
+  /// Adds a key-frame; ids come in ascending order. Features without depth do not count: they show no landmark.
   void add(KeyframeId id, std::span<const Feature> features);
-  /// The key-frames below `before` that are most similar, best first, at most `most`. Of neighbours in time only the
-  /// best.
+  /// The most similar key-frames with ids below `before`, best first, at most `most`. Of key-frames that are neighbours
+  /// in time, only the best one.
   std::vector<Candidate> query(std::span<const Feature> features, KeyframeId before, std::size_t most) const;
 
   std::size_t size() const { return norms_.size(); }
@@ -37,7 +37,7 @@ class PlaceIndex {
 
   std::array<std::array<std::uint8_t, kBits>, kTables> bits_{};
   std::vector<std::vector<std::uint32_t>> words_;  // key-frames by table and word, ascending
-  std::vector<double> norms_;                      // of each key-frame: root of its number of features
+  std::vector<double> norms_;                      // of each key-frame: root of its number of features with depth
 };
 
 }  // namespace lapis::slam

@@ -136,7 +136,7 @@ bool Relocalizer::sees_through_walls(const Situation& now, const TrackOutcome& o
   return surfaces_.track(now.map, now.frame, outcome.reference, {T_map_camera, covariance}).is_contradicted;
 }
 
-// The bounds are less than rooms that are copies are apart.
+// The bounds are less than the distance between rooms that are copies of each other.
 bool Relocalizer::may_be_slip(const Situation& now, const Pose& T_map_camera) const {
   constexpr double kMost_m = 1.0, kMost_rad = 0.5;
   const auto last = now.motion.last_stamp();

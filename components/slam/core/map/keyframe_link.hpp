@@ -5,7 +5,8 @@
 
 namespace lapis::slam {
 
-/// Relative pose of two key-frames as something else than features gives it: surfaces, odometry.
+/// Relative pose of two key-frames that does not come from features, but from surfaces or odometry. The information is
+/// that of a right perturbation (translation, rotation) [1/m^2, 1/rad^2].
 struct KeyframeLink {
   KeyframeId from = 0;
   KeyframeId to = 0;

@@ -8,7 +8,7 @@ namespace {
 using mapping::LandmarkTile;
 using mapping::TileIndex;
 
-// The landmarks that most key-frames see, and of those the oldest, as many as fit; ascending.
+// Chooses the landmarks that most key-frames see, the oldest first where equal, as many as fit; ascending.
 std::vector<LandmarkId> choose(const Map& map, std::vector<LandmarkId> ids, std::size_t max_bytes) {
   const auto observers = [&](LandmarkId id) { return map.landmark(id).observations.size(); };
   std::size_t all = 0;
@@ -28,7 +28,7 @@ std::vector<LandmarkId> choose(const Map& map, std::vector<LandmarkId> ids, std:
 void append_observers(const Landmark& landmark, LandmarkTile& tile) {
   const auto begin = static_cast<std::ptrdiff_t>(tile.observers.size());
   for (const Observation& observation : landmark.observations) {
-    tile.observers.push_back(static_cast<std::uint32_t>(observation.keyframe));  // an index: memory ends before 2^32
+    tile.observers.push_back(static_cast<std::uint32_t>(observation.keyframe));  // an index: memory is full before 2^32
   }
   std::sort(tile.observers.begin() + begin, tile.observers.end());
   tile.observer_ends.push_back(static_cast<std::uint32_t>(tile.observers.size()));
@@ -52,8 +52,8 @@ bool LandmarkTiles::is_same(const Sent& a, const Sent& b) const {
   return a.observers == b.observers && (a.p_map - b.p_map).cast<double>().norm() <= config_.tolerance_m;
 }
 
-/// Takes over what has changed; returns the tiles concerned with all their landmarks. Looking at every landmark takes a
-/// few milliseconds (lapis_slam_snapshot_benchmark), and no change can be missed.
+/// Takes over what has changed, and returns the tiles concerned with all their landmarks. It looks at every landmark,
+/// which takes a few milliseconds (lapis_slam_snapshot_benchmark), so that it cannot miss a change.
 LandmarkTiles::Members LandmarkTiles::follow(const Map& map) {
   Members members;
   sent_.resize(map.landmarks().size());

@@ -12,24 +12,24 @@
 namespace lapis::slam {
 
 struct LandmarkTileConfig {
-  double edge_m = 1.6;        ///< of a tile [0.1, 100]
-  double tolerance_m = 0.01;  ///< a landmark that has moved no further stays as it was sent [0, 1]
+  double edge_m = 1.6;        ///< edge of a tile [0.1, 100]
+  double tolerance_m = 0.01;  ///< a landmark that has moved by no more keeps the position that was sent [0, 1]
   std::size_t max_tile_bytes = mapping::kMaxLandmarkTileBytes;
 };
 
-/// The landmarks of a map as others have them: by cubes, each with the graph version at which it last changed. What is
-/// the same as before, or nearly, is not made again.
+/// The landmarks of a map as other processes have them: in cubic tiles, each with the graph version at which it last
+/// changed. Tiles that are the same as before, or nearly, are not made again.
 class LandmarkTiles {
  public:
   explicit LandmarkTiles(const LandmarkTileConfig& config) : config_(config) {}
 
-  /// Follows the map to `graph_version`, which grows from call to call, and returns the tiles that differ from those
-  /// returned before, ascending. Landmarks of the map are never fewer than at the call before. A tile that has lost its
-  /// last landmark is returned empty and continues to exist. Afterwards every landmark with observations is in the one
-  /// tile around the position that it was sent with, at most `tolerance_m` from where it is. Left out are positions
-  /// that are not finite or beyond mapping::kMaxLandmarkCoordinate_m.
+  /// Brings the tiles up to date with the map at `graph_version`, which grows from call to call. Returns the tiles that
+  /// differ from those returned before, ascending. The map never has fewer landmarks than at the previous call. A tile
+  /// that has lost its last landmark is returned empty and continues to exist. Afterwards every landmark with
+  /// observations is in exactly one tile: that of the position that was sent for it, which is at most `tolerance_m`
+  /// from its present one. Positions that are not finite or beyond mapping::kMaxLandmarkCoordinate_m are left out.
   std::vector<mapping::LandmarkTile> update(const Map& map, std::uint64_t graph_version);
-  /// After the last update; its session is left to the caller.
+  /// State after the last update; the caller sets its session.
   mapping::LandmarkState state() const;
 
  private:
@@ -38,9 +38,9 @@ class LandmarkTiles {
     bool is_in_tile = false;
     mapping::TileIndex tile;
     Eigen::Vector3f p_map = Eigen::Vector3f::Zero();
-    std::uint64_t observers = 0;  // sum of hashes
+    std::uint64_t observers = 0;  // sum of the hashes of its key-frames' ids
   };
-  // Landmarks of tiles, ascending.
+  // Landmarks of each tile, ascending.
   using Members = std::unordered_map<mapping::TileIndex, std::vector<LandmarkId>, mapping::GridIndexHash>;
 
   static Sent as_now(const Landmark& landmark);

@@ -49,7 +49,7 @@ void Map::set_pose(KeyframeId id, const geometry::Pose& T_map_camera) {
 void Map::move(const std::vector<geometry::Pose>& moves) {
   for (Keyframe& keyframe : keyframes_) {
     const geometry::Pose moved = moves[static_cast<std::size_t>(keyframe.id)] * keyframe.T_map_camera;
-    // Rounding would treble with every move that was computed from the pose itself.
+    // Normalises the rotation: its rounding error would treble with every move that was computed from the pose itself.
     keyframe.T_map_camera = geometry::make_pose(moved.translation(), Eigen::Quaterniond(moved.linear()));
   }
   for (Landmark& landmark : landmarks_) {

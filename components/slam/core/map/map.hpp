@@ -41,22 +41,22 @@ struct Keyframe {
   SharedArray<SurfaceSample> surface;  ///< in this key-frame's optical frame
 };
 
-/// Key-frames, landmarks and who sees what. A key-frame's id is its index; key-frames are never removed.
+/// Key-frames, landmarks and their observations. A key-frame's id is its index; key-frames are never removed.
 class Map {
  public:
   /// Adds a key-frame without landmarks; its id is set here and returned.
   KeyframeId add_keyframe(Keyframe keyframe);
   LandmarkId add_landmark(const Eigen::Vector3d& p_map, double finest_distance_m);
-  /// Links a free feature with a landmark that the key-frame does not show yet; false when either is taken.
+  /// Links a feature that shows no landmark yet with one that the key-frame does not show yet; false otherwise.
   bool add_observation(LandmarkId landmark, const Observation& observation);
-  /// Unlinks; a landmark without observations is dead and never comes back.
+  /// Removes the link; a landmark without observations is dead and never used again.
   void remove_observation(LandmarkId landmark, const Observation& observation);
 
   bool empty() const { return keyframes_.empty(); }
   const std::vector<Keyframe>& keyframes() const { return keyframes_; }
   const Keyframe& keyframe(KeyframeId id) const { return keyframes_[static_cast<std::size_t>(id)]; }
   const Landmark& landmark(LandmarkId id) const { return landmarks_[id]; }
-  /// All that ever were, by id; the dead ones have no observations.
+  /// All landmarks that ever existed, by id; the dead ones have no observations.
   const std::vector<Landmark>& landmarks() const { return landmarks_; }
   std::size_t landmark_count() const { return alive_; }
   void set_pose(KeyframeId id, const geometry::Pose& T_map_camera);
@@ -65,7 +65,8 @@ class Map {
   void move(const std::vector<geometry::Pose>& moves);
   void set_position(LandmarkId id, const Eigen::Vector3d& p_map) { landmarks_[id].p_map = p_map; }
 
-  /// Key-frames that share landmarks with `id`: most shared first, then the newest. Without `id` itself.
+  /// Key-frames that share landmarks with `id`, at most `most`: most shared first, then the newest. Without `id`
+  /// itself.
   std::vector<KeyframeId> covisible(KeyframeId id, std::size_t most) const;
   /// Landmarks that any of the key-frames shows, each once, ascending.
   std::vector<LandmarkId> landmarks_of(const std::vector<KeyframeId>& keyframes) const;

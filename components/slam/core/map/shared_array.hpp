@@ -7,8 +7,8 @@
 
 namespace lapis::slam {
 
-/// Array that never changes once it is made. Copies share it, so that a copy of the map takes milliseconds, and another
-/// thread may read the copy.
+/// Array that never changes once it is made. Copies share it, so that a copy of the map takes milliseconds and another
+/// thread may read it.
 template <class Value>
 class SharedArray {
  public:

@@ -16,9 +16,9 @@ using geometry::Pose;
 using geometry::Vector6d;
 
 constexpr double kPointHuber = 2.0;  // sigmas up to which an observation counts in full
-constexpr double kLinkHuber = 3.55;  // the same of a link: 95 % of 6 degrees of freedom
+constexpr double kLinkHuber = 3.55;  // the same for a link: 95 % quantile of 6 degrees of freedom
 
-// A pose as Ceres keeps it: x y z qx qy qz qw.
+// A pose as a parameter block of Ceres: x y z qx qy qz qw.
 using PoseBlock = std::array<double, 7>;
 using RowMajor37 = Eigen::Matrix<double, 3, 7, Eigen::RowMajor>;
 using RowMajor33 = Eigen::Matrix<double, 3, 3, Eigen::RowMajor>;

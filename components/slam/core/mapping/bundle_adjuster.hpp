@@ -15,7 +15,7 @@ struct BundleCamera {
   bool is_fixed = false;
 };
 
-/// Camera `camera` shows point `point` at a pixel, with a depth or without (0).
+/// Camera `camera` shows point `point` at a pixel, with a depth or without one (0).
 struct BundleObservation {
   std::size_t camera = 0;
   std::size_t point = 0;
@@ -24,7 +24,7 @@ struct BundleObservation {
   double depth_m = 0.0;                             ///< [m]
 };
 
-/// Known relative pose of two cameras; information of a right perturbation of T_from_to.
+/// Measured relative pose of two cameras; the information is that of a right perturbation of T_from_to.
 struct BundleLink {
   std::size_t from = 0;
   std::size_t to = 0;
@@ -47,12 +47,13 @@ struct BundleReport {
   int iterations = 0;
 };
 
-/// Minimises reprojection, depth and link errors (robust for observations) with Ceres, one thread, a fixed number of
-/// iterations at most. Observations of points behind their camera are left out. On failure nothing changes.
+/// Minimises the errors of reprojection, depth and links, all with a robust loss (Huber), by Ceres in one thread and in
+/// at most BundleConfig::max_iterations. Observations of points behind their camera are left out. On failure nothing
+/// changes.
 BundleReport adjust_bundle(const BundleConfig& config, const NoiseConfig& noise, BundleProblem& problem);
 
-/// Whitened residual of an observation and its Jacobians, row-major 3 x 6 by a right perturbation of T_map_camera and
-/// 3 x 3 by the point; either may be null. False when the point is not in front of the camera.
+/// Whitened residual (u, v, depth) of an observation and its Jacobians, 3 x 6 by a right perturbation of T_map_camera
+/// and 3 x 3 by the point; either may be null. False when the point is not in front of the camera.
 bool bundle_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
                      const BundleObservation& observation, const geometry::Pose& T_map_camera,
                      const Eigen::Vector3d& p_map, Eigen::Vector3d& residual, Eigen::Matrix<double, 3, 6>* by_pose,

@@ -34,7 +34,7 @@ void choose_landmarks(const SlamConfig& config, const Map& map, const std::vecto
   }
 }
 
-// Key-frames outside the window by the number of chosen landmarks that they see.
+// Adds as fixed the key-frames outside the window that see most of the chosen landmarks.
 void add_fixed_cameras(const SlamConfig& config, const Map& map, LocalMap& local) {
   std::map<KeyframeId, int> seen;
   for (const LandmarkId id : local.landmarks) {

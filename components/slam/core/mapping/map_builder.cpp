@@ -52,7 +52,7 @@ KeyframeId MapBuilder::add_keyframe(Map& map, const Frame& frame, const Pose& T_
   return map.add_keyframe(std::move(keyframe));
 }
 
-// A landmark for every feature with depth that shows none yet.
+// Adds a landmark for every feature with depth that shows none yet.
 void MapBuilder::add_landmarks(Map& map, KeyframeId id) const {
   for (std::size_t i = 0; i < map.keyframe(id).features.size(); ++i) {
     const Keyframe& keyframe = map.keyframe(id);
@@ -64,7 +64,7 @@ void MapBuilder::add_landmarks(Map& map, KeyframeId id) const {
   }
 }
 
-// As the frame was tracked: by vision or surfaces as they measured it, without what odometry added.
+// Edge to the reference key-frame as vision or surfaces measured it, without what odometry added; or of odometry alone.
 PoseGraphEdge MapBuilder::parent_edge(const FrameOutcome& outcome, KeyframeId id) const {
   const TrackingResult& result = outcome.result;
   if (!outcome.seen) {
@@ -76,8 +76,9 @@ PoseGraphEdge MapBuilder::parent_edge(const FrameOutcome& outcome, KeyframeId id
           alignment.T_reference_camera, edge_information(config_.pose_graph, alignment.information)};
 }
 
-// Odometry of wheels that slipped is left out: vision is sure of its pose, and odometry gives another one. But where
-// the path between is of odometry alone, it is that path which is wrong, and its circle has to close.
+// Adds the edge of odometry between successive key-frames. Odometry is left out where vision is sure of another pose:
+// the wheels have slipped. But where odometry alone connects the key-frames between, that stretch is what is wrong, and
+// this edge has to close its cycle.
 void MapBuilder::add_odometry_edge(const Model& model, KeyframeId from, KeyframeId to, const TrackOutcome& seen) {
   auto& [map, graph, motion] = model;
   const time::Time from_stamp = map.keyframe(from).stamp, to_stamp = map.keyframe(to).stamp;

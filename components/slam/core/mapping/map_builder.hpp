@@ -11,25 +11,27 @@
 
 namespace lapis::slam {
 
-/// What a key-frame changes.
+/// What a new key-frame changes.
 struct Model {
   Map& map;
   SlamGraph& graph;
   MotionModel& motion;
 };
 
-/// Makes key-frames of frames: features, surface, landmarks, edges of the pose graph, and the local bundle adjustment.
+/// Turns frames into key-frames: features, surface, landmarks, edges of the pose graph, and the local bundle
+/// adjustment.
 class MapBuilder {
  public:
-  /// @param saved_keyframes of a map that is resumed: their stamps are of another time, no odometry leads from them
+  /// @param saved_keyframes number of those of a resumed map: their stamps are of an earlier run, so no odometry leads
+  ///   from them
   explicit MapBuilder(const SlamConfig& config, std::size_t saved_keyframes = 0)
       : config_(config), saved_keyframes_(saved_keyframes) {}
 
-  /// The first key-frame.
+  /// Adds the first key-frame.
   KeyframeId begin(const Model& model, const Frame& frame, const geometry::Pose& T_map_camera) const;
-  /// A key-frame where the front end has found the frame.
+  /// Adds a key-frame at the pose that the front end has found for the frame.
   KeyframeId extend(const Model& model, const Frame& frame, const FrameOutcome& outcome);
-  /// Motions of odometry between key-frames that were left out (OdometryConfig::max_disagreement).
+  /// Number of motions of odometry between key-frames that were left out as slip (OdometryConfig::max_disagreement).
   std::size_t slip_count() const { return slips_; }
 
  private:

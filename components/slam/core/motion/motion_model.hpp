@@ -10,51 +10,52 @@
 
 namespace lapis::slam {
 
-/// Where a camera is relative to a key-frame, and how well that is known (right perturbation).
+/// Pose of a camera relative to a key-frame, with its covariance (right perturbation; translation, rotation).
 struct RelativeCamera {
   KeyframeId reference = 0;
   geometry::Pose T_reference_camera = geometry::Pose::Identity();
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
 };
 
-/// Guesses the camera's pose from the last one that was tracked: by wheel odometry where there is any, else by constant
-/// velocity. Remembers poses relative to a key-frame, so that they follow when key-frames move.
+/// Predicts the camera's pose from the last one that was found: by wheel odometry where there is any, else by constant
+/// velocity. It keeps poses relative to a key-frame, so that they follow when key-frames move.
 class MotionModel {
  public:
-  /// `T_base_camera`: pose of the camera on the robot, for odometry.
+  /// `max_gap_s`: longest time over which velocity is taken as constant; `T_base_camera`: pose of the camera on the
+  /// robot, for odometry.
   MotionModel(double max_gap_s, const OdometryConfig& odometry, const geometry::Pose& T_base_camera)
       : max_gap_s_(max_gap_s), odometry_(odometry), wheels_(odometry), T_base_camera_(T_base_camera) {}
 
   /// See OdometryTrack::add.
   bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base) { return odometry_.add(stamp, T_odom_base); }
-  /// The pose of a frame was found.
+  /// Call it when the pose of a frame was found.
   void update(const Map& map, time::Time stamp, const RelativeCamera& camera);
-  /// T_map_camera that was found last, and when; none before the first update.
+  /// T_map_camera that was found last, and its stamp; nothing before the first update.
   std::optional<std::pair<time::Time, geometry::Pose>> last_pose(const Map& map) const;
-  /// Where motion leads, and how surely: by odometry as dead_reckon says; by constant velocity with a standard
-  /// deviation of as much as the camera has moved since. None as in predict.
+  /// Pose that motion predicts, with its covariance: that of dead_reckon; or by constant velocity, with a standard
+  /// deviation as large as the motion since the last pose. Nothing in the same cases as predict.
   struct Expected {
     geometry::Pose T_map_camera = geometry::Pose::Identity();
     geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   };
   std::optional<Expected> expect(const Map& map, time::Time stamp) const;
-  /// T_map_camera at a stamp; none before the first update and when neither odometry nor velocity reaches so far.
+  /// T_map_camera at a stamp; nothing before the first update and when neither odometry nor velocity reaches that far.
   std::optional<geometry::Pose> predict(const Map& map, time::Time stamp) const;
-  /// Where odometry alone says the camera is; the covariance grows with the path since the last update.
+  /// Pose by odometry alone; its covariance grows with the path since the last update.
   std::optional<RelativeCamera> dead_reckon(time::Time stamp) const;
   /// Motion of the camera between two stamps by odometry, with the covariance in the tangent of the later pose.
   std::optional<OdometryMotion> odometry_between(time::Time from, time::Time to) const;
   /// See OdometryTrack::pose_at.
   std::optional<geometry::Pose> odometry_at(time::Time stamp) const { return odometry_.pose_at(stamp); }
-  /// Calibrates the wheels by a motion of the camera that vision knows, with its covariance.
+  /// Calibrates the wheels with a motion of the camera that vision has measured, and its covariance.
   void learn_wheels(time::Time from, time::Time to, const geometry::Pose& T_from_to,
                     const geometry::Matrix6d& covariance);
-  /// Continues with what was learnt in an earlier run.
+  /// Continues with the calibration of an earlier run.
   void resume_wheels(const WheelCalibration& wheels);
   const WheelCalibration& wheels() const { return wheels_.belief(); }
-  /// When a pose was found last.
+  /// Stamp of the pose that was found last.
   std::optional<time::Time> last_stamp() const { return last_ ? std::optional(last_->stamp) : std::nullopt; }
-  /// Odometry before `stamp` will not be asked for.
+  /// Odometry before `stamp` will not be needed any more.
   void forget_before(time::Time stamp) { odometry_.forget_before(stamp); }
 
  private:

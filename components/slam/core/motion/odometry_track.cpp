@@ -15,7 +15,7 @@ using geometry::Matrix6d;
 using geometry::Pose;
 
 // Random walk with the path and the turn [after Thrun, Burgard, Fox, Probabilistic Robotics, 5.4], and a share of both
-// for what the wheels' size and distance are not known to.
+// for the uncertainty of the wheels' size and distance.
 Matrix6d motion_covariance(const OdometryConfig& c, const WheelCalibration& wheels, double path_m, double turned_rad) {
   const double noise = squared(wheels.noise);
   const double along = noise * squared(c.distance_sigma) * path_m + wheels.distance_variance * squared(path_m);
@@ -23,7 +23,7 @@ Matrix6d motion_covariance(const OdometryConfig& c, const WheelCalibration& whee
                      wheels.turn_variance * squared(turned_rad);
   const double least = squared(c.least_sigma);
   Matrix6d covariance = Matrix6d::Zero();
-  // Sideways a robot errs because its heading does, on average half of the path.
+  // A robot errs sideways because its heading errs, on average over half of the path.
   covariance.diagonal() << along + least, 0.25 * yaw * squared(path_m) + least,
       squared(c.vertical_sigma) * path_m + least, squared(c.tilt_sigma) * path_m + least,
       squared(c.tilt_sigma) * path_m + least, yaw + least;
@@ -59,7 +59,7 @@ bool OdometryTrack::add(time::Time stamp, const Pose& T_odom_base) {
   return true;
 }
 
-// Whether a robot can have come there from the newest reading.
+// Whether a robot can have moved there from the newest reading.
 bool OdometryTrack::continues(time::Time stamp, const Pose& T_odom_base) const {
   const double elapsed_s = (stamp - readings_.back().stamp).seconds();
   const Pose step = readings_.back().T_odom_base.inverse() * T_odom_base;

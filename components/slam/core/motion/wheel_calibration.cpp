@@ -21,7 +21,7 @@ WheelCalibrator::WheelCalibrator(const OdometryConfig& config) : config_(config)
 }
 
 void WheelCalibrator::resume(const WheelCalibration& saved) {
-  constexpr double kForgotten = 0.25;  // of the prior's sigma
+  constexpr double kForgotten = 0.25;  // added sigma, as a share of the prior's
   belief_ = saved;
   belief_.distance_variance += squared(kForgotten * config_.scale_sigma);
   belief_.turn_variance += squared(kForgotten * config_.scale_sigma);

@@ -5,7 +5,7 @@
 
 namespace lapis::slam {
 
-/// What the key-frame rule looks at.
+/// Input of the key-frame rule.
 struct KeyframeEvidence {
   int frames_since_keyframe = 0;
   int reference_landmarks = 0;  ///< landmarks of the reference key-frame

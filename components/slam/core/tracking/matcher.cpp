@@ -18,7 +18,7 @@ struct Candidate {
   int distance = 0;
 };
 
-// Where and how large a landmark should show.
+// Where, and on which level, a landmark should show.
 struct Projection {
   Eigen::Vector2d pixel;
   double depth_m = 0.0;
@@ -38,7 +38,7 @@ std::optional<Projection> project(const SlamConfig& config, const geometry::Pinh
   return projection;
 }
 
-// Wide, because the prediction is uncertain: keeps only features of other surfaces out.
+// The gate is wide, because the prediction is uncertain: it only keeps features of other surfaces out.
 bool depth_agrees(const Feature& feature, double predicted_m) {
   return feature.depth_m <= 0.0 || std::abs(feature.depth_m - predicted_m) < 0.2 + 0.1 * predicted_m;
 }

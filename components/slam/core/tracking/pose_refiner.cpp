@@ -19,7 +19,7 @@ using geometry::Vector6d;
 constexpr double kHuber = 2.0;                          // sigmas up to which an error counts in full
 constexpr double kPixelGate = 5.99, kDepthGate = 6.63;  // chi-square, 95 % of 2 and 99 % of 1 degrees of freedom
 
-// A round of the refinement. The first ones only have to bring the last one close: every `stride`th sample will do.
+// A round of the refinement. The first ones only have to bring the pose close, so every `stride`th sample is enough.
 struct Round {
   double gate_share;  // of SurfaceConfig::max_distance_m
   std::size_t stride;
@@ -38,7 +38,7 @@ Vector6d by_pose(const Eigen::Vector3d& by_point, const Eigen::Vector3d& p_camer
   return Vector6d{-by_point.x(), -by_point.y(), -by_point.z(), turn.x(), turn.y(), turn.z()};
 }
 
-// Normal equations of one linearisation; points and surface apart, because their residual variances differ.
+// Normal equations of one linearisation; points and surface are separate, because their residual variances differ.
 struct Term {
   Matrix6d hessian = Matrix6d::Zero();
   Vector6d gradient = Vector6d::Zero();
@@ -101,8 +101,8 @@ class Refinement {
     }
   }
 
-  // A gate narrower than the noise would keep what confirms the pose that it starts from; one that is wider than it has
-  // to be takes samples for seen whose place something else has taken.
+  // A gate narrower than the noise would keep only what confirms the initial pose. A gate wider than necessary would
+  // accept samples where something else has taken their place.
   void choose_surface_gate() {
     constexpr std::size_t kStride = 4;
     constexpr double kSigmas = 3.0, kPerMedian = 1.4826;  // sigma of a normal distribution by its median error
@@ -122,7 +122,7 @@ class Refinement {
     surface_gate_ = kSigmas * std::min(1.0, kPerMedian * *middle);
   }
 
-  // After the last round.
+  // Result after the last round.
   Alignment summarise() const;
 
  private:
@@ -135,7 +135,7 @@ class Refinement {
     return result;
   }
 
-  // To first order: the tangent at the prior and that at T are taken for the same, as they are a step apart.
+  // To first order: the tangents at the prior and at T are taken as the same, because they are only a step apart.
   void add_prior(const Pose& T, Term& term) const {
     const Vector6d error = geometry::se3_log(problem_.prior->T_reference_camera.inverse() * T);
     term.hessian = problem_.prior->information;
@@ -174,7 +174,7 @@ class Refinement {
       const double error = std::abs(residual->distance_m) * per_m;
       const double weight = share * huber_weight(error);
       term.add(residual->jacobian, residual->distance_m, weight * per_m * per_m);
-      // What counts is the gain over the gate's cost, so that dropping a sample never pays.
+      // The cost is relative to that of the gate, so that dropping a sample never pays.
       term.cost += share * (huber_cost(error) - huber_cost(gate_m * per_m));
       result.surface_squares_m2 += residual->distance_m * residual->distance_m;
       ++term.residuals;
@@ -201,10 +201,10 @@ Matrix6d scaled_information(const Term& term, double effective_residuals) {
 
 Alignment Refinement::summarise() const {
   const Pose T_camera_reference = T_.inverse();
-  Term points;  // once more, because the inliers have changed
+  Term points;  // computed again, because the inliers have changed
   add_points(T_camera_reference, points);
   Alignment result;
-  // Products of many rotations drift from orthonormal, and what inverts by transposing drifts faster.
+  // Products of many rotations drift from orthonormality, and inversion by transposition makes it worse.
   result.T_reference_camera = geometry::make_pose(T_.translation(), Eigen::Quaterniond(T_.linear()));
   const double samples = config_.surface.weight * last_.surface.residuals;
   result.surface_information = scaled_information(last_.surface, samples);
@@ -252,7 +252,7 @@ std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const 
   const double column = camera.fx * p_sample.x() * per_z + camera.cx + 0.5;
   const double row = camera.fy * p_sample.y() * per_z + camera.cy + 0.5;
   if (!(column >= 0.0 && row >= 0.0 && column < depth.width && row < depth.height)) return std::nullopt;
-  const int u = static_cast<int>(column);  // rounded: half a pixel was added
+  const int u = static_cast<int>(column);  // rounding: half a pixel was added
   const int v = static_cast<int>(row);
   const double depth_m = depth(u, v);
   if (!is_depth(noise, depth_m)) return std::nullopt;
@@ -262,7 +262,7 @@ std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const 
   residual.distance_m = normal.dot(p - p_sample);
   // A depth error moves the point along its ray (p / z); the plane distance sees the part along the normal.
   residual.sigma_m = depth_sigma(noise, depth_m) * std::max(0.2, std::abs(normal.dot(p)) / depth_m);
-  // Here the frame's point moves and the sample stays: the opposite sign of a point known in the reference.
+  // Here the frame's point moves and the sample stays: the sign is opposite to that of a point known in the reference.
   residual.jacobian = -by_pose(normal, p);
   return residual;
 }

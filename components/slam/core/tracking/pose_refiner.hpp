@@ -21,36 +21,36 @@ struct PointConstraint {
   double sigma_px = 1.0;                                  ///< of the pixel [px]
 };
 
-/// What is known of the pose beforehand.
+/// Prior of the pose.
 struct PosePrior {
   geometry::Pose T_reference_camera = geometry::Pose::Identity();
   geometry::Matrix6d information = geometry::Matrix6d::Zero();  ///< right perturbation
 };
 
-/// Everything that a frame says about its pose relative to a reference frame. The spans and the image must outlive it.
+/// What a frame measures of its pose relative to a reference frame. The spans and the image must outlive it.
 struct AlignmentProblem {
   geometry::PinholeCamera camera;
   std::span<const PointConstraint> points;
   std::span<const SurfaceSample> surface;         ///< in the reference frame
   const geometry::DepthImage* depth = nullptr;    ///< of the frame; needed when there are surface samples
-  std::optional<PosePrior> prior = std::nullopt;  ///< holds the directions that the measurements leave open
+  std::optional<PosePrior> prior = std::nullopt;  ///< determines the directions that the measurements leave open
 };
 
 /// Refined pose and how well it explains the measurements.
 struct Alignment {
   geometry::Pose T_reference_camera = geometry::Pose::Identity();
-  geometry::Matrix6d information = geometry::Matrix6d::Zero();  ///< right perturbation, not yet bounded; no prior
+  geometry::Matrix6d information = geometry::Matrix6d::Zero();  ///< right perturbation, not yet bounded; without prior
   geometry::Matrix6d surface_information = geometry::Matrix6d::Zero();  ///< the surface's share of `information`
   std::vector<bool> is_inlier;                                          ///< of each point
   int inliers = 0;
   double rms_px = 0.0;            ///< reprojection error of the inliers
   int surface_matches = 0;        ///< samples that found their surface again
-  double surface_rms_m = 0.0;     ///< plane distance of these
-  double surface_variance = 1.0;  ///< of the unit weight: by it `surface_information` differs from the Hessian
+  double surface_rms_m = 0.0;     ///< RMS plane distance of these
+  double surface_variance = 1.0;  ///< of unit weight: `surface_information` is the Hessian divided by it
 };
 
-/// Whitened residual (u, v, depth) of a point and its Jacobian by a right perturbation of T_reference_camera, which is
-/// given as its inverse. The depth row is zero without a measured depth. None when the point is not in front of the
+/// Whitened residual (u, v, depth) of a point and its Jacobian by a right perturbation of T_reference_camera, whose
+/// inverse is given. The depth row is zero without a measured depth. Nothing when the point is not in front of the
 /// camera.
 struct PointResidual {
   Eigen::Vector3d value = Eigen::Vector3d::Zero();
@@ -59,9 +59,9 @@ struct PointResidual {
 std::optional<PointResidual> point_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
                                             const PointConstraint& point, const geometry::Pose& T_camera_reference);
 
-/// Distance [m] from the plane of a sample to the point that the frame sees at the sample's pixel, and its Jacobian by
-/// a right perturbation of T_reference_camera for this pair of points (point-to-plane alignment [Chen 1991] with
-/// projective association [Blais 1995]). None when the frame has no depth there.
+/// Distance [m] from the plane of a sample to the point that the frame sees at the sample's pixel, positive towards the
+/// camera, and its Jacobian by a right perturbation of T_reference_camera for this pair of points (point-to-plane
+/// alignment [Chen 1991] with projective association [Blais 1995]). Nothing when the frame has no depth there.
 struct SurfaceResidual {
   double distance_m = 0.0;
   double sigma_m = 1.0;  ///< of the distance, from the depth noise

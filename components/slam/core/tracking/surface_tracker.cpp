@@ -14,25 +14,25 @@ using geometry::Matrix6d;
 using geometry::Pose;
 using geometry::Vector6d;
 
-constexpr std::size_t kNewest = 5;  // key-frames that are looked at, besides those that share landmarks
+constexpr std::size_t kNewest = 5;  // newest key-frames that are considered, besides those that share landmarks
 constexpr double kMostAway_m = 2.0, kMostTurned_rad = 0.9;
-constexpr double kKeyframeSigma_m = 0.003, kKeyframeSigma_rad = 0.002;  // of key-frames near each other
-// A view contradicts the map when it sees through so large a share of what should be in view, by more than the margin,
-// and sees little of it.
+constexpr double kKeyframeSigma_m = 0.003, kKeyframeSigma_rad = 0.002;  // of the relative pose of near key-frames
+// A view contradicts the map when it sees through more than kMostSeenThrough of what should be in view, by more than
+// kMargin_m, and sees less than kLittleSeen of it. Surfaces from kLevelCosine on are floors and ceilings.
 constexpr double kMostSeenThrough = 0.25, kLittleSeen = 0.3, kMargin_m = 0.3, kLevelCosine = 0.9;
-constexpr double kMetresPerRadian = 1.5;  // how far turning counts, when key-frames are compared
+constexpr double kMetresPerRadian = 1.5;  // weight of rotation in the distance of key-frames
 
-/// Directions of the tangent that the measurements know, and their information. Coordinates a in these directions are
-/// those of the step basis * a; the coordinates of a step are dual * step.
+/// Directions of the tangent that the measurements determine, and their information. Coordinates a in these directions
+/// stand for the step basis * a; the coordinates of a step are dual * step.
 struct KnownDirections {
   Eigen::Matrix<double, 6, Eigen::Dynamic> basis;
   Eigen::Matrix<double, Eigen::Dynamic, 6> dual;
   Eigen::VectorXd information;
 };
 
-/// Eigenvalues of the Hessian for a rotation in units of `lever_m`, over that of a sample whose normal lies in the
-/// direction: the mean of the squared cosine. Below `least_share` a direction is left open [after Zhang, Kaess, Singh,
-/// ICRA 2016]: noise of the normals alone gives some.
+/// Eigenvalues of the Hessian with rotations in units of `lever_m`, relative to that of samples whose normals all have
+/// the direction: this is the mean squared cosine. Below `least_share` a direction is left open [after Zhang, Kaess,
+/// Singh, ICRA 2016], because noise of the normals alone gives some information.
 KnownDirections known_directions(const Matrix6d& information, double lever_m, double least_share) {
   Vector6d units;
   units << 1, 1, 1, 1 / lever_m, 1 / lever_m, 1 / lever_m;
@@ -164,7 +164,8 @@ TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeI
     outcome.reason = "the surfaces tell no direction";
     return outcome;
   }
-  // At the optimum the pull of the prior and that of the surfaces are equal: where the surfaces alone would lead.
+  // At the optimum the pull of the prior equals that of the surfaces; this step leads to where the surfaces alone
+  // would.
   const Vector6d pulled = geometry::se3_log(T_expected.inverse() * alignment.T_reference_camera);
   const Eigen::VectorXd pull = known.basis.transpose() * (prior * pulled) / alignment.surface_variance;
   const Vector6d onwards = known.basis * pull.cwiseQuotient(known.information);
@@ -172,7 +173,7 @@ TrackOutcome SurfaceTracker::track(const Map& map, const Frame& frame, KeyframeI
   const Vector6d difference = geometry::se3_log(T_expected.inverse() * T_surfaces);
   const Eigen::VectorXd error = known.dual * difference;
   Eigen::MatrixXd covariance = known.dual * expected.covariance * known.dual.transpose();
-  Vector6d between_keyframes;  // what motion knows nothing of: the samples are of several key-frames
+  Vector6d between_keyframes;  // not in motion's covariance: the samples come from several key-frames
   between_keyframes << Eigen::Vector3d::Constant(kKeyframeSigma_m * kKeyframeSigma_m),
       Eigen::Vector3d::Constant(kKeyframeSigma_rad * kKeyframeSigma_rad);
   covariance += known.dual * between_keyframes.asDiagonal() * known.dual.transpose();

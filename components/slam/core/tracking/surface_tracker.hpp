@@ -11,18 +11,18 @@
 namespace lapis::slam {
 
 /// Finds the pose of frames that show too few features: by the surfaces of near key-frames (point to plane), starting
-/// where motion leads. Directions that the surfaces leave open, such as the path along a corridor, are those of
-/// motion, and get no information.
+/// at the pose that motion predicts. Directions that the surfaces leave open, such as the path along a corridor, keep
+/// the prediction and get no information.
 class SurfaceTracker {
  public:
   explicit SurfaceTracker(const SlamConfig& config) : config_(config) {}
 
-  /// @param reference of the frame before; its neighbours, and the newest key-frames, are looked at
-  /// @param expected where motion leads, with its covariance
-  /// @return as for vision, without matches: T_reference_camera is what the surfaces say in the directions that they
-  ///   know, and what was expected in the others; `alignment.information` is zero there. Not tracked, with the reason,
-  ///   when too little of the surfaces is seen again, no direction is known, or surfaces and motion contradict each
-  ///   other (SurfaceConfig::max_disagreement, or the frame sees through the surfaces)
+  /// @param reference that of the previous frame; its covisible key-frames and the newest ones are considered
+  /// @param expected pose that motion predicts, with its covariance
+  /// @return as for vision, without matches: T_reference_camera follows the surfaces in the directions that they
+  ///   determine, and the prediction in the others, where `alignment.information` is zero. Not tracked, with the
+  ///   reason, when too little of the surfaces is seen again, no direction is determined, or surfaces and motion
+  ///   contradict each other (SurfaceConfig::max_disagreement, or the frame sees through the surfaces)
   TrackOutcome track(const Map& map, const Frame& frame, KeyframeId reference,
                      const MotionModel::Expected& expected) const;
 
@@ -33,14 +33,14 @@ class SurfaceTracker {
   };
   std::vector<KeyframeId> near_keyframes(const Map& map, KeyframeId reference,
                                          const geometry::Pose& T_map_camera) const;
-  /// What becomes of the samples that are in view. `seen_through`: the frame sees what is behind them, beyond all
-  /// doubt about the pose; `differs`: it sees something else, for example what is before them.
+  /// What the frame shows of the samples that are in view. `seen_through`: it sees what is behind them, by more than
+  /// the uncertainty of the pose explains; `differs`: it sees something else, for example something in front of them.
   struct Sight {
     int seen = 0, seen_through = 0, differs = 0;
     int in_view() const { return seen + seen_through + differs; }
   };
-  /// Whether the walls and furniture that should be in view are not there. Floors and ceilings, which are the same
-  /// everywhere, do not count.
+  /// Whether walls and furniture that should be in view are missing. Floors and ceilings do not count, because they are
+  /// the same everywhere.
   bool is_contradicted(const AlignmentProblem& problem, const geometry::Pose& T_reference_camera,
                        const geometry::Matrix6d& covariance, const Eigen::Vector3d& up_reference) const;
   Sight look(const AlignmentProblem& problem, const geometry::Pose& T_reference_camera,

@@ -28,14 +28,14 @@ class Tracker {
  public:
   explicit Tracker(const SlamConfig& config) : config_(config) {}
 
-  /// Call after every change of the map: renews the local map around `reference`.
+  /// Renews the local map around `reference`; call it after every change of the map.
   void set_reference(const Map& map, KeyframeId reference);
   /// Tries, in this order, until one is convincing: projection with the predicted pose, the same with a wider search,
   /// brute force with the reference key-frame, brute force with the newest key-frames.
   TrackOutcome track(const Map& map, const Frame& frame, const std::optional<geometry::Pose>& predicted) const;
-  /// Pose of a frame relative to a key-frame anywhere in the map, by brute force; where the pose is about known
-  /// (`T_map_camera`), by projection. No neighbour is tried. By features alone: surfaces that are seen from metres
-  /// apart are paired with others that are parallel, which errs by centimetres and does not show in the residuals.
+  /// Pose of a frame relative to a key-frame anywhere in the map: by brute force or, where the pose is roughly known
+  /// (`T_map_camera`), by projection. No other key-frame is tried. It uses features alone: surfaces that are seen from
+  /// metres apart are paired with other, parallel ones, an error of centimetres that does not show in the residuals.
   TrackOutcome recognize(const Map& map, const Frame& frame, KeyframeId keyframe,
                          const std::optional<geometry::Pose>& T_map_camera = std::nullopt) const;
 

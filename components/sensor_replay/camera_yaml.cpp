@@ -90,7 +90,7 @@ YAML::Node load(const std::filesystem::path& file) {
   try {
     return YAML::LoadFile(file.string());
   } catch (const YAML::Exception& error) {
-    // Marks of unreadable files are null (line -1).
+    // The mark of an unreadable file is null (line -1).
     fail_at(file, error.mark.line + 1, "not valid YAML: " + error.msg);
   }
 }
@@ -119,7 +119,7 @@ CameraFile read_camera_file(const std::filesystem::path& file) {
 }
 
 std::string example_camera_file(const std::string& sequence_name) {
-  // Calibrations that the TUM RGB-D benchmark publishes for its cameras [Sturm 2012]; depth is in 1/5000 m.
+  // Calibrations of the cameras of the TUM RGB-D benchmark, as published [Sturm 2012]; depth is in 1/5000 m.
   const char* calibration = "fx: 525.0, fy: 525.0, cx: 319.5, cy: 239.5, distortion: [0, 0, 0, 0, 0]";
   if (sequence_name.find("freiburg1") != std::string::npos) {
     calibration = "fx: 517.3, fy: 516.5, cx: 318.6, cy: 255.3, distortion: [0.2624, -0.9531, -0.0054, 0.0026, 1.1633]";

@@ -12,7 +12,8 @@ namespace lapis::sensor_replay {
 ///   the file does not exist the message shows what to write into it.
 CameraFile read_camera_file(const std::filesystem::path& file);
 
-/// A camera.yaml, as one line, for an original TUM sequence; its name ("rgbd_dataset_freiburg1_xyz") says which camera.
+/// Content of a camera.yaml, in one line, for an original TUM sequence, whose name ("rgbd_dataset_freiburg1_xyz")
+/// identifies the camera.
 std::string example_camera_file(const std::string& sequence_name);
 
 }  // namespace lapis::sensor_replay

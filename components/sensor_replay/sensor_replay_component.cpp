@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kProgressPeriod_s = 2.0;
 constexpr double kMatchingPeriod_s = 0.05;
-constexpr double kFarewell_s = 2.0;  // at the end, for readers that still miss the last frame
+constexpr double kFarewell_s = 2.0;  // longest wait at the end for readers that still miss the last frame
 
 TumDatasetConfig dataset_config(const SensorReplayConfig& config) {
   if (config.dataset.empty()) {
@@ -71,7 +71,7 @@ SensorReplayComponent::SensorReplayComponent(const Config& config, runtime::Cont
   }
 }
 
-// Lock-step: a frame whenever the last one has been answered by everybody.
+// In lock-step, publishes a frame whenever all participants have answered the last one.
 void SensorReplayComponent::work() {
   using State = runtime::LockstepDriver::State;
   while (driver_->state() == State::kIdle) {
@@ -106,7 +106,8 @@ void SensorReplayComponent::play_by_wall_clock() {
   }
 }
 
-/// Publishes the next frame that has a colour image; false when there is none left.
+/// Publishes the next frame that has a colour image. By the wall clock, a frame without one is only counted. Returns
+/// false when there is no further frame.
 bool SensorReplayComponent::publish_next() {
   if (!began_) began_ = Clock::now();
   while (auto loaded = frames_.next()) {

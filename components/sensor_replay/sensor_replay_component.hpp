@@ -15,7 +15,7 @@
 
 namespace lapis::sensor_replay {
 
-/// Plays a recorded data set on the topics of a camera, in lock-step with its consumers or by the wall clock.
+/// Plays a recorded data set on the topics of a camera, in lock-step with its subscribers or by the wall clock.
 class SensorReplayComponent {
  public:
   using Config = SensorReplayConfig;
@@ -49,8 +49,8 @@ class SensorReplayComponent {
   time::Time stamp_;
   std::size_t played_ = 0;
   bool has_ended_ = false;
-  double longest_tick_s_ = 0.0;               // of those with a frame
-  std::optional<Clock::time_point> closing_;  // begin of the tick after the last frame
+  double longest_tick_s_ = 0.0;               // of the ticks with a frame
+  std::optional<Clock::time_point> closing_;  // beginning of the tick after the last frame
   std::optional<Clock::time_point> began_;
   Clock::time_point reported_;
 };

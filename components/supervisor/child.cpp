@@ -15,12 +15,12 @@ namespace {
 
 constexpr int kCannotStart = 127;
 
-/// In the new process, where nothing but system calls is safe until the program takes over.
+/// Turns the new process into the program. Until then, only system calls are safe.
 [[noreturn]] void become(char* const* arguments, int log, pid_t parent) {
   setsid();
   prctl(PR_SET_PDEATHSIG, SIGTERM);
   if (getppid() != parent) _exit(kCannotStart);
-  // What is ignored is inherited: by a shell SIGINT, for what it starts in the background; by the supervisor SIGPIPE.
+  // Ignored signals are inherited: a shell ignores SIGINT for background jobs, and the supervisor ignores SIGPIPE.
   for (const int signal : {SIGINT, SIGPIPE}) std::signal(signal, SIG_DFL);
   sigset_t none;
   sigemptyset(&none);
@@ -69,7 +69,7 @@ void Child::send(int signal) const {
 void Child::kill() {
   if (status_) return;
   ::kill(-pid_, SIGKILL);
-  ::kill(pid_, SIGKILL);  // it may not have its session yet
+  ::kill(pid_, SIGKILL);  // the child may not have its own session yet
   int status = 0;
   while (waitpid(pid_, &status, 0) < 0 && errno == EINTR) {
   }

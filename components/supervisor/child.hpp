@@ -9,12 +9,13 @@
 
 namespace lapis::supervisor {
 
-/// A program that was started, in a session of its own: Ctrl-C on the terminal is its parent's alone. It is asked to
-/// end when its parent dies, however that happens.
+/// A started program with its own session, so that Ctrl-C on the terminal only reaches its parent. It gets SIGTERM when
+/// its parent dies, whatever the cause.
 class Child {
  public:
-  /// What it prints goes to the end of `log`. To be called on the main thread, whose end counts as the parent's death.
-  /// Throws std::runtime_error when the log cannot be written; a program that is not there ends with status 127.
+  /// Starts the program, whose output is appended to `log`. To be called on the main thread, whose end counts as the
+  /// parent's death. Throws std::runtime_error when the log cannot be written; a program that does not exist ends with
+  /// status 127.
   Child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
         const std::filesystem::path& log);
   ~Child();
@@ -23,9 +24,9 @@ class Child {
 
   pid_t pid() const { return pid_; }
   void send(int signal) const;
-  /// Ends it and whatever it has started, without warning, and waits for that.
+  /// Kills the program and everything that it has started, without warning, and waits for its end.
   void kill();
-  /// Exit status, 128 and the number of the signal that ended it, or nothing while it runs.
+  /// Exit status; 128 plus the number of the signal that ended the program; nothing while it runs.
   std::optional<int> status();
 
  private:

@@ -19,7 +19,7 @@ constexpr const char* kSummary =
     "folder.\n"
     "launch_scripts/explore.sh and replay.sh call it.";
 
-/// "KEY=VALUE" of an option.
+/// Parses the "KEY=VALUE" of an option.
 Setting to_setting(const std::string& option, const std::string& text) {
   const auto equals = text.find('=');
   if (equals == std::string::npos || equals == 0) {

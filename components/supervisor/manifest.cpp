@@ -9,7 +9,7 @@
 namespace lapis::supervisor {
 namespace {
 
-/// Text and numbers of JSON are those of config::quoted and of --print-config; what is left (.inf) is text.
+/// config::quoted and --print-config write text and numbers that are valid JSON; any other scalar (.inf) becomes text.
 nlohmann::ordered_json json_of(const std::string& scalar) {
   auto value = nlohmann::ordered_json::parse(scalar, nullptr, false);
   return value.is_discarded() ? nlohmann::ordered_json(scalar) : value;

@@ -9,13 +9,13 @@
 
 namespace lapis::supervisor {
 
-/// Scene, method, seed, commit, ... of a run as YAML scalars. What is text is in quotes, whatever it looks like: the
-/// commit 6007e82 is no number.
+/// Scene, method, seed, commit, ... of a run as YAML scalars. Text is always in quotes, because it may look like a
+/// number, such as the commit 6007e82.
 using Facts = std::map<std::string, std::string>;
 
-/// What manifest.yaml says of a run.
+/// Content of a run's manifest.yaml.
 struct Manifest {
-  std::string command;  ///< that started it
+  std::string command;  ///< command that started the run
   Facts facts;
   struct Process {
     std::string name;
@@ -26,11 +26,12 @@ struct Manifest {
   std::vector<Process> processes;
 };
 
-/// A YAML document, whatever the texts are. `simulation`: content of the source's simulation.yaml, or empty.
+/// A YAML document, which is valid whatever the texts are. `simulation`: content of the source's simulation.yaml, or
+/// empty.
 std::string to_yaml(const Manifest& manifest, const std::string& simulation);
 
-/// Adds the facts of a run to the metrics of its evaluation, as section "run". Returns the new content. Throws
-/// std::runtime_error when `metrics` is not JSON.
+/// Adds the facts of a run to the metrics of its evaluation, as section "run", and returns the new content. Throws an
+/// exception derived from std::exception when `metrics` is not JSON.
 std::string with_facts(const std::string& metrics, const Facts& facts);
 
 }  // namespace lapis::supervisor

@@ -15,7 +15,7 @@
 namespace lapis::supervisor {
 namespace {
 
-/// A file in memory that takes what a program prints.
+/// A file in memory for the output of a program.
 class Paper {
  public:
   Paper() : file_(memfd_create("printed", MFD_CLOEXEC)) {}
@@ -38,7 +38,7 @@ class Paper {
   int file_;
 };
 
-/// Exit status, or nothing when there is no such program.
+/// Runs a program and returns its exit status; nothing when it cannot be started.
 std::optional<int> run(const std::filesystem::path& program, std::vector<std::string>& arguments, const Paper& out,
                        const Paper& err) {
   std::string name = program.string();
@@ -57,7 +57,7 @@ std::optional<int> run(const std::filesystem::path& program, std::vector<std::st
   return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
 }
 
-constexpr const char* kTextTag = "!";  // of a scalar in quotes
+constexpr const char* kTextTag = "!";  // tag of a scalar in quotes
 
 std::string value_text(const YAML::Node& node) {
   if (node.IsScalar()) return node.Tag() == kTextTag ? config::quoted(node.Scalar()) : node.Scalar();

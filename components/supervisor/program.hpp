@@ -9,7 +9,7 @@
 
 namespace lapis::supervisor {
 
-/// Something that whoever started the run has to put right: status 2.
+/// A problem that the user who started the run has to correct: exit status 2.
 struct BadSetup : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
@@ -20,11 +20,11 @@ struct PrintedConfiguration {
   Configuration values;
 };
 
-/// Asks `program` with these arguments and --print-config. Throws BadSetup with what the program has to say when it
-/// refuses them, or when it is not there.
+/// Runs `program` with these arguments and --print-config. Throws BadSetup with the program's own message when it
+/// refuses the arguments, or when there is no such program.
 PrintedConfiguration print_configuration(const std::filesystem::path& program, std::vector<std::string> arguments);
 
-/// Names of the top-level sections of a YAML file. Throws BadSetup that names the file.
+/// Names of the top-level sections of a YAML file. Throws BadSetup, which names the file, when it cannot be read.
 std::vector<std::string> sections_of(const std::filesystem::path& file);
 
 }  // namespace lapis::supervisor

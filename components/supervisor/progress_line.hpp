@@ -4,12 +4,12 @@
 
 namespace lapis::supervisor {
 
-/// Shows how far a run is, on standard output. On a terminal each line replaces the one before.
+/// Shows the progress of a run on standard output. On a terminal, each line replaces the previous one.
 class ProgressLine {
  public:
-  /// Shows a text when it is another than before.
+  /// Shows a text when it differs from the previous one.
   void show(const std::string& text);
-  /// What is shown next begins on a line of its own.
+  /// Ends the line, so that further output begins on a new line.
   void end();
 
  private:

@@ -20,7 +20,7 @@ namespace {
 
 constexpr std::size_t kShownLines = 5;
 
-/// The id of a process that holds a lock on the file, by the system's list of them; 0: none is known.
+/// PID of a process that holds a lock on the file, according to /proc/locks; 0: none is known.
 pid_t holder_of(int file) {
   struct stat status {};
   if (fstat(file, &status) != 0) return 0;
@@ -36,7 +36,8 @@ pid_t holder_of(int file) {
   return 0;
 }
 
-/// The command line that a run was started with, which the launch script has given as --command.
+/// The command line with which a run was started, as given by the launch script with --command; without it, the
+/// process's own command line.
 std::string command_of(pid_t pid) {
   std::ifstream in("/proc/" + std::to_string(pid) + "/cmdline");
   std::string all;
@@ -68,7 +69,7 @@ bool is_kept(const std::filesystem::path& file, const std::vector<std::filesyste
 RunFolder::RunFolder(std::filesystem::path folder) : folder_(std::move(folder)) {
   std::error_code error;
   std::filesystem::create_directories(folder_ / "logs", error);
-  if (!error) lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY);  // inherited by what is started
+  if (!error) lock_ = open(folder_.c_str(), O_RDONLY | O_DIRECTORY);  // inherited by started processes
   if (lock_ < 0) {
     const std::string reason = error ? error.message() : std::strerror(errno);
     throw BadSetup(folder_.string() + " cannot be made a run folder: " + reason + "; choose another with --out DIR");

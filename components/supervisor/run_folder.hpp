@@ -6,19 +6,19 @@
 
 namespace lapis::supervisor {
 
-/// The folder of a run, which nobody else may use until the run's last process has ended.
+/// The folder of a run, which no other run may use until the last process of the run has ended.
 class RunFolder {
  public:
-  /// Makes the folder and its logs/ and takes its lock. Throws BadSetup when it cannot be made, or when another run has
-  /// it, which is named. The lock is the system's (flock on the folder): started processes hold it, too, and nothing of
-  /// it is left behind.
+  /// Creates the folder with its logs/ and locks it. Throws BadSetup when it cannot be created, or when another run,
+  /// which is named, uses it. The lock is an flock on the folder: started processes hold it, too, and it leaves nothing
+  /// behind.
   explicit RunFolder(std::filesystem::path folder);
   ~RunFolder();
   RunFolder(const RunFolder&) = delete;
   RunFolder& operator=(const RunFolder&) = delete;
 
-  /// Removes what an earlier run has left: files that match a pattern (of its path in the folder; * and ? stay within a
-  /// name), but for the files in `kept`.
+  /// Removes the files of an earlier run: those whose path in the folder matches a pattern (* and ? do not match a
+  /// slash), except the files in `kept`.
   void clear(const std::vector<std::string>& patterns, const std::vector<std::filesystem::path>& kept) const;
 
   const std::filesystem::path& path() const { return folder_; }

@@ -17,10 +17,10 @@ namespace lapis::supervisor {
 namespace {
 
 constexpr std::chrono::milliseconds kTurn(50);
-constexpr double kAbsent_s = 1.0;          // a loop that took longer has not listened: the machine or we were stopped
-constexpr double kHurriedSilence_s = 2.0;  // in a hurry, for one that announces nothing
-constexpr double kHurry_s = 9.0;           // from Ctrl-C to the end of everything
-constexpr double kInOrder_s = 4.0;         // of these: processes end one after the other; then all are asked
+constexpr double kAbsent_s = 1.0;          // a longer turn has missed heartbeats: the machine or this process stopped
+constexpr double kHurriedSilence_s = 2.0;  // allowed silence in a hurry, for a process that announces none
+constexpr double kHurry_s = 9.0;           // longest time from Ctrl-C to the end of all processes
+constexpr double kInOrder_s = 4.0;         // part of it in which processes end one after the other; then all are asked
 constexpr int kBadSetupStatus = 2;
 constexpr const char* kManifest = "manifest.yaml";
 
@@ -30,7 +30,7 @@ const sigset_t& ending_signals() {
     sigemptyset(&set);
     sigaddset(&set, SIGINT);
     sigaddset(&set, SIGTERM);
-    struct sigaction hangup {};  // ignored under nohup, whose runs outlive their terminal
+    struct sigaction hangup {};  // SIGHUP is ignored under nohup, so that the run outlives its terminal
     sigaction(SIGHUP, nullptr, &hangup);
     if (hangup.sa_handler != SIG_IGN) sigaddset(&set, SIGHUP);
     return set;
@@ -58,7 +58,7 @@ std::string seconds_text(double seconds) {
   return out.str();
 }
 
-/// "{run_folder}" in a value of the description.
+/// Replaces "{run_folder}" in the values of the description.
 Settings with_run_folder(Settings settings, const std::filesystem::path& folder) {
   static const std::string place = "{run_folder}";
   for (auto& [key, value] : settings) {
@@ -78,7 +78,7 @@ void append(std::vector<std::string>& arguments, const Settings& settings) {
 
 void block_signals() {
   pthread_sigmask(SIG_BLOCK, &ending_signals(), nullptr);
-  std::signal(SIGPIPE, SIG_IGN);  // who reads the output may end before the run does: Ctrl-C ends all of `... | tee`
+  std::signal(SIGPIPE, SIG_IGN);  // the reader of the output may end before the run: Ctrl-C ends all of `... | tee`
 }
 
 Supervisor::Supervisor(System system, Request request)
@@ -90,19 +90,19 @@ Supervisor::Supervisor(System system, Request request)
   for (const auto& name : system_.processes) processes_.emplace_back().name = name;
   settings_ = all_settings();
   const bool has_results = exists(folder_.path() / kManifest);
-  if (!has_results) write_manifest();  // of a run that does not come about, too
+  if (!has_results) write_manifest();  // also for a run that is refused
   collect_arguments();
   usual_silence_s_ = usual_silence();
-  if (has_results) clear_folder();  // only now: an earlier run outlives one that is refused
+  if (has_results) clear_folder();  // only now, so that a refused run does not remove an earlier one
 }
 
 void Supervisor::clear_folder() const {
-  std::vector<std::filesystem::path> kept;  // an earlier run's maps that this one resumes
+  std::vector<std::filesystem::path> kept;  // maps of an earlier run that this run resumes
   for (const auto& setting : settings_) kept.emplace_back(setting.value);
   folder_.clear(system_.results, kept);
 }
 
-/// In the order in which they win.
+/// All settings of the run; later ones win.
 Settings Supervisor::all_settings() const {
   Settings settings = system_.settings;
   const auto add = [&](const Settings& more) { settings.insert(settings.end(), more.begin(), more.end()); };
@@ -116,7 +116,7 @@ Settings Supervisor::all_settings() const {
   return settings;
 }
 
-/// Configuration files in the order in which they win, each with the processes that get it.
+/// Configuration files, each with the processes that get it; later files win.
 std::vector<std::pair<std::string, std::set<std::string>>> Supervisor::configuration_files(
     const Configurations& known) const {
   std::vector<std::pair<std::string, std::set<std::string>>> files;
@@ -132,7 +132,8 @@ std::vector<std::pair<std::string, std::set<std::string>>> Supervisor::configura
   return files;
 }
 
-/// Of each process, from what it can be set to. Everybody who writes files gets the run folder.
+/// Collects the arguments of each process from the keys that it knows. Every process that writes files gets the run
+/// folder.
 void Supervisor::collect_arguments() {
   const auto program = [&](const std::string& name) { return request_.programs / ("lapis_" + name); };
   Configurations known;
@@ -156,7 +157,7 @@ void Supervisor::collect_arguments() {
   }
 }
 
-/// Longest time without a heartbeat that is not announced [s]: a number, or the value of a key.
+/// Longest time without a heartbeat that needs no announcement [s]: a number, or the value of a key.
 double Supervisor::usual_silence() const {
   std::string text = system_.silence;
   for (const auto& name : request_.variants) {
@@ -176,7 +177,7 @@ double Supervisor::usual_silence() const {
 Facts Supervisor::facts() const {
   Facts facts = {{"system", config::quoted(system_.name)}};
   for (const auto& [name, key] : system_.facts) {
-    for (const auto& setting : settings_) {  // of a run that is refused nothing else is known
+    for (const auto& setting : settings_) {  // nothing else is known of a run that is refused
       if (setting.key == key) facts[name] = config::quoted(setting.value);
     }
     for (const auto& process : processes_) {
@@ -198,7 +199,7 @@ int Supervisor::run() {
   if (start_all()) wait_until_over();
   progress_.end();
   end_all();
-  const int status = conclude();  // said also where the disk is full
+  const int status = conclude();  // before the files, so that it is printed even when the disk is full
   write_manifest();
   add_facts_to_metrics();
   return status;
@@ -212,7 +213,8 @@ void Supervisor::start(Process& process, const Settings& more) {
   process.pulse.emplace(now_s());
 }
 
-/// The source of frames last, when the others are ready. False when it did not come to that.
+/// Starts all processes; the source of frames starts last, when the others are ready. Returns false when the run is
+/// over before that.
 bool Supervisor::start_all() {
   for (auto& process : processes_) {
     if (&process != &source()) start(process);
@@ -233,7 +235,7 @@ void Supervisor::wait_until_over() {
   }
 }
 
-/// Some time of listening, and then a look at each process.
+/// Listens for a short time, and then checks each process.
 void Supervisor::turn() {
   executor_.spin_once(kTurn);
   const double now = now_s();
@@ -266,7 +268,7 @@ void Supervisor::take_signals() {
   }
 }
 
-/// Notes that a process has ended or hangs, and does what there is to do about it.
+/// Notes whether a process has ended or hangs, and restarts it or fails.
 void Supervisor::look_after(Process& process) {
   if (!process.child || process.status) return;
   const bool is_source = &process == &source();
@@ -297,7 +299,8 @@ void Supervisor::look_after(Process& process) {
   fail(process, what + " and was killed");
 }
 
-/// False when it must not be: not asked for, it has been often enough, its set-up is bad, or its state is the run.
+/// Restarts a process. Returns false when it must not be restarted: restarts are not requested, their number is used
+/// up, its set-up is bad, or it is the source, whose state is that of the run.
 bool Supervisor::restart(Process& process, int status, const std::string& why) {
   const int times = system_.restart.times;
   if (!request_.may_restart || process.restarts >= times || &process == &source() || status == kBadSetupStatus)
@@ -315,13 +318,14 @@ bool Supervisor::restart(Process& process, int status, const std::string& why) {
   return true;
 }
 
-/// The source first; then in the order of the starts: who collects what others write at their end comes after them.
+/// Ends the source first, then the others in the order of their start: a process that collects what others publish at
+/// their end comes after them.
 void Supervisor::end_all() {
   end(source());
   for (auto& process : processes_) end(process);
 }
 
-/// SIGINT when the end is wanted soon, which may come after SIGTERM.
+/// Sends SIGTERM, or SIGINT in a hurry, possibly after an earlier SIGTERM.
 void Supervisor::ask_to_end(Process& process) {
   const int signal = is_in_a_hurry() ? SIGINT : SIGTERM;
   if (!process.child || process.child->status() || process.asked_by == signal) return;
@@ -353,7 +357,7 @@ void Supervisor::fail(const Process& process, const std::string& what, int statu
   if (!failure_) failure_ = {process.name, what, status == kBadSetupStatus ? kBadSetupStatus : 1};
 }
 
-/// Says how the run went.
+/// Prints the outcome of the run and returns its exit status.
 int Supervisor::conclude() {
   if (!failure_ && interrupt_ == 0) {
     for (const auto& process : processes_) {

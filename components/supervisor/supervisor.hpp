@@ -23,25 +23,26 @@
 
 namespace lapis::supervisor {
 
-/// What the user asks of a run.
+/// What the user requests of a run.
 struct Request {
   std::filesystem::path out;       ///< run folder
   std::filesystem::path programs;  ///< folder of lapis_<process>
   std::vector<std::string> variants;
   bool may_restart = false;
-  std::vector<std::string> configuration;    ///< files, after those of the system
-  Settings settings;                         ///< after those of the system
+  std::vector<std::string> configuration;    ///< files; they override those of the system
+  Settings settings;                         ///< they override those of the system
   std::map<std::string, std::string> facts;  ///< name -> text
-  std::string command;                       ///< what was called, for messages
+  std::string command;                       ///< the command that was called, for messages
 };
 
-/// SIGINT and SIGTERM are received by the supervisor's own loop. To be called before any thread starts.
+/// Blocks SIGINT, SIGTERM and SIGHUP (unless that is ignored), which the supervisor's own loop receives, and ignores
+/// SIGPIPE. To be called before any thread starts.
 void block_signals();
 
 /// One run: its processes from their start to their end, and the run folder (docs/architecture.md, "Supervision").
 class Supervisor {
  public:
-  /// Takes the run folder and asks each program whether it can work with what it is given. Throws BadSetup.
+  /// Locks the run folder, and has each program check its configuration. Throws BadSetup.
   Supervisor(System system, Request request);
 
   /// Returns the exit status of the run.
@@ -54,7 +55,7 @@ class Supervisor {
     PrintedConfiguration configuration;
     std::unique_ptr<Child> child;
     std::optional<Pulse> pulse;
-    std::optional<int> status;  ///< of one that has ended for good
+    std::optional<int> status;  ///< exit status of a process that has ended for good
     int restarts = 0;
     bool is_back = true;  ///< false from a restart until it runs again
     int asked_by = 0;     ///< signal by which it was asked to end
@@ -97,7 +98,7 @@ class Supervisor {
   Request request_;
   std::string title_;  ///< in front of messages
   RunFolder folder_;
-  Settings settings_;  ///< of the run, in the order in which they win
+  Settings settings_;  ///< settings of the run; later ones win
   std::vector<Process> processes_;
   double usual_silence_s_ = 0.0;
 
@@ -106,12 +107,12 @@ class Supervisor {
   dds::Subscription<lapis_msgs::msg::Heartbeat> heartbeats_;
   ProgressLine progress_;
 
-  double turned_s_ = 0.0;            ///< when the loop went round last
-  bool has_ended_ = false;           ///< the source of frames, by itself
-  int interrupt_ = 0;                ///< the first signal that came
-  std::optional<double> hurried_s_;  ///< since when the end is wanted soon
-  bool is_impatient_ = false;        ///< a second signal came
-  /// The first thing that went wrong: process, what happened, exit status of the run.
+  double turned_s_ = 0.0;            ///< time of the last turn of the loop
+  bool has_ended_ = false;           ///< the source of frames has ended by itself
+  int interrupt_ = 0;                ///< the first signal that arrived
+  std::optional<double> hurried_s_;  ///< since when the end is urgent
+  bool is_impatient_ = false;        ///< a second signal has arrived
+  /// The first failure: process, what happened, exit status of the run.
   struct Failure {
     std::string process;
     std::string what;

@@ -83,7 +83,7 @@ RestartPolicy restart_policy(const YAML::Node& node) {
   return out;
 }
 
-/// What a file says wins over its base, which has none itself.
+/// Values of a file override those of its base, which must not have a base itself.
 void read_into(System& out, const std::filesystem::path& file, bool is_base = false) {
   const YAML::Node root = YAML::LoadFile(file.string());
   const auto folder = file.parent_path();
@@ -93,7 +93,7 @@ void read_into(System& out, const std::filesystem::path& file, bool is_base = fa
   }
   read_section(
       root,
-      {{"base", [](const auto&) {}},  // has been read
+      {{"base", [](const auto&) {}},  // has been read above
        {"processes", [&](const auto& n) { out.processes = texts(n); }},
        {"source", [&](const auto& n) { out.source = text(n); }},
        {"stages", [&](const auto& n) { out.stages = texts(n); }},

@@ -185,10 +185,12 @@ std::uint64_t SemanticMapper::frames_far_off() const {
 bool SemanticMapper::move_frame(std::size_t index) {
   const bool is_whole_now = corrected_.erase(index) > 0;
   if (is_whole_now) provisional_.erase(index);
-  if (!store_.has(index)) return false;
-  const auto samples = store_.frame(index);
-  auto gone = store_.votes(index);
-  if (!samples || !gone) return false;
+  const auto samples = store_.has(index) ? store_.frame(index) : std::nullopt;
+  auto gone = samples ? store_.votes(index) : std::nullopt;
+  if (!gone) {
+    if (is_whole_now) ++frames_in_part_;  // what the map lacks of it went with its samples
+    return false;
+  }
   const Pose wanted = wanted_pose(frames_[index]);
   const mapping::Drift drift = is_whole_now ? mapping::Drift{} : frames_[index].drift;
   mapping::FrameVotes come = votes_of(*samples, wanted, drift);

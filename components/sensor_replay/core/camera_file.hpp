@@ -9,7 +9,7 @@
 
 namespace lapis::sensor_replay {
 
-/// What camera.yaml of a data set says. Colour and depth are registered and share one camera.
+/// Content of a data set's camera.yaml. Colour and depth are registered and share one camera.
 struct CameraFile {
   geometry::PinholeCamera camera;
   std::array<double, 5> distortion{};  ///< plumb_bob k1 k2 p1 p2 k3, of the recorded images, -10 to 10; absent = all 0
@@ -18,8 +18,8 @@ struct CameraFile {
   geometry::CameraMount mount;         ///< camera_height [m] and pitch_down_deg; absent = 0
 };
 
-/// Reads the calibration of a data set from a file, of whatever format. Throws std::runtime_error with one line naming
-/// file and remedy.
+/// Reads the calibration of a data set from a file of any format. Throws std::runtime_error, whose text names the file
+/// and the remedy in one line.
 using CameraReader = std::function<CameraFile(const std::filesystem::path& file)>;
 
 }  // namespace lapis::sensor_replay

@@ -7,10 +7,10 @@
 
 namespace lapis::sensor_replay {
 
-/// Length of the true path through the frames that have a pose [m]; empty when fewer than two have one.
+/// Length of the true path through the frames that have a true pose [m]; empty with fewer than two such frames.
 std::optional<double> path_length_m(const TumDataset& dataset);
 
-/// What a data set contains, for `--list`: a line per fact, ending in a newline.
+/// Summary of a data set for `--list`: one line per fact, each with a newline at its end.
 std::string describe(const TumDataset& dataset);
 
 }  // namespace lapis::sensor_replay

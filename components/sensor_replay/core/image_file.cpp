@@ -14,7 +14,7 @@ namespace lapis::sensor_replay {
 namespace {
 
 constexpr std::uint16_t kNoDepth = 0;
-constexpr int kMaxDepthValue = 65535;  // also "none" in some recordings
+constexpr int kMaxDepthValue = 65535;  // also means "no measurement" in some recordings
 
 using Decoded = std::variant<cv::Mat, ImageFault>;
 
@@ -27,7 +27,7 @@ Decoded decode(const std::filesystem::path& file) {
     cv::Mat image = cv::imdecode(*bytes, cv::IMREAD_UNCHANGED);
     if (image.empty()) return ImageFault::kUndecodable;
     return image;
-  } catch (const cv::Exception&) {  // for example a header that promises 2^31 pixels
+  } catch (const cv::Exception&) {  // for example a header that announces 2^31 pixels
     return ImageFault::kUndecodable;
   }
 }
@@ -40,7 +40,7 @@ Decoded decode(const std::filesystem::path& file, ImageSize size) {
   return decoded;
 }
 
-// Millimetres of every possible depth pixel.
+// Table from every possible depth pixel to millimetres.
 std::vector<std::uint16_t> millimetre_table(double depth_scale) {
   std::vector<std::uint16_t> table(kMaxDepthValue + 1, kNoDepth);
   for (int raw = 1; raw < kMaxDepthValue; ++raw) {

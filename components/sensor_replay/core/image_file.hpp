@@ -17,14 +17,14 @@ enum class ImageFault {
   kNotListed,       ///< the lists have no such image for this frame
   kMissing,         ///< the file does not exist or cannot be opened
   kUndecodable,     ///< truncated, or not an image
-  kWrongSize,       ///< not as large as camera.yaml says
+  kWrongSize,       ///< not the size in camera.yaml
   kWrongPixelType,  ///< wrong number of channels or bits
 };
 
-/// One word or two for counts and messages: "truncated or not an image".
+/// A few words for counters and messages: "truncated or not an image".
 std::string to_string(ImageFault fault);
 
-/// Wanted size of an image; its width and height [px].
+/// Size of an image [px].
 struct ImageSize {
   int width = 0;
   int height = 0;
@@ -35,14 +35,14 @@ struct ImageSize {
 std::variant<geometry::ColorImage, ImageFault> read_color(const std::filesystem::path& file, ImageSize size);
 
 /// Reads a 16-bit depth PNG in units of 1/depth_scale metres and converts it to millimetres, rounded to the nearest.
-/// The values 0 and 65535 and what exceeds 65534 mm become 0 (no measurement).
+/// The values 0 and 65535 and depths above 65534 mm become 0 (no measurement).
 std::variant<DepthMillimetres, ImageFault> read_depth(const std::filesystem::path& file, ImageSize size,
                                                       double depth_scale);
 
 /// Reads an 8-bit or 16-bit PNG of class ids.
 std::variant<geometry::LabelImage, ImageFault> read_label(const std::filesystem::path& file, ImageSize size);
 
-/// Size of an image as stored, of any type.
+/// Size of a stored image of any type.
 std::variant<ImageSize, ImageFault> read_size(const std::filesystem::path& file);
 
 }  // namespace lapis::sensor_replay

@@ -18,14 +18,14 @@ std::vector<std::string> split(const std::string& line, char separator) {
   std::size_t begin = 0;
   while (begin <= line.size()) {
     const std::size_t end = std::min(line.find_first_of(blanks, begin), line.size());
-    // Runs of blanks separate once; between two commas there is an empty field.
+    // A run of blanks is one separator, but between two commas there is an empty field.
     if (end > begin || separator != ' ') fields.push_back(line.substr(begin, end - begin));
     begin = end + 1;
   }
   return fields;
 }
 
-// Digits only; empty on anything else.
+// Parses digits; empty for any other text.
 std::optional<std::int64_t> parse_digits(std::string_view text) {
   std::int64_t value = 0;
   if (text.empty() || text.front() < '0' || text.front() > '9') return std::nullopt;

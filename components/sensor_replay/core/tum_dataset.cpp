@@ -23,7 +23,7 @@ std::vector<ListedImage> read_required_list(const fs::path& file) {
   return images;
 }
 
-// Moves an image out of a reader's answer, or notes why there is none.
+// Moves the image out of a reader's answer, or notes the reason why there is none.
 template <class Image>
 std::optional<Image> take(std::variant<Image, ImageFault> answer, ImagePart part, const fs::path& file,
                           std::vector<ImageProblem>& problems) {
@@ -76,7 +76,7 @@ void TumDataset::read_frames() {
   }
 }
 
-// One missing image is a flaw of the data; when all of a kind are missing the set-up is wrong.
+// A single missing image is a flaw of the data, but when all images of a kind are missing, the set-up is wrong.
 void TumDataset::check_images() const {
   const std::vector<ImageProblem> missing = missing_images();
   const auto check = [&](ImagePart part, std::size_t listed, const char* remedy) {
@@ -93,7 +93,7 @@ void TumDataset::check_images() const {
   check(ImagePart::kLabel, has_labels_ ? size() : 0, "name label images after the colour images, or remove the folder");
 }
 
-// A wrong camera.yaml would otherwise show as a replay in which every frame is skipped.
+// Otherwise a wrong camera.yaml would give a replay in which every frame is skipped.
 void TumDataset::check_image_size() const {
   for (const std::size_t index : {std::size_t{0}, size() / 2, size() - 1}) {
     const fs::path file = config_.folder / frames_[index].color.file;

@@ -37,18 +37,18 @@ struct ImageProblem {
 /// "depth/00007.png: truncated or not an image".
 std::string to_string(const ImageProblem& problem);
 
-/// A decoded frame, rectified. Every image has the size of the camera.
+/// A decoded and rectified frame. Every image has the size of the camera.
 struct ReplayFrame {
   std::size_t index = 0;
-  time::Time stamp;  ///< of the colour image; the whole frame goes by it
+  time::Time stamp;  ///< stamp of the colour image, which is that of the whole frame
   geometry::ColorImage color;
   std::optional<DepthMillimetres> depth;         ///< registered to colour; empty: see `problems`
   std::optional<geometry::LabelImage> label;     ///< empty: see `problems`, or the data set has no labels
-  std::optional<geometry::Pose> T_world_camera;  ///< ground truth; empty where there is none within the tolerance
-  std::vector<ImageProblem> problems;            ///< of depth and label
+  std::optional<geometry::Pose> T_world_camera;  ///< ground truth; empty when there is none within the tolerance
+  std::vector<ImageProblem> problems;            ///< problems of depth and label
 };
 
-/// A frame without a usable colour image: there is nothing to publish.
+/// A frame without a usable colour image, of which nothing can be published.
 struct SkippedFrame {
   std::size_t index = 0;
   time::Time stamp;
@@ -69,26 +69,26 @@ struct FrameRange {
 class TumDataset {
  public:
   /// Reads and checks the lists, camera.yaml (by `read_camera`), ground truth and class list; decodes three colour
-  /// images to compare their size with camera.yaml. Single missing or damaged images are no error here: `load_frame`
-  /// reports them.
-  /// @throws std::runtime_error with one line naming the file and the remedy.
+  /// images to compare their size with camera.yaml. Single missing or damaged images are not an error here:
+  /// `load_frame` reports them.
+  /// @throws std::runtime_error, whose text names the file and the remedy in one line.
   TumDataset(const TumDatasetConfig& config, const CameraReader& read_camera);
 
   std::size_t size() const { return frames_.size(); }
   time::Time stamp(std::size_t index) const { return frames_[index].color.stamp; }
-  /// First to last colour image.
+  /// Time from the first to the last colour image.
   time::Duration duration() const { return frames_.back().color.stamp - frames_.front().color.stamp; }
   const CameraFile& camera() const { return camera_; }
   const std::filesystem::path& folder() const { return config_.folder; }
   bool has_labels() const { return has_labels_; }
   bool has_ground_truth() const { return !trajectory_.empty(); }
-  /// Frames whose list entries have no depth image.
+  /// Number of frames without a depth image in the lists.
   std::size_t frames_without_depth() const;
   std::optional<geometry::Pose> ground_truth(std::size_t index) const;
-  /// Listed images whose files do not exist now; labels count when the data set has labels.
+  /// Listed images whose files do not exist now, including label images when the data set has labels.
   std::vector<ImageProblem> missing_images() const;
 
-  /// Decodes a frame. Damaged or missing images are values, never exceptions.
+  /// Decodes a frame. Damaged or missing images are part of the result, never exceptions.
   LoadedFrame load_frame(std::size_t index) const;
 
   /// Classes from the class list; without a list, "class_<id>" for every id in the label images, which decodes all of
@@ -96,7 +96,7 @@ class TumDataset {
   std::vector<ClassName> classes() const;
 
   /// Frames from `start` after the first one, for `duration` (all when empty).
-  /// @throws std::runtime_error when no frame lies there.
+  /// @throws std::runtime_error when there is no frame in this time.
   FrameRange select(time::Duration start, std::optional<time::Duration> duration) const;
 
  private:
@@ -108,7 +108,7 @@ class TumDataset {
 
   TumDatasetConfig config_;
   CameraFile camera_;
-  std::optional<images::Rectifier> rectifier_;  // exists after construction
+  std::optional<images::Rectifier> rectifier_;  // set in the constructor
   std::vector<ListedFrame> frames_;
   trajectory::Trajectory trajectory_;
   std::vector<ClassName> class_list_;

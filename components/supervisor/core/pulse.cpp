@@ -5,7 +5,7 @@
 namespace lapis::supervisor {
 
 void Pulse::hear(double now_s, const Beat& beat) {
-  if (asked_s_ && newest_ && newest_->silence_s > 0.0) asked_s_ = now_s;  // it could not listen before
+  if (asked_s_ && newest_ && newest_->silence_s > 0.0) asked_s_ = now_s;  // it could not listen to the request before
   newest_ = beat;
   heard_s_ = now_s;
 }

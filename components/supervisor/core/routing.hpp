@@ -10,9 +10,9 @@
 
 namespace lapis::supervisor {
 
-/// What a process can be set to, as its --print-config lists it: key -> value as YAML text.
+/// The configuration of a process as printed by its --print-config: key -> value as YAML text.
 using Configuration = std::map<std::string, std::string>;
-/// By process.
+/// Configuration of each process, by name.
 using Configurations = std::map<std::string, Configuration>;
 
 /// A setting that no process of the run knows.
@@ -20,15 +20,15 @@ struct UnknownSetting : std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// Each setting goes to every process that knows its key: "slam.…" to slam, "robot.…" to all that know the robot. In
-/// the given order, later ones win. `known` has all processes of the run. A key of a process that is in the run and
-/// does not know it goes there, too: the process itself says what is wrong with it. Throws UnknownSetting for any
-/// other.
+/// Assigns each setting to every process that knows its key: "slam.…" to slam, "robot.…" to all processes that know the
+/// robot. The order is kept; later settings win. `known` has all processes of the run. An unknown key whose section is
+/// the name of a process goes to that process, which reports the problem itself. Throws UnknownSetting for any other
+/// key.
 std::map<std::string, Settings> route(const Configurations& known, const Settings& settings);
 
-/// Processes that get a file with these top-level sections ("robot"): each section goes to every process that knows it,
-/// and a process takes a whole file or none. Throws UnknownSetting when that cannot be: nobody knows a section, or a
-/// process knows only some of them.
+/// The processes that get a file with these top-level sections ("robot"): each section goes to every process that knows
+/// it, and a process gets a whole file or nothing. Throws UnknownSetting when this is not possible because no process
+/// knows a section, or because a process knows only some of the sections.
 std::set<std::string> readers_of(const Configurations& known, const std::vector<std::string>& sections);
 
 }  // namespace lapis::supervisor

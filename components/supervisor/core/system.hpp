@@ -16,44 +16,45 @@ struct Setting {
 };
 using Settings = std::vector<Setting>;
 
-/// What a restarted process resumes from, when the file is in the run folder.
+/// Settings with which a restarted process resumes, when the file exists in the run folder.
 struct Resume {
   std::string file;
   Settings settings;
 };
 
-/// What is done about a process that dies: only with --restart.
+/// How processes that die or hang are restarted; only with --restart.
 struct RestartPolicy {
-  int times = 0;      ///< of each process
-  Settings settings;  ///< of a run that may restart processes
+  int times = 0;      ///< largest number of restarts of each process
+  Settings settings;  ///< additional settings of a run that may restart processes
   std::map<std::string, Resume> resume;
 };
 
-/// Another kind of the run, chosen by --variant.
+/// A variant of the run, selected with --variant.
 struct Variant {
-  std::string silence;  ///< as System::silence; empty: the same
+  std::string silence;  ///< see System::silence; empty: the same as there
   Settings settings;
 };
 
 /// A run of several processes, as config/systems/<name>.yaml describes it. Programs are lapis_<process>.
 struct System {
   std::string name;
-  std::vector<std::string> processes;      ///< in the order of their start, in which they are ended, too
-  std::string source;                      ///< of frames: the last to start, the first to end; the run is over with it
-  std::vector<std::string> stages;         ///< of lock-step
-  Settings settings;                       ///< before those of the user
-  std::vector<std::string> configuration;  ///< files, each for the processes that know all its sections
-  std::map<std::string, std::string> facts;  ///< of the run, for manifest.yaml and metrics.json: name, key of the value
-  std::string shows;                         ///< process whose progress is shown
-  std::string silence;                       ///< [s], or the key of a value: silent for longer, a process hangs
-  std::string report;                        ///< file of the run folder that is printed at the end
-  std::string result;                        ///< file of the run folder without which the run has failed
-  std::vector<std::string> results;          ///< patterns of the files that a run leaves
+  std::vector<std::string> processes;      ///< in the order of their start, which is also the order of their end
+  std::string source;                      ///< of frames; starts last and ends first; the run ends with it
+  std::vector<std::string> stages;         ///< stages of lock-step
+  Settings settings;                       ///< those of the user override them
+  std::vector<std::string> configuration;  ///< files, each for the processes that know all of its sections
+  /// Facts of the run for manifest.yaml and metrics.json: name -> key of the value.
+  std::map<std::string, std::string> facts;
+  std::string shows;                 ///< process whose progress is shown
+  std::string silence;               ///< [s], or the key of a value: a process that is silent for longer hangs
+  std::string report;                ///< file of the run folder that is printed at the end
+  std::string result;                ///< file of the run folder without which the run has failed
+  std::vector<std::string> results;  ///< patterns of the files that a run leaves
   std::map<std::string, Variant> variants;
   RestartPolicy restart;
 };
 
-/// Nothing, or what contradicts itself in the description, with the remedy.
+/// The contradiction in the description, with the remedy; nothing when there is none.
 std::optional<std::string> find_problem(const System& system);
 
 }  // namespace lapis::supervisor

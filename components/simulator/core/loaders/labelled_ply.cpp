@@ -88,7 +88,7 @@ class LabelledPlyLoader {
   InstanceList instances_;
   std::map<std::int64_t, std::uint32_t> index_by_id_;                             ///< by id in instances.csv
   std::map<std::pair<std::int64_t, std::int64_t>, std::uint32_t> index_by_pair_;  ///< by instance id and class id
-  std::vector<std::vector<std::size_t>> triangles_;                               ///< indices in the PLY file, per instance
+  std::vector<std::vector<std::size_t>> triangles_;                               ///< per instance, in the PLY file
   std::map<std::uint32_t, Placement> placements_;
   std::map<std::string, std::optional<Model>> models_;
   std::size_t divided_ = 0;

@@ -28,9 +28,9 @@ class NavMap {
   bool is_blocked(Cell c) const { return blocked_(c.column, c.row) != 0; }
   /// Signed distance of a cell's centre [m]; see distance_m.
   double distance_at(Cell c) const { return static_cast<double>(distance_(c.column, c.row)); }
-  /// Distance from the edge of the nearest blocked cell [m], which is taken to be half a cell before that cell's centre;
-  /// negative in blocked cells. It is bilinear between the centres of cells; a point outside the grid has the distance
-  /// of the grid's nearest point.
+  /// Distance from the edge of the nearest blocked cell [m], which is taken to be half a cell before that cell's
+  /// centre; negative in blocked cells. It is bilinear between the centres of cells; a point outside the grid has the
+  /// distance of the grid's nearest point.
   double distance_m(const Eigen::Vector2d& p) const;
   /// Derivative of distance_m: it points away from the nearest obstacle, and its length is about 1.
   Eigen::Vector2d gradient(const Eigen::Vector2d& p) const;

@@ -42,8 +42,8 @@ struct FreeLoop {
   Path path;                       ///< closed: the first point is also the last
 };
 
-/// The shortest loop around each island, the longest loop first. An island is a group of obstacles that are joined for a
-/// robot of this radius, do not touch the outside, and are larger than `least_area_m2`.
+/// The shortest loop around each island, the longest loop first. An island is a group of obstacles that are joined for
+/// a robot of this radius, do not touch the outside, and are larger than `least_area_m2`.
 std::vector<FreeLoop> find_loops(const NavMap& map, const std::vector<Room>& rooms, const Eigen::Vector2d& start,
                                  double radius_m, double least_area_m2 = 1.0);
 

@@ -113,7 +113,7 @@ bool Robot::move(const Roll& roll, double step_s, Motion& motion) {
   return is_blocked;
 }
 
-/// Takes Newton steps along the gradient of the distance; the current position when they do not lead out of the obstacle.
+/// Takes Newton steps along the gradient of the distance; the current position when they do not lead out.
 Eigen::Vector2d Robot::nearest_free(const Eigen::Vector2d& wanted) const {
   Eigen::Vector2d p = wanted;
   for (int i = 0; i < kMaxPushes; ++i) {

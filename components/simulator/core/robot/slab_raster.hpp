@@ -25,8 +25,8 @@ struct SlabPolygon {
 /// Clips a triangle exactly to low <= z <= high [Sutherland, Hodgman, CACM 1974].
 SlabPolygon clip(const std::array<Eigen::Vector3d, 3>& triangle, const Slab& slab);
 
-/// Sets every cell to 255 that has a point in common with the polygon as seen from above (cells are half-open: a line on
-/// the border of two belongs to the upper or right one). Parts outside the grid are left out.
+/// Sets every cell to 255 that has a point in common with the polygon as seen from above (cells are half-open: a line
+/// on the border of two belongs to the upper or right one). Parts outside the grid are left out.
 void mark(const SlabPolygon& polygon, const Grid& grid, geometry::GrayImage& cells);
 
 }  // namespace lapis::simulator

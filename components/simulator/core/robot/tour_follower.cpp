@@ -11,20 +11,20 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kTurnFrom_rad = 0.7;  // off the heading: stop and turn
+constexpr double kTurnFrom_rad = 0.7;  // error of the heading from which on the robot stops and turns
 constexpr double kTurnTo_rad = 0.1;    // ... until the error is below this
 constexpr double kTurnGain = 1.5;      // [1/s]
 constexpr double kSlowTurn_rad_s = 0.15;
-constexpr double kWindow_m = 0.6;    // of the path ahead in which the robot is looked for
-constexpr double kArrived_m = 0.05;  // from the end of a leg that stops
-constexpr double kPassed_m = 0.20;   // from the end of one that does not
-constexpr double kSlow_m_s = 0.08;   // just before a stop
+constexpr double kWindow_m = 0.6;    // length of the path ahead in which the point nearest to the robot is searched
+constexpr double kArrived_m = 0.05;  // from the end of a leg at which the robot stops
+constexpr double kPassed_m = 0.20;   // from the end of a leg at which it does not stop
+constexpr double kSlow_m_s = 0.08;   // speed just before a stop
 constexpr double kStopGain = 0.8;    // [1/s]
 constexpr double kSafety_m = 0.02;   // between disc and obstacle on the line to the target
 constexpr double kFollowerSample_m = 0.025;
-constexpr double kShortest_m = 0.05;  // distance of the target
-constexpr double kProgress_m = 0.05;  // along the path: less is none
-constexpr double kPatience_s = 20.0;  // without progress, beside the time that turning round takes
+constexpr double kShortest_m = 0.05;  // least distance of the target
+constexpr double kProgress_m = 0.05;  // along the path; less does not count as progress
+constexpr double kPatience_s = 20.0;  // without progress, in addition to the time for turning round
 
 double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
 
@@ -114,7 +114,7 @@ bool TourFollower::is_clear(const Eigen::Vector2d& a, const Eigen::Vector2d& b) 
   return true;
 }
 
-/// Moves the progress on to the point of the path ahead that is nearest to the robot.
+/// Advances the progress to the point of the path ahead that is nearest to the robot.
 void TourFollower::track(const Eigen::Vector2d& position) {
   const Path& path = tour_.legs[leg_].path;
   const double from = progress_m_;
@@ -136,7 +136,7 @@ Eigen::Vector2d TourFollower::point_at(double along_m) const {
   const Path& path = tour_.legs[leg_].path;
   const auto next = std::upper_bound(along_m_.begin(), along_m_.end(), along_m);
   if (next == along_m_.end()) return path.back();
-  const auto i = static_cast<std::size_t>(next - along_m_.begin());  // at least 1: the first point lies at 0
+  const auto i = static_cast<std::size_t>(next - along_m_.begin());  // at least 1, because the first point is at 0
   const double share = (along_m - along_m_[i - 1]) / (along_m_[i] - along_m_[i - 1]);
   return path[i - 1] + share * (path[i] - path[i - 1]);
 }

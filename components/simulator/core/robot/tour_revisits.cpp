@@ -7,7 +7,7 @@ namespace lapis::simulator {
 namespace {
 
 constexpr double kStep_m = 0.5;  // between places that are compared
-constexpr double kPass_m = 1.0;  // that is driven on the old path again
+constexpr double kPass_m = 1.0;  // length of the old path that is driven again
 
 /// Point of a path, by the length along it.
 Eigen::Vector2d point_at(const Path& path, double along_m) {
@@ -19,7 +19,7 @@ Eigen::Vector2d point_at(const Path& path, double along_m) {
   return path.back();
 }
 
-/// Length along the driven path, up to `latest_m`, at which it is the shortest drive from a point of it.
+/// Length along the driven path, up to `latest_m`, of the place to which the drive from `from` is shortest.
 double nearest_along_m(const PathPlanner& planner, const Path& driven, double latest_m, const Eigen::Vector2d& from) {
   struct Place {
     double along_m, straight_m;
@@ -30,7 +30,7 @@ double nearest_along_m(const PathPlanner& planner, const Path& driven, double la
   std::sort(places.begin(), places.end(), [](const Place& a, const Place& b) { return a.straight_m < b.straight_m; });
   double nearest_m = 0.0, least_m = std::numeric_limits<double>::infinity();
   for (const Place& place : places) {
-    if (place.straight_m >= least_m) break;  // and so are all drives from here on
+    if (place.straight_m >= least_m) break;  // the drives to all other places are longer, too
     const auto path = planner.plan(from, point_at(driven, place.along_m));
     if (!path || length_m(*path) >= least_m) continue;
     nearest_m = place.along_m;
@@ -46,7 +46,7 @@ std::vector<Eigen::Vector2d> with_revisits(const NavMap& map, const Tour& tour, 
   const PathPlanner planner(map, config);
   std::vector<Eigen::Vector2d> waypoints;
   Path driven;
-  double next_m = spacing_m;  // along the driven path, of the next revisit
+  double next_m = spacing_m;  // length along the driven path at the next revisit
   for (const TourLeg& leg : tour.legs) {
     driven.insert(driven.end(), leg.path.begin(), leg.path.end());
     for (const double end_m = length_m(driven); next_m <= end_m; next_m += spacing_m) {

@@ -18,13 +18,13 @@ struct Rgba8 {
 };
 using TextureImage = geometry::Image<Rgba8>;
 
-/// How a surface looks. The colour multiplies texture and vertex colour; all are sRGB.
+/// Appearance of a surface. The colour multiplies texture and vertex colour; all are sRGB.
 struct Material {
   std::string name;
   geometry::Rgb8 color{255, 255, 255};
   int texture = -1;          ///< index in Mesh::textures; -1: none
   bool is_cut_out = false;   ///< texels with alpha below 128 are holes, for colour and depth alike
-  bool is_emissive = false;  ///< shown as it is, whatever the light (window panes, lamps)
+  bool is_emissive = false;  ///< its colour is shown without light (window panes, lamps)
 };
 
 struct Triangle {
@@ -33,7 +33,7 @@ struct Triangle {
   std::uint32_t part = 0;      ///< in a model: index of its group or node; in a scene: index in Scene::instances
 };
 
-/// Triangles with their looks. Both sides of a triangle are visible.
+/// Triangles with their appearance. Both sides of a triangle are visible.
 struct Mesh {
   std::vector<Eigen::Vector3f> positions;            ///< [m]
   std::vector<Eigen::Vector2f> texture_coordinates;  ///< empty, or one per position; (0, 0) is the lower left texel
@@ -43,22 +43,22 @@ struct Mesh {
   std::vector<std::shared_ptr<const TextureImage>> textures;  ///< immutable, shared between copies of a model
 };
 
-/// Appends `source`, moved by `T`, to `target`; all its triangles get the part `part`. Textures that `target` already
-/// holds are not added again.
+/// Appends `source`, transformed by `T`, to `target`; all its triangles get the part `part`. Textures that `target`
+/// already has are not added again.
 void append(Mesh& target, const Mesh& source, const Eigen::Affine3f& T, std::uint32_t part);
 
-/// Appends a material with the texture and returns its index; a texture that `mesh` already holds is not added again.
+/// Appends a material with the texture and returns its index; a texture that `mesh` already has is not added again.
 std::uint32_t add_material(Mesh& mesh, Material material, std::shared_ptr<const TextureImage> texture);
 
 /// Box around all positions; empty when there are none.
 Eigen::AlignedBox3f bounds(const Mesh& mesh);
 
 /// Scales and moves a mesh so that its bounds are width x depth x height in the item frame (x and y centred, z from 0).
-/// An extent of zero, but for rounding, stays as it is.
+/// An extent that is zero up to rounding stays as it is.
 void fit_to_box(Mesh& mesh, const Eigen::Vector3d& size_m);
 
-/// Why a mesh cannot be used: an index out of range, a coordinate that is not finite, arrays of different lengths.
-/// Empty when it is sound.
+/// The reason why a mesh cannot be used: an index out of range, a coordinate that is not finite, arrays of different
+/// lengths. Empty when the mesh is sound.
 std::string problem_of(const Mesh& mesh);
 
 }  // namespace lapis::simulator

@@ -32,7 +32,7 @@ struct Lamp {
   float intensity = 1.0F;  ///< irradiance at 1 m, relative to white
 };
 
-/// Where a model comes from and under which licence.
+/// Author and licence of a model.
 struct Credit {
   std::string model;
   std::string author;
@@ -40,27 +40,27 @@ struct Credit {
   bool operator==(const Credit&) const = default;
 };
 
-/// Where the robot may begin.
+/// A pose where the robot may begin, in the world frame.
 struct StartPose {
   Eigen::Vector2d position;  ///< [m]
   double yaw_rad = 0.0;
 };
 
-/// A building as it is rendered. World frame: z up, metres; the floor is at floor_z_m.
+/// A building as it is rendered. The world frame has z up and is in metres; the floor is at floor_z_m.
 struct Scene {
   std::string name;
-  Mesh mesh;  ///< Triangle::part indexes `instances`
+  Mesh mesh;  ///< Triangle::part is an index into `instances`
   std::vector<Instance> instances;
   mapping::LabelList labels;
-  std::vector<Room> rooms;  ///< empty when the source knows none
-  std::vector<Lamp> lamps;  ///< empty: evenly lit (scanned assets carry their light in their textures)
-  bool is_lit = true;       ///< false: colours are shown as they are
+  std::vector<Room> rooms;  ///< empty when the source has none
+  std::vector<Lamp> lamps;  ///< empty: there is only ambient light
+  bool is_lit = true;       ///< false: colours are shown as they are (scans have the light in their textures)
   double floor_z_m = 0.0;
-  std::vector<StartPose> starts;      ///< empty: anywhere
+  std::vector<StartPose> starts;      ///< empty: the robot may begin anywhere
   std::vector<Eigen::Vector2d> tour;  ///< waypoints of the bundled tour; empty: none
-  bool is_stress = false;             ///< made to be hard: views without features are on purpose
+  bool is_stress = false;             ///< intentionally hard: views without features are intended
   std::vector<Credit> credits;
-  std::vector<std::string> warnings;  ///< what stands in for something that was not found, one line each
+  std::vector<std::string> warnings;  ///< one line each, such as what replaces something that was not found
 };
 
 }  // namespace lapis::simulator

@@ -17,13 +17,13 @@ namespace lapis::simulator {
 
 /// A procedural texture and its tint.
 struct SurfaceSpec {
-  std::string texture;  ///< empty: the default of its use; see building/textures.hpp for the names
+  std::string texture;  ///< empty: the default of its use; see looks/textures.hpp for the names
   geometry::Rgb8 color{255, 255, 255};
-  std::optional<std::uint64_t> variant{};  ///< equal ones are painted alike; default: the room's number
+  std::optional<std::uint64_t> variant{};  ///< equal variants look alike; default: the room's number
 };
 
-/// Walls stand on the edges of the polygon, which is the inside face; neighbours leave the wall's thickness between
-/// them. Wall `i` runs from corner `i` to the next one.
+/// Walls stand on the edges of the polygon, which are their inside faces; neighbouring rooms leave the wall's thickness
+/// between them. Wall `i` runs from corner `i` to the next one.
 struct RoomSpec {
   std::string id;
   std::string type;
@@ -36,7 +36,7 @@ enum class OpeningKind {
   kDoor,     ///< a passage with a frame (class door)
   kPassage,  ///< a passage without a frame
   kWindow,   ///< closed by a bright pane (class window)
-  kLeaf      ///< a door that is closed: part of the outer wall (class door)
+  kLeaf      ///< a closed door, which is part of the outer wall (class door)
 };
 
 /// A hole in the wall nearest to `at` (within half a metre) and in the one behind it, if there is one. Doors and
@@ -49,12 +49,12 @@ struct OpeningSpec {
   double top_m = 2.05;
 };
 
-/// Free on the floor (or at an elevation).
+/// A free place on the floor (or at an elevation).
 struct AtPoint {
   Eigen::Vector2d at{0, 0};
   double yaw_rad = 0.0;  ///< 0: the front looks along -y
 };
-/// With its back to a wall, its front to the room.
+/// A place with the item's back to a wall, and its front to the room.
 struct AgainstWall {
   std::string room;
   int edge = 0;           ///< number of the wall
@@ -62,8 +62,8 @@ struct AgainstWall {
   double gap_m = 0.02;    ///< between back and wall
   double turn_rad = 0.0;  ///< added to the heading
 };
-/// On top of another item, which comes before it; `offset` in that item's frame (x: its width, y: its depth, front is
-/// -y).
+/// A place on top of another item, which comes earlier in the list; `offset` is in that item's frame (x along its width,
+/// y along its depth, the front is at -y).
 struct OnItem {
   std::string item;
   Eigen::Vector2d offset{0, 0};
@@ -77,7 +77,7 @@ struct FurnitureSpec {
   std::optional<Eigen::Vector3d> size_m;  ///< width, depth, height; default: the catalogue's or the class's
   std::optional<double> elevation_m;  ///< of its lowest point above what it stands on; default: the catalogue's or 0
   std::variant<AtPoint, AgainstWall, OnItem> place;
-  bool is_movable = false;                   ///< the seed moves it a little
+  bool is_movable = false;                   ///< jitter moves it a little
   std::map<std::string, std::string> parts;  ///< material or group name -> class, where it differs
   std::uint64_t variant = 0;                 ///< of parametric furniture: colours, books, ...
 };
@@ -90,7 +90,7 @@ struct PictureSpec {
   double along_m = 0.0;
   double height_m = 1.5;               ///< of its middle
   Eigen::Vector2d size_m{0.6, 0.45};   ///< width, height
-  std::optional<std::uint64_t> motif;  ///< default: a free number; pictures that share one look alike, and stay
+  std::optional<std::uint64_t> motif;  ///< default: a free number; pictures that share one look alike, and are never moved
 };
 
 struct LampSpec {
@@ -99,10 +99,10 @@ struct LampSpec {
   double intensity = 1.0;
 };
 
-/// A building as config/scenes/<name>.yaml describes it.
+/// A building, as config/scenes/<name>.yaml describes it.
 struct SceneSpec {
   std::string name;
-  std::string file;  ///< for messages
+  std::string file;  ///< name that messages show
   mapping::LabelList labels;
   double height_m = 2.6;
   double wall_thickness_m = 0.12;
@@ -113,7 +113,7 @@ struct SceneSpec {
   std::vector<LampSpec> lamps;  ///< empty: one per 12 m2 of every room
   std::vector<StartPose> starts;
   std::vector<Eigen::Vector2d> tour;
-  bool is_stress = false;  ///< made to be hard: views without features are on purpose
+  bool is_stress = false;  ///< intentionally hard: views without features are intended
 };
 
 }  // namespace lapis::simulator

@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-/// Directions to all sides within a range of elevation, at most `step_rad` apart.
+/// Directions to all sides within a range of elevation, which are at most `step_rad` apart.
 std::vector<Eigen::Vector3f> directions(const ElevationRange& elevation, double step_rad) {
   std::vector<Eigen::Vector3f> out;
   const int rows = static_cast<int>(std::ceil((elevation.high_rad - elevation.low_rad) / step_rad));
@@ -34,17 +34,17 @@ std::vector<Eigen::Vector3f> directions(const ElevationRange& elevation, double 
   return out;
 }
 
-/// Marks what rays pass through [Amanatides, Woo, Eurographics 1987].
+/// Marks the voxels through which rays pass [Amanatides, Woo, Eurographics 1987].
 class Walker {
  public:
   explicit Walker(const VoxelBox& box) : box_(box), seen_(box) {}
 
-  /// Every voxel from one point of the box to another [voxels].
+  /// Marks every voxel on the line from one point of the box to another [voxels].
   void walk(const Eigen::Vector3d& from, const Eigen::Vector3d& to) {
     const Eigen::Vector3d along = to - from;
     const Eigen::Vector3i first = cell_of(from), last = cell_of(to);
     std::array<std::ptrdiff_t, 3> step{};
-    Eigen::Vector3d next, pace;  // share of the way at which the next face of each axis is met, and between two
+    Eigen::Vector3d next, pace;  // share of the line up to the next face of each axis, and between two faces
     for (int axis = 0; axis < 3; ++axis) {
       const bool is_up = along[axis] > 0.0;
       step[static_cast<std::size_t>(axis)] = is_up ? box_.stride(axis) : -box_.stride(axis);
@@ -54,7 +54,7 @@ class Walker {
     }
     auto cell = static_cast<std::ptrdiff_t>(box_.cell(first));
     seen_.insert(static_cast<std::size_t>(cell));
-    // As many steps as there are faces in between: rounding cannot lead beyond the end.
+    // There are as many steps as faces in between, so that rounding cannot lead beyond the end.
     Eigen::Vector3i left = (last - first).cwiseAbs();
     for (int i = left.sum(); i > 0; --i) {
       int axis = 0;
@@ -65,7 +65,7 @@ class Walker {
     }
   }
 
-  /// All voxels that hold a surface at this point.
+  /// Marks all voxels that contain a surface at this point.
   void meet(const Eigen::Vector3d& p) {
     for (const double dx : {-kTouch, kTouch}) {
       for (const double dy : {-kTouch, kTouch}) {
@@ -83,7 +83,7 @@ class Walker {
   VoxelSet seen_;
 };
 
-/// Looks around from a place.
+/// Marks the voxels that are visible from a place in these directions.
 void look(const SceneRaycaster& raycaster, const Eigen::Vector3d& from, const std::vector<Eigen::Vector3f>& directions,
           double range_m, const geometry::Pose& T_map_world, const VoxelBox& box, Walker& walker) {
   constexpr std::size_t kPacket = RayPacket::kSize;
@@ -116,7 +116,7 @@ void look(const SceneRaycaster& raycaster, const Eigen::Vector3d& from, const st
 std::vector<Eigen::Vector2d> viewpoints(const NavMap& map, const Eigen::Vector2d& start, double radius_m,
                                         double spacing_m) {
   const Grid& grid = map.grid();
-  // A start that is just wide enough may lie in a cell whose centre is not.
+  // A start that is just wide enough may be in a cell whose centre is not.
   const auto reachable = map.reachable(start, radius_m - 0.71 * grid.resolution_m);
   std::map<std::pair<int, int>, std::pair<double, Eigen::Vector2d>> nearest;  // by row and column of squares
   for (int row = 0; row < grid.height; ++row) {
@@ -142,7 +142,7 @@ ElevationRange elevation_range(const geometry::PinholeCamera& camera, double pit
     const double up = std::asin((R * camera.unproject(u, v, 1.0)).normalized().z());
     range = {std::min(range.low_rad, up), std::max(range.high_rad, up)};
   };
-  // The image is connected, so its elevations are an interval whose ends are on its border, or the zenith or nadir.
+  // The image is connected, so its elevations are an interval; its ends are on the border, or at the zenith or nadir.
   for (int u = 0; u < camera.width; ++u) {
     include(u, 0);
     include(u, camera.height - 1);

@@ -8,10 +8,10 @@
 
 namespace lapis::simulator {
 
-/// The map that the mapper would make of a run if depth and labels were exact and every pose true.
+/// The map that the mapper would build of a run if depth and labels were exact and every pose were true.
 class IdealMap {
  public:
-  /// As the mapper builds its map, but for the kernel of "bki".
+  /// It is built like the mapper's map, except for the kernel of the fusion rule "bki".
   /// @throws std::runtime_error naming the value that is out of range.
   IdealMap(double resolution_m, const mapping::FrameSettings& frames);
 

@@ -9,9 +9,9 @@
 namespace lapis::simulator {
 namespace {
 
-/// Convex and flat, so that a cut adds one corner at most. Rounding may bend it a little; even then a cut adds at most
-/// one corner per run of corners that it takes away, which are at most half of all. A triangle that is cut by the six
-/// planes of a voxel thus has 3 -> 4 -> 6 -> 9 -> 13 -> 19 -> 28 corners at most.
+/// A polygon that is convex and flat, so that a cut adds at most one corner. Rounding may bend it a little; even then, a
+/// cut adds at most one corner per run of corners that it removes, and there are at most half as many runs as corners. A
+/// triangle that is cut by the six planes of a voxel thus has at most 3 -> 4 -> 6 -> 9 -> 13 -> 19 -> 28 corners.
 struct Polygon {
   std::array<Eigen::Vector3d, 28> corners;
   std::size_t size = 0;
@@ -75,7 +75,7 @@ void add_pieces(const Polygon& triangle, std::uint16_t label, const VoxelBox& bo
     const Piece piece{box.cell(voxel), label, area_of(part)};
     const bool is_same = !pieces.empty() && pieces.back().cell == piece.cell && pieces.back().label == label;
     if (is_same) {
-      pieces.back().area += piece.area;  // small triangles of one thing often follow each other
+      pieces.back().area += piece.area;  // merged, because small triangles of one thing often follow each other
     } else {
       if (pieces.size() == kMaxPieces) refuse(box);
       pieces.push_back(piece);
@@ -88,7 +88,7 @@ void add_pieces(const Polygon& triangle, std::uint16_t label, const VoxelBox& bo
   });
 }
 
-/// The voxel that pieces[begin..end) of one cell, sorted by label, make, if they are large enough.
+/// Adds the voxel of pieces[begin..end), which are of one cell and sorted by label, if its surface is large enough.
 void add_voxel(const std::vector<Piece>& pieces, std::size_t begin, std::size_t end, std::vector<SurfaceVoxel>& out) {
   double total = 0.0, best = 0.0, area = 0.0;
   SurfaceVoxel voxel{pieces[begin].cell, 0};
@@ -123,7 +123,7 @@ std::vector<SurfaceVoxel> surface_voxels(const Scene& scene, const geometry::Pos
     for (std::size_t i = 0; i < 3; ++i) polygon.corners[i] = positions[triangle.vertices[i]];
     add_pieces(polygon, scene.instances[triangle.part].class_id, box, pieces);
   }
-  // Stable: areas are summed in the order of the triangles.
+  // The sort is stable, so that areas are summed in the order of the triangles.
   std::stable_sort(pieces.begin(), pieces.end(), [](const Piece& a, const Piece& b) {
     return a.cell != b.cell ? a.cell < b.cell : a.label < b.label;
   });

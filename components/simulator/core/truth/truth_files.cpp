@@ -87,7 +87,7 @@ void write_scene_truth(const std::filesystem::path& folder, const Scene& scene, 
   if (const auto problem = files::replace_file((folder / "navmap.png").string(), picture)) {
     throw std::runtime_error(*problem);
   }
-  // Last: readers take its presence as a sign that all are there.
+  // This file is written last: to readers its presence means that the others are there.
   save(folder / "mesh.lapis", scene, truth.mesh, "mesh, what can be seen");
 }
 

@@ -7,7 +7,7 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr double kMaxCells = 2e8;  // bits of several sets, and 8 bytes for those that are known
+constexpr double kMaxCells = 2e8;  // memory: one bit each in several sets, and 8 bytes for each known cell
 
 }  // namespace
 

@@ -10,17 +10,18 @@
 
 namespace lapis::simulator {
 
-/// A box of voxels of the map's grid. A voxel is known by its cell, its number in the box: x first, then y, then z.
+/// A box of voxels of the map's grid. A voxel is identified by its cell, which is its number in the box: x first, then
+/// y, then z.
 class VoxelBox {
  public:
   /// All voxels that the box [m, map frame] touches, and one more on each side.
-  /// @throws std::runtime_error in one line with the remedy when there are more than 2e8 of them.
+  /// @throws std::runtime_error with one line that names the remedy, when there are more than 2e8 of them.
   VoxelBox(const Eigen::AlignedBox3d& box, double resolution_m);
 
   double resolution_m() const { return resolution_m_; }
   Eigen::Vector3d size_m() const { return edges_.cast<double>() * resolution_m_; }
   std::size_t size() const { return strides_.z() * static_cast<std::size_t>(edges_.z()); }
-  /// A point of the map frame [m] in voxels from the corner of the box.
+  /// Converts a point of the map frame [m] to voxels from the corner of the box.
   Eigen::Vector3d to_box(const Eigen::Vector3d& p_map) const { return p_map / resolution_m_ - low_.cast<double>(); }
   /// @param v voxels from the corner of the box
   bool contains(const Eigen::Vector3i& v) const { return (v.array() >= 0).all() && (v.array() < edges_.array()).all(); }
@@ -28,7 +29,7 @@ class VoxelBox {
   /// Inverse of cell.
   Eigen::Vector3i offset_of(std::size_t cell) const;
   mapping::VoxelIndex index_of(std::size_t cell) const;
-  /// What the number of a cell grows by with one step along an axis.
+  /// Increase of the number of a cell for one step along an axis.
   std::ptrdiff_t stride(int axis) const { return static_cast<std::ptrdiff_t>(strides_[axis]); }
 
  private:
@@ -37,7 +38,7 @@ class VoxelBox {
   Eigen::Matrix<std::size_t, 3, 1> strides_;
 };
 
-/// Some of the cells of a box, a bit for each.
+/// A set of cells of a box, with one bit per cell.
 class VoxelSet {
  public:
   explicit VoxelSet(const VoxelBox& box) : words_(box.size() / 64 + 1) {}

@@ -12,10 +12,10 @@
 namespace lapis::simulator {
 namespace {
 
-/// As many hits as leave no doubt whatever the sensor model [1/256 vote].
+/// Hits of an occupied voxel, which are enough for any sensor model [1/256 vote].
 constexpr std::uint32_t kHits = 32 * mapping::kOneVote;
 
-/// Occupied where there is surface, free elsewhere.
+/// Map of the known voxels: occupied where there is surface, free elsewhere.
 mapping::VoxelMap to_map(const VoxelSet& known, const std::vector<SurfaceVoxel>& surface, const VoxelBox& box) {
   std::map<mapping::BlockIndex, mapping::VoxelBlock> blocks;
   auto next = surface.begin();
@@ -34,7 +34,7 @@ mapping::VoxelMap to_map(const VoxelSet& known, const std::vector<SurfaceVoxel>&
   return map;
 }
 
-/// Of the camera, in the world: a place for each square that can be reached by a disc.
+/// Positions of the camera in the world frame [m], one for each square that a disc of this radius can reach.
 std::vector<Eigen::Vector3d> eyes(const NavMap& nav_map, const Eigen::Vector3d& start, double radius_m,
                                   const TruthConfig& config) {
   std::vector<Eigen::Vector3d> places;
@@ -71,7 +71,7 @@ VoxelTruth make_voxel_truth(const Scene& scene, const SceneRaycaster& raycaster,
   const auto seen_from = [&](const std::vector<Eigen::Vector3d>& from) {
     return visible_voxels(raycaster, from, visibility, T, box);
   };
-  // Most places serve both.
+  // Most places are reached with and without the margin: they are evaluated only once.
   VoxelSet seen = seen_from(select(places, roomy, true)), seen_with_margin = seen;
   seen.insert(seen_from(select(places, roomy, false)));
   seen_with_margin.insert(seen_from(select(roomy, places, false)));

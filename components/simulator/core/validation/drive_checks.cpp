@@ -17,7 +17,7 @@ namespace {
 
 constexpr double kLeastReach = 0.05;  // share of a room's floor
 constexpr double kLeastWidth_m = 0.8, kCorridorWidth_m = 1.2;
-constexpr double kDoorway_m = 0.075;  // how far cells just outside a corridor are
+constexpr double kDoorway_m = 0.075;  // cells nearer than this to a corridor are just outside it
 constexpr double kEntry_m = 1.2;      // a doorway leads to the most open place within this distance
 
 std::string at(const Eigen::Vector2d& p) { return "(" + decimal(p.x(), 2) + ", " + decimal(p.y(), 2) + ")"; }
@@ -26,7 +26,7 @@ std::string start_name(const Scene& scene, std::size_t index) {
   return scene.starts.empty() ? "the most open place" : "start " + std::to_string(index + 1);
 }
 
-/// Measured widths are too small by up to two cells.
+/// True when a width is certainly less than a limit: measured widths are up to two cells too small.
 bool is_narrower(double width_m, double limit_m, const NavMap& map) {
   return width_m + 2.0 * map.grid().resolution_m < limit_m;
 }
@@ -48,7 +48,7 @@ NavMap inside_of(const NavMap& map, const Room& corridor) {
   return {grid, std::move(blocked)};
 }
 
-/// Squares around the doorways of a corridor: where free space continues just outside its polygon.
+/// Squares around the doorways of a corridor, which are where free space continues just outside its polygon.
 std::vector<Room> entries(const NavMap& map, const Room& corridor) {
   const Grid& grid = map.grid();
   geometry::GrayImage outside(grid.width, grid.height);
@@ -155,7 +155,7 @@ Check check_doors(const Scene& scene, const NavMap& map) {
                             at(passage.at));
   }
   if (found.empty()) return {"doors", Verdict::kNote, "no two rooms are joined", {}};
-  // Passages come widest first.
+  // The widest passages come first.
   const Passage& last = found.back();
   check.figures = std::to_string(found.size()) + " passages join the rooms; the narrowest has " +
                   decimal(last.width_m, 2) + " m (" + last.from + " - " + last.to + ")";

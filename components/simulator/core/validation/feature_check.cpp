@@ -45,7 +45,7 @@ std::vector<FeatureView> reachable_views(const World& world, double radius_m) {
   return views;
 }
 
-/// At most so many of the views, in a fixed order by chance.
+/// At most `count` of the views, in a fixed random order.
 std::vector<FeatureView> drawn(const std::vector<FeatureView>& views, std::size_t count) {
   const Random random(kSeed, RandomStream::kTruth);
   std::vector<std::size_t> order(views.size());
@@ -78,7 +78,7 @@ std::string describe(const FeatureView& view) {
          decimal(view.yaw_rad * 180.0 / std::numbers::pi, 0) + " deg: " + std::to_string(view.features);
 }
 
-/// Whether too many poor views make a scene fail: not when they are on purpose, or when it was made by others.
+/// True when too many poor views make a scene fail: not when they are intended, and not when others made the scene.
 bool is_bound(const Scene& scene) {
   const bool has_pictures = std::any_of(scene.instances.begin(), scene.instances.end(), [&](const Instance& instance) {
     return scene.labels.name(instance.class_id) == "picture";
@@ -91,7 +91,7 @@ struct RoomViews {
   std::vector<FeatureView> poor;
 };
 
-/// A line for every room with poor views, with its worst ones; the room with most of them first.
+/// A line for every room with poor views, which lists its worst ones; the room with most poor views comes first.
 std::vector<std::string> worst_places(const Scene& scene, const std::vector<FeatureView>& sorted) {
   std::map<std::string, RoomViews> views_of;
   for (const FeatureView& view : sorted) {

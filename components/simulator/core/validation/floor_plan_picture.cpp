@@ -15,7 +15,7 @@ const cv::Scalar kRoom(120, 120, 120), kStart(20, 140, 40), kTour(205, 40, 40), 
 constexpr int kScale = 2;  // pixels per cell
 constexpr double kArrow_m = 0.5;
 
-/// Draws in metres.
+/// Draws on the navigation map, in the world frame [m].
 class Canvas {
  public:
   Canvas(const NavMap& map, const geometry::GrayImage& reachable) : grid_(map.grid()) {
@@ -61,7 +61,7 @@ void draw_tour(Canvas& canvas, const World& world, const StartPose& start, const
     for (const TourLeg& leg : plan_tour(world.nav_map(), start.position, world.scene().tour, config).legs)
       canvas.line(leg.path, kTour, 2);
   } catch (const std::runtime_error&) {
-    canvas.line(world.scene().tour, kTour, 1);  // as the crow flies; check_tour says what is wrong
+    canvas.line(world.scene().tour, kTour, 1);  // straight lines; check_tour reports what is wrong
   }
 }
 

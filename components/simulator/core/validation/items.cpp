@@ -21,11 +21,11 @@ bool is_structure(const Scene& scene, const Instance& instance) {
 using Corners = std::array<Eigen::Vector3f, 3>;
 
 constexpr double kMostPoints = 1e8;  // 1.2 GB
-constexpr float kRowSpacing = 0.8F;  // so that the middle of four points is near enough
+constexpr float kRowSpacing = 0.8F;  // so small that the middle of four points is near enough to them
 
 int pieces(float length, float longest) { return std::max(1, static_cast<int>(std::ceil(length / longest))); }
 
-/// Points in rows along the longest side, each row as long as the strip above it is wide.
+/// Adds points in rows along the longest side; each row is as long as the strip above it is at its lower edge.
 void add_points(const Corners& c, float spacing_m, std::vector<Eigen::Vector3f>& points) {
   std::size_t longest = 0;
   for (const std::size_t side : {1U, 2U}) {

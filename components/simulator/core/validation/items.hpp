@@ -18,21 +18,21 @@ struct Item {
   Eigen::AlignedBox3f box;               ///< [m]
 };
 
-/// What a scene is made of.
+/// The items and the building of a scene.
 struct Inventory {
   std::vector<Item> items;               ///< in the order of Scene::instances
   std::vector<std::uint32_t> structure;  ///< triangles of the building
 };
 
-/// Takes the building (classes wall, floor, ceiling, door, and window) apart from the items. Instances that are parts
-/// of one piece of furniture ("vanity", "vanity/sink") are one item.
+/// Separates the building (classes wall, floor, ceiling, door, and window) from the items. Instances that are parts of
+/// one piece of furniture ("vanity", "vanity/sink") are one item.
 Inventory take_inventory(const Scene& scene);
 
-/// Only these triangles, with their looks.
+/// A mesh of these triangles only, with their materials and textures.
 Mesh part_of(const Mesh& mesh, const std::vector<std::uint32_t>& triangles);
 
 /// Points that cover the triangles: no place on them is farther than `spacing_m` from a point [m].
-/// @throws std::runtime_error in one line with the remedy when the triangles are so large that these are too many.
+/// @throws std::runtime_error with one line that names the remedy, when the triangles need too many points.
 std::vector<Eigen::Vector3f> surface_points(const Mesh& mesh, const std::vector<std::uint32_t>& triangles,
                                             float spacing_m);
 

@@ -9,11 +9,11 @@
 namespace lapis::simulator {
 namespace {
 
-constexpr int kContact_voxels = 4;  // 8 cm: what is pressed in by 6 cm is not more, however the grid lies
+constexpr int kContact_voxels = 4;  // 8 cm: an item that is pressed in by 6 cm fills no more, wherever the grid is
 constexpr double kOverlapShare = 0.02;
 constexpr double kOutside_m = 0.03, kOutsideShare = 0.01;
 constexpr float kOverlapSpacing_m = 0.03F;
-constexpr double kMostVoxels = 6e7;  // 500 m3: what is larger is no furniture
+constexpr double kMostVoxels = 6e7;  // 500 m3: larger items are no furniture
 
 /// The voxels of two solids.
 class Pair {
@@ -42,7 +42,7 @@ class Pair {
   }
 
  private:
-  /// 0: empty, 1: the first, 2: the second, 3: both.
+  /// Solids that fill a voxel: 0: none, 1: the first, 2: the second, 3: both.
   int fill(const Eigen::Vector3i& v) const { return (a_.contains(v) ? 1 : 0) + (b_.contains(v) ? 2 : 0); }
 
   bool is_contact(const Eigen::Vector3i& v) const {
@@ -60,7 +60,7 @@ class Pair {
   const Solid &a_, &b_;
 };
 
-/// Whether a point lies in no room, with some tolerance.
+/// True when a point is in no room, with some tolerance.
 bool is_outside(const std::vector<Room>& rooms, double floor_z_m, const Eigen::Vector3d& p) {
   if (p.z() < floor_z_m - kOutside_m) return true;
   return std::none_of(rooms.begin(), rooms.end(), [&](const Room& room) {

@@ -11,17 +11,17 @@ namespace lapis::simulator {
 struct Overlap {
   std::size_t first = 0, second = 0;  ///< items, first < second
   double share = 0.0;                 ///< of the smaller one's space
-  Eigen::Vector3f at{0, 0, 0};        ///< middle of what they share [m]
+  Eigen::Vector3f at{0, 0, 0};        ///< middle of the shared space [m]
 };
 
-/// Pairs of items that stick in one another.
+/// Pairs of items that are partly inside each other.
 ///
-/// Space is cut into voxels of 2 cm. An item fills those that its surface passes through, and those that its surface
-/// shuts off from the outside; so a wardrobe is solid, while one may reach between the boards of a shelf or under a
-/// table. A voxel that two items fill is mere contact, which is allowed, when along some axis the two share no more
-/// than 8 cm there, and one leaves that stretch for something else than one enters it from: out of a cushion pressed
-/// into a sofa, out of a book into the air. What passes through another thing, or lies in it, is no contact. A pair
-/// overlaps when what is no contact is more than 2 % of the smaller item.
+/// Space is cut into voxels of 2 cm. An item fills the voxels through which its surface passes, and those that its
+/// surface shuts off from the outside; so a wardrobe is solid, but the space between the boards of a shelf or under a
+/// table is free. A voxel that two items fill is mere contact, which is allowed, when along some axis the stretch that
+/// both fill there is at most 8 cm long, and the voxels at its two ends differ: for example a cushion at one end and the
+/// sofa into which it is pressed at the other, or a book and the air. An item that passes through another one, or is
+/// inside it, is no contact. A pair overlaps when the voxels that are no contact are more than 2 % of the smaller item.
 std::vector<Overlap> find_overlaps(const Scene& scene, const Inventory& inventory);
 
 /// An item that leaves the rooms: through a wall, the floor, or the ceiling.

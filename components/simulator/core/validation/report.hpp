@@ -13,13 +13,13 @@ struct Check {
   std::string name;
   Verdict verdict = Verdict::kOk;
   std::string figures{};               ///< one line
-  std::vector<std::string> details{};  ///< one line each: the offenders, or what the figures are made of
+  std::vector<std::string> details{};  ///< one line each: the offenders, or the parts of the figures
 };
 
-/// Called with what is being done, one line at a time.
+/// Called with a line that names the current step.
 using Progress = std::function<void(const std::string&)>;
 
-/// "1.25" for 1.2468 and two digits.
+/// A number as text, such as "1.25" for 1.2468 and two digits.
 std::string decimal(double value, int digits);
 
 }  // namespace lapis::simulator

@@ -25,7 +25,7 @@ Solid::Solid(const Scene& scene, const Item& item)
   fill_inside();
 }
 
-/// Floods the outside from the four sides and from above; models often have no bottom.
+/// Floods the outside from the four sides and from above, but not from below, because models often have no bottom.
 void Solid::fill_inside() {
   std::vector<Eigen::Vector3i> front;
   const auto flood = [&](const Eigen::Vector3i& v) {

@@ -10,15 +10,15 @@
 
 namespace lapis::simulator {
 
-/// The space that an item fills, in voxels of a grid that all items share: those that its surface passes through, and
-/// those that cannot be reached from beside or above it without passing through them.
+/// The space that an item fills, in voxels of a grid that all items share: those through which its surface passes, and
+/// those that cannot be reached from beside or above it without passing through the former.
 class Solid {
  public:
   static constexpr float kVoxel_m = 0.02F;
 
   Solid(const Scene& scene, const Item& item);
 
-  /// How many voxels the box of an item takes.
+  /// Greatest number of voxels that the box of an item takes.
   static double voxels(const Item& item);
 
   const Eigen::Vector3i& low() const { return low_; }                  ///< lowest voxel

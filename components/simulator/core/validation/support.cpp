@@ -12,11 +12,11 @@ namespace lapis::simulator {
 namespace {
 
 constexpr float kSupportSpacing_m = 0.02F;
-constexpr float kPressed_m = 0.01F;  // rays begin so far inside
+constexpr float kPressed_m = 0.01F;  // rays begin this far inside, because items may be pressed into each other
 
 using Points = std::vector<Eigen::Vector3f>;
 
-/// Down, up, and eight ways to the side.
+/// Directions down, up, and to eight sides.
 const std::vector<Eigen::Vector3f>& directions() {
   static const std::vector<Eigen::Vector3f> all = [] {
     std::vector<Eigen::Vector3f> list{-Eigen::Vector3f::UnitZ(), Eigen::Vector3f::UnitZ()};
@@ -29,7 +29,7 @@ const std::vector<Eigen::Vector3f>& directions() {
   return all;
 }
 
-/// True when something lies within reach of one of the points in one of the first `count` directions.
+/// True when something is within reach of one of the points in one of the first `count` directions.
 bool touches(const SceneRaycaster& others, const Points& points, std::size_t count) {
   return std::any_of(points.begin(), points.end(), [&](const Eigen::Vector3f& p) {
     std::array<Ray, SceneRaycaster::kPacket> rays;
@@ -43,7 +43,7 @@ bool touches(const SceneRaycaster& others, const Points& points, std::size_t cou
   });
 }
 
-/// Lowest first: there most items stand.
+/// Points on the surface of an item, the lowest ones first, because most items stand on them.
 Points points_of(const Scene& scene, const Item& item) {
   Points points = surface_points(scene.mesh, item.triangles, kSupportSpacing_m);
   std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.z() < b.z(); });
@@ -55,7 +55,7 @@ bool is_near(const Item& a, const Item& b) {
   return Eigen::AlignedBox3f(a.box.min() - reach, a.box.max() + reach).intersects(b.box);
 }
 
-/// Triangles of all other items of `held` that are near.
+/// Triangles of all other items that are held and near.
 std::vector<std::uint32_t> held_around(const Inventory& inventory, std::size_t index, const std::vector<bool>& held) {
   std::vector<std::uint32_t> triangles;
   for (std::size_t k = 0; k < inventory.items.size(); ++k) {

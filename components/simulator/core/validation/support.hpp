@@ -7,11 +7,11 @@
 
 namespace lapis::simulator {
 
-/// How far an item may be from what holds it, and how deep it may be pressed into it [m].
+/// Greatest distance of an item from what holds it [m].
 inline constexpr float kSupportGap_m = 0.03F;
 
-/// Items that nothing holds, by their index. An item is held when a part of the building lies within kSupportGap_m
-/// under, above, or beside some place of it, or when an item that is held itself lies under some place of it.
+/// Indices of the items that nothing holds. An item is held when a part of the building is within kSupportGap_m under,
+/// above, or beside some place of it, or when an item that is itself held is so under some place of it.
 std::vector<std::size_t> find_floating(const Scene& scene, const Inventory& inventory);
 
 }  // namespace lapis::simulator

@@ -16,13 +16,13 @@ struct ValidationConfig {
   FeatureConfig features;  ///< with the robot's camera and radius
 };
 
-/// All checks of a scene, in the order in which they are printed. Deterministic.
+/// Makes all checks of a scene, in the order in which they are printed. The result is deterministic.
 std::vector<Check> validate(const World& world, const ValidationConfig& config, const Progress& progress);
 
 /// True when no check fails.
 bool passes(const std::vector<Check>& checks);
 
-/// The navigation map with what can be reached, rooms, starts (arrows), the tour (red), and long loops (blue).
+/// Picture of the navigation map with the reachable area, rooms, starts (arrows), the tour (red), and long loops (blue).
 geometry::ColorImage draw_floor_plan(const World& world, const TourConfig& tour);
 
 }  // namespace lapis::simulator

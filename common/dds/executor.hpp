@@ -19,7 +19,7 @@ class Executor {
 
   /// The source must outlive the executor's last spin().
   void add(Source& source);
-  /// Calls `action` every `period` of wall time, for book-keeping only.
+  /// Calls `action` every `period` of wall-clock time, for book-keeping only.
   void every(Clock::duration period, std::function<void()> action);
   /// Calls `action` once, when the steady clock reaches `due`.
   void at(Clock::time_point due, std::function<void()> action);

@@ -27,7 +27,7 @@ class Reader : private compat::fdds::DataReaderListener {
 
   /// Sequence number of the newest sample taken from a writer; 0 = none. Only for the thread of the wait set.
   std::uint64_t received(const Gid& writer) const;
-  /// Samples that were overwritten or lost before they could be taken.
+  /// Number of samples that were overwritten or lost before they could be taken.
   std::uint64_t missed() const { return missed_; }
   std::uint64_t incompatible() const { return incompatible_; }
   const std::string& dds_name() const { return dds_name_; }

@@ -68,7 +68,7 @@ void Writer::on_publication_matched(compat::fdds::DataWriter* /*writer*/,
                                     const compat::fdds::PublicationMatchedStatus& status) {
   const Gid reader = to_gid(compat::rtps::iHandle2GUID(status.last_subscription_handle));
   const std::lock_guard lock(mutex_);
-  if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is the match's
+  if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is that of the match
     readers_.insert(reader);
     ++total_matches_;
   } else {

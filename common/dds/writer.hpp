@@ -41,7 +41,7 @@ class Writer : private compat::fdds::DataWriterListener {
   bool is_matched(const Gid& reader) const;
   /// Number of matches since the start; an increase means that a new reader has matched.
   std::uint64_t total_matches() const { return total_matches_; }
-  /// Readers refused because of an incompatible QoS.
+  /// Number of readers that were refused because of an incompatible QoS.
   std::uint64_t incompatible() const { return incompatible_; }
 
  private:

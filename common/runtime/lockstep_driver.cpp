@@ -14,7 +14,7 @@ using lapis_msgs::msg::Ack_Constants::STATUS_ERROR;
 
 constexpr double kJoinRepeat_s = 0.1;    // tick 0 waits for participants that start later, so it is repeated often
 constexpr double kTickRepeat_s = 0.5;    // later ticks are repeated for a participant that has been restarted
-constexpr double kLongestWait_s = 60.0;  // policy "wait"
+constexpr double kLongestWait_s = 60.0;  // longest silence under the policy "wait"
 
 double seconds_since(std::chrono::steady_clock::time_point t) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - t).count();

@@ -41,8 +41,8 @@ class LockstepParticipant {
   dds::Gid run_{};                                                   // the driver's tick writer; zero: not in lock-step
   bool has_joined_ = false;                                          // has answered a tick of this run
   std::optional<Tick> pending_;                                      // received, not answered
-  std::optional<std::pair<std::uint64_t, std::uint32_t>> answered_;  // tick and stage
-  std::uint64_t last_due_ = 0;                                       // tick
+  std::optional<std::pair<std::uint64_t, std::uint32_t>> answered_;  // tick and stage of the last answer
+  std::uint64_t last_due_ = 0;                                       // newest tick that was due for this process
   // The run of the newest tick, whoever it was due for; the first tick of that run that was received; and whether the
   // run works without this process.
   dds::Gid watched_{};

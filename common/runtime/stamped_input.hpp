@@ -31,7 +31,7 @@ class StampedInput {
   void on_restart(std::function<void()> action) { on_restart_ = std::move(action); }
 
   bool has_publisher() const { return source_.matched() > 0; }
-  /// Messages that were lost before they could be taken.
+  /// Number of messages that were lost before they could be taken.
   std::uint64_t missed() const { return source_.missed(); }
   /// True when the next message would displace the oldest.
   bool is_full() const { return buffer_.is_full(); }

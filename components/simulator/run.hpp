@@ -26,7 +26,7 @@ class Run {
   /// first frame.
   void keep_ideal_map(double resolution_m, const mapping::FrameSettings& frames);
   /// The command takes effect from the next frame but one, because the next one is already being simulated. It is
-  /// ignored on a tour, and before the first frame, because nobody can have seen a frame to which it is an answer.
+  /// ignored on a tour, and before the first frame, because there is no frame yet that it can answer.
   void command(const DriveCommand& command);
   /// Waits for the next frame, and starts the simulation of the one after it.
   /// @throws whatever the simulation of the next frame threw; std::runtime_error when the robot is stuck on its tour.
@@ -42,7 +42,7 @@ class Run {
   time::Time stamp() const { return step_ ? step_->frame.stamp : time::Time{}; }
   /// True when contact with an obstacle began or ended with the last frame; the first one counts, too.
   bool has_contact_changed() const { return has_contact_changed_; }
-  /// Contacts so far.
+  /// Number of contacts so far.
   std::uint64_t collisions() const { return collisions_; }
   /// Greatest speed of the robot towards something that it touched [m/s].
   double hardest_push_m_s() const { return hardest_push_m_s_; }

@@ -79,7 +79,7 @@ class SimulatorComponent {
   bool is_paused_ = false;
   int steps_ = 0;                                   // number of ticks that were requested while paused
   double ran_s_ = 0.0;                              // wall-clock time up to the last pause
-  std::optional<Clock::time_point> running_since_;  // since the first frame, or the first one after the last pause
+  std::optional<Clock::time_point> running_since_;  // time of the first frame, or of the first one after the last pause
   Clock::time_point due_;                           // wall-clock time of the next tick
   Clock::time_point reported_;
   std::stop_source truth_cancelled_;

@@ -16,7 +16,7 @@ namespace {
 
 constexpr std::string_view kFileMagic = "LAPISMAP";
 constexpr std::uint32_t kFormatVersion = 3;
-constexpr std::uint32_t kFormerVersion = 2;  // without the settings of frames
+constexpr std::uint32_t kFormerVersion = 2;  // without frame settings
 constexpr int kFileCompressionLevel = 3;
 // Usual and largest size of a record (everything before the blocks, or one block). The largest size allows 20,000
 // classes in each voxel of a block.

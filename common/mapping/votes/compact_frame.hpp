@@ -51,7 +51,7 @@ class CompactFrame {
   const std::vector<std::uint16_t>& labels() const { return labels_; }
   /// Confidence per sample, 255 = certain; empty when all labels are certain.
   const std::vector<std::uint8_t>& confidence() const { return confidence_; }
-  /// Samples whose label was above CompactFrameConfig::max_label.
+  /// Number of samples whose label was 65535 or above CompactFrameConfig::max_label.
   std::size_t labels_out_of_list() const { return labels_out_of_list_; }
   /// Median of the measured depths [m]; 0 when nothing was measured.
   double median_depth_m() const;

@@ -19,6 +19,9 @@ struct FrameHeader {
   std::int16_t has_confidence;
 
   std::size_t bytes_per_sample() const { return 2u + (has_labels ? 2u : 0u) + (has_confidence ? 1u : 0u); }
+  bool is_valid() const {
+    return camera.width > 0 && camera.height > 0 && stride > 0 && (has_labels || !has_confidence);
+  }
 };
 
 /// Header of packed votes.
@@ -123,6 +126,7 @@ std::optional<CompactFrame> unpack_frame(std::span<const std::uint8_t> bytes) {
   const auto plain = unpacked(bytes, sizeof header);
   if (!plain) return std::nullopt;
   std::memcpy(&header, plain->data(), sizeof header);
+  if (!header.is_valid()) return std::nullopt;
   CompactFrame frame;
   frame.camera_ = header.camera;
   frame.stride_ = header.stride;

@@ -10,7 +10,7 @@
 
 namespace lapis::sensor_replay {
 
-/// One line of a text file, split at blanks (or commas).
+/// One line of a text file, split at blanks or another separator.
 struct TableRow {
   int line = 0;  ///< counted from 1
   std::vector<std::string> fields;

@@ -43,17 +43,17 @@ struct OdometrySample {
   time::Time stamp;
   Eigen::Vector2d position{0, 0};
   double yaw_rad = 0.0;
-  Eigen::Matrix3d pose_covariance = Eigen::Matrix3d::Zero();  ///< of (x, y, yaw) [m, m, rad]
-  DriveCommand velocity;                                      ///< mean since the last sample
-  Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d pose_covariance = Eigen::Matrix3d::Zero();      ///< of (x, y, yaw) [m, m, rad]
+  DriveCommand velocity;                                          ///< mean since the last sample
+  Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Zero();  ///< of (vx, vy, turn rate) [m/s, m/s, rad/s]
 };
 
 struct ImuSample {
   time::Time stamp;
   Eigen::Vector3d turn_rate_rad_s{0, 0, 0};    ///< about the axes of base_link
   Eigen::Vector3d acceleration_m_s2{0, 0, 0};  ///< in base_link, as an accelerometer measures it: +g along z at rest
-  double turn_rate_variance = 0.0;
-  double acceleration_variance = 0.0;
+  double turn_rate_variance = 0.0;             ///< of every axis [rad2/s2]
+  double acceleration_variance = 0.0;          ///< of every axis [m2/s4]
 };
 
 /// Number and camera pose of a frame.

@@ -22,7 +22,7 @@ struct WorldConfig {
 /// several threads.
 class World {
  public:
-  /// @throws std::runtime_error naming the scene when its mesh is empty or broken, or has no floor.
+  /// @throws std::runtime_error when its mesh is empty or broken (naming the scene), or has no floor at floor_z_m.
   World(Scene scene, const WorldConfig& config);
 
   const Scene& scene() const { return scene_; }

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "common/mapping/wire/frame_codec.hpp"
+#include "common/mapping/wire/zstd_codec.hpp"
 #include "tests/support/synthetic_room.hpp"
 
 namespace lapis::mapping {
@@ -150,6 +151,19 @@ TEST(FrameCodec, DamagedBytesGiveNothing) {
   bytes.resize(bytes.size() / 2);
   EXPECT_FALSE(unpack_frame(bytes));
   EXPECT_FALSE(unpack_frame({}));
+}
+
+TEST(FrameCodec, AHeaderThatNoFrameHasGivesNothing) {
+  std::string error;
+  const auto frame = CompactFrame::make(kCamera, {kCamera.width, kCamera.height, 1.0f}, nullptr, {}, error);
+  auto plain = zstd_decompress(pack(*frame), 10000).value();
+  const std::size_t samples = static_cast<std::size_t>(frame->columns()) * static_cast<std::size_t>(frame->rows());
+  const std::size_t stride_at = plain.size() - 2 * samples - 8;  // two flags of 2 bytes follow the stride, then depth
+  ASSERT_EQ(plain[stride_at], frame->stride());
+  for (const std::uint8_t byte : {0x00, 0xff}) {  // a stride of 0 and of -1
+    std::fill_n(plain.begin() + static_cast<std::ptrdiff_t>(stride_at), 4, byte);
+    EXPECT_FALSE(unpack_frame(zstd_compress(plain, 1))) << int{byte};
+  }
 }
 
 TEST(FrameCodec, TakesAFractionOfTheImagesMemory) {

@@ -47,7 +47,7 @@ struct RunMetrics {
   std::optional<double> tier_surfaces_share;
   std::optional<double> tier_odometry_share;
   std::optional<double> lost_share;   ///< share of duration_s without any pose
-  std::optional<double> lost_time_s;  ///< the same time
+  std::optional<double> lost_time_s;  ///< time without any pose
   std::optional<std::int64_t> loop_closures;
   TrajectoryFigures online;                 ///< every frame's pose as published at its time
   TrajectoryFigures keyframes;              ///< final, optimised key-frames (their RPE and heading are not written)

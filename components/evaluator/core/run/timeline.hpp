@@ -28,8 +28,8 @@ struct FrameRow {
   double time_s = 0.0;  ///< since the run's first frame
   PoseTier tier = PoseTier::kNone;
   std::optional<double> path_length_m;     ///< length of the true path so far
-  std::optional<double> position_sigma_m;  ///< as TimelineRow
-  std::optional<double> position_error_m;  ///< as TimelineRow
+  std::optional<double> position_sigma_m;  ///< as in TimelineRow
+  std::optional<double> position_error_m;  ///< as in TimelineRow
 };
 
 /// The file timeline.csv; cells without a value are empty.

@@ -14,14 +14,14 @@ namespace lapis::simulator {
 
 struct BuildOptions {
   std::uint64_t seed = 0;         ///< of the jitter, and of the choice of pictures that are left out
-  bool with_jitter = true;        ///< moves furniture by up to 5 cm and 10 degrees, pictures by up to 10 cm
+  bool with_jitter = true;        ///< up to 5 cm and 10 degrees for movable items, 10 cm along the wall for pictures
   double texture_richness = 1.0;  ///< 0 to 2: contrast of walls, floors, ceilings and pictures
   double pictures_density = 1.0;  ///< 0 to 1: share of the pictures that hang
 };
 
 /// A model for a piece of furniture, in the item frame (see parametric_furniture.hpp), at its natural size.
 struct SourcedModel {
-  Mesh mesh;                        ///< Triangle::part indexes `groups`
+  Mesh mesh;                        ///< Triangle::part is an index into `groups`
   std::vector<std::string> groups;  ///< names that FurnitureSpec::parts may use, beside those of materials
   double elevation_m = 0.0;         ///< usual height of its lowest point above the floor
   std::optional<Credit> credit;

@@ -49,7 +49,7 @@ class OpeningCutter {
   Wall& wall(const WallRef& ref) { return plan_[ref.room].walls[ref.wall]; }
   const Wall& wall(const WallRef& ref) const { return plan_[ref.room].walls[ref.wall]; }
 
-  /// How far `back` lies behind `front`.
+  /// Distance of `back` behind `front` [m].
   static double gap(const Wall& front, const Wall& back) { return -(back.start - front.start).dot(front.inward); }
 
   template <class Function>

@@ -8,7 +8,7 @@
 namespace lapis::simulator {
 
 enum class DepthModel {
-  kNone,      ///< ideal depth in millimetres, at any range
+  kNone,      ///< ideal depth in millimetres, up to 65.5 m
   kKinect,    ///< Nguyen, Izadi, Lovell, 3DIMPVT 2012
   kRedwood,   ///< Choi, Zhou, Koltun, CVPR 2015, without the distortion table
   kRealsense  ///< stereo with 0.08 px of disparity noise and a base of 0.05 m

@@ -62,8 +62,8 @@ struct AgainstWall {
   double gap_m = 0.02;    ///< between back and wall
   double turn_rad = 0.0;  ///< added to the heading
 };
-/// A place on top of another item, which comes earlier in the list; `offset` is in that item's frame (x along its width,
-/// y along its depth, the front is at -y).
+/// A place on top of another item, which comes earlier in the list; `offset` is in that item's frame (x along its
+/// width, y along its depth, the front is at -y).
 struct OnItem {
   std::string item;
   Eigen::Vector2d offset{0, 0};
@@ -90,7 +90,7 @@ struct PictureSpec {
   double along_m = 0.0;
   double height_m = 1.5;               ///< of its middle
   Eigen::Vector2d size_m{0.6, 0.45};   ///< width, height
-  std::optional<std::uint64_t> motif;  ///< default: a free number; pictures that share one look alike, and are never moved
+  std::optional<std::uint64_t> motif;  ///< default: a free number; pictures that share one look alike, and never move
 };
 
 struct LampSpec {

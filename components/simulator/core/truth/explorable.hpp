@@ -12,8 +12,8 @@
 
 namespace lapis::simulator {
 
-/// Places that represent all those that the robot's centre can reach: for each square of edge `spacing_m`, the reachable
-/// cell nearest to its middle. They are in the world frame [m], and none when the robot does not fit at the start.
+/// Places (world frame [m]) that represent all those that the robot's centre can reach: for each square of edge
+/// `spacing_m`, the reachable cell nearest to its middle; none when the robot does not fit at the start.
 std::vector<Eigen::Vector2d> viewpoints(const NavMap& map, const Eigen::Vector2d& start, double radius_m,
                                         double spacing_m);
 
@@ -40,8 +40,8 @@ struct VisibilityConfig {
 VoxelSet visible_voxels(const SceneRaycaster& raycaster, const std::vector<Eigen::Vector3d>& positions,
                         const VisibilityConfig& config, const geometry::Pose& T_map_world, const VoxelBox& box);
 
-/// Voxels that are not solid and are connected through faces, within the box, to one of the seeds (world frame [m]), and
-/// the solid ones next to them (26 neighbours).
+/// Voxels that are not solid and are connected through faces, within the box, to one of the seeds (world frame [m]),
+/// and the solid ones next to them (26 neighbours).
 VoxelSet flooded_voxels(const VoxelSet& solid, const std::vector<Eigen::Vector3d>& seeds,
                         const geometry::Pose& T_map_world, const VoxelBox& box);
 

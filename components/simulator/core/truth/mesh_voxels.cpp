@@ -9,9 +9,9 @@
 namespace lapis::simulator {
 namespace {
 
-/// A polygon that is convex and flat, so that a cut adds at most one corner. Rounding may bend it a little; even then, a
-/// cut adds at most one corner per run of corners that it removes, and there are at most half as many runs as corners. A
-/// triangle that is cut by the six planes of a voxel thus has at most 3 -> 4 -> 6 -> 9 -> 13 -> 19 -> 28 corners.
+/// A polygon that is convex and flat, so that a cut adds at most one corner. Rounding may bend it a little; even then,
+/// a cut adds at most one corner per run of corners that it removes, and at most half as many runs as corners exist.
+/// A triangle that is cut by the six planes of a voxel thus has at most 3 -> 4 -> 6 -> 9 -> 13 -> 19 -> 28 corners.
 struct Polygon {
   std::array<Eigen::Vector3d, 28> corners;
   std::size_t size = 0;

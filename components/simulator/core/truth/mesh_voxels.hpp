@@ -10,8 +10,8 @@
 
 namespace lapis::simulator {
 
-/// A surface that is nearer to a voxel than this counts as in it [voxels]: a surface in the face between two voxels is in
-/// both, as in the map of a camera with the least noise. The floor is such a surface: it is at z = 0 of the map.
+/// A surface that is nearer to a voxel than this counts as in it [voxels]: a surface in the face between two voxels is
+/// in both, as in the map of a camera with the least noise. The floor is such a surface: it is at z = 0 of the map.
 inline constexpr double kTouch = 0.004;
 /// Voxels with less surface than this count as empty [faces of a voxel]: a camera hardly sees it.
 inline constexpr double kLeastArea = 0.01;

@@ -27,8 +27,8 @@ struct TruthConfig {
   std::stop_token cancelled{};  ///< after a request to stop, the result comes soon and is incomplete
 };
 
-/// What can be known of a scene, in the run's frame `map`. Known voxels with surface are occupied and have its class; the
-/// other known ones are free.
+/// What can be known of a scene, in the run's frame `map`. Known voxels with surface are occupied and have its class;
+/// the other known ones are free.
 struct VoxelTruth {
   mapping::VoxelMap mesh;   ///< known: what the mounted camera can see from some reachable place
   mapping::VoxelMap flood;  ///< known: free space that is connected to these places, and the surface next to it

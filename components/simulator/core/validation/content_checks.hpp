@@ -15,8 +15,8 @@ Check check_walls(const Scene& scene, const Inventory& inventory);
 /// Lists panes that a robot can run into: windows and mirrors that begin below 0.3 m. It never fails; the verdict is a
 /// note when there are any, because depth cameras do not see glass.
 Check list_panes(const Scene& scene);
-/// Counts items, triangles, and surface per class. It never fails; the verdict is a note when fewer than 16 classes have
-/// a surface of 0.5 m2.
+/// Counts items, triangles, and surface per class. It never fails; the verdict is a note when fewer than 16 classes
+/// have a surface of 0.5 m2.
 Check count_classes(const Scene& scene, const Inventory& inventory);
 
 }  // namespace lapis::simulator

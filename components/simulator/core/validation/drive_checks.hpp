@@ -25,9 +25,9 @@ Check check_tour(const Scene& scene, const NavMap& map, const TourConfig& config
 /// Checks that no passage from one room to another is narrower than 0.8 m.
 Check check_doors(const Scene& scene, const NavMap& map);
 
-/// Checks rooms of type "hallway" or "corridor": the largest disc that can move from every doorway to all others without
-/// leaving the corridor must be at least 0.8 m wide; the verdict is a note when it is narrower than 1.2 m, or when there
-/// are no two doorways.
+/// Checks rooms of type "hallway" or "corridor": the largest disc that can move from every doorway to all others
+/// without leaving the corridor must be at least 0.8 m wide; the verdict is a note when it is narrower than 1.2 m, or
+/// when there are no two doorways.
 Check check_corridors(const Scene& scene, const NavMap& map);
 
 /// Loops of at least kLeastLoop_m that can be reached from the first start.

@@ -27,13 +27,13 @@ struct FeatureView {
 /// fewer than one draw in 10,000 would be as far off (binomial distribution, one-sided).
 bool is_decided(std::size_t poor, std::size_t views);
 
-/// Measures views from places that the robot can reach from the starts: they are 0.5 m apart, with 8 headings each. Views
-/// are drawn in a fixed order until there are max_views, or until is_decided, which is asked after every hundred views.
+/// Measures views from places that the robot can reach from the starts: places 0.5 m apart, with 8 headings each. Views
+/// are drawn in a fixed order until there are max_views, or until is_decided(), which is evaluated every 100 views.
 std::vector<FeatureView> measure_features(const World& world, const FeatureConfig& config, const Progress& progress);
 
-/// Judges the result of measure_features: fails when more than 4 % of the views have fewer than 100 features. The verdict
-/// is a note instead for stress scenes and for those without rooms or pictures, and also when the share is below 0.5 %
-/// (the robot cannot get lost).
+/// Judges the result of measure_features: fails when more than 4 % of the views have fewer than 100 features. The
+/// verdict is a note instead for stress scenes and for those without rooms or pictures, and also when the share is
+/// below 0.5 % (the robot cannot get lost).
 Check check_features(const Scene& scene, std::vector<FeatureView> views);
 
 }  // namespace lapis::simulator

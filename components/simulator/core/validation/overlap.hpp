@@ -19,9 +19,9 @@ struct Overlap {
 /// Space is cut into voxels of 2 cm. An item fills the voxels through which its surface passes, and those that its
 /// surface shuts off from the outside; so a wardrobe is solid, but the space between the boards of a shelf or under a
 /// table is free. A voxel that two items fill is mere contact, which is allowed, when along some axis the stretch that
-/// both fill there is at most 8 cm long, and the voxels at its two ends differ: for example a cushion at one end and the
-/// sofa into which it is pressed at the other, or a book and the air. An item that passes through another one, or is
-/// inside it, is no contact. A pair overlaps when the voxels that are no contact are more than 2 % of the smaller item.
+/// both fill there is at most 8 cm long, and the voxels at its two ends differ: for example a cushion at one end and
+/// the sofa into which it is pressed at the other, or a book and the air. An item that passes through another one, or
+/// is inside it, is no contact. A pair overlaps when voxels that are no contact are over 2 % of the smaller item.
 std::vector<Overlap> find_overlaps(const Scene& scene, const Inventory& inventory);
 
 /// An item that leaves the rooms: through a wall, the floor, or the ceiling.

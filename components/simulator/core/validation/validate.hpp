@@ -22,7 +22,7 @@ std::vector<Check> validate(const World& world, const ValidationConfig& config, 
 /// True when no check fails.
 bool passes(const std::vector<Check>& checks);
 
-/// Picture of the navigation map with the reachable area, rooms, starts (arrows), the tour (red), and long loops (blue).
+/// Picture of the navigation map with the reachable area, rooms, starts (arrows), tour (red), and long loops (blue).
 geometry::ColorImage draw_floor_plan(const World& world, const TourConfig& tour);
 
 }  // namespace lapis::simulator

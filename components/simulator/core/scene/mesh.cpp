@@ -86,6 +86,7 @@ std::string problem_of(const Mesh& mesh) {
     if (triangle.material >= mesh.materials.size())
       return "triangle " + std::to_string(i) + " names a material that does not exist";
   }
+  if (mesh.textures.size() > kMostTextures) return "more than " + std::to_string(kMostTextures) + " textures";
   for (const auto& material : mesh.materials) {
     if (material.texture >= static_cast<int>(mesh.textures.size()))
       return "material " + material.name + " names a texture that does not exist";

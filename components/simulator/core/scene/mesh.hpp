@@ -57,8 +57,11 @@ Eigen::AlignedBox3f bounds(const Mesh& mesh);
 /// An extent that is zero up to rounding stays as it is.
 void fit_to_box(Mesh& mesh, const Eigen::Vector3d& size_m);
 
+/// A mesh may have as many textures: a renderer keeps their indices in 16 bits.
+inline constexpr std::size_t kMostTextures = 32767;
+
 /// The reason why a mesh cannot be used: an index out of range, a coordinate that is not finite, arrays of different
-/// lengths. Empty when the mesh is sound.
+/// lengths, too many textures. Empty when the mesh is sound.
 std::string problem_of(const Mesh& mesh);
 
 }  // namespace lapis::simulator

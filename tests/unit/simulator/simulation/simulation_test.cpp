@@ -153,6 +153,9 @@ TEST(WorldErrors, NameTheScene) {
   Scene broken = test::box_scene();
   broken.mesh.positions[3].x() = std::numeric_limits<float>::quiet_NaN();
   EXPECT_EQ(error_of(broken), "scene box: vertex 3 is not finite");
+  Scene rich = test::box_scene();
+  rich.mesh.textures.resize(kMostTextures + 1);
+  EXPECT_EQ(error_of(rich), "scene box: more than 32767 textures");
   Scene orphan = test::box_scene();
   orphan.mesh.triangles[5].part = 99;
   EXPECT_EQ(error_of(orphan), "scene box: a triangle belongs to no instance");

@@ -38,31 +38,39 @@ geometry::CameraMount camera_mount(const CameraDescription& camera);
 
 template <class Field>
 void describe(Field& field, CameraDescription& c) {
-  field("width", c.width, config::in_range(16, 4096), "[px]");
-  field("height", c.height, config::in_range(16, 4096), "[px]");
-  field("horizontal_fov_deg", c.horizontal_fov_deg, config::in_range(10.0, 170.0), "field of view [deg]");
-  field("vertical_fov_deg", c.vertical_fov_deg, config::in_range(10.0, 170.0), "field of view [deg]");
-  field("rate_hz", c.rate_hz, config::in_range(0.1, 120.0), "frames per second [Hz]");
-  field("height_m", c.height_m, config::in_range(0.0, 10.0), "above base_link [m]");
-  field("pitch_down_deg", c.pitch_down_deg, config::in_range(-90.0, 90.0), "tilt; positive looks at the floor [deg]");
+  field("width", c.width, config::in_range(16, 4096), "width of the image [px]");
+  field("height", c.height, config::in_range(16, 4096), "height of the image [px]");
+  field("horizontal_fov_deg", c.horizontal_fov_deg, config::in_range(10.0, 170.0), "horizontal field of view [deg]");
+  field("vertical_fov_deg", c.vertical_fov_deg, config::in_range(10.0, 170.0), "vertical field of view [deg]");
+  field("rate_hz", c.rate_hz, config::in_range(0.1, 120.0), "frame rate of the camera [Hz]");
+  field("height_m", c.height_m, config::in_range(0.0, 10.0), "height of the camera above base_link [m]");
+  field("pitch_down_deg", c.pitch_down_deg, config::in_range(-90.0, 90.0),
+        "downward tilt of the camera; positive: it looks towards the floor [deg]");
 }
 
 template <class Field>
 void describe(Field& field, RobotDescription& c) {
-  field("radius_m", c.radius_m, config::in_range(0.05, 2.0), "of the disc that the robot fills [m]");
-  field("max_speed_m_s", c.max_speed_m_s, config::in_range(0.01, 5.0), "forwards and backwards [m/s]");
-  field("max_turn_rate_rad_s", c.max_turn_rate_rad_s, config::in_range(0.01, 10.0), "[rad/s]");
-  field("max_acceleration_m_s2", c.max_acceleration_m_s2, config::in_range(0.01, 50.0), "[m/s2]");
-  field("max_turn_acceleration_rad_s2", c.max_turn_acceleration_rad_s2, config::in_range(0.01, 100.0), "[rad/s2]");
-  field("drive_lag_s", c.drive_lag_s, config::in_range(0.001, 5.0), "time constant of the drives [s]");
+  field("radius_m", c.radius_m, config::in_range(0.05, 2.0), "radius of the disc that the robot fills [m]");
+  field("max_speed_m_s", c.max_speed_m_s, config::in_range(0.01, 5.0), "largest speed, forwards and backwards [m/s]");
+  field("max_turn_rate_rad_s", c.max_turn_rate_rad_s, config::in_range(0.01, 10.0),
+        "largest turn rate, to either side [rad/s]");
+  field("max_acceleration_m_s2", c.max_acceleration_m_s2, config::in_range(0.01, 50.0),
+        "largest acceleration along the robot's heading [m/s2]");
+  field("max_turn_acceleration_rad_s2", c.max_turn_acceleration_rad_s2, config::in_range(0.01, 100.0),
+        "largest angular acceleration [rad/s2]");
+  field("drive_lag_s", c.drive_lag_s, config::in_range(0.001, 5.0),
+        "time constant with which the drives follow a command [s]");
   field("command_timeout_s", c.command_timeout_s, config::in_range(0.05, 60.0),
-        "without /cmd_vel for so long the robot stops [s]");
+        "time without a message on /cmd_vel after which the robot stops by itself [s]");
   field("sensing_range_m", c.sensing_range_m, config::in_range(0.5, 20.0),
-        "Euclidean; for map, information and explorable volume alike: returns beyond carve free space up to here [m]");
+        "sensing range (Euclidean) for map, information and explorable volume alike; returns from beyond it mark "
+        "free space up to it [m]");
   field("obstacle_min_height_m", c.obstacle_min_height_m, config::in_range(-100.0, 100.0),
-        "voxels whose centre is below are floor to the robot; z of the map frame [m]");
+        "lowest height of voxels that are obstacles; those whose centre is lower are floor to the robot; z of "
+        "the map frame [m]");
   field("obstacle_max_height_m", c.obstacle_max_height_m, config::in_range(-100.0, 100.0),
-        "what is higher is passed under [m]");
+        "height from which on nothing is an obstacle, because the robot passes under it; z of the map frame, for "
+        "the controller above base_link [m]");
   field("camera", c.camera);
 }
 

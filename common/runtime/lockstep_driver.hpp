@@ -22,13 +22,15 @@ struct LockstepConfig {
 
 template <class Field>
 void describe(Field& field, LockstepConfig& c) {
-  field("stages", c.stages, config::anything(), "participants in the order in which a tick passes through them");
+  field("stages", c.stages, config::anything(),
+        "names of the participants, in the order in which a tick passes through them");
   field("soft_timeout_s", c.soft_timeout_s, config::in_range(0.1, 600.0),
-        "silence of a participant after which frame and tick are published again [s]");
+        "time without an answer from a participant after which frame and tick are published again [s]");
   field("hard_timeout_s", c.hard_timeout_s, config::in_range(0.1, 3600.0),
-        "time without an answer, busy or not, after which silent_participant applies [s]");
+        "time without an answer from a participant, busy or not, after which silent_participant applies [s]");
   field("silent_participant", c.silent_participant, config::one_of({"abort", "wait", "demote"}),
-        "end the run, wait for a restart (at most 60 s), or continue without it");
+        "what a silent participant leads to: abort ends the run, wait waits 60 s (or hard_timeout_s, if longer) "
+        "for it, demote continues without it");
 }
 
 /// The clock's side of lock-step (docs/architecture.md). Its owner publishes a frame and /clock, calls begin(), and

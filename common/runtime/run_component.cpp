@@ -36,20 +36,24 @@ struct Arguments {
 };
 
 void add_common_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("--config", arguments.config_files, "YAML configuration; later files win (repeatable)");
-  app.add_option("--set", arguments.overrides, "set one value: path=value (repeatable)");
-  app.add_option("--domain", arguments.domain, "DDS domain; default: ROS_DOMAIN_ID or 0")
+  app.add_option("--config", arguments.config_files,
+                 "YAML configuration file; later files override earlier ones (repeatable)");
+  app.add_option("--set", arguments.overrides, "set one configuration value: path=value; overrides files (repeatable)");
+  app.add_option("--domain", arguments.domain, "DDS domain; default: ROS_DOMAIN_ID, or 0 if it is not set")
       ->check(CLI::Range(0, dds::kLargestDomain));
-  app.add_option("--namespace", arguments.name_space, "robot name in front of topics and frames");
-  app.add_option("--transport", arguments.transport, "udp, or shm for hosts without ROS 2 processes")
+  app.add_option("--namespace", arguments.name_space, "robot name that prefixes topics and frames");
+  app.add_option("--transport", arguments.transport,
+                 "DDS transport: udp, or shm (shared memory) on hosts without ROS 2 processes")
       ->check(CLI::IsMember({"udp", "shm"}));
-  app.add_option("--log-level", arguments.log_level, "debug, info, warn or error")
+  app.add_option("--log-level", arguments.log_level,
+                 "lowest level of messages that are logged: debug, info, warn or error")
       ->check(CLI::IsMember({"debug", "info", "warn", "error"}));
-  app.add_flag("--use-sim-time", arguments.use_sim_time, "take the time from /clock");
+  app.add_flag("--use-sim-time", arguments.use_sim_time, "take the time from /clock instead of the system's clock");
   app.add_flag("--print-config", arguments.print_config, "print the configuration in effect and exit");
-  app.add_flag("--print-config-table", arguments.print_config_table, "the same as a table for the component's page");
+  app.add_flag("--print-config-table", arguments.print_config_table,
+               "print the configuration in effect as a table for the component's page and exit");
   app.add_flag("--check-config", arguments.check_config,
-               "check the configuration, but no files that it names, and exit");
+               "check the configuration, but not the files that it names, and exit");
   app.set_version_flag("--version", std::string("lapis ") + kVersion);
 }
 

@@ -24,7 +24,7 @@ struct DdsConfig {
 template <class Field>
 void describe(Field& field, DdsConfig& c) {
   field("socket_buffer_bytes", c.socket_buffer_bytes, config::in_range(65536, 1 << 30),
-        "size asked for each UDP socket's send and receive buffer [B]");
+        "size requested for the send buffer and the receive buffer of each UDP socket [B]");
 }
 
 /// A component as run() sees it.

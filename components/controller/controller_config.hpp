@@ -21,57 +21,71 @@ ControllerComponentConfig completed(ControllerComponentConfig config);
 
 template <class Field>
 void describe(Field& field, LocalMapConfig& c) {
-  field("range_m", c.range_m, config::in_range(0.5, 20.0), "of depth; obstacles farther away are not kept [m]");
+  field("range_m", c.range_m, config::in_range(0.5, 20.0),
+        "largest depth that is used; points are dropped when they are more than 1 m farther than this from the "
+        "robot [m]");
   field("min_height_m", c.min_height_m, config::in_range(-1.0, 10.0),
-        "above base_link: what is lower is driven over [m]");
+        "lowest height of points that count as obstacles, above base_link; the robot drives over lower ones [m]");
   field.moved("max_height_m", "robot.obstacle_max_height_m");
   field("memory_s", c.memory_s, config::in_range(0.1, 600.0),
-        "what was seen longer ago is forgotten; time without a path does not count while the robot stands [s]");
-  field("stride", c.stride, config::in_range(1, 32), "every stride-th pixel of every stride-th row is used");
+        "time after which a point not seen again is forgotten; standing without a path does not count [s]");
+  field("stride", c.stride, config::in_range(1, 32),
+        "sampling step of depth images: every stride-th pixel of every stride-th row is used");
   field("misses_to_clear", c.misses_to_clear, config::in_range(1, 100),
-        "images that must look through an obstacle before it is gone");
+        "number of depth images that have to see through a point before it is removed");
   field.moved("passes_to_clear", "controller.local_map.misses_to_clear");
 }
 
 template <class Field>
 void describe(Field& field, WatchdogConfig& c) {
   field("pose_timeout_s", c.pose_timeout_s, config::in_range(0.05, 60.0),
-        "the robot stops when /slam/odometry is older [s]");
-  field("camera_timeout_s", c.camera_timeout_s, config::in_range(0.05, 60.0), "or the newest depth image [s]");
-  field("map_timeout_s", c.map_timeout_s, config::in_range(0.05, 60.0), "or /semantic_mapper/obstacles [s]");
+        "largest age of /slam/odometry; the robot stops when the newest pose is older [s]");
+  field("camera_timeout_s", c.camera_timeout_s, config::in_range(0.05, 60.0),
+        "largest age of the newest depth image, and of the newest one with a pose; the robot stops when either "
+        "is older [s]");
+  field("map_timeout_s", c.map_timeout_s, config::in_range(0.05, 60.0),
+        "largest age of /semantic_mapper/obstacles; the robot stops when the newest grid is older [s]");
   field("planner_timeout_s", c.planner_timeout_s, config::in_range(0.05, 60.0),
-        "or both /planner/path and /planner/status [s]");
+        "largest age of the newest message on /planner/path or /planner/status; the robot stops when both are "
+        "older [s]");
 }
 
 template <class Field>
 void describe(Field& field, ControllerComponentConfig& c) {
   field("rate_hz", c.rate_hz, config::in_range(10.0, 20.0),
-        "of commands by the wall clock; in lock-step each tick [Hz]");
+        "rate of commands in wall-clock mode; in lock-step there is one command for each tick [Hz]");
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
-        "between pose, depth and camera info of one frame [s]");
+        "largest difference between the time stamps of pose, depth image and camera info of one frame [s]");
   field("fan", c.method.fan);
   field("local_map", c.method.local_map);
   field("watchdog", c.method.watchdog);
   field("look_ahead_m", c.method.look_ahead_m, config::in_range(0.2, 5.0),
-        "distance of the point of the path that is headed for [m]");
+        "distance along the planner's path from the robot to the point that the robot heads for [m]");
   field("slow_within_m", c.method.slow_within_m, config::in_range(0.01, 5.0),
-        "of an obstacle the robot slows down [m]");
+        "distance from the robot's disc to an obstacle ahead below which the robot slows down [m]");
   field("slowest_share", c.method.slowest_share, config::in_range(0.05, 1.0),
-        "of robot.max_speed_m_s, beside an obstacle");
-  field("goal_tolerance_m", c.method.goal_tolerance_m, config::in_range(0.01, 2.0), "at the path's end [m]");
+        "share of robot.max_speed_m_s that is allowed right beside an obstacle ahead; it rises to 1 at "
+        "slow_within_m");
+  field("goal_tolerance_m", c.method.goal_tolerance_m, config::in_range(0.01, 2.0),
+        "largest distance from the path's end at which the robot has arrived and only turns to the final heading "
+        "[m]");
   field("heading_tolerance_rad", c.method.heading_tolerance_rad, config::in_range(0.01, 3.2),
-        "at the path's end [rad]");
+        "largest error of the heading at the path's end with which the path is finished [rad]");
   field("patience_s", c.method.patience_s, config::in_range(0.0, 60.0),
-        "without a free path before the robot tries to recover [s]");
-  field("back_up_m", c.method.back_up_m, config::in_range(0.0, 2.0), "first, where it is known to be free [m]");
-  field("back_up_speed_m_s", c.method.back_up_speed_m_s, config::in_range(0.01, 1.0), "[m/s]");
-  field("recovery_turn_rad", c.method.recovery_turn_rad, config::in_range(0.0, 3.0), "to look around after that [rad]");
+        "time without a free path after which the robot tries to recover: it backs up and looks around [s]");
+  field("back_up_m", c.method.back_up_m, config::in_range(0.0, 2.0),
+        "distance by which the robot backs up to recover, where the space behind it is known to be free [m]");
+  field("back_up_speed_m_s", c.method.back_up_speed_m_s, config::in_range(0.01, 1.0),
+        "largest speed at which the robot backs up to recover [m/s]");
+  field("recovery_turn_rad", c.method.recovery_turn_rad, config::in_range(0.0, 3.0),
+        "angle by which the robot turns to look around when there is no free path, after backing up [rad]");
   field("progress_timeout_s", c.method.progress_timeout_s, config::in_range(1.0, 600.0),
-        "without moving 0.3 m before the robot backs up, and then reports that it is blocked [s]");
+        "time without moving 0.3 m after which the robot backs up; if it cannot, or if that fails, it reports "
+        "that it is blocked [s]");
   field("look_around_rad_s", c.method.look_around_rad_s, config::in_range(0.05, 2.0),
-        "of a turn on the spot that the planner asks for: slow, or images blur [rad/s]");
+        "rate of a turn on the spot that the planner asks for; slow, because fast turns blur images [rad/s]");
   field("weak_turn_rad_s", c.method.weak_turn_rad_s, config::in_range(0.05, 10.0),
-        "of any turn, at most, while slam's pose does not come from features [rad/s]");
+        "largest rate of any turn while slam's pose does not come from features [rad/s]");
   field.moved("lost_turn_rate_rad_s", "controller.look_around_rad_s",
               "the planner has the robot look around for its pose (planner.lost_timeout_s)");
 }

@@ -16,9 +16,11 @@ struct EvaluatorConfig {
 
 template <class Field>
 void describe(Field& field, EvaluatorConfig& c) {
-  field("output_dir", c.output_dir, config::anything(), "run folder");
+  field("output_dir", c.output_dir, config::anything(),
+        "run folder, in which the evaluator writes its files; must be set");
   field("ground_truth_dir", c.ground_truth_dir, config::anything(),
-        "what the simulator knows of the scene (mesh.lapis, ideal.lapis, ...); empty: ground_truth in the run folder");
+        "folder of the scene's ground truth that the simulator wrote (mesh.lapis, ideal.lapis, ...); empty: "
+        "ground_truth in output_dir");
   field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain",
               "the evaluator reads it on /semantic_mapper/map_description");
   for (const char* former : {"resolution_m", "integration", "frame", "sensor_model"}) {
@@ -26,10 +28,12 @@ void describe(Field& field, EvaluatorConfig& c) {
                 "the evaluator reads it on /semantic_mapper/map_description");
   }
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
-        "between pose, true pose, depth, labels and camera info of one frame [s]");
+        "largest difference between the stamps of pose, true pose, depth, labels and camera info of a frame that the "
+        "evaluator joins [s]");
   field("timeline_period_s", c.timeline_period_s, config::in_range(0.1, 3600.0),
-        "time between rows of timeline.csv [s]");
-  field("figures", c.figures, config::anything(), "draw figures/*.png at the end (python3 with matplotlib)");
+        "shortest time between rows of timeline.csv, by the frames' time stamps [s]");
+  field("figures", c.figures, config::anything(),
+        "whether the evaluator draws figures/*.png at the end (needs python3 with matplotlib)");
 }
 
 }  // namespace lapis::evaluator

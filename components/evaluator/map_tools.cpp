@@ -123,9 +123,10 @@ void run_coverage(const MapOptions& options, std::ostream& out) {
 
 std::shared_ptr<MapOptions> add_options(CLI::App& tool, bool needs_reference) {
   auto options = std::make_shared<MapOptions>();
-  tool.add_option("--reference", options->reference, "map to compare with (map.lapis), on the same voxel grid")
+  tool.add_option("--reference", options->reference,
+                  "reference map to compare with (.lapis file), with the same voxel grid")
       ->required(needs_reference);
-  tool.add_option("--estimate", options->estimate, "map to judge (map.lapis)")->required();
+  tool.add_option("--estimate", options->estimate, "map to judge (.lapis file)")->required();
   tool.add_flag("--json", options->as_json, "print JSON with all digits instead of text");
   return options;
 }
@@ -136,22 +137,24 @@ void add_map_tools(CLI::App& app, std::ostream& out) {
   CLI::App* map = app.add_subcommand("map", "map error: distances between the occupied voxels of two maps");
   const auto map_options = add_options(*map, true);
   map->footer(
-      "No registration is done. Example:\n"
+      "The maps are compared as they are, without registration. Example:\n"
       "  lapis_evaluator map --reference run/reference_map.lapis --estimate run/map.lapis");
   map->callback([map_options, &out] { run_map(*map_options, out); });
 
-  CLI::App* iou = app.add_subcommand("iou", "intersection over union of each class of two maps");
+  CLI::App* iou = app.add_subcommand("iou", "intersection over union (IoU) of two maps, for each class");
   const auto iou_options = add_options(*iou, true);
   iou->add_option("--top-classes", iou_options->top_classes,
-                  "ids of the classes in iou_top8_mean; default: the 8 most frequent of the reference")
+                  "ids of the classes that iou_top8_mean averages, separated by commas; default: the 8 most frequent\n"
+                  "classes of the reference")
       ->delimiter(',');
   iou->footer(
-      "Counted are voxels occupied in either map; for observed_iou_*, of these, the voxels that both maps have\n"
-      "observed. Unlabelled is no class. Example:\n"
+      "IoU counts the voxels that are occupied in either map; observed_iou_* counts only those that both maps have\n"
+      "observed. Unlabelled voxels are no class. Example:\n"
       "  lapis_evaluator iou --reference run/reference_map.lapis --estimate run/map.lapis --json");
   iou->callback([iou_options, &out] { run_iou(*iou_options, out); });
 
-  CLI::App* volume = app.add_subcommand("coverage", "explored volume, and its share of a reference's");
+  CLI::App* volume = app.add_subcommand(
+      "coverage", "explored volume of a map, and with --reference the explored share of the reference's volume");
   const auto volume_options = add_options(*volume, false);
   volume->footer("Example:\n  lapis_evaluator coverage --estimate run/map.lapis");
   volume->callback([volume_options, &out] { run_coverage(*volume_options, out); });

@@ -54,16 +54,18 @@ struct MatchedPair {
 };
 
 void add_pair_options(CLI::App& tool, PairOptions& options) {
-  tool.add_option("--reference", options.reference, "ground truth, TUM text: timestamp tx ty tz qx qy qz qw")
+  tool.add_option("--reference", options.reference,
+                  "ground-truth trajectory, a TUM text file: timestamp tx ty tz qx qy qz qw")
       ->required();
-  tool.add_option("--estimate", options.estimate, "trajectory to judge, TUM text")->required();
-  tool.add_option("--association", options.association,
-                  "which true pose belongs to an estimate: nearest (one-to-one, the TUM benchmark's rule) or\n"
-                  "interpolate (at the estimate's stamp, used for runs)")
+  tool.add_option("--estimate", options.estimate, "trajectory to judge, a TUM text file")->required();
+  tool.add_option(
+          "--association", options.association,
+          "rule that assigns true poses to estimated ones: nearest (one-to-one by time stamp, the TUM benchmark's\n"
+          "rule) or interpolate (true pose at the estimate's stamp, as the evaluator judges runs)")
       ->check(CLI::IsMember(kRules))
       ->capture_default_str();
   tool.add_option("--max-difference", options.max_difference_s,
-                  "the nearest true pose must be closer in time than this [s]")
+                  "largest difference in time to the nearest true pose; other estimates are left out [s]")
       ->check(CLI::Range(1e-9, 1e6))
       ->capture_default_str();
   tool.add_flag("--json", options.as_json, "print JSON with all digits instead of text");
@@ -150,7 +152,8 @@ void add_ate_tool(CLI::App& app, std::ostream& out) {
   CLI::App* tool = app.add_subcommand("ate", "absolute trajectory error of one TUM file against another");
   add_pair_options(*tool, *options);
   tool->add_option("--align", options->align,
-                   "se3 (least squares over all positions, never scaled), origin (first pose) or none (shared frame)")
+                   "alignment of the trajectories: se3 (least squares over all positions, without scale),\n"
+                   "origin (first poses) or none (both are in one frame)")
       ->required()
       ->check(CLI::IsMember(kAlignments));
   tool->footer(
@@ -164,15 +167,15 @@ void add_rpe_tool(CLI::App& app, std::ostream& out) {
   auto options = std::make_shared<RpeOptions>();
   CLI::App* tool = app.add_subcommand("rpe", "relative pose error (drift) over intervals of fixed length");
   add_pair_options(*tool, *options);
-  tool->add_option("--delta", options->delta, "length of the intervals")
+  tool->add_option("--delta", options->delta, "length of the intervals, in the unit of --unit")
       ->check(CLI::Range(1e-6, 1e9))
       ->capture_default_str();
-  tool->add_option("--unit", options->unit, "of --delta: s, m (path of the reference) or frames (matched poses)")
+  tool->add_option("--unit", options->unit, "unit of --delta: s, m (path of the reference) or frames (matched poses)")
       ->check(CLI::IsMember(kUnits))
       ->capture_default_str();
   tool->add_option("--error", options->motion_error,
-                   "with A the estimated and B the true motion: benchmark = A*B^-1 (the TUM benchmark's tool),\n"
-                   "paper = B^-1*A (Sturm et al. 2012, evo)")
+                   "error of an interval, where A is the estimated and B the true motion: benchmark = A*B^-1 (the TUM\n"
+                   "benchmark's tool), paper = B^-1*A (Sturm et al. 2012, evo)")
       ->check(CLI::IsMember(kMotionErrors))
       ->capture_default_str();
   tool->footer(

@@ -50,175 +50,232 @@ void describe(Field& field, GridConfig& c) {
   field.moved("min_height_m", "robot.obstacle_min_height_m");
   field.moved("max_height_m", "robot.obstacle_max_height_m");
   field("bottom_m", c.bottom_m, config::in_range(0.0, 10.0),
-        "lowest part of what lies in between; a cell is free only where it has been seen [m]");
-  field("margin_m", c.margin_m, config::in_range(0.0, 1.0), "kept between the robot's disc and obstacles [m]");
-  field("max_clearance_m", c.max_clearance_m, config::in_range(0.1, 5.0), "clearance is known up to here [m]");
+        "height of the lowest part of the obstacle band, in which a voxel has to be observed for a cell to count "
+        "as free [m]");
+  field("margin_m", c.margin_m, config::in_range(0.0, 1.0),
+        "least clearance between the robot's disc and obstacles [m]");
+  field("max_clearance_m", c.max_clearance_m, config::in_range(0.1, 5.0),
+        "largest clearance that is computed; larger ones count as this [m]");
   field("obstacle_expiry_s", c.obstacle_expiry_s, config::in_range(0.1, 600.0),
-        "an obstacle that no grid shows any more is forgotten [s]");
+        "time after which an obstacle that no message on /semantic_mapper/obstacles shows any more is forgotten [s]");
 }
 
 template <class Field>
 void describe(Field& field, FrontierConfig& c) {
-  field("max_extent_m", c.max_extent_m, config::in_range(0.5, 50.0), "longer frontiers are split [m]");
-  field("representatives", c.representatives, config::in_range(1, 16), "cells that stand for a frontier");
+  field("max_extent_m", c.max_extent_m, config::in_range(0.5, 50.0),
+        "largest diagonal of the box around a frontier; larger frontiers are split [m]");
+  field("representatives", c.representatives, config::in_range(1, 16),
+        "number of cells that represent a frontier: the one nearest to its centroid, then the farthest from "
+        "those before");
 }
 
 template <class Field>
 void describe(Field& field, PathConfig& c) {
-  field("comfort_m", c.comfort_m, config::in_range(0.1, 5.0), "clearance from which on nearness costs nothing [m]");
+  field("comfort_m", c.comfort_m, config::in_range(0.1, 5.0),
+        "clearance from which on nearness to obstacles adds nothing to the cost of a path [m]");
   field("nearness_weight", c.nearness_weight, config::in_range(0.0, 100.0),
-        "a metre at the least clearance costs 1 + this");
+        "cost of nearness to obstacles: a metre of path at the least clearance costs 1 + this, at comfort_m 1");
   field("escape_m", c.escape_m, config::in_range(0.0, 2.0),
-        "the robot may leave a place where it should not stand within this [m]");
-  field("max_detour", c.max_detour, config::in_range(1.0, 5.0), "an alternative's length over that of the best path");
-  field("min_apart_m", c.min_apart_m, config::in_range(0.1, 20.0), "alternatives are so far apart somewhere [m]");
+        "distance within which a path may lead out of a place where the robot should not stand, such as beside a "
+        "wall [m]");
+  field("max_detour", c.max_detour, config::in_range(1.0, 5.0),
+        "largest ratio of the length of an alternative path to that of the best path");
+  field("min_apart_m", c.min_apart_m, config::in_range(0.1, 20.0),
+        "least distance of an alternative path from every other path, at the place where they are farthest apart "
+        "[m]");
 }
 
 template <class Field>
 void describe(Field& field, ViewpointConfig& c) {
-  field("min_distance_m", c.min_distance_m, config::in_range(0.0, 10.0), "from the frontier [m]");
-  field("max_distance_m", c.max_distance_m, config::in_range(0.25, 20.0), "from the frontier [m]");
-  field("max_per_frontier", c.max_per_frontier, config::in_range(1, 64), "viewpoints");
+  field("min_distance_m", c.min_distance_m, config::in_range(0.0, 10.0),
+        "shortest distance of a viewpoint from the cell of the frontier that it faces [m]");
+  field("max_distance_m", c.max_distance_m, config::in_range(0.25, 20.0),
+        "largest distance of a viewpoint from the cell of the frontier that it faces [m]");
+  field("max_per_frontier", c.max_per_frontier, config::in_range(1, 64),
+        "largest number of viewpoints of a frontier: one in each of this number of equal sectors around it");
   field("nearest_first", c.nearest_first, config::anything(),
-        "of the places the nearest to the frontier's middle, as in the paper; false: any, drawn");
-  field("seed", c.seed, config::anything(), "draws them");
+        "whether each sector gets the viewpoint nearest to the viewed cell, as in the paper; false: a random one");
+  field("seed", c.seed, config::anything(), "seed of the random choice of viewpoints (nearest_first: false)");
 }
 
 template <class Field>
 void describe(Field& field, GapConfig& c) {
   field("least_nats", c.least_nats, config::in_range(0.0, 1e6),
-        "that a view has to promise when no frontier is left; 0: no such views");
-  field("spacing_m", c.spacing_m, config::in_range(0.25, 10.0), "between places for such views [m]");
+        "least information of a view of a gap in the map, proposed when no frontier is left; 0: no such views "
+        "[nats]");
+  field("spacing_m", c.spacing_m, config::in_range(0.25, 10.0),
+        "edge of the squares of the floor plan that get one place each for views of gaps in the map [m]");
 }
 
 template <class Field>
 void describe(Field& field, TareConfig& c) {
-  field("horizon_m", c.horizon_m, config::in_range(1.0, 20.0), "half the edge of the local area [m]");
-  field("lattice_m", c.lattice_m, config::in_range(0.1, 2.0), "between viewpoints [m]");
-  field("range_m", c.range_m, config::in_range(0.5, 20.0), "to which a view covers frontiers [m]");
+  field("horizon_m", c.horizon_m, config::in_range(1.0, 20.0),
+        "half the edge of the square local area around the robot, for method tare [m]");
+  field("lattice_m", c.lattice_m, config::in_range(0.1, 2.0),
+        "distance between neighbouring viewpoints of the lattice in the local area, for method tare [m]");
+  field("range_m", c.range_m, config::in_range(0.5, 20.0),
+        "largest distance at which a view covers a frontier, for method tare [m]");
   field("min_reward_m", c.min_reward_m, config::in_range(0.05, 10.0),
-        "of frontier that a viewpoint has to cover besides the others [m]");
-  field("seed", c.seed, config::anything(), "draws the viewpoints");
+        "least length of frontier that a viewpoint has to cover beyond what other viewpoints cover, for method "
+        "tare [m]");
+  field("seed", c.seed, config::anything(), "seed of the random choice of viewpoints, for method tare");
 }
 
 template <class Field>
 void describe(Field& field, CovisibilityConfig& c) {
   field("max_viewing_angle_rad", c.max_viewing_angle_rad, config::in_range(0.05, 3.2),
-        "between the directions from which a landmark was and would be seen [rad]");
-  field("max_range_ratio", c.max_range_ratio, config::in_range(1.0, 10.0), "between the distances, either way");
+        "largest angle between the directions from which a landmark was seen and would be seen again [rad]");
+  field("max_range_ratio", c.max_range_ratio, config::in_range(1.0, 10.0),
+        "largest ratio, either way, of the distances from which a landmark was seen and would be seen again");
   field("min_visibility", c.min_visibility, config::in_range(0.0, 1.0),
-        "probability that the ray to a landmark is free");
+        "least probability that the ray to a landmark is free, for the landmark to be seen again");
 }
 
 template <class Field>
 void describe(Field& field, HallucinationConfig& c) {
   field("covisibility", c.covisibility);
   field("impossible_landmarks", c.impossible_landmarks, config::in_range(1, 10'000),
-        "seen again, of which a loop closure is impossible, or fewer");
+        "number of landmarks seen again up to which the probability of a loop closure is 0");
   field("certain_landmarks", c.certain_landmarks, config::in_range(2, 10'000),
-        "seen again, of which it is as sure as it gets, or more; linear in between");
+        "number of landmarks seen again from which on a loop closure has max_probability; linear from "
+        "impossible_landmarks on");
   field("max_probability", c.max_probability, config::in_range(0.05, 1.0),
-        "of a loop closure, however many landmarks are seen again");
+        "largest probability of a loop closure, however many landmarks are seen again");
   field("min_loop_path_m", c.min_loop_path_m, config::in_range(0.0, 100.0),
-        "along the pose graph; nearer key-frames make no loop [m]");
+        "least path along the pose graph between key-frames that may close a loop; a radian of turning counts "
+        "0.5 m [m]");
   field.moved("min_loop_way_m", "planner.hallucination.min_loop_path_m");
-  field("place_radius_m", c.place_radius_m, config::in_range(0.1, 20.0), "key-frames of one place [m]");
+  field("place_radius_m", c.place_radius_m, config::in_range(0.1, 20.0),
+        "distance below which two key-frames count as one place [m]");
   field("revisit_spacing_m", c.revisit_spacing_m, config::in_range(0.0, 1000.0),
-        "path after a loop closure before its place counts again [m]");
-  field("max_places", c.max_places, config::in_range(1, 8), "of a path; the most probable ones");
+        "length of path after a loop closure from which on its place may close a loop again [m]");
+  field("max_places", c.max_places, config::in_range(1, 8),
+        "largest number of old places with which a path may close loops: the most probable ones");
   field("loop_weight", c.loop_weight, config::in_range(0.0, 1000.0),
-        "of a loop's edge, probability apart, in weights of a metre of odometry; 0: as the loops that were closed");
+        "weight of a loop edge before its probability, in weights of 1 m of odometry; 0: median weight of the "
+        "loops closed so far");
 }
 
 template <class Field>
 void describe(Field& field, GoalMemoryConfig& c) {
-  field("radius_m", c.radius_m, config::in_range(0.1, 10.0), "targets nearer to each other are one [m]");
-  field("expiry_s", c.expiry_s, config::in_range(0.0, 3600.0), "a target that failed is left alone for so long [s]");
-  field("max_failures", c.max_failures, config::in_range(1, 100), "after so many it is left alone for good");
+  field("radius_m", c.radius_m, config::in_range(0.1, 10.0), "distance up to which two targets count as one [m]");
+  field("expiry_s", c.expiry_s, config::in_range(0.0, 3600.0),
+        "time for which a failed target, or a place that stopped the robot, is left alone [s]");
+  field("max_failures", c.max_failures, config::in_range(1, 100),
+        "number of failures after which a target is left alone for good (README)");
 }
 
 /// Keys that decide which candidates there are and how they are judged.
 template <class Field>
 void describe_decisions(Field& field, PlannerComponentConfig& c) {
   field("max_candidates", c.decision.max_candidates, config::in_range(1, 1000),
-        "that are judged; the ones with the shortest paths");
-  field("view_spacing_m", c.decision.view_spacing_m, config::in_range(0.1, 10.0), "between views along a path [m]");
+        "largest number of candidates that are judged: those with the shortest paths, but the nearest of every "
+        "frontier first");
+  field("view_spacing_m", c.decision.view_spacing_m, config::in_range(0.1, 10.0),
+        "distance between the views along a path from which its information is computed [m]");
   field("view_votes", c.surroundings.ray.votes, config::in_range(1, 30),
-        "that a voxel gets from a robot that passes; 1: a single frame, as in the paper");
+        "number of frames with the same outcome that a ray stands for, as of a robot that drives past; 1: a "
+        "single frame, as in the paper");
   field("unknown_occupied", c.surroundings.ray.unknown_occupied, config::in_range(0.0, 0.99),
         "probability that a ray ends in a voxel never observed; 0: the sensor model's prior, as in the paper");
   field("surface_occupied", c.surroundings.ray.surface_occupied, config::in_range(0.0, 0.99),
-        "the same beside an occupied voxel: surfaces go on where nobody has looked; 0: no difference, as in the paper");
-  field("view_columns", c.view_columns, config::in_range(1, 4096), "rays of a view, over the width of the image");
-  field("view_rows", c.view_rows, config::in_range(1, 4096), "rays of a view, over its height");
+        "probability that a ray ends in a voxel never observed that shares a face with an occupied one; 0: no "
+        "difference, as in the paper");
+  field("view_columns", c.view_columns, config::in_range(1, 4096),
+        "number of columns of rays that represent a view, over the width of the image");
+  field("view_rows", c.view_rows, config::in_range(1, 4096),
+        "number of rows of rays that represent a view, over the height of the image");
   field("node_spacing_m", c.decision.node_spacing_m, config::in_range(0.2, 10.0),
-        "between hallucinated key-frames [m]");
+        "distance between the hallucinated key-frames along a path [m]");
   field("turn_cost_m_per_rad", c.decision.turn_cost_m_per_rad, config::in_range(0.0, 10.0),
-        "of turning at the ends of a path [m/rad]");
+        "cost of turning at the ends of a path, as metres of path per radian [m/rad]");
   field("alternatives", c.decision.alternatives, config::in_range(0, 3),
-        "other paths to the nearest goal of each frontier, at most");
+        "largest number of additional paths to the nearest goal of each frontier; 0: none");
   field("revisit_sigma_m", c.decision.revisit_sigma_m, config::in_range(0.0, 100.0),
-        "when the position is less sure, old key-frames are goals, too; 0: never [m]");
+        "standard deviation of the newest key-frame's position above which old key-frames are goals, too; 0: "
+        "never (README) [m]");
   field("information_discount_sigma_m", c.decision.information_discount_sigma_m, config::in_range(0.0, 100.0),
-        "information from a position with this sigma counts half; 0: all counts [m]");
+        "standard deviation of the position at which the information of a view counts half; 0: all information "
+        "counts fully [m]");
   field("criterion", c.criterion, config::one_of({"d", "a", "t", "e"}),
-        "optimality of the pose graph: mean of its eigenvalues, and of those of an edge's information (README)");
+        "optimality criterion of the pose graph and its edges: geometric (d), harmonic (a), arithmetic (t) mean "
+        "or least (e) of eigenvalues (README)");
   field("sparsifier", c.sparsifier, config::one_of({"none", "mac", "log_det"}),
-        "what thins a large pose graph out: for connectivity, or for its log-determinant (README)");
+        "rule by which a large pose graph is thinned out: for algebraic connectivity (mac) or log-determinant "
+        "(log_det); none: never (README)");
   field("max_graph_edges", c.decision.graph.max_edges, config::in_range(1, 10'000'000),
-        "what the sparsifier leaves, but for a spanning tree");
+        "number of edges above which the sparsifier thins the pose graph out, down to this number; a spanning "
+        "tree always stays");
   field("closer_look_length_m", c.decision.closer_look_length_m, config::in_range(0.1, 1000.0),
-        "when nothing else is left, frontiers so long are looked at from nearby, whatever seems to hide them [m]");
+        "least length of frontiers that the robot approaches, when no other is left, although something seems to "
+        "hide them [m]");
   field("keep_factor", c.decision.keep_factor, config::in_range(1.0, 10.0),
-        "another goal must be so much better than the one being driven to");
+        "factor by which another goal has to be better than the current one; without effect with paper and "
+        "placed (README)");
 }
 
 /// Keys of the mission around decisions.
 template <class Field>
 void describe_mission(Field& field, PlannerComponentConfig& c) {
   field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.0, 60.0),
-        "between decisions while a goal is being driven to, at least 0.5; 0: none, as in the paper [s]");
-  field("goal_tolerance_m", c.explorer.goal_tolerance_m, config::in_range(0.05, 2.0), "at a goal [m]");
-  field("goal_tolerance_rad", c.explorer.goal_tolerance_rad, config::in_range(0.05, 3.2), "at a goal [rad]");
+        "time between decisions while the robot drives to a goal, at least 0.5; 0: no such decisions, as in the "
+        "paper [s]");
+  field("goal_tolerance_m", c.explorer.goal_tolerance_m, config::in_range(0.05, 2.0),
+        "largest distance of the robot from a goal at which the goal counts as reached [m]");
+  field("goal_tolerance_rad", c.explorer.goal_tolerance_rad, config::in_range(0.05, 3.2),
+        "largest heading error at which a goal counts as reached; at most 0.3 for turns on the spot and revisits "
+        "[rad]");
   field("progress_timeout_s", c.explorer.progress_timeout_s, config::in_range(1.0, 600.0),
-        "without moving a goal has failed [s]");
+        "time without a motion of 0.3 m or 0.3 rad after which a goal has failed [s]");
   field("slowest_m_s", c.explorer.slowest_m_s, config::in_range(0.01, 5.0),
-        "a path that takes longer than at this speed has failed [m/s]");
+        "lowest mean speed on a path: a goal has failed when reaching it takes progress_timeout_s longer than at "
+        "this speed [m/s]");
   field("stall_m", c.explorer.stall.metres, config::in_range(1.0, 1000.0),
-        "driven without seeing anything new, besides twice the longest path meanwhile, before a goal has failed [m]");
+        "distance driven without seeing anything new, beyond twice the longest path begun meanwhile, after which "
+        "a goal has failed [m]");
   field("stall_s", c.explorer.stall.seconds, config::in_range(1.0, 3600.0),
-        "the same in time, besides that of twice the longest path at 0.25 m/s [s]");
+        "time without seeing anything new, beyond that of twice the longest path begun meanwhile at 0.25 m/s, "
+        "after which a goal has failed [s]");
   field("settle_s", c.explorer.settle_s, config::in_range(0.0, 60.0),
-        "after arriving, until the map shows whether the view has failed [s]");
+        "time from arrival at a goal until the map is checked: the view has failed if its target is still a "
+        "frontier [s]");
   field("max_drift_m", c.explorer.max_drift_m, config::in_range(0.0, 100.0),
-        "sigma of the position by odometry alone that a path may end with; beyond it the robot drives to where slam "
-        "tracked [m]");
+        "largest standard deviation of the position at a path's end in dead reckoning; beyond it the robot "
+        "drives to where slam tracked [m]");
   field.moved("dead_reckoning_s", "planner.max_drift_m", "slam says how far a pose by odometry alone has drifted");
   field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),
-        "without a pose, exploration has failed; so long it also tries to get back to where slam tracked [s]");
-  field("path_spacing_m", c.explorer.path_spacing_m, config::in_range(0.02, 1.0), "between poses of /planner/path [m]");
+        "time without a pose after which exploration has failed; also the time allowed for driving back to where "
+        "slam tracked [s]");
+  field("path_spacing_m", c.explorer.path_spacing_m, config::in_range(0.02, 1.0),
+        "largest distance between neighbouring poses on /planner/path [m]");
   field("confirmations", c.explorer.confirmations, config::in_range(2, 12),
-        "looks around, a full turn in all, that find nothing before exploration is over");
+        "number of looks around, together a full turn, that have to find nothing before exploration ends");
   field("patience_s", c.explorer.patience_s, config::in_range(0.0, 600.0),
-        "for obstacles that may go away before exploration is over [s]");
+        "time to wait for obstacles that may go away, and for corrections of the map, before exploration ends [s]");
   field("max_left_share", c.explorer.max_left_share, config::in_range(0.0, 1.0),
-        "of the frontiers left, what was tried in vain though the robot would fit through: with more it has given up");
-  field("returns_home", c.explorer.returns_home, config::anything(), "drives to where it started when nothing is left");
+        "largest share (by length) of remaining frontiers, as wide as the robot but tried in vain, with which "
+        "exploration is DONE; above it GAVE_UP (README)");
+  field("returns_home", c.explorer.returns_home, config::anything(),
+        "whether the robot drives back to where it started when nothing is left to explore");
 }
 
 template <class Field>
 void describe(Field& field, PlannerComponentConfig& c) {
   field("method", c.method, config::one_of(all_methods(), "see Method in components/planner/README.md"),
-        "what decides between paths");
+        "method that chooses between the candidate paths (README)");
   field("then", c.then, config::one_of(all_consolidations()),
-        "old places to drive through when nothing is left to explore, so that loops are closed; none: it is over");
+        "rule that chooses old places to drive through, to close loops, when nothing is left to explore; none: "
+        "no old places");
   field("measure", c.measure, config::one_of({"semantic", "shannon", "csqmi"}),
-        "information of the map: about space and classes, or about space alone (README)");
-  field("autostart", c.autostart, config::anything(), "explore at once; false: wait for /planner/start");
+        "measure of the map's information: about space and classes (semantic), or about space alone (shannon, "
+        "csqmi) (README)");
+  field("autostart", c.autostart, config::anything(),
+        "whether exploration starts with the process; false: it waits for the service /planner/start");
   field("beta", c.methods.joint.beta, config::in_range(0.0, 100.0),
-        "method joint: what a nat about the trajectory counts against one about the map");
+        "weight of a nat about the trajectory relative to a nat about the map, for the methods joint and lapis");
   field("sigma_limit_voxels", c.decision.sigma_limit_voxels, config::in_range(0.01, 10.0),
-        "loops count until the position at a path's end is so exact [voxels]");
+        "standard deviation of the position at a path's end down to which loop closures count, for the methods "
+        "joint and lapis [voxels]");
   describe_decisions(field, c);
   field("grid", c.surroundings.grid);
   field("frontiers", c.surroundings.frontiers);
@@ -235,14 +292,17 @@ void describe(Field& field, PlannerComponentConfig& c) {
               "the planner reads it on /semantic_mapper/map_description");
   field("compared_methods", c.compared_methods,
         config::one_of(comparable_methods(), "see Method in components/planner/README.md"),
-        "decisions.csv says what each of these would have chosen among the same candidates");
+        "other methods, whose choices among the candidates of each decision are written to decisions.csv");
   field("compared_priors", c.surroundings.compared_priors, config::in_range(0.001, 0.999),
-        "instead of the prior of the mapper's sensor model: decisions.csv says what would have been chosen with each");
+        "other values for the prior of occupancy of the mapper's sensor model; the choice with each of them is "
+        "written to decisions.csv");
   field("decision_latency_frames", c.decision_latency_frames, config::in_range(1, 100),
-        "from the frame that a decision is made from to the one at which it takes effect");
-  field("output_dir", c.output_dir, config::anything(), "folder for decisions.csv and decision.json; empty: none");
+        "number of frames from the one on which a decision is based to the one at which it takes effect");
+  field("output_dir", c.output_dir, config::anything(),
+        "folder for decisions.csv, decision.json and situations/; empty: no files are written");
   field("record_situations_every", c.record_situations_every, config::in_range(0, 1'000'000),
-        "so many decisions what one is made from goes to situations/ in output_dir, for --replay; 0: never");
+        "interval, in decisions, at which the input of a decision is written to situations/ in output_dir for "
+        "--replay; 0: never");
 }
 
 }  // namespace lapis::planner

@@ -52,11 +52,14 @@ void convert(const ConvertOptions& options) {
 
 void add_convert_tool(CLI::App& app) {
   auto options = std::make_shared<ConvertOptions>();
-  CLI::App* tool = app.add_subcommand("convert", "write a map in another format, chosen by the extension");
-  tool->add_option("in", options->in, "map.lapis; or a .ot or .bt file, of which only a .ply can be made")->required();
+  CLI::App* tool =
+      app.add_subcommand("convert", "convert a map to the format that the extension of the output file names");
+  tool->add_option("in", options->in,
+                   "map to convert: a .lapis file, or an OctoMap file (.ot, .bt), which converts only to .ply")
+      ->required();
   tool->add_option("out", options->out,
-                   ".ot: OctoMap ColorOcTree in class colours; .bt: OctoMap's occupied and free; .ply: centres of the\n"
-                   "occupied voxels (of an octree: of its leaves) with label and probability")
+                   "file to write. .ot: OctoMap ColorOcTree in class colours; .bt: OctoMap tree of occupied and free\n"
+                   "voxels; .ply: centres of occupied voxels (or of an octree's leaves) with label and probability")
       ->required();
   tool->footer("Example:\n  lapis_semantic_mapper convert run/map.lapis map.bt");
   tool->callback([options] { convert(*options); });

@@ -147,8 +147,9 @@ void add_info_tool(CLI::App& app, std::ostream& out) {
     bool as_json = false;
   };
   auto options = std::make_shared<InfoOptions>();
-  CLI::App* tool = app.add_subcommand("info", "resolution, voxels, extent, settings, classes and provenance of a map");
-  tool->add_option("file", options->file, "map.lapis, or an OctoMap file (.ot, .bt)")->required();
+  CLI::App* tool =
+      app.add_subcommand("info", "print resolution, voxels, extent, settings, classes and provenance of a map");
+  tool->add_option("file", options->file, "map file: .lapis, or OctoMap (.ot, .bt)")->required();
   tool->add_flag("--json", options->as_json, "print JSON with all digits instead of text");
   tool->footer("Example:\n  lapis_semantic_mapper info run/map.lapis --json");
   tool->callback([options, &out] {

@@ -82,21 +82,22 @@ void merge(const MergeOptions& options, std::ostream& out) {
 
 void add_merge_tool(CLI::App& app, std::ostream& out) {
   auto options = std::make_shared<MergeOptions>();
-  CLI::App* tool = app.add_subcommand("merge", "sum the counts of maps whose relative poses are known");
-  tool->add_option("files", options->files, "two or more map.lapis of one resolution and one label list")
+  CLI::App* tool = app.add_subcommand("merge", "merge maps whose relative poses are known, by adding their counts");
+  tool->add_option("files", options->files,
+                   "two or more .lapis maps of one resolution, in which an id means the same class")
       ->required()
       ->expected(2, 1000);
-  tool->add_option("--out", options->out, "map.lapis to write")->required();
+  tool->add_option("--out", options->out, "merged .lapis map to write")->required();
   tool->add_option(
           "--transform", options->transforms,
-          "X,Y,Z,ROLL,PITCH,YAW of the 2nd, 3rd, ... map's frame in the first one's [m, deg]; one for each, in\n"
-          "their order; none: all maps have the same frame")
+          "pose X,Y,Z,ROLL,PITCH,YAW of a map's frame in the frame of the first map [m, deg]; give one for each\n"
+          "map after the first, in the order of the maps, or none when all maps have the same frame")
       ->expected(1)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   tool->footer(
-      "Quarter turns and whole numbers of voxels are exact: the result is the map that all frames together would have\n"
-      "given. Any other transform resamples (nearest voxel): surfaces move by up to half the diagonal of a voxel.\n"
-      "Probabilities are read with the sensor model of the first map. Example:\n"
+      "Transforms of quarter turns and whole numbers of voxels are exact: the result is the map that all frames\n"
+      "together would have given. Any other transform resamples the map (nearest voxel), and surfaces move by up to\n"
+      "half the diagonal of a voxel. The merged map has the sensor model of the first map. Example:\n"
       "  lapis_semantic_mapper merge a.lapis b.lapis --transform 4.5,-2,0,0,0,90 --out both.lapis");
   tool->callback([options, &out] { merge(*options, out); });
 }

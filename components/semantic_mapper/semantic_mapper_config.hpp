@@ -31,59 +31,69 @@ struct SemanticMapperComponentConfig {
 
 template <class Field>
 void describe(Field& field, ObstacleConfig& c) {
-  field("window_s", c.window_s, config::in_range(0.1, 600.0), "what was seen longer ago is forgotten [s]");
+  field("window_s", c.window_s, config::in_range(0.1, 600.0),
+        "time after which the obstacle layer forgets a voxel that no frame has seen again [s]");
   field("misses_to_clear", c.misses_to_clear, config::in_range(1, 100),
-        "frames that must look through an obstacle before it is gone");
+        "number of frames that must look through a voxel after its last hit until the obstacle layer takes it as free");
   field.moved("passes_to_clear", "semantic_mapper.obstacles.misses_to_clear");
 }
 
 template <class Field>
 void describe(Field& field, FrameStoreConfig& c) {
   field("memory_mb", c.memory_mb, config::in_range(0, 1'000'000),
-        "memory for frames that may have to move; the oldest beyond it wait on disk [MB]");
+        "memory for the frames that re-anchoring may move; beyond it, the oldest frames are kept on disk [MiB]");
   field("spill_dir", c.spill_dir, config::anything(),
-        "folder for them, in a file without a name; a frame that does not fit stays in the map where it is");
+        "folder of the unnamed file for stored frames beyond memory_mb; a frame that the disk does not take keeps its "
+        "place in the map");
 }
 
 template <class Field>
 void describe(Field& field, SemanticMapperComponentConfig& c) {
-  field("resolution_m", c.map.resolution_m, config::in_range(0.02, 0.5), "edge of a voxel [m]");
-  field("tile_edge_m", c.map.tile_edge_m, config::in_range(0.1, 6.4), "least edge of a tile [m]");
+  field("resolution_m", c.map.resolution_m, config::in_range(0.02, 0.5), "edge length of a voxel of the map [m]");
+  field("tile_edge_m", c.map.tile_edge_m, config::in_range(0.1, 6.4),
+        "smallest edge length of a published map tile; it doubles when the map has too many tiles (README) [m]");
   field("integration", c.map.integration);
   field("frame", c.frame);
   field("sensor_model", c.sensor_model);
   field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain");
   field("kernel_length_voxels", c.kernel_length_voxels,
         config::in_range(mapping::kMinKernelLength_voxels, mapping::kMaxKernelLength_voxels),
-        "of the kernel by which hits vote for the voxels of other hits around them, with sensor_model.fusion: bki");
+        "radius within which a hit votes for other voxels with hits; only with sensor_model.fusion: bki [voxels]");
   field.moved("grid.min_height_m", "robot.obstacle_min_height_m");
   field.moved("grid.max_height_m", "robot.obstacle_max_height_m");
   field("obstacles", c.obstacles);
   field("re_anchor", c.map.re_anchor, config::anything(),
-        "frames follow the pose graph; false: the paper's frozen map, no frames are stored");
+        "whether frames in the map follow corrections of the pose graph; false: the paper's frozen map, in which no "
+        "frames are stored");
   field("re_anchor_threshold_voxels", c.map.re_anchor_threshold_voxels, config::in_range(0.0, 10.0),
-        "a frame is moved when a point at its median depth is off by more");
+        "displacement of a point at a frame's median depth beyond which the mapper moves the frame to its corrected "
+        "pose [voxels]");
   field("re_anchor_work_per_cycle", c.re_anchor_work_per_cycle, config::in_range(1, 1'000'000'000),
-        "frames are moved until their samples and votes exceed this; the next cycle continues");
+        "number of samples and votes of moved frames at which re-anchoring stops until the next cycle; it moves at "
+        "least one frame");
   field("stored_frames", c.map.stored_frames);
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
-        "between pose, depth, labels and camera info of one frame [s]");
+        "largest difference between the stamps of pose, depth, labels and camera info of a frame that the mapper joins "
+        "[s]");
   field("frame_interval_s", c.frame_interval_s, config::in_range(0.0, 60.0),
-        "least time between integrated frames, by their stamps [s]");
-  field("tile_period_s", c.tile_period_s, config::in_range(0.0, 60.0), "least time between published versions [s]");
+        "shortest time between integrated frames, by their time stamps; 0: every frame is integrated [s]");
+  field("tile_period_s", c.tile_period_s, config::in_range(0.0, 60.0),
+        "shortest time between published versions of the map's tiles, by the frames' time stamps [s]");
   field("view_period_s", c.view_period_s, config::in_range(0.0, 60.0),
-        "least time between octomap, points and occupancy grid, which are made only for readers [s]");
+        "shortest time between publications of octomap, points, occupancy grid (these only while they have a reader) "
+        "and /map/provisional [s]");
   field("obstacle_period_s", c.obstacle_period_s, config::in_range(0.0, 60.0),
-        "least time between obstacle grids, by the frames' stamps [s]");
+        "shortest time between publications of the obstacle grid, by the frames' time stamps [s]");
   field("resume_from", c.resume_from, config::anything(),
-        "map.lapis of an earlier run to resume, beside slam.resume_from; empty: none");
-  field(
-      "resume_any_session", c.resume_any_session, config::anything(),
-      "with a session that slam.resume_from has made, too; false: a new map begins unless slam still runs that the map "
-      "was made with");
-  field("output_dir", c.output_dir, config::anything(), "folder for map.lapis, map.ot and map.ply; empty: none");
+        "map.lapis of an earlier run, whose map the mapper resumes; set slam.resume_from, too; empty: the mapper "
+        "begins a new map");
+  field("resume_any_session", c.resume_any_session, config::anything(),
+        "whether the map of resume_from continues in a later session of slam, too; false: only in the session that "
+        "made it, else a new map begins");
+  field("output_dir", c.output_dir, config::anything(),
+        "folder for map.lapis, map.ot and map.ply; empty: the mapper saves no map");
   field("save_period_s", c.save_period_s, config::in_range(1.0, 86400.0),
-        "time between saves, by the frames' stamps [s]");
+        "time between saves of the map in output_dir, by the frames' time stamps [s]");
 }
 
 }  // namespace lapis::semantic_mapper

@@ -20,16 +20,21 @@ struct SensorReplayConfig {
 
 template <class Field>
 void describe(Field& field, SensorReplayConfig& c) {
-  field("dataset", c.dataset, config::anything(), "folder in the layout of the TUM RGB-D benchmark, with camera.yaml");
+  field("dataset", c.dataset, config::anything(),
+        "folder of the data set in the layout of the TUM RGB-D benchmark, with camera.yaml");
   field("class_list", c.class_list, config::anything(),
-        "CSV file class_id,class,... that names the labels; empty: classes.csv of the data set, if it has one");
-  field("rate", c.rate, config::in_range(0.0, 100.0), "speed relative to the recording; 0: lock-step, nothing is lost");
-  field("start_s", c.start_s, config::in_range(0.0, 1e6), "skip this much of the recording [s]");
-  field("duration_s", c.duration_s, config::in_range(0.0, 1e6), "play this much of it [s]; 0: all");
+        "CSV file with columns class_id,class,... that names the labels; empty: classes.csv of the data set, if it has "
+        "one");
+  field("rate", c.rate, config::in_range(0.0, 100.0),
+        "speed of the replay relative to the recording; 0: lock-step, in which no frame is lost");
+  field("start_s", c.start_s, config::in_range(0.0, 1e6), "time that is skipped at the beginning of the recording [s]");
+  field("duration_s", c.duration_s, config::in_range(0.0, 1e6),
+        "length of the part of the recording that is played; 0: up to the end [s]");
   field("wait_for_readers", c.wait_for_readers, config::in_range(0, 100),
-        "with a rate: begin when the depth topic has this many readers");
+        "number of readers that the depth topic must have before the replay begins; only with a rate above 0");
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 1.0),
-        "between colour, depth and ground truth [s]");
+        "largest difference between the stamps of a colour image and its depth image or ground truth in the data set "
+        "[s]");
 }
 
 }  // namespace lapis::sensor_replay

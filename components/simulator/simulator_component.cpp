@@ -51,29 +51,36 @@ void describe_scene(const World& world) {
 }  // namespace
 
 void SimulatorComponent::add_options(CLI::App& app, Config& config) {
-  app.add_option("scene", config.scene,
-                 "name of a bundled scene, KIND_SEED of a generated building, or a file or folder (docs/scenes.md)");
-  app.add_option("--seed", config.seed, "draws start, noise, systematic errors, label confusion, jitter");
-  app.add_option("--tour", config.tour, "\"bundled\" or a file with waypoints: the robot drives by itself");
-  app.add_option("--duration", config.duration_s, "end after this much simulated time [s]");
-  app.add_option("--mode", config.mode, "lockstep or freerun");
-  app.add_flag("--validate", config.validate, "check the scene, print a table, write its navigation map, and exit");
-  app.add_flag("--credits", config.credits, "list authors and licences of what the scene shows, and exit");
+  app.add_option(
+      "scene", config.scene,
+      "name of a bundled scene, KIND_SEED of a generated building, or a scene file or folder (docs/scenes.md)");
+  app.add_option("--seed", config.seed, "seed of start pose, noise, systematic errors, label confusion and jitter");
+  app.add_option("--tour", config.tour,
+                 "tour that the robot drives by itself: \"bundled\" (of the scene) or a file with waypoints");
+  app.add_option("--duration", config.duration_s, "simulated time after which the run ends; 0: no limit [s]");
+  app.add_option("--mode", config.mode,
+                 "lockstep: all participants answer a frame before the next one; freerun: wall-clock time");
+  app.add_flag("--validate", config.validate,
+               "check the scene, print the results as a table, write its navigation map as PNG, and exit");
+  app.add_flag("--credits", config.credits, "list authors and licences of the models that the scene shows, and exit");
   app.add_option("--snapshot", config.snapshot_dir, "render views of every room into this folder, and exit");
   app.add_option("--ground-truth", config.truth_dir,
                  "write labelled voxels, explorable volume, rooms and navigation map into this folder, and exit");
   auto* generate =
-      app.add_option("--generate", config.generated_seed, "draw a building, print its scene file, and exit")
+      app.add_option("--generate", config.generated_seed,
+                     "generate a building from this seed, print its scene file, and exit")
           ->check([](const std::string& text) {
             const bool is_seed = text.size() - 1 < 19 && text.find_first_not_of("0123456789") == std::string::npos;
             return std::string(is_seed ? "" : "wanted is a seed, a whole number of at most 19 digits, not " + text);
           });
-  app.add_option("--kind", config.generated_kind, "of --generate")
+  app.add_option("--kind", config.generated_kind, "kind of the building that --generate makes")
       ->needs(generate)
       ->check(CLI::IsMember(building_kinds()))
       ->capture_default_str();
-  app.add_flag("--panes", config.generates_panes, "of --generate: glass and mirrors that stand free")->needs(generate);
-  app.add_option("--export-tum", config.export_dir, "write the tour as a TUM RGB-D data set, and exit");
+  app.add_flag("--panes", config.generates_panes,
+               "add free-standing panes of glass and mirrors to the building that --generate makes")
+      ->needs(generate);
+  app.add_option("--export-tum", config.export_dir, "record the tour as a TUM RGB-D data set in this folder, and exit");
 }
 
 config::Rules SimulatorComponent::rules(const Config& config) {

@@ -71,77 +71,94 @@ struct SimulatorConfig {
 
 template <class Field>
 void describe(Field& field, NoiseConfig& c) {
-  field("depth", c.depth, config::one_of({"none", "kinect", "redwood", "realsense"}), "model of the depth camera");
-  field("depth_multiplier", c.depth_multiplier, config::in_range(0.0, 10.0), "scales its standard deviations");
-  field("labels", c.labels, config::one_of({"none", "default"}), "model of the segmentation");
-  field("color", c.color, config::anything(), "noise of the colour camera");
+  field("depth", c.depth, config::one_of({"none", "kinect", "redwood", "realsense"}),
+        "noise model of the depth camera; none: exact depth");
+  field("depth_multiplier", c.depth_multiplier, config::in_range(0.0, 10.0),
+        "factor on the standard deviations of depth noise");
+  field("labels", c.labels, config::one_of({"none", "default"}),
+        "error model of the semantic segmentation; none: true labels");
+  field("color", c.color, config::anything(), "whether colour images have noise");
   field("contrast", c.contrast, config::in_range(0.0, 2.0), "factor on the contrast of colour images");
   field("shutter", c.shutter, config::in_range(0.0, 1.0),
-        "share of the time between frames that the shutter is open: blurs what moves");
-  field("odometry", c.odometry, config::anything(), "noise and systematic errors of wheel odometry");
+        "exposure time of colour images as a share of the time between frames; turns of the camera blur the image");
+  field("odometry", c.odometry, config::anything(), "whether wheel odometry has noise and systematic errors");
   field.moved("wheels", "simulator.noise.odometry");
   field("drift", c.drift, config::one_of({"nominal", "hard"}),
-        "how hard localisation is: texture, blur, noise and dropouts of depth, and noise of odometry together");
+        "preset for how hard localisation is; hard: lower contrast, motion blur, noisier depth with dropouts, and "
+        "noisier odometry");
 }
 
 template <class Field>
 void describe(Field& field, WheelConfig& c) {
-  field("odometry", c.odometry, config::anything(), "publish /odom and the transform odom -> base_link");
+  field("odometry", c.odometry, config::anything(),
+        "whether the simulator publishes /odom and the transform odom -> base_link");
   field("least_noise", c.least_noise, config::in_range(0.0, 10.0),
-        "the seed draws a factor on the standard deviations of odometry's noise: from here");
-  field("most_noise", c.most_noise, config::in_range(0.0, 10.0), "to here");
+        "lower limit of the factor on the standard deviations of odometry's errors, which the seed draws once per run");
+  field("most_noise", c.most_noise, config::in_range(0.0, 10.0),
+        "upper limit of the factor on the standard deviations of odometry's errors, which the seed draws once per run");
   field("radius_error", c.radius_error, config::in_range(0.0, 0.2),
-        "the wheels' radius is wrong by up to this share, as the seed draws; 0: by 1 % (standard deviation)");
-  field("base_error", c.base_error, config::in_range(0.0, 0.2), "the same for the wheel base");
+        "largest relative error of the wheel radius in odometry, drawn uniformly by the seed; 0: normal distribution "
+        "with 1 % standard deviation");
+  field("base_error", c.base_error, config::in_range(0.0, 0.2),
+        "largest relative error of the wheel base in odometry, drawn uniformly by the seed; 0: normal distribution "
+        "with 1 % standard deviation");
   field("turn_slip", c.turn_slip, config::in_range(0.0, 0.5),
-        "odometry counts up to this share more of a turn than was turned, as the seed draws for each turn");
+        "largest share by which odometry overestimates a turn; the seed draws a share for each turn");
 }
 
 template <class Field>
 void describe(Field& field, SceneConfig& c) {
   field("furniture_folder", c.furniture_folder, config::anything(),
-        "libraries of the Debian package sweethome3d-furniture; without them parametric furniture stands in");
-  field("jitter", c.jitter, config::anything(), "the seed moves what is movable, and pictures, a little");
-  field("texture_richness", c.texture_richness, config::in_range(0.0, 2.0), "scales the contrast of textures");
-  field("picture_density", c.picture_density, config::in_range(0.0, 1.0), "share of the pictures that hang");
+        "folder with the furniture of the Debian package sweethome3d-furniture; without it, simple parametric shapes "
+        "replace the furniture");
+  field("jitter", c.jitter, config::anything(),
+        "whether the seed displaces movable furniture (up to 5 cm and 10 deg) and pictures (up to 10 cm)");
+  field("texture_richness", c.texture_richness, config::in_range(0.0, 2.0),
+        "factor on the contrast of the textures of walls, floors, ceilings and pictures");
+  field("picture_density", c.picture_density, config::in_range(0.0, 1.0),
+        "share of the scene's pictures that hang on the walls; the seed draws which");
   field("passable_classes", c.passable_classes, config::anything(),
-        "names of classes that the robot drives through, such as closed doors of a scan");
+        "names of classes whose objects the robot can drive through, such as closed doors of a scan");
   field("light_folder", c.light_folder, config::anything(),
-        "where baked light is kept; empty: lapis/light in the user's cache folder");
+        "folder in which baked light of scenes is cached; empty: lapis/light in the user's cache folder");
 }
 
 template <class Field>
 void describe(Field& field, SimulatorConfig& c) {
   field("scene", c.scene, config::anything(),
         "name of a bundled scene, KIND_SEED of a generated building, a scene file (.yaml), or a file or folder of "
-        "another "
-        "format (docs/scenes.md)");
-  field("seed", c.seed, config::at_least(0), "draws start, noise, systematic errors, label confusion, jitter");
+        "another format (docs/scenes.md)");
+  field("seed", c.seed, config::at_least(0),
+        "seed of start pose, noise, systematic errors, label confusion, and jitter of furniture and pictures");
   field("mode", c.mode, config::one_of({"lockstep", "freerun"}),
-        "lockstep: every frame is answered by all before the next; freerun: by the wall clock, frames may be lost");
+        "pace of the run; lockstep: all participants answer a frame before the next one; freerun: wall-clock time, "
+        "frames may be lost");
   field("max_real_time_factor", c.max_real_time_factor, config::in_range(0.0, 100.0),
-        "lock-step is not faster than this; 0: as fast as the machine");
+        "upper limit of simulated time per wall-clock time in lock-step; 0: as fast as the machine allows");
   field("duration_s", c.duration_s, config::in_range(0.0, 1e6),
-        "simulated time after which the run ends [s]; 0: never");
+        "simulated time after which the run ends; 0: no limit [s]");
   field("ends_when_explored", c.ends_when_explored, config::anything(),
-        "the run ends, too, when /planner/status says DONE, GAVE_UP or FAILED");
+        "whether the run also ends when /planner/status reports DONE, GAVE_UP or FAILED");
   field("tour", c.tour, config::anything(),
-        "\"bundled\", or a file with waypoints, that the robot drives by itself; empty: it obeys /cmd_vel");
+        "tour that the robot drives by itself: \"bundled\" (of the scene) or a file with waypoints; empty: the robot "
+        "obeys /cmd_vel");
   field("tour_revisit_every_m", c.tour_revisit_every_m, config::in_range(0.0, 1000.0),
-        "after a path of this length each, the tour goes back to an old place and comes back; 0: never [m]");
-  field("start", c.start, config::anything(), "\"x y yaw_deg\" [m, m, deg]; empty: drawn by the seed");
+        "length of the tour's path after which the robot drives back to an old place and returns; 0: never [m]");
+  field("start", c.start, config::anything(),
+        "start pose in the scene as \"x y yaw_deg\"; empty: drawn by the seed [m, m, deg]");
   field("output_dir", c.output_dir, config::anything(),
-        "run folder for simulation.yaml and ground_truth/; empty: none");
+        "run folder for simulation.yaml and ground_truth/; empty: the run leaves no files");
   field("wait_for_readers", c.wait_for_readers, config::in_range(0, 100),
-        "freerun: begin when the depth topic has this many readers");
-  field("render_threads", c.render_threads, config::in_range(1, 64), "images do not depend on it");
-  field("imu", c.imu, config::anything(), "publish /imu at 200 Hz");
+        "number of readers that the depth topic must have before the simulator begins; only in mode freerun");
+  field("render_threads", c.render_threads, config::in_range(1, 64),
+        "number of threads for rendering, light and ground truth; results do not depend on it");
+  field("imu", c.imu, config::anything(), "whether the simulator publishes /imu, at 200 Hz");
   field("planner_margin_m", c.planner_margin_m, config::in_range(0.0, 1.0),
-        "that a planner keeps around the robot (planner.grid.margin_m): ground truth says what can be seen then, too "
-        "[m]");
+        "clearance that a planner keeps (planner.grid.margin_m), for the ground truth of what such a robot can see "
+        "(with_margin.lapis) [m]");
   field("full_map", c.full_map, config::anything(),
-        "ground truth has a map of the whole building, too, from frames without noise (full.lapis): the paper's "
-        "reference. It is made once for a building and start, and kept in the user's cache folder");
+        "whether ground truth has full.lapis, the whole building mapped from noise-free frames (the paper's "
+        "reference); cached per building and start");
   field("world", c.world);
   field("noise", c.noise);
   field("wheels", c.wheels);

@@ -72,12 +72,13 @@ void optimise(const Arguments& arguments, std::ostream& out) {
 
 void add_file_tools(CLI::App& app, std::ostream& out) {
   auto arguments = std::make_shared<Arguments>();
-  CLI::App* tool = app.add_subcommand("optimise", "optimise the pose graph of a g2o file");
-  tool->add_option("file", arguments->file, "g2o text: EDGE_SE3:QUAT or EDGE_SE2, vertices where there are")
+  CLI::App* tool =
+      app.add_subcommand("optimise", "optimise the pose graph in a g2o file, and print chi2 before and after");
+  tool->add_option("file", arguments->file, "g2o text file with EDGE_SE3:QUAT or EDGE_SE2; vertices are optional")
       ->required();
-  tool->add_option("--out", arguments->out, "write the optimised graph into this file");
+  tool->add_option("--out", arguments->out, "g2o file for the optimised graph; default: none is written");
   tool->add_flag("--robust", arguments->is_robust,
-                 "expect wrong loop closures (edges between ids that are not neighbours)");
+                 "remove the weight of wrong loop closures (edges between ids that do not follow one another)");
   tool->callback([arguments, &out] { optimise(*arguments, out); });
 }
 

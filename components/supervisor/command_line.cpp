@@ -35,15 +35,17 @@ struct Options {
 };
 
 void add_options(CLI::App& app, Options& options, Request& request) {
-  app.add_option("system", options.system, "description of the system (config/systems/*.yaml)")->required();
-  app.add_option("--out", request.out, "run folder")->required();
-  app.add_option("--variant", request.variants, "variant of the system, such as freerun (repeatable)");
-  app.add_flag("--restart", request.may_restart, "a process that dies or hangs is started again");
-  app.add_option("--config", request.configuration, "YAML file, for the processes that know its sections (repeatable)");
-  app.add_option("--set", options.settings, "KEY=VALUE for the processes that know KEY (repeatable)");
-  app.add_option("--fact", options.facts, "NAME=VALUE, a text for manifest.yaml and metrics.json (repeatable)");
-  app.add_option("--command", request.command, "what the user called, for messages and manifest.yaml");
-  app.add_option("--programs", request.programs, "folder of the programs; default: that of this one");
+  app.add_option("system", options.system, "YAML file that describes the system (config/systems/*.yaml)")->required();
+  app.add_option("--out", request.out, "run folder, into which the run writes its files")->required();
+  app.add_option("--variant", request.variants, "variant of the system to run, such as freerun (repeatable)");
+  app.add_flag("--restart", request.may_restart, "restart processes that die or hang, except the source of the data");
+  app.add_option("--config", request.configuration,
+                 "YAML configuration file, which the processes that know its sections read (repeatable)");
+  app.add_option("--set", options.settings, "KEY=VALUE, a setting for the processes that know KEY (repeatable)");
+  app.add_option("--fact", options.facts,
+                 "NAME=VALUE, a text that is written to manifest.yaml and metrics.json (repeatable)");
+  app.add_option("--command", request.command, "command that the user called, for messages and manifest.yaml");
+  app.add_option("--programs", request.programs, "folder of the programs lapis_*; default: that of lapis_supervisor");
   for (const char* repeatable : {"--variant", "--config", "--set", "--fact"}) {
     app.get_option(repeatable)->allow_extra_args(false);
   }

@@ -40,15 +40,21 @@ struct SensorModel {
 
 template <class Field>
 void describe(Field& field, SensorModel& c) {
-  field("hit_gain", c.hit_gain, config::in_range(0.01, 5.0), "log-odds gain of occupied by a first hit");
-  field("miss_gain", c.miss_gain, config::in_range(0.01, 5.0), "log-odds loss of occupied by a miss");
-  field("label_accuracy", c.label_accuracy, config::in_range(0.05, 0.999), "probability that a label is right");
-  field("fusion", c.fusion, config::one_of({"log_odds", "dirichlet", "bki"}), "rule by which counts become beliefs");
+  field("hit_gain", c.hit_gain, config::in_range(0.01, 5.0),
+        "increase of a voxel's log-odds of occupancy by a first hit");
+  field("miss_gain", c.miss_gain, config::in_range(0.01, 5.0), "decrease of a voxel's log-odds of occupancy by a miss");
+  field("label_accuracy", c.label_accuracy, config::in_range(0.05, 0.999),
+        "probability that the label of a hit is right, for fusion log_odds; more than 1 / number of classes");
+  field("fusion", c.fusion, config::one_of({"log_odds", "dirichlet", "bki"}),
+        "rule by which the counts of a voxel become beliefs: multi-class log-odds, Dirichlet, or Dirichlet with "
+        "a kernel (bki)");
   field("prior_votes", c.prior_votes, config::in_range(0.01, 1000.0),
-        "of dirichlet and bki: so many votes weigh as much as the prior");
+        "number of votes that weigh as much as the prior, for fusion dirichlet and bki [votes]");
   field("paper_increments", c.use_paper_increments, config::anything(),
-        "log-odds +1 for the class of a hit, -0.1 for all others and for a miss, as in the paper");
-  field("prior_occupied", c.prior_occupied, config::in_range(1e-4, 0.9999), "of a voxel that was never observed");
+        "whether log-odds change as in the paper: +1 for the class of a hit, -0.1 for all other classes and for "
+        "a miss");
+  field("prior_occupied", c.prior_occupied, config::in_range(1e-4, 0.9999),
+        "prior probability that a voxel is occupied, before it is observed");
 }
 
 /// The released system's parameters: psi = 1, phi = -0.1, P0 = 0.5, three named classes of prior share 0.1 and

@@ -20,7 +20,8 @@ struct CompactFrameConfig {
 
 template <class Field>
 void describe(Field& field, CompactFrameConfig& c) {
-  field("stride", c.stride, config::in_range(1, 16), "every stride-th pixel of every stride-th row is kept");
+  field("stride", c.stride, config::in_range(1, 16),
+        "sampling step of the frames that the map keeps: every stride-th pixel of every stride-th row is kept");
 }
 
 /// The reduced form of a camera frame that the mapper keeps, and the only form that it integrates. The map follows the

@@ -27,16 +27,18 @@ struct IntegrationConfig {
 /// belongs to the fusion rule.
 template <class Field>
 void describe(Field& field, IntegrationConfig& c) {
-  field("min_range_m", c.min_range_m, config::in_range(0.0, 5.0), "measurements nearer than this say nothing [m]");
+  field("min_range_m", c.min_range_m, config::in_range(0.0, 5.0),
+        "shortest range of measurements that give votes; nearer ones are ignored [m]");
   field("min_height_m", c.min_height_m, config::in_range(-1000.0, 1000.0),
-        "voxels whose centre is lower in the map frame get no votes [m]");
+        "lowest height of voxels that get votes: of their centre, z of the map frame [m]");
   field("max_height_m", c.max_height_m, config::in_range(-1000.0, 1000.0),
-        "voxels whose centre is higher get no votes [m]");
+        "largest height of voxels that get votes: of their centre, z of the map frame [m]");
   field("end_margin_voxels", c.end_margin_voxels, config::in_range(0.0, 3.0),
-        "a voxel gets a miss only if the ray leaves it at least this far before the measured surface");
+        "least distance of a voxel with a miss from the measured surface along the ray, besides two standard "
+        "deviations of depth noise [voxels]");
   field("depth_noise_per_m", c.depth_noise_per_m, config::in_range(0.0, 0.05),
-        "standard deviation of depth z is this times z^2; a hit weighs less where it is not small against a voxel, and "
-        "misses keep two of them away from the surface [1/m]");
+        "depth noise: standard deviation of depth z over z^2; it lowers the weight of hits, and misses end two "
+        "standard deviations before surfaces [1/m]");
 }
 
 /// The minimum makes every hit vote for its own voxel; the maximum bounds the size of a frame's box.

@@ -21,14 +21,20 @@ struct FanConfig {
 
 template <class Field>
 void describe(Field& field, FanConfig& c) {
-  field("length_m", c.length_m, config::in_range(0.5, 5.0), "of the paths that are tried [m]");
-  field("max_curvature_per_m", c.max_curvature_per_m, config::in_range(0.1, 10.0), "of the tightest [1/m]");
-  field("groups", c.groups, config::in_range(3, 99), "curvatures at the start; odd");
-  field("branches", c.branches, config::in_range(1, 99), "curvatures after half of the length; odd");
+  field("length_m", c.length_m, config::in_range(0.5, 5.0),
+        "length of the paths of the fan, among which the controller chooses [m]");
+  field("max_curvature_per_m", c.max_curvature_per_m, config::in_range(0.1, 10.0),
+        "curvature of the tightest paths of the fan [1/m]");
+  field("groups", c.groups, config::in_range(3, 99),
+        "number of different curvatures of the first half of the fan's paths; odd");
+  field("branches", c.branches, config::in_range(1, 99),
+        "number of different curvatures of the second half of the fan's paths; odd");
   field("max_bearing_rad", c.max_bearing_rad, config::in_range(0.1, 3.0),
-        "a path ends where it leaves what lies ahead by so much to either side [rad]");
+        "largest bearing of a point of the fan, to either side of the robot's heading; paths end where they "
+        "exceed it [rad]");
   field("margin_m", c.margin_m, config::in_range(0.0, 1.0),
-        "of clearance besides the robot's disc, from 0.4 m ahead on; half of it nearer [m]");
+        "clearance between the robot's disc and obstacles from 0.4 m along a path on; it grows from half of this "
+        "at the start [m]");
 }
 
 /// A path of the fan, in the frame of base_link at the beginning of the path.

@@ -160,7 +160,7 @@ TEST(FrameCodec, AHeaderThatNoFrameHasGivesNothing) {
   const std::size_t samples = static_cast<std::size_t>(frame->columns()) * static_cast<std::size_t>(frame->rows());
   const std::size_t stride_at = plain.size() - 2 * samples - 8;  // two flags of 2 bytes follow the stride, then depth
   ASSERT_EQ(plain[stride_at], frame->stride());
-  for (const std::uint8_t byte : {0x00, 0xff}) {  // a stride of 0 and of -1
+  for (const std::uint8_t byte : {std::uint8_t{0x00}, std::uint8_t{0xff}}) {  // a stride of 0 and of -1
     std::fill_n(plain.begin() + static_cast<std::ptrdiff_t>(stride_at), 4, byte);
     EXPECT_FALSE(unpack_frame(zstd_compress(plain, 1))) << int{byte};
   }

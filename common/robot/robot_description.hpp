@@ -69,8 +69,8 @@ void describe(Field& field, RobotDescription& c) {
         "lowest height of voxels that are obstacles; those whose centre is lower are floor to the robot; z of "
         "the map frame [m]");
   field("obstacle_max_height_m", c.obstacle_max_height_m, config::in_range(-100.0, 100.0),
-        "height from which on nothing is an obstacle, because the robot passes under it; z of the map frame, for "
-        "the controller above base_link [m]");
+        "height from which on nothing is an obstacle, because the robot passes under it; z of the map frame, in "
+        "the local map above base_link [m]");
   field("camera", c.camera);
 }
 

@@ -5,7 +5,6 @@ usage: pages_test.py REPOSITORY
 """
 import pathlib
 import re
-import subprocess
 import sys
 import unittest
 
@@ -16,8 +15,10 @@ LINK = re.compile(r"!?\[[^\]]*\]\(([^)\s]+)\)")
 
 
 def pages():
-    listed = subprocess.run(["git", "ls-files", "-z", "*.md"], cwd=REPOSITORY, capture_output=True, text=True, check=True)
-    return [REPOSITORY / name for name in listed.stdout.split("\0") if name and not name.startswith(GENERATED)]
+    """Those that people write; a copy of the sources need not be a git repository."""
+    found = [page.relative_to(REPOSITORY) for page in sorted(REPOSITORY.rglob("*.md"))]
+    return [REPOSITORY / page for page in found
+            if not str(page).startswith(GENERATED) and not {"build", "out", "node_modules"} & set(page.parts)]
 
 
 def lines_of_text(text):

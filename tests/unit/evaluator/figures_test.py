@@ -184,12 +184,15 @@ class Figures(unittest.TestCase):
         (self.run_folder / "ground_truth").mkdir()
         titles = []
         figures = module("against_truth")
+        metrics = json.loads((self.run_folder / "metrics.json").read_text())
+        (self.run_folder / "metrics.json").write_text(json.dumps(metrics | {"full_map_error_mean_m": 1.234}))
         for name in ("ideal", "full"):
             write_map(self.run_folder / f"ground_truth/{name}.lapis")
             figure = figures.draw_map_error(self.run_folder)
-            titles.append(figure.axes[0].get_title().rpartition("reference: ")[2])
+            titles.append(figure.axes[0].get_title().partition("\n")[2])
             figures.plt.close(figure)
-        self.assertEqual(titles, ["the same frames without noise at true poses", "the whole building"])
+        self.assertEqual(titles, ["reference: the same frames without noise at true poses",
+                                  "mean of the whole map 123.4 cm; reference: the whole building"])
 
     def test_pose_graph_counts_as_loops_what_the_metrics_call_loops(self):
         figures = module("plans")

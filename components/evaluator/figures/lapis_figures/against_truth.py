@@ -4,23 +4,24 @@ import itertools
 
 import numpy as np
 
-from lapis_figures.inputs import ESTIMATE, MissingInput, class_names, read_map, read_map_file, read_trajectory
+from lapis_figures.inputs import ESTIMATE, MissingInput, class_names, metric, read_map, read_map_file, read_trajectory
 from lapis_figures.plans import HEAD_ROOM_M, Grid, below, finish_plan, legend_of_classes
 from lapis_figures.style import plt
 
-# The first one that a run has; docs/evaluation.md, references.
-REFERENCES = (("ground_truth/full.lapis", "the whole building"),
-              ("ground_truth/ideal.lapis", "the same frames without noise at true poses"),
-              ("reference_map.lapis", "the same frames at true poses"))
-FARTHEST_CELLS = 2  # errors beyond are shown as this one
+# File, what it is, and prefix of its figures (docs/evaluation.md, references): the first one that a run has counts.
+REFERENCES = (("ground_truth/full.lapis", "the whole building", "full_"),
+              ("ground_truth/ideal.lapis", "the same frames without noise at true poses", "ideal_"),
+              ("reference_map.lapis", "the same frames at true poses", ""))
+FARTHEST_CELLS = 2  # larger errors have the last colour
 NOT_EXPLORED = 0.9  # grey
 
 
 def read_pair(run):
-    """Voxels below the ceilings of the map and of its reference, and what the reference is."""
-    file, name = next(((run / file, name) for file, name in REFERENCES if (run / file).is_file()), (None, None))
-    if file is None:
-        raise MissingInput(f"{REFERENCES[0][0]} is missing, and so are {', '.join(file for file, _ in REFERENCES[1:])}")
+    """Voxels below the ceilings of the map and of its reference, what the reference is, and the prefix of its figures."""
+    found = [entry for entry in REFERENCES if (run / entry[0]).is_file()]
+    if not found:
+        raise MissingInput(f"{REFERENCES[0][0]} is missing, and so are {', '.join(file for file, *_ in REFERENCES[1:])}")
+    file, name, prefix = run / found[0][0], *found[0][1:]
     points = read_map(run / "map.ply")
     if points is None:
         raise MissingInput("map.ply is missing or unreadable")
@@ -28,7 +29,7 @@ def read_pair(run):
     pair = [below(of, ceiling) for of in (points, read_map_file(file))]
     if not all(len(positions) for positions, _, _ in pair):
         raise MissingInput(f"map.ply or {file.name} has nothing below the ceilings")
-    return *pair, name
+    return *pair, name, prefix
 
 
 def offsets_by_length(farthest):
@@ -39,8 +40,8 @@ def offsets_by_length(farthest):
 
 
 def distances(positions, reference, edge):
-    """From each position to the nearest one of the reference [n, in metres], both on one grid; FARTHEST_CELLS where that
-    is not nearer."""
+    """From each position to the nearest one of the reference [n, in metres], both on a grid of this edge [m], but at most
+    FARTHEST_CELLS edges."""
     cells, others = (np.round((of - reference.min(axis=0)) / edge).astype(int) for of in (positions, reference))
     low, high = np.minimum(cells.min(axis=0), 0) - FARTHEST_CELLS, np.maximum(cells.max(axis=0), others.max(axis=0))
     taken = np.zeros(high - low + 1 + FARTHEST_CELLS, dtype=bool)
@@ -54,7 +55,7 @@ def distances(positions, reference, edge):
 def draw_map_error(run):
     """The map from above: each cell shows the mean error of its voxels below the ceiling; pale is what only the building
     has."""
-    points, reference, name = read_pair(run)
+    points, reference, name, prefix = read_pair(run)
     grid = Grid(np.concatenate((points[0], reference[0])))
     errors_m = distances(points[0], reference[0], grid.edge)
     sums, counts = np.zeros(grid.shape), np.zeros(grid.shape)
@@ -65,8 +66,9 @@ def draw_map_error(run):
     means_cm = 100 * np.divide(sums, counts, out=np.full(grid.shape, np.nan), where=counts > 0)
     shown = grid.show(axes, means_cm, cmap="turbo", vmin=0.0, vmax=100 * grid.edge * FARTHEST_CELLS)
     figure.colorbar(shown, ax=axes, extend="max", label="to the nearest voxel of the reference [cm]\n(mean over height)")
-    finish_plan(axes, f"Error of the map: {run.resolve().name}\nmean {100 * errors_m.mean():.1f} cm below the ceilings; "
-                      f"reference: {name}")
+    mean_m = metric(run, f"{prefix}map_error_mean_m")
+    mean = "" if mean_m is None else f"mean of the whole map {100 * mean_m:.1f} cm; "
+    finish_plan(axes, f"Error of the map below the ceilings: {run.resolve().name}\n{mean}reference: {name}")
     return figure
 
 
@@ -78,7 +80,7 @@ def colours_by_class(points, reference):
 
 def draw_beside_truth(run):
     """Explored map and reference from above, by height and by class."""
-    points, reference, name = read_pair(run)
+    points, reference, name, _ = read_pair(run)
     grid = Grid(np.concatenate((points[0], reference[0])))
     z = np.concatenate((points[0][:, 2], reference[0][:, 2]))
     by_height = plt.cm.ScalarMappable(plt.Normalize(z.min(), z.max()), "viridis")

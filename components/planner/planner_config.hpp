@@ -165,9 +165,9 @@ void describe(Field& field, GoalMemoryConfig& c) {
         "number of failures after which a target is left alone for good (README)");
 }
 
-/// Keys that decide which candidates there are and how they are judged.
+/// Keys that decide which candidates there are and what their views tell.
 template <class Field>
-void describe_decisions(Field& field, PlannerComponentConfig& c) {
+void describe_views(Field& field, PlannerComponentConfig& c) {
   field("max_candidates", c.decision.max_candidates, config::in_range(1, 1000),
         "largest number of candidates that are judged: those with the shortest paths, but the nearest of every "
         "frontier first");
@@ -185,6 +185,11 @@ void describe_decisions(Field& field, PlannerComponentConfig& c) {
         "number of columns of rays that represent a view, over the width of the image");
   field("view_rows", c.view_rows, config::in_range(1, 4096),
         "number of rows of rays that represent a view, over the height of the image");
+}
+
+/// Keys that decide what candidates cost and how they are judged.
+template <class Field>
+void describe_judgement(Field& field, PlannerComponentConfig& c) {
   field("node_spacing_m", c.decision.node_spacing_m, config::in_range(0.2, 10.0),
         "distance between the hallucinated key-frames along a path [m]");
   field("turn_cost_m_per_rad", c.decision.turn_cost_m_per_rad, config::in_range(0.0, 10.0),
@@ -214,9 +219,9 @@ void describe_decisions(Field& field, PlannerComponentConfig& c) {
         "placed (README)");
 }
 
-/// Keys of the mission around decisions.
+/// Keys that say when a goal is reached and when it has failed.
 template <class Field>
-void describe_mission(Field& field, PlannerComponentConfig& c) {
+void describe_goals(Field& field, PlannerComponentConfig& c) {
   field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.0, 60.0),
         "time between decisions while the robot drives to a goal, at least 0.5; 0: no such decisions, as in the "
         "paper [s]");
@@ -239,6 +244,11 @@ void describe_mission(Field& field, PlannerComponentConfig& c) {
   field("settle_s", c.explorer.settle_s, config::in_range(0.0, 60.0),
         "time from arrival at a goal until the map is checked: the view has failed if its target is still a "
         "frontier [s]");
+}
+
+/// Keys of the mission around decisions.
+template <class Field>
+void describe_mission(Field& field, PlannerComponentConfig& c) {
   field("max_drift_m", c.explorer.max_drift_m, config::in_range(0.0, 100.0),
         "largest standard deviation of the position at a path's end in dead reckoning; beyond it the robot "
         "drives to where slam tracked [m]");
@@ -259,33 +269,9 @@ void describe_mission(Field& field, PlannerComponentConfig& c) {
         "whether the robot drives back to where it started when nothing is left to explore");
 }
 
+/// Keys of what is written beside the decision itself, and those that have moved.
 template <class Field>
-void describe(Field& field, PlannerComponentConfig& c) {
-  field("method", c.method, config::one_of(all_methods(), "see Method in components/planner/README.md"),
-        "method that chooses between the candidate paths (README)");
-  field("then", c.then, config::one_of(all_consolidations()),
-        "rule that chooses old places to drive through, to close loops, when nothing is left to explore; none: "
-        "no old places");
-  field("measure", c.measure, config::one_of({"semantic", "shannon", "csqmi"}),
-        "measure of the map's information: about space and classes (semantic), or about space alone (shannon, "
-        "csqmi) (README)");
-  field("autostart", c.autostart, config::anything(),
-        "whether exploration starts with the process; false: it waits for the service /planner/start");
-  field("beta", c.methods.joint.beta, config::in_range(0.0, 100.0),
-        "weight of a nat about the trajectory relative to a nat about the map, for the methods joint and lapis");
-  field("sigma_limit_voxels", c.decision.sigma_limit_voxels, config::in_range(0.01, 10.0),
-        "standard deviation of the position at a path's end down to which loop closures count, for the methods "
-        "joint and lapis [voxels]");
-  describe_decisions(field, c);
-  field("grid", c.surroundings.grid);
-  field("frontiers", c.surroundings.frontiers);
-  field("path", c.decision.path);
-  field("viewpoints", c.decision.viewpoints);
-  field("gaps", c.decision.gaps);
-  field("tare", c.methods.tare);
-  field("hallucination", c.decision.hallucination);
-  field("memory", c.explorer.memory);
-  describe_mission(field, c);
+void describe_records(Field& field, PlannerComponentConfig& c) {
   field.moved("sensor_model.pass_gain", "semantic_mapper.sensor_model.miss_gain",
               "the planner reads it on /semantic_mapper/map_description");
   field.moved("sensor_model", "semantic_mapper.sensor_model",
@@ -303,6 +289,38 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("record_situations_every", c.record_situations_every, config::in_range(0, 1'000'000),
         "interval, in decisions, at which the input of a decision is written to situations/ in output_dir for "
         "--replay; 0: never");
+}
+
+template <class Field>
+void describe(Field& field, PlannerComponentConfig& c) {
+  field("method", c.method, config::one_of(all_methods(), "see Method in components/planner/README.md"),
+        "method that chooses between the candidate paths (README)");
+  field("then", c.then, config::one_of(all_consolidations()),
+        "rule that chooses old places to drive through, to close loops, when nothing is left to explore; none: "
+        "no old places");
+  field("measure", c.measure, config::one_of({"semantic", "shannon", "csqmi"}),
+        "measure of the map's information: about space and classes (semantic), or about space alone (shannon, "
+        "csqmi) (README)");
+  field("autostart", c.autostart, config::anything(),
+        "whether exploration starts with the process; false: it waits for the service /planner/start");
+  field("beta", c.methods.joint.beta, config::in_range(0.0, 100.0),
+        "weight of a nat about the trajectory relative to a nat about the map, for the methods joint and lapis");
+  field("sigma_limit_voxels", c.decision.sigma_limit_voxels, config::in_range(0.01, 10.0),
+        "standard deviation of the position at a path's end down to which loop closures count, for the methods "
+        "joint and lapis [voxels]");
+  describe_views(field, c);
+  describe_judgement(field, c);
+  field("grid", c.surroundings.grid);
+  field("frontiers", c.surroundings.frontiers);
+  field("path", c.decision.path);
+  field("viewpoints", c.decision.viewpoints);
+  field("gaps", c.decision.gaps);
+  field("tare", c.methods.tare);
+  field("hallucination", c.decision.hallucination);
+  field("memory", c.explorer.memory);
+  describe_goals(field, c);
+  describe_mission(field, c);
+  describe_records(field, c);
 }
 
 }  // namespace lapis::planner

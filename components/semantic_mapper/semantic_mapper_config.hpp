@@ -47,6 +47,28 @@ void describe(Field& field, FrameStoreConfig& c) {
         "place in the map");
 }
 
+/// Keys of what is published when, and of files.
+template <class Field>
+void describe_output(Field& field, SemanticMapperComponentConfig& c) {
+  field("tile_period_s", c.tile_period_s, config::in_range(0.0, 60.0),
+        "shortest time between published versions of the map's tiles, by the frames' time stamps [s]");
+  field("view_period_s", c.view_period_s, config::in_range(0.0, 60.0),
+        "shortest time between publications of octomap, points, occupancy grid (these only while they have a reader) "
+        "and /map/provisional [s]");
+  field("obstacle_period_s", c.obstacle_period_s, config::in_range(0.0, 60.0),
+        "shortest time between publications of the obstacle grid, by the frames' time stamps [s]");
+  field("resume_from", c.resume_from, config::anything(),
+        "map.lapis of an earlier run, whose map the mapper resumes; set slam.resume_from, too; empty: the mapper "
+        "begins a new map");
+  field("resume_any_session", c.resume_any_session, config::anything(),
+        "whether the map of resume_from continues in a later session of slam, too; false: only in the session that "
+        "made it, else a new map begins");
+  field("output_dir", c.output_dir, config::anything(),
+        "folder for map.lapis, map.ot and map.ply; empty: the mapper saves no map");
+  field("save_period_s", c.save_period_s, config::in_range(1.0, 86400.0),
+        "time between saves of the map in output_dir, by the frames' time stamps [s]");
+}
+
 template <class Field>
 void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("resolution_m", c.map.resolution_m, config::in_range(0.02, 0.5), "edge length of a voxel of the map [m]");
@@ -77,23 +99,7 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
         "[s]");
   field("frame_interval_s", c.frame_interval_s, config::in_range(0.0, 60.0),
         "shortest time between integrated frames, by their time stamps; 0: every frame is integrated [s]");
-  field("tile_period_s", c.tile_period_s, config::in_range(0.0, 60.0),
-        "shortest time between published versions of the map's tiles, by the frames' time stamps [s]");
-  field("view_period_s", c.view_period_s, config::in_range(0.0, 60.0),
-        "shortest time between publications of octomap, points, occupancy grid (these only while they have a reader) "
-        "and /map/provisional [s]");
-  field("obstacle_period_s", c.obstacle_period_s, config::in_range(0.0, 60.0),
-        "shortest time between publications of the obstacle grid, by the frames' time stamps [s]");
-  field("resume_from", c.resume_from, config::anything(),
-        "map.lapis of an earlier run, whose map the mapper resumes; set slam.resume_from, too; empty: the mapper "
-        "begins a new map");
-  field("resume_any_session", c.resume_any_session, config::anything(),
-        "whether the map of resume_from continues in a later session of slam, too; false: only in the session that "
-        "made it, else a new map begins");
-  field("output_dir", c.output_dir, config::anything(),
-        "folder for map.lapis, map.ot and map.ply; empty: the mapper saves no map");
-  field("save_period_s", c.save_period_s, config::in_range(1.0, 86400.0),
-        "time between saves of the map in output_dir, by the frames' time stamps [s]");
+  describe_output(field, c);
 }
 
 }  // namespace lapis::semantic_mapper

@@ -348,6 +348,11 @@ class Layout {
         if (room.wall.texture == "concrete") room.wall.color = room.floor.color;
       }
     }
+    copy_surfaces();
+  }
+
+  /// A copy has the surfaces of its original.
+  void copy_surfaces() {
     for (PlannedRoom& room : plan_.rooms) {
       if (!room.copy_of) continue;
       const PlannedRoom& original = plan_.rooms[*room.copy_of];

@@ -31,6 +31,9 @@ def read_rows(file):
     missing = COLUMNS - set(rows[0])
     if missing:
         sys.exit(f"{file}: not written by lapis_surviving_share --rows, the column {min(missing)} is not there")
+    for number, row in enumerate(rows, start=2):
+        if None in row or None in row.values():
+            sys.exit(f"{file}:{number}: the line has not as many cells as the header; is the file cut off?")
     return rows
 
 

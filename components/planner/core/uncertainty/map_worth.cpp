@@ -1,0 +1,191 @@
+#include "planner/core/uncertainty/map_worth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include <Eigen/Cholesky>
+
+#include "planner/core/uncertainty/surviving_share.hpp"
+
+namespace lapis::planner {
+namespace {
+
+constexpr double kLeastLength_m = 0.05;                   // of an edge, where noise per metre is told
+const Eigen::Vector3d kUsualLoopNoise(4e-4, 4e-4, 1e-4);  // 2 cm, 0.6 degrees
+const Eigen::Vector3d kUsualOdometryNoise(1e-5, 1e-5, 1e-6);
+
+/// Maps the error of a pose to that of a point which moves with it: a turn displaces what is far away.
+Eigen::Matrix3d carried_to(const Eigen::Vector2d& p_map, const Eigen::Vector2d& origin_map) {
+  Eigen::Matrix3d carry = Eigen::Matrix3d::Identity();
+  const Eigen::Vector2d arm = p_map - origin_map;
+  carry(0, 2) = -arm.y();
+  carry(1, 2) = arm.x();
+  return carry;
+}
+
+Eigen::Vector2d position_of(const Keyframe& keyframe) { return keyframe.T_map_camera.translation().head<2>(); }
+
+/// Variances along the map's axes and of the heading by the information of an edge, mean over both axes.
+Eigen::Vector3d planar_noise(const Information& information, const geometry::Pose& T_map_to) {
+  Eigen::Matrix<double, 6, 3> tangent = Eigen::Matrix<double, 6, 3>::Zero();
+  const Eigen::Matrix3d R_camera_map = T_map_to.linear().transpose();
+  tangent.topLeftCorner<3, 2>() = R_camera_map.leftCols<2>();
+  tangent.bottomRightCorner<3, 1>() = R_camera_map.col(2);
+  const Eigen::Matrix3d planar = tangent.transpose() * information * tangent;
+  const Eigen::Matrix3d covariance = planar.ldlt().solve(Eigen::Matrix3d::Identity());
+  const double along = 0.5 * (covariance(0, 0) + covariance(1, 1));
+  return {along, along, covariance(2, 2)};
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + std::ssize(values) / 2;
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+Eigen::Vector3d medians(const std::vector<Eigen::Vector3d>& noises, const Eigen::Vector3d& usual) {
+  if (noises.empty()) return usual;
+  Eigen::Vector3d out;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const Eigen::Vector3d& noise : noises) values.push_back(noise(axis));
+    out(axis) = median(std::move(values));
+  }
+  return out;
+}
+
+}  // namespace
+
+std::variant<MapWorth, GraphError> MapWorth::make(std::span<const Keyframe> keyframes,
+                                                  std::span<const KeyframeEdge> edges, const SurfaceStakes& stakes,
+                                                  const MapWorthConfig& config) {
+  auto graph = PlanarGraph::make(keyframes, edges);
+  if (auto* error = std::get_if<GraphError>(&graph)) return std::move(*error);
+  MapWorth worth(std::get<PlanarGraph>(std::move(graph)), config);
+  std::vector<int> nodes(worth.graph_.keyframes().size());
+  std::iota(nodes.begin(), nodes.end(), 0);
+  worth.covariance_ = config.sigma_factor * config.sigma_factor * worth.graph_.covariance(nodes);
+  worth.note_noise(edges);
+  worth.note_stakes(stakes);
+  worth.nats_ = worth.nats_with({});
+  return worth;
+}
+
+/// The noise of odometry per metre, and that of a loop closure: medians over the edges of the graph.
+void MapWorth::note_noise(std::span<const KeyframeEdge> edges) {
+  std::map<std::uint64_t, const Keyframe*> known;
+  for (const Keyframe& keyframe : graph_.keyframes()) known[keyframe.id] = &keyframe;
+  std::vector<Eigen::Vector3d> loops, odometry;
+  for (const KeyframeEdge& edge : edges) {
+    const auto from = known.find(edge.from), to = known.find(edge.to);
+    if (from == known.end() || to == known.end()) continue;
+    const Eigen::Vector3d noise = planar_noise(edge.information, to->second->T_map_camera);
+    if (edge.is_loop_closure) {
+      loops.push_back(noise);
+    } else {
+      const double length_m = (position_of(*from->second) - position_of(*to->second)).norm();
+      odometry.emplace_back(noise / std::max(length_m, kLeastLength_m));
+    }
+  }
+  const double factor = config_.sigma_factor * config_.sigma_factor;
+  loop_noise_ = factor * medians(loops, kUsualLoopNoise);
+  odometry_noise_ = factor * medians(odometry, kUsualOdometryNoise);
+}
+
+void MapWorth::note_stakes(const SurfaceStakes& stakes) {
+  bin_m_ = stakes.bin_m;
+  const auto& keyframes = graph_.keyframes();
+  for (std::size_t node = 0; node < keyframes.size(); ++node) {
+    const auto found = stakes.voxels.find(keyframes[node].id);
+    if (found == stakes.voxels.end()) continue;
+    Stake stake{static_cast<int>(node), keyframes[node].T_map_camera.linear().col(2), found->second};
+    for (double& value : stake.nats) value *= config_.voxel_nats;
+    stakes_.push_back(std::move(stake));
+  }
+}
+
+double MapWorth::worth_of(const Stake& stake, const Eigen::Matrix3d& covariance) const {
+  double sum = 0.0;
+  for (std::size_t bin = 0; bin < stake.nats.size(); ++bin) {
+    if (stake.nats[bin] == 0.0) continue;
+    const double range_m = (static_cast<double>(bin) + 0.5) * bin_m_;
+    sum += stake.nats[bin] * surviving_share(surface_sigma_m(covariance, stake.forward, range_m), config_.voxel_m);
+  }
+  return sum;
+}
+
+Eigen::Matrix3d MapWorth::path_noise(double path_m) const {
+  return (path_m * odometry_noise_).asDiagonal().toDenseMatrix();
+}
+
+/// M after these loops have closed. A loop measures the pose of the path's node against the old key-frame; the node is
+/// carried by the newest key-frame, with the noise of the path in between.
+double MapWorth::nats_with(std::span<const PossibleLoop> loops) const {
+  const int newest = static_cast<int>(graph_.keyframes().size()) - 1;
+  const auto size = 3 * static_cast<Eigen::Index>(loops.size());
+  std::vector<Eigen::Matrix3d> at_newest, at_old;
+  for (const PossibleLoop& loop : loops) {
+    at_newest.push_back(carried_to(loop.p_map_node, position_of(graph_.keyframes().back())));
+    at_old.push_back(carried_to(loop.p_map_node, position_of(graph_.keyframes()[index(loop.keyframe)])));
+  }
+  // C H^T of a node, by loops.
+  const auto columns_of = [&](int node) {
+    Eigen::MatrixXd columns(3, size);
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+      columns.middleCols<3>(3 * static_cast<Eigen::Index>(k)) =
+          block(node, newest) * at_newest[k].transpose() - block(node, loops[k].keyframe) * at_old[k].transpose();
+    }
+    return columns;
+  };
+  Eigen::MatrixXd innovation = Eigen::MatrixXd::Zero(size, size);
+  const Eigen::MatrixXd of_newest = columns_of(newest);
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    const auto row = 3 * static_cast<Eigen::Index>(k);
+    innovation.middleRows<3>(row) = at_newest[k] * of_newest - at_old[k] * columns_of(loops[k].keyframe);
+    for (std::size_t m = 0; m < loops.size(); ++m) {  // the way up to the nearer node is common to both
+      innovation.block<3, 3>(row, 3 * static_cast<Eigen::Index>(m)) +=
+          path_noise(std::min(loops[k].path_m, loops[m].path_m));
+    }
+    innovation.block<3, 3>(row, row) += loop_noise_.asDiagonal().toDenseMatrix();
+  }
+  const auto factor = innovation.ldlt();
+  double sum = 0.0;
+  for (const Stake& stake : stakes_) {
+    Eigen::Matrix3d covariance = block(stake.node, stake.node);
+    if (size > 0) {
+      const Eigen::MatrixXd columns = columns_of(stake.node);
+      covariance -= columns * factor.solve(columns.transpose());
+    }
+    sum += worth_of(stake, covariance);
+  }
+  return sum;
+}
+
+double MapWorth::secured_nats(std::vector<PossibleLoop> loops) const {
+  if (config_.sigma_factor == 0.0) return 0.0;
+  std::stable_sort(loops.begin(), loops.end(),
+                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
+  loops.resize(std::min(loops.size(), kMostLoops));
+  double expected = 0.0;
+  for (unsigned closed = 1; closed < 1U << loops.size(); ++closed) {
+    double probability = 1.0;
+    std::vector<PossibleLoop> of_set;
+    for (std::size_t k = 0; k < loops.size(); ++k) {
+      const bool is_closed = (closed >> k & 1U) != 0;
+      probability *= is_closed ? loops[k].probability : 1.0 - loops[k].probability;
+      if (is_closed) of_set.push_back(loops[k]);
+    }
+    if (probability > 0.0) expected += probability * (nats_with(of_set) - nats_);
+  }
+  return expected;
+}
+
+double MapWorth::share_of_view(const Eigen::Vector2d& p_map, const Eigen::Vector3d& forward, double path_m) const {
+  const int newest = static_cast<int>(graph_.keyframes().size()) - 1;
+  const Eigen::Matrix3d carry = carried_to(p_map, position_of(graph_.keyframes().back()));
+  const Eigen::Matrix3d covariance = carry * block(newest, newest) * carry.transpose() + path_noise(path_m);
+  return surviving_share(surface_sigma_m(covariance, forward, config_.view_m), config_.voxel_m);
+}
+
+}  // namespace lapis::planner

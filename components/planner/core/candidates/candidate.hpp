@@ -47,6 +47,8 @@ struct PathValue {
   double fixed_n_d_optimality = 0.0;
   int tour_place = 0;          ///< position of the goal in TARE's tour, counted from 1
   double unknown_share = 0.0;  ///< share of unknown cells around the target, in [0, 1]
+  double surviving_share = 1.0;  ///< of what the path's views show, in the map (MapWorth)
+  double secured_nats = 0.0;     ///< what the path's loops are expected to add to the worth of the map
 
   /// The cost [m], at least kLeastCost_m, so that very short paths do not get an unbounded utility.
   double paid_m() const { return std::max(cost_m, kLeastCost_m); }

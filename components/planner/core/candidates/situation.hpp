@@ -11,6 +11,8 @@
 
 namespace lapis::planner {
 
+class MapWorth;
+
 /// The input of a decision. The graph and its landmarks are null until slam has two key-frames.
 struct Situation {
   const PlanningGrid& grid;
@@ -24,6 +26,7 @@ struct Situation {
   /// Fields of the same map with other sensor models. Decisions report what the method would have chosen with each of
   /// them.
   std::span<const InformationField> compared_fields = {};
+  const MapWorth* worth = nullptr;  ///< null unless a method asks for it
 };
 
 /// State of dead reckoning: slam has no visual tracking, and the position becomes less certain with every metre.

@@ -7,6 +7,7 @@
 
 #include "planner/core/decision/explanation.hpp"
 #include "planner/core/decision/first_turn.hpp"
+#include "planner/core/hallucination/possible_loops.hpp"
 #include "planner/core/space/path_planner.hpp"
 
 namespace lapis::planner {
@@ -131,6 +132,22 @@ void discount_information(const Situation& s, double limit_m, Candidate& candida
   candidate.value.goal_information /= 1.0 + end;
 }
 
+/// Adds what survives of the path's views, and what its loops secure.
+void add_worth(const Situation& s, const DecisionConfig& config, Candidate& candidate) {
+  const auto nodes = nodes_along(s, candidate, config.node_spacing_m);
+  const auto loops =
+      possible_loops(*s.graph, *s.landmarks, s.field, s.view.config().camera, nodes, config.hallucination);
+  candidate.value.secured_nats = s.worth->secured_nats(loops);
+  const geometry::Pose* before = &s.graph->keyframes.back().T_map_camera;
+  double path_m = 0.0, sum = 0.0;
+  for (const geometry::Pose& node : nodes) {
+    path_m += path_between(*before, node);
+    before = &node;
+    sum += s.worth->share_of_view(node.translation().head<2>(), node.linear().col(2), path_m);
+  }
+  candidate.value.surviving_share = sum / static_cast<double>(nodes.size());
+}
+
 std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, const Method& method, const Memory& memory,
                                    double keep_factor) {
   const double kept = method.keeps_goal() ? keep_factor : 1.0;
@@ -211,6 +228,9 @@ std::string judge(const Situation& s, const DecisionConfig& config, const Asks& 
     for (Candidate* candidate : open) candidate->value.unknown_share = unknown_share(s.grid, candidate->target_map);
   }
   std::string problem = asks.spectrum ? add_gains(s, config, open) : "";
+  if (asks.map_worth && s.worth != nullptr && s.graph != nullptr && s.landmarks != nullptr) {
+    for (Candidate* candidate : open) add_worth(s, config, *candidate);
+  }
   for (Candidate* candidate : open) candidate->utility = config.method->utility(*candidate);
   return problem;
 }

@@ -38,13 +38,13 @@ class AmongOldPlaces : public Method {
 }  // namespace
 
 const std::vector<std::string>& consolidation_names() {
-  static const std::vector<std::string> names{"nearest", "random", "lapis"};
+  static const std::vector<std::string> names{"nearest", "random", "lapis", "expected"};
   return names;
 }
 
 std::shared_ptr<const Method> make_consolidation(const std::string& name, const MethodsConfig& config) {
   if (name == "random") return std::make_shared<AmongOldPlaces>(std::make_shared<RandomPlace>());
-  if (name == "nearest" || name == "lapis") return std::make_shared<AmongOldPlaces>(make_method(name, config));
+  if (name == "nearest" || name == "lapis" || name == "expected") return std::make_shared<AmongOldPlaces>(make_method(name, config));
   return nullptr;
 }
 

@@ -2,6 +2,6 @@
 
 namespace lapis::planner {
 
-std::vector<Candidate> Method::propose(const ProposalInput& in) const { return propose_paths(in, asks().spectrum); }
+std::vector<Candidate> Method::propose(const ProposalInput& in) const { return propose_paths(in, asks().spectrum || asks().map_worth); }
 
 }  // namespace lapis::planner

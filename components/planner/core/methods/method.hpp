@@ -12,10 +12,11 @@ struct Asks {
   bool goal_information = false;
   bool spectrum = false;  ///< of the pose graph with the path: loop_gain, optimality, fixed_n_d_optimality
   bool unknown_share = false;
+  bool map_worth = false;  ///< surviving_share and secured_nats
 
   Asks operator|(const Asks& other) const {
     return {path_information || other.path_information, goal_information || other.goal_information,
-            spectrum || other.spectrum, unknown_share || other.unknown_share};
+            spectrum || other.spectrum, unknown_share || other.unknown_share, map_worth || other.map_worth};
   }
   bool operator==(const Asks&) const = default;
 };
@@ -30,7 +31,7 @@ class Method {
   /// Utility of an open candidate; larger is better.
   virtual double utility(const Candidate& candidate) const = 0;
   /// Proposes all candidates with their paths; a candidate that is out of the question has the reason. Methods that ask
-  /// for the spectrum get old places as goals, too.
+  /// for the spectrum or the map's worth get old places as goals, too.
   virtual std::vector<Candidate> propose(const ProposalInput& in) const;
   /// True when the method judges only its own candidates, so that it cannot be compared with others.
   virtual bool has_own_candidates() const { return false; }

@@ -164,9 +164,13 @@ double MapWorth::nats_with(std::span<const PossibleLoop> loops) const {
 
 double MapWorth::secured_nats(std::vector<PossibleLoop> loops) const {
   if (config_.sigma_factor == 0.0) return 0.0;
-  std::stable_sort(loops.begin(), loops.end(),
-                   [](const auto& a, const auto& b) { return a.probability > b.probability; });
-  loops.resize(std::min(loops.size(), kMostLoops));
+  std::vector<std::pair<double, PossibleLoop>> ranked;
+  for (const PossibleLoop& loop : loops)
+    ranked.emplace_back(-loop.probability * (nats_with(std::span(&loop, 1)) - nats_), loop);
+  std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  ranked.resize(std::min(ranked.size(), kMostLoops));
+  loops.clear();
+  for (const auto& entry : ranked) loops.push_back(entry.second);
   double expected = 0.0;
   for (unsigned closed = 1; closed < 1U << loops.size(); ++closed) {
     double probability = 1.0;

@@ -50,7 +50,7 @@ class MapWorth {
   /// M [nats].
   double nats() const { return nats_; }
   /// Expected growth of M by the loops of a path, each of which closes by itself with its probability [nats]. Only the
-  /// kMostLoops most probable ones count.
+  /// kMostLoops count that are worth most by themselves.
   double secured_nats(std::vector<PossibleLoop> loops) const;
   /// Share of what a view shows that survives in the map: of a camera at that place, after so much path from the
   /// newest key-frame.

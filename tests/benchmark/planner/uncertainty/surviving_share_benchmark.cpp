@@ -30,7 +30,7 @@ constexpr int kFramesPerView = 3;  // of 15 Hz: what the mapper gets
 
 struct Options {
   std::vector<std::string> scenes, worlds, overrides;
-  std::string rows_file;
+  std::string rows_file, edges_file;
   double longest_s = 300.0, period_s = 60.0;
   int seed = 1;
 };
@@ -70,11 +70,39 @@ class Journey {
     mapper_.flush();
     return survival_of(slam_.pose_graph(), truth_, mapper_.stakes()->stakes(), mapper_.map().resolution_m());
   }
+  /// The edges of the final graph with their true errors, a line each (kEdgesHeader), in the plane of the floor.
+  void write_edges(const std::string& key, std::ostream& out) const {
+    const auto graph = slam_.pose_graph();
+    std::map<std::uint64_t, std::size_t> index;
+    for (const auto& node : graph.nodes) index.emplace(node.id, index.size());
+    for (const auto& edge : graph.edges) {
+      const Pose T_true = truth_.at(edge.from).inverse() * truth_.at(edge.to);
+      const geometry::Vector6d error = geometry::se3_log(edge.T_from_to.inverse() * T_true);
+      static constexpr int kAxes[] = {0, 2, 4};  // to the right, ahead, about the axis downwards
+      out << key << ',' << name_of(edge.type) << ',' << index.at(edge.from) << ',' << index.at(edge.to) << ','
+          << Eigen::AngleAxisd(T_true.linear()).angle();
+      for (const int axis : kAxes) out << ',' << error(axis);
+      for (const int row : kAxes) {
+        for (const int column : kAxes) {
+          if (column >= row) out << ',' << edge.information(row, column);
+        }
+      }
+      out << '\n';
+    }
+  }
   double common() const { return common_share(mapper_.map(), true_map_); }
   std::size_t keyframes() const { return slam_.keyframe_count(); }
   std::size_t loops() const { return slam_.loops().closures; }
 
  private:
+  static const char* name_of(slam::EdgeType type) {
+    switch (type) {
+      case slam::EdgeType::kLoopClosure: return "loop";
+      case slam::EdgeType::kWheelOdometry: return "odometry";
+      case slam::EdgeType::kSurface: return "surface";
+      default: return "vision";
+    }
+  }
   static semantic_mapper::MapperConfig mapper_config() {
     semantic_mapper::MapperConfig config;
     config.stakes_model.emplace();
@@ -114,6 +142,8 @@ class Journey {
   int frames_ = 0;
 };
 
+constexpr const char* kEdgesHeader =
+    "scene,world,seed,type,from,to,turn_rad,right_m,ahead_m,down_rad,i_rr,i_ra,i_rd,i_aa,i_ad,i_dd\n";
 constexpr const char* kHeader =
     "scene,world,seed,t_s,keyframes,loops,path_m,voxels,actual,predicted,predicted_wide,common,ate_m,sigma_m";
 
@@ -150,10 +180,11 @@ class Rows {
   /// What was added belongs to a run that ended before its time.
   void forget() { waiting_.clear(); }
 
- private:
   std::string key(const std::string& scene, int seed) const {
     return scene + "," + world_ + "," + std::to_string(seed);
   }
+
+ private:
   static std::size_t key_end(const std::string& line) {
     std::size_t end = 0;
     for (int i = 0; i < 3; ++i) end = line.find(',', end + (i > 0 ? 1 : 0));
@@ -185,6 +216,12 @@ void travel(const Options& options, const std::string& scene, Rows& rows) {
   }
   rows.add(scene, options.seed, now_s, journey);
   rows.keep();
+  if (options.edges_file.empty()) return;
+  const bool is_new = !std::filesystem::exists(options.edges_file);
+  std::ofstream edges(options.edges_file, std::ios::app);
+  if (is_new) edges << kEdgesHeader;
+  journey.write_edges(rows.key(scene, options.seed), edges);
+  if (!edges.flush()) throw std::runtime_error(options.edges_file + " cannot be written");
 }
 
 int run(const Options& options) {
@@ -227,6 +264,8 @@ int main(int argc, char** argv) {
   app.add_option("--duration", options.longest_s, "of a run [s]")->check(CLI::Range(1.0, 1e5));
   app.add_option("--period", options.period_s, "between snapshots [s]")->check(CLI::Range(1.0, 1e5));
   app.add_option("--rows", options.rows_file, "CSV file to add the rows to; runs that it has are not repeated");
+  app.add_option("--edges", options.edges_file,
+                 "CSV file to add the edges of each final graph to, with their true errors (lapis_planner_trials)");
   CLI11_PARSE(app, argc, argv);
   cv::setNumThreads(1);
   try {

@@ -1,0 +1,182 @@
+#include "tests/benchmark/planner/trials/pose_model.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+#include <Eigen/Dense>
+#include <Eigen/Geometry>
+
+#include "slam/core/graph/graph_correction.hpp"
+
+namespace lapis::planner::benchmark {
+namespace {
+
+using geometry::Pose;
+
+constexpr double kKeyframe_m = 0.16;  // path_between of neighbouring key-frames in recorded tours
+constexpr double kMetresPerRadian = 0.5;
+constexpr double kSimilarTurn_rad = 0.05;  // links with turns within this are alike
+constexpr double kNear_m = 1.0, kAlike_rad = 0.5;
+constexpr double kLeastLoop_m = 5.0;    // path between the two ends of a loop
+constexpr double kLoopSpacing_m = 3.0;  // path between closed loops
+constexpr double kVerified = 0.9;       // share of revisits that slam closes
+constexpr double kStiff = 1e8;          // information of the directions that the floor fixes
+
+double turn_of(const Pose& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
+double length_of(const Pose& T) { return T.translation().norm() + kMetresPerRadian * turn_of(T); }
+
+Pose planar_exp(const Eigen::Vector3d& error) {
+  geometry::Vector6d xi = geometry::Vector6d::Zero();
+  xi << error.x(), 0.0, error.y(), 0.0, error.z(), 0.0;
+  return geometry::se3_exp(xi);
+}
+
+geometry::Matrix6d in_space(const Eigen::Matrix3d& planar) {
+  static constexpr int kAxes[] = {0, 2, 4};
+  geometry::Matrix6d information = geometry::Matrix6d::Zero();
+  information.diagonal() << 0, kStiff, 0, kStiff, 0, kStiff;
+  for (int i = 0; i < 3; ++i) {
+    for (int j = 0; j < 3; ++j) information(kAxes[i], kAxes[j]) = planar(i, j);
+  }
+  return information;
+}
+
+EdgeRecord record_of(std::istringstream& cells) {
+  const auto next = [&] {
+    std::string cell;
+    std::getline(cells, cell, ',');
+    return std::stod(cell);
+  };
+  EdgeRecord record;
+  for (int i = 0; i < 3; ++i) record.error(i) = next();
+  for (int i = 0; i < 3; ++i) {
+    for (int j = i; j < 3; ++j) record.information(i, j) = record.information(j, i) = next();
+  }
+  return record;
+}
+
+}  // namespace
+
+ErrorModel ErrorModel::read(const std::string& file) {
+  std::ifstream in(file);
+  if (!in) throw std::runtime_error(file + " cannot be read");
+  ErrorModel model;
+  std::map<std::string, std::map<int, LinkRecord>> runs;  // links by the index of their end
+  std::string line;
+  std::getline(in, line);
+  while (std::getline(in, line)) {
+    std::istringstream cells(line);
+    std::string run, seed, world, type, from, to, turn;
+    for (std::string* cell : {&run, &world, &seed, &type, &from, &to, &turn}) std::getline(cells, *cell, ',');
+    const EdgeRecord record = record_of(cells);
+    if (type == "loop") {
+      model.loops.push_back(record);
+    } else if (std::stoi(to) == std::stoi(from) + 1) {
+      LinkRecord& link = runs[run + world + seed][std::stoi(to)];
+      link.turn_rad = std::stod(turn);
+      (type == "odometry" ? link.odometry : link.vision) = record;
+    }
+  }
+  for (auto& [name, links] : runs) {
+    auto& of_run = model.runs.emplace_back();
+    for (auto& [to, link] : links) of_run.push_back(link);
+  }
+  if (model.runs.empty() || model.loops.empty()) throw std::runtime_error(file + " has no links or no loops");
+  return model;
+}
+
+PoseModel::PoseModel(const ErrorModel& model, std::uint64_t seed)
+    : model_(model), random_(seed),
+      run_(std::uniform_int_distribution<std::size_t>(0, model.runs.size() - 1)(random_)) {}
+
+bool PoseModel::arrive(const Pose& T_map_true) {
+  if (!truth_.empty() && length_of(truth_.back().inverse() * T_map_true) < kKeyframe_m) return false;
+  add_keyframe(T_map_true);
+  close_loop();
+  return true;
+}
+
+Pose PoseModel::estimate(const Pose& T_map_true) const {
+  return graph_.nodes.back().T_map_camera * (truth_.back().inverse() * T_map_true);
+}
+
+/// One of the run's links with a similar turn.
+const LinkRecord& PoseModel::draw(double turn_rad) {
+  const auto& links = model_.runs[run_];
+  std::vector<const LinkRecord*> alike;
+  for (const LinkRecord& link : links) {
+    if (std::abs(link.turn_rad - turn_rad) < kSimilarTurn_rad) alike.push_back(&link);
+  }
+  if (alike.empty()) return links[std::uniform_int_distribution<std::size_t>(0, links.size() - 1)(random_)];
+  return *alike[std::uniform_int_distribution<std::size_t>(0, alike.size() - 1)(random_)];
+}
+
+void PoseModel::add_keyframe(const Pose& T_map_true) {
+  slam::PoseGraphNode node;
+  node.id = graph_.nodes.size();
+  node.T_map_camera = T_map_true;
+  if (!truth_.empty()) {
+    const Pose T = truth_.back().inverse() * T_map_true;
+    const LinkRecord& link = draw(turn_of(T));
+    Eigen::Matrix3d information = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d weighted = Eigen::Vector3d::Zero();
+    for (const auto& [record, type] : {std::pair(&link.vision, slam::EdgeType::kOdometry),
+                                       std::pair(&link.odometry, slam::EdgeType::kWheelOdometry)}) {
+      if (!*record) continue;
+      graph_.edges.push_back(
+          {node.id - 1, node.id, type, T * planar_exp(-(*record)->error), in_space((*record)->information)});
+      information += (*record)->information;
+      weighted += (*record)->information * (*record)->error;
+    }
+    node.T_map_camera = graph_.nodes.back().T_map_camera * T * planar_exp(-information.ldlt().solve(weighted));
+    travelled_m_.push_back(travelled_m_.back() + T.translation().norm());
+  } else {
+    travelled_m_.push_back(0.0);
+  }
+  graph_.nodes.push_back(node);
+  truth_.push_back(T_map_true);
+  ++graph_.version;
+}
+
+/// With the old key-frame that looks most alike, if slam verifies it.
+void PoseModel::close_loop() {
+  if (travelled_m_.back() - last_loop_m_ < kLoopSpacing_m) return;
+  const auto seen = [&](std::size_t i) { return truth_[i].inverse() * truth_.back(); };
+  std::optional<std::size_t> best;
+  for (std::size_t i = 0; i + 1 < truth_.size() && travelled_m_.back() - travelled_m_[i] > kLeastLoop_m; ++i) {
+    const Pose T = seen(i);
+    if (T.translation().norm() > kNear_m || turn_of(T) > kAlike_rad) continue;
+    if (!best || length_of(T) < length_of(seen(*best))) best = i;
+  }
+  if (!best) return;
+  last_loop_m_ = travelled_m_.back();
+  if (std::uniform_real_distribution<double>()(random_) > kVerified) return;
+  const EdgeRecord& record =
+      model_.loops[std::uniform_int_distribution<std::size_t>(0, model_.loops.size() - 1)(random_)];
+  graph_.edges.push_back({graph_.nodes[*best].id, newest(), slam::EdgeType::kLoopClosure,
+                          seen(*best) * planar_exp(-record.error), in_space(record.information)});
+  ++loops_;
+  const auto correction = slam::correct_graph(graph_);
+  for (std::size_t i = 0; i < graph_.nodes.size(); ++i) graph_.nodes[i].T_map_camera = correction.T_map_camera[i];
+  ++graph_.version;
+}
+
+std::pair<double, double> PoseModel::ate_m() const {
+  const auto count = static_cast<Eigen::Index>(truth_.size());
+  Eigen::Matrix2Xd estimated(2, count), actual(2, count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    estimated.col(i) = graph_.nodes[static_cast<std::size_t>(i)].T_map_camera.translation().head<2>();
+    actual.col(i) = truth_[static_cast<std::size_t>(i)].translation().head<2>();
+  }
+  const Eigen::Matrix3d T = Eigen::umeyama(estimated, actual, false);
+  const Eigen::Matrix2Xd aligned = (T.topLeftCorner<2, 2>() * estimated).colwise() + T.topRightCorner<2, 1>().eval();
+  const auto rms = [count](const Eigen::Matrix2Xd& errors) {
+    return std::sqrt(errors.squaredNorm() / static_cast<double>(count));
+  };
+  return {rms(aligned - actual), rms(estimated - actual)};
+}
+
+}  // namespace lapis::planner::benchmark

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
+#include <numbers>
 
 #include <Eigen/Cholesky>
 
@@ -38,6 +38,37 @@ Eigen::Vector3d planar_noise(const Information& information, const geometry::Pos
   return {along, along, covariance(2, 2)};
 }
 
+/// surviving_share() by the ratio of the standard deviation to the edge of a voxel, interpolated by cubics to 1e-11: it
+/// is asked for some thousand times per candidate.
+class ShareTable {
+ public:
+  ShareTable() {
+    for (int i = 0; i <= kIntervals + 1; ++i) {
+      const double edges = i * kStep;  // of sigma
+      values_.push_back(surviving_share(edges, 1.0));
+      const double exponential = i == 0 ? 0.0 : std::exp(-0.5 / (edges * edges));
+      slopes_.push_back(std::sqrt(2.0 / std::numbers::pi) * (exponential - 1.0) * kStep);
+    }
+  }
+  double operator()(double sigma_edges) const {
+    if (!(sigma_edges < kIntervals * kStep)) return surviving_share(sigma_edges, 1.0);
+    const auto i = static_cast<std::size_t>(sigma_edges / kStep);
+    const double t = sigma_edges / kStep - static_cast<double>(i), u = 1.0 - t;
+    return u * u * ((1.0 + 2.0 * t) * values_[i] + t * slopes_[i]) +
+           t * t * ((1.0 + 2.0 * u) * values_[i + 1] - u * slopes_[i + 1]);
+  }
+
+ private:
+  static constexpr int kIntervals = 2048;
+  static constexpr double kStep = 1.0 / 512.0;
+  std::vector<double> values_, slopes_;
+};
+
+const ShareTable& share_table() {
+  static const ShareTable table;
+  return table;
+}
+
 double median(std::vector<double> values) {
   const auto middle = values.begin() + std::ssize(values) / 2;
   std::nth_element(values.begin(), middle, values.end());
@@ -63,9 +94,8 @@ std::variant<MapWorth, GraphError> MapWorth::make(std::span<const Keyframe> keyf
   auto graph = PlanarGraph::make(keyframes, edges);
   if (auto* error = std::get_if<GraphError>(&graph)) return std::move(*error);
   MapWorth worth(std::get<PlanarGraph>(std::move(graph)), config);
-  std::vector<int> nodes(worth.graph_.keyframes().size());
-  std::iota(nodes.begin(), nodes.end(), 0);
-  worth.covariance_ = config.sigma_factor * config.sigma_factor * worth.graph_.covariance(nodes);
+  worth.marginals_ = worth.graph_.marginals();
+  for (Eigen::Matrix3d& marginal : worth.marginals_) marginal *= config.sigma_factor * config.sigma_factor;
   worth.note_noise(edges);
   worth.note_stakes(stakes);
   worth.nats_ = worth.nats_with({});
@@ -99,20 +129,32 @@ void MapWorth::note_stakes(const SurfaceStakes& stakes) {
   for (std::size_t node = 0; node < keyframes.size(); ++node) {
     const auto found = stakes.voxels.find(keyframes[node].id);
     if (found == stakes.voxels.end()) continue;
-    Stake stake{static_cast<int>(node), keyframes[node].T_map_camera.linear().col(2), found->second};
+    const Eigen::Vector2d ahead = keyframes[node].T_map_camera.linear().col(2).head<2>().normalized();
+    Stake stake{static_cast<int>(node), {-ahead.y(), ahead.x()}, found->second};
     for (double& value : stake.nats) value *= config_.voxel_nats;
     stakes_.push_back(std::move(stake));
   }
 }
 
+/// The variance of a surface at range r is a + 2 b r + c r^2 (surface_sigma_m()).
 double MapWorth::worth_of(const Stake& stake, const Eigen::Matrix3d& covariance) const {
+  const double a = 0.5 * covariance.topLeftCorner<2, 2>().trace(), c = 0.5 * covariance(2, 2);
+  const double b = 0.5 * stake.across.dot(covariance.block<2, 1>(0, 2));
   double sum = 0.0;
   for (std::size_t bin = 0; bin < stake.nats.size(); ++bin) {
     if (stake.nats[bin] == 0.0) continue;
     const double range_m = (static_cast<double>(bin) + 0.5) * bin_m_;
-    sum += stake.nats[bin] * surviving_share(surface_sigma_m(covariance, stake.forward, range_m), config_.voxel_m);
+    const double variance_m2 = a + range_m * (2.0 * b + range_m * c);
+    sum += stake.nats[bin] * share_table()(std::sqrt(std::max(variance_m2, 0.0)) / config_.voxel_m);
   }
   return sum;
+}
+
+const Eigen::MatrixX3d& MapWorth::columns(int node) const {
+  const auto known = columns_.find(node);
+  if (known != columns_.end()) return known->second;
+  const double factor = config_.sigma_factor * config_.sigma_factor;
+  return columns_.emplace(node, factor * graph_.columns(node)).first->second;
 }
 
 Eigen::Matrix3d MapWorth::path_noise(double path_m) const {
@@ -152,7 +194,7 @@ double MapWorth::nats_with(std::span<const PossibleLoop> loops) const {
   const auto factor = innovation.ldlt();
   double sum = 0.0;
   for (const Stake& stake : stakes_) {
-    Eigen::Matrix3d covariance = block(stake.node, stake.node);
+    Eigen::Matrix3d covariance = marginals_[index(stake.node)];
     if (size > 0) {
       const Eigen::MatrixXd columns = columns_of(stake.node);
       covariance -= columns * factor.solve(columns.transpose());
@@ -188,7 +230,7 @@ double MapWorth::secured_nats(std::vector<PossibleLoop> loops) const {
 double MapWorth::share_of_view(const Eigen::Vector2d& p_map, const Eigen::Vector3d& forward, double path_m) const {
   const int newest = static_cast<int>(graph_.keyframes().size()) - 1;
   const Eigen::Matrix3d carry = carried_to(p_map, position_of(graph_.keyframes().back()));
-  const Eigen::Matrix3d covariance = carry * block(newest, newest) * carry.transpose() + path_noise(path_m);
+  const Eigen::Matrix3d covariance = carry * marginals_[index(newest)] * carry.transpose() + path_noise(path_m);
   return surviving_share(surface_sigma_m(covariance, forward, config_.view_m), config_.voxel_m);
 }
 

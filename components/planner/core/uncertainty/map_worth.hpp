@@ -62,7 +62,7 @@ class MapWorth {
  private:
   struct Stake {
     int node;
-    Eigen::Vector3d forward;
+    Eigen::Vector2d across;  // unit vector perpendicular to the camera's direction
     std::vector<double> nats;  // by distance
   };
 
@@ -71,14 +71,17 @@ class MapWorth {
   void note_stakes(const SurfaceStakes& stakes);
   double worth_of(const Stake& stake, const Eigen::Matrix3d& covariance) const;
   double nats_with(std::span<const PossibleLoop> loops) const;
-  Eigen::Matrix3d block(int row, int column) const { return covariance_.block<3, 3>(3 * row, 3 * column); }
+  /// Covariance of all nodes with one; kept, because candidates share their places.
+  const Eigen::MatrixX3d& columns(int node) const;
+  Eigen::Matrix3d block(int row, int column) const { return columns(column).middleRows<3>(3 * row); }
   Eigen::Matrix3d path_noise(double path_m) const;
 
   PlanarGraph graph_;
   MapWorthConfig config_;
   double bin_m_ = 0.5;
   std::vector<Stake> stakes_;
-  Eigen::MatrixXd covariance_;      // of all nodes: x, y, heading
+  std::vector<Eigen::Matrix3d> marginals_;  // x, y, heading
+  mutable std::map<int, Eigen::MatrixX3d> columns_;
   Eigen::Vector3d odometry_noise_;  // variances per metre
   Eigen::Vector3d loop_noise_;      // variances of a loop closure
   double nats_ = 0.0;

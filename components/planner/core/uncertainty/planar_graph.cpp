@@ -115,4 +115,12 @@ std::vector<Eigen::Matrix3d> PlanarGraph::marginals() const {
   return all;
 }
 
+Eigen::MatrixX3d PlanarGraph::columns(int node) const {
+  const Eigen::Index size = kSize * (std::ssize(keyframes_) - 1);
+  Eigen::MatrixX3d columns = Eigen::MatrixX3d::Zero(kSize + size, kSize);
+  for (int i = 0; i < kSize && node > 0; ++i)
+    columns.col(i).tail(size) = factor_.solve(Eigen::VectorXd::Unit(size, kSize * (node - 1) + i));
+  return columns;
+}
+
 }  // namespace lapis::planner

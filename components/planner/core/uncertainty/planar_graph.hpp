@@ -33,6 +33,8 @@ class PlanarGraph {
   Eigen::MatrixXd covariance(std::span<const int> nodes) const;
   /// Covariance of each node by itself.
   std::vector<Eigen::Matrix3d> marginals() const;
+  /// Covariance of all nodes with one: three rows per node, three columns.
+  Eigen::MatrixX3d columns(int node) const;
 
  private:
   PlanarGraph(std::vector<Keyframe> keyframes, SparseCholesky factor)

@@ -104,6 +104,10 @@ TEST(PlanarGraph, AgreesWithTheInverseOfTheWholeMatrix) {
     for (int i = 0; i < nodes; ++i)
       EXPECT_TRUE(marginals[index(i)].isApprox(expected.block<3, 3>(3 * i, 3 * i), 1e-6) || i == 0) << i;
     EXPECT_EQ(marginals[0], Eigen::Matrix3d::Zero());
+    for (const int node : {0, nodes / 2}) {
+      const Eigen::MatrixX3d columns = planar.columns(node);
+      EXPECT_LT((columns - expected.middleCols<3>(3 * node)).norm(), 1e-6 * expected.norm()) << node;
+    }
     const std::vector<int> some{nodes - 1, 0, nodes / 2, nodes - 1};
     const Eigen::MatrixXd joint = planar.covariance(some);
     for (int i = 0; i < 4; ++i) {

@@ -10,19 +10,20 @@
 namespace lapis::planner {
 namespace {
 
-constexpr double kPass_m = 0.75;  // a path continues this far beyond an old place, in its direction
 constexpr double kAtGoal_m = 0.5;
-constexpr double kLikely = 0.5;  // least probability of a loop closure at the place itself
 
-OldPlace place_of(const Situation& s, const Keyframe& keyframe) {
+bool is_open_line(const PlanningGrid& grid, Cell from, Cell to) {
+  return walk_line(from, to, [&](Cell c, double) { return grid.is_traversable(c); });
+}
+
+}  // namespace
+
+OldPlace place_of(const Situation& s, int node) {
+  const Keyframe& keyframe = s.graph->keyframes[static_cast<std::size_t>(node)];
   const geometry::Pose T_map_base = keyframe.T_map_camera * s.T_base_camera.inverse();
   const Eigen::Vector3d forward = T_map_base.linear().col(0);
   const Eigen::Vector2d p = T_map_base.translation().head<2>();
   return {{p, std::atan2(forward.y(), forward.x())}, s.grid.cell_of(p)};
-}
-
-bool is_open_line(const PlanningGrid& grid, Cell from, Cell to) {
-  return walk_line(from, to, [&](Cell c, double) { return grid.is_traversable(c); });
 }
 
 Candidate candidate_through(const ProposalInput& in, const OldPlace& place) {
@@ -41,8 +42,6 @@ Candidate candidate_through(const ProposalInput& in, const OldPlace& place) {
   return candidate;
 }
 
-}  // namespace
-
 std::vector<OldPlace> old_places(const ProposalInput& in, const HallucinationConfig& config) {
   const Situation& s = in.situation;
   if (s.graph == nullptr || s.landmarks == nullptr) return {};
@@ -55,7 +54,7 @@ std::vector<OldPlace> old_places(const ProposalInput& in, const HallucinationCon
   std::sort(ranked.begin(), ranked.end());
   std::vector<OldPlace> places;
   for (const auto& entry : ranked) {
-    const OldPlace place = place_of(s, s.graph->keyframes[static_cast<std::size_t>(entry.second)]);
+    const OldPlace place = place_of(s, entry.second);
     const bool is_new = std::none_of(places.begin(), places.end(), [&](const OldPlace& other) {
       return (other.pose.p_map - place.pose.p_map).norm() < config.place_radius_m;
     });

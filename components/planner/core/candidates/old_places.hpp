@@ -17,9 +17,19 @@ struct OldPlace {
 /// @param config decides which key-frames are old and how many landmarks a loop closure needs
 std::vector<OldPlace> old_places(const ProposalInput& in, const HallucinationConfig& config);
 
+inline constexpr double kPass_m = 0.75;  ///< a path continues this far beyond an old place, in its direction
+
+inline constexpr double kLikely = 0.5;  ///< least probability of a loop closure at the old place itself
+
+/// The robot's pose at a key-frame. @param node of the AnalysedGraph
+OldPlace place_of(const Situation& s, int node);
+
 /// A cell 0.75 m beyond the place, in the direction in which the robot drove through it, so that the camera sees what
 /// the key-frame saw; the place itself when something is in the way.
 Cell cell_beyond(const PlanningGrid& grid, const OldPlace& place);
+
+/// The path through the place to the cell beyond it.
+Candidate candidate_through(const ProposalInput& in, const OldPlace& place);
 
 /// Candidates that drive through every old place, at its heading, except the one at which the robot stands. Places near
 /// Memory::visited_places are rejected. Every method gets the same places: the default HallucinationConfig decides, not

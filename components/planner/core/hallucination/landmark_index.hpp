@@ -48,6 +48,11 @@ class LandmarkIndex {
   /// distance. Sorted by node, without zero counts.
   std::vector<Covisibility> predict(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
                                     const InformationField& field, const CovisibilityConfig& config) const;
+  /// The same, only for the key-frames that are `wanted` (by node) and have at least that many landmarks. It is faster,
+  /// because most rays need not be followed.
+  std::vector<Covisibility> predict(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
+                                    const InformationField& field, const CovisibilityConfig& config,
+                                    const std::vector<bool>& wanted, int least_landmarks) const;
 
  private:
   struct Observation {
@@ -63,8 +68,15 @@ class LandmarkIndex {
     std::uint32_t landmarks_end;  ///< end in landmarks_
   };
 
-  void count(std::size_t landmark, const Eigen::Vector3f& camera, const CovisibilityConfig& config,
-             std::vector<int>& counts) const;
+  struct InView {
+    std::size_t cell;
+    std::vector<int> seen_by;  // nodes, one for each landmark in the image and key-frame that saw it alike
+  };
+
+  void collect_observers(std::size_t landmark, const Eigen::Vector3f& camera, const CovisibilityConfig& config,
+                         std::vector<int>& nodes) const;
+  std::vector<InView> in_view(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
+                              const CovisibilityConfig& config) const;
 
   std::vector<int> shared_;  ///< number of shared landmarks by node
   double resolution_m_;

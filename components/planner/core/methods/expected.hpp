@@ -1,5 +1,7 @@
 #pragma once
 
+#include "planner/core/candidates/proposals.hpp"
+#include "planner/core/candidates/worthy_revisits.hpp"
 #include "planner/core/methods/method.hpp"
 
 namespace lapis::planner {
@@ -9,6 +11,13 @@ namespace lapis::planner {
 class Expected : public Method {
  public:
   Asks asks() const override { return {.path_information = true, .map_worth = true}; }
+  /// Old places are goals while there is anything to explore.
+  std::vector<Candidate> propose(const ProposalInput& in) const override {
+    std::vector<Candidate> candidates = propose_paths(in, false);
+    if (!is_any_open(candidates)) return candidates;
+    for (Candidate& revisit : propose_worthy_revisits(in)) candidates.push_back(std::move(revisit));
+    return candidates;
+  }
   double utility(const Candidate& candidate) const override {
     const PathValue& value = candidate.value;
     return (value.path_information * value.surviving_share + value.secured_nats) / value.paid_m();

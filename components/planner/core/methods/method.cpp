@@ -2,6 +2,6 @@
 
 namespace lapis::planner {
 
-std::vector<Candidate> Method::propose(const ProposalInput& in) const { return propose_paths(in, asks().spectrum || asks().map_worth); }
+std::vector<Candidate> Method::propose(const ProposalInput& in) const { return propose_paths(in, asks().spectrum); }
 
 }  // namespace lapis::planner

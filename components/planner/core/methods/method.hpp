@@ -31,7 +31,7 @@ class Method {
   /// Utility of an open candidate; larger is better.
   virtual double utility(const Candidate& candidate) const = 0;
   /// Proposes all candidates with their paths; a candidate that is out of the question has the reason. Methods that ask
-  /// for the spectrum or the map's worth get old places as goals, too.
+  /// for the spectrum get old places as goals, too.
   virtual std::vector<Candidate> propose(const ProposalInput& in) const;
   /// True when the method judges only its own candidates, so that it cannot be compared with others.
   virtual bool has_own_candidates() const { return false; }

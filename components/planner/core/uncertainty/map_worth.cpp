@@ -191,13 +191,13 @@ double MapWorth::nats_with(std::span<const PossibleLoop> loops) const {
     }
     innovation.block<3, 3>(row, row) += loop_noise_.asDiagonal().toDenseMatrix();
   }
-  const auto factor = innovation.ldlt();
+  const Eigen::MatrixXd weight = innovation.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
   double sum = 0.0;
   for (const Stake& stake : stakes_) {
     Eigen::Matrix3d covariance = marginals_[index(stake.node)];
     if (size > 0) {
       const Eigen::MatrixXd columns = columns_of(stake.node);
-      covariance -= columns * factor.solve(columns.transpose());
+      covariance -= columns * weight * columns.transpose();
     }
     sum += worth_of(stake, covariance);
   }

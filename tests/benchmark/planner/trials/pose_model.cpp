@@ -1,6 +1,7 @@
 #include "tests/benchmark/planner/trials/pose_model.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <fstream>
 #include <sstream>
@@ -44,6 +45,25 @@ geometry::Matrix6d in_space(const Eigen::Matrix3d& planar) {
   return information;
 }
 
+std::string kind_of(const std::string& scene) { return scene.substr(0, scene.rfind('_')); }
+
+std::uint64_t seed_of(const std::string& scene, std::uint64_t seed) {
+  std::seed_seq sequence(scene.begin(), scene.end());
+  std::array<std::uint32_t, 1> number{};
+  sequence.generate(number.begin(), number.end());
+  return seed << 32U | number[0];
+}
+
+const RunRecord& draw_run(const ErrorModel& model, const std::string& scene, std::mt19937_64& random) {
+  std::vector<const RunRecord*> alike, all;
+  for (const RunRecord& run : model.runs) {
+    all.push_back(&run);
+    if (kind_of(run.scene) == kind_of(scene)) alike.push_back(&run);
+  }
+  const auto& from = alike.empty() ? all : alike;
+  return *from[std::uniform_int_distribution<std::size_t>(0, from.size() - 1)(random)];
+}
+
 EdgeRecord record_of(std::istringstream& cells) {
   const auto next = [&] {
     std::string cell;
@@ -75,22 +95,21 @@ ErrorModel ErrorModel::read(const std::string& file) {
     if (type == "loop") {
       model.loops.push_back(record);
     } else if (std::stoi(to) == std::stoi(from) + 1) {
-      LinkRecord& link = runs[run + world + seed][std::stoi(to)];
+      LinkRecord& link = runs[run + "," + world + "," + seed][std::stoi(to)];
       link.turn_rad = std::stod(turn);
       (type == "odometry" ? link.odometry : link.vision) = record;
     }
   }
   for (auto& [name, links] : runs) {
-    auto& of_run = model.runs.emplace_back();
-    for (auto& [to, link] : links) of_run.push_back(link);
+    auto& of_run = model.runs.emplace_back(RunRecord{name.substr(0, name.find(',')), {}});
+    for (auto& [to, link] : links) of_run.links.push_back(link);
   }
   if (model.runs.empty() || model.loops.empty()) throw std::runtime_error(file + " has no links or no loops");
   return model;
 }
 
-PoseModel::PoseModel(const ErrorModel& model, std::uint64_t seed)
-    : model_(model), random_(seed),
-      run_(std::uniform_int_distribution<std::size_t>(0, model.runs.size() - 1)(random_)) {}
+PoseModel::PoseModel(const ErrorModel& model, const std::string& scene, std::uint64_t seed)
+    : model_(model), random_(seed_of(scene, seed)), run_(draw_run(model, scene, random_)) {}
 
 bool PoseModel::arrive(const Pose& T_map_true) {
   if (!truth_.empty() && length_of(truth_.back().inverse() * T_map_true) < kKeyframe_m) return false;
@@ -103,15 +122,19 @@ Pose PoseModel::estimate(const Pose& T_map_true) const {
   return graph_.nodes.back().T_map_camera * (truth_.back().inverse() * T_map_true);
 }
 
-/// One of the run's links with a similar turn.
+/// One of the run's links with a similar turn: the next one of the record, if it has, because errors of neighbours are
+/// not independent.
 const LinkRecord& PoseModel::draw(double turn_rad) {
-  const auto& links = model_.runs[run_];
-  std::vector<const LinkRecord*> alike;
-  for (const LinkRecord& link : links) {
-    if (std::abs(link.turn_rad - turn_rad) < kSimilarTurn_rad) alike.push_back(&link);
+  const auto& links = run_.links;
+  const auto is_alike = [&](std::size_t i) { return std::abs(links[i].turn_rad - turn_rad) < kSimilarTurn_rad; };
+  if (link_ + 1 < links.size() && is_alike(link_ + 1)) return links[++link_];
+  std::vector<std::size_t> alike;
+  for (std::size_t i = 0; i < links.size(); ++i) {
+    if (is_alike(i)) alike.push_back(i);
   }
-  if (alike.empty()) return links[std::uniform_int_distribution<std::size_t>(0, links.size() - 1)(random_)];
-  return *alike[std::uniform_int_distribution<std::size_t>(0, alike.size() - 1)(random_)];
+  const std::size_t count = alike.empty() ? links.size() : alike.size();
+  const std::size_t drawn = std::uniform_int_distribution<std::size_t>(0, count - 1)(random_);
+  return links[link_ = alike.empty() ? drawn : alike[drawn]];
 }
 
 void PoseModel::add_keyframe(const Pose& T_map_true) {

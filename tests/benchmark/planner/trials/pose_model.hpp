@@ -27,10 +27,15 @@ struct LinkRecord {
   std::optional<EdgeRecord> vision, odometry;
 };
 
+struct RunRecord {
+  std::string scene;
+  std::vector<LinkRecord> links;  ///< in the order of driving
+};
+
 /// What slam's edges were off by in recorded tours. Links are kept by run, because calibration errors and noise are
 /// those of a run.
 struct ErrorModel {
-  std::vector<std::vector<LinkRecord>> runs;
+  std::vector<RunRecord> runs;
   std::vector<EdgeRecord> loops;
 
   /// Reads what lapis_surviving_share --edges wrote. Throws std::runtime_error that names the file.
@@ -41,7 +46,8 @@ struct ErrorModel {
 /// key-frame has no error.
 class PoseModel {
  public:
-  PoseModel(const ErrorModel& model, std::uint64_t seed);
+  /// A run of a building of the same kind is drawn (`flat` of `flat_40`), if there is one.
+  PoseModel(const ErrorModel& model, const std::string& scene, std::uint64_t seed);
 
   /// The camera has come to this true pose; true when that makes a key-frame.
   bool arrive(const geometry::Pose& T_map_true);
@@ -62,7 +68,8 @@ class PoseModel {
 
   const ErrorModel& model_;
   std::mt19937_64 random_;
-  std::size_t run_;  // whose links are drawn
+  const RunRecord& run_;  // whose links are drawn
+  std::size_t link_ = 0;  // the one drawn last
   slam::PoseGraphSnapshot graph_;
   std::vector<geometry::Pose> truth_;  // T_map_camera by key-frame
   std::vector<double> travelled_m_;    // path up to each key-frame

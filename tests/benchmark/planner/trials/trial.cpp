@@ -109,7 +109,7 @@ class Mission {
         camera_(robot::pinhole_camera(setting.simulated.robot.camera)),
         T_base_camera_(geometry::T_base_camera(robot::camera_mount(setting.simulated.robot.camera))),
         robot_(world.nav_map(), simulator::simulation_config(setting.simulated).robot, at_rest(start_)),
-        poses_(errors, static_cast<std::uint64_t>(setting.simulated.seed)), mapper_(mapper_config()),
+        poses_(errors, setting.simulated.scene, static_cast<std::uint64_t>(setting.simulated.seed)), mapper_(mapper_config()),
         true_map_(mapping::kDefaultResolution_m),
         obstacles_({}, setting.planner.surroundings.grid.band, mapping::kDefaultResolution_m),
         view_(view_config(setting.planner)),
@@ -119,12 +119,14 @@ class Mission {
   }
 
   TrialResult run() {
+    const double before_s = cpu_s();
     explorer_.start();
     while (now().seconds() < setting_.longest_s && !is_over()) {
       see();
       plan();
       drive();
     }
+    result_.cpu_s = cpu_s() - before_s;
     return conclude();
   }
 
@@ -213,14 +215,23 @@ class Mission {
     due_ = tick_ + setting_.planner.decision_latency_frames;
   }
 
+  static std::vector<Keyframe> keyframes_of(const slam::PoseGraphSnapshot& graph) {
+    std::vector<Keyframe> keyframes;
+    for (const auto& node : graph.nodes) keyframes.push_back({node.id, node.T_map_camera});
+    return keyframes;
+  }
+  static std::vector<KeyframeEdge> edges_of(const slam::PoseGraphSnapshot& graph) {
+    std::vector<KeyframeEdge> edges;
+    for (const auto& edge : graph.edges)
+      edges.push_back({edge.from, edge.to, edge.information, edge.type == slam::EdgeType::kLoopClosure});
+    return edges;
+  }
+
   void decide_at(const Pose2& here) {
     DecisionConfig config = setting_.planner.decision;
     if (explorer_.state() == State::kConsolidating) config.method = setting_.planner.consolidation;
-    std::vector<Keyframe> keyframes;
-    for (const auto& node : poses_.graph().nodes) keyframes.push_back({node.id, node.T_map_camera});
-    std::vector<KeyframeEdge> edges;
-    for (const auto& edge : poses_.graph().edges)
-      edges.push_back({edge.from, edge.to, edge.information, edge.type == slam::EdgeType::kLoopClosure});
+    const std::vector<Keyframe> keyframes = keyframes_of(poses_.graph());
+    const std::vector<KeyframeEdge> edges = edges_of(poses_.graph());
     const auto graph = analyse_graph(keyframes, edges, config.graph);
     const auto* analysed = std::get_if<AnalysedGraph>(&graph);
     std::optional<LandmarkIndex> landmarks;
@@ -319,6 +330,10 @@ class Mission {
       }
     }
     result_.surviving_share = voxels > 0.0 ? kept / voxels : 0.0;
+    MapWorthConfig unit;  // a voxel counts 1
+    const auto made = MapWorth::make(keyframes_of(poses_.graph()), edges_of(poses_.graph()), all, unit);
+    if (const auto* worth = std::get_if<MapWorth>(&made); worth != nullptr && voxels > 0.0)
+      result_.predicted_share = worth->nats() / voxels;
     return result_;
   }
 

@@ -20,8 +20,9 @@ struct TrialResult {
   double done_s = 0.0;  ///< when nothing was left to explore; the mission time when that did not happen
   double ate_se3_m = 0.0, ate_raw_m = 0.0;
   double surviving_share = 0.0;  ///< of the map's evidence, by the true errors of the key-frames
+  double predicted_share = 0.0;  ///< the same, by the pose graph
   int keyframes = 0, loops = 0, decisions = 0, revisits = 0;
-  double decision_cpu_s = 0.0;
+  double decision_cpu_s = 0.0, cpu_s = 0.0;
 };
 
 /// A mission without images, controller and DDS: real planner and map, depth by rays, a robot that follows its path,

@@ -26,8 +26,8 @@ struct Options {
 };
 
 constexpr const char* kHeader =
-    "scene,seed,method,explored,t90_s,done_s,path_m,ate_se3_m,ate_raw_m,surviving,keyframes,loops,decisions,revisits,"
-    "decision_ms";
+    "scene,seed,method,explored,t90_s,done_s,path_m,ate_se3_m,ate_raw_m,surviving,predicted,keyframes,loops,decisions,revisits,"
+    "decision_ms,cpu_s";
 
 /// `method`: METHOD or METHOD:THEN.
 TrialSetting setting_of(const Options& options, const std::string& scene, int seed, const std::string& method) {
@@ -74,10 +74,10 @@ int run(const Options& options) {
           const TrialSetting setting = setting_of(options, scene, seed, method);
           const TrialResult r = run_trial(simulator::open_world(setting.simulated), setting, errors);
           char text[256];
-          std::snprintf(text, sizeof text, "%s,%.4f,%.0f,%.0f,%.1f,%.4f,%.4f,%.4f,%d,%d,%d,%d,%.1f", key.c_str(),
+          std::snprintf(text, sizeof text, "%s,%.4f,%.0f,%.0f,%.1f,%.4f,%.4f,%.4f,%.4f,%d,%d,%d,%d,%.1f,%.1f", key.c_str(),
                         r.explored_share, r.time_to_90_s, r.done_s, r.path_m, r.ate_se3_m, r.ate_raw_m,
-                        r.surviving_share, r.keyframes, r.loops, r.decisions, r.revisits,
-                        1e3 * r.decision_cpu_s / std::max(r.decisions, 1));
+                        r.surviving_share, r.predicted_share, r.keyframes, r.loops, r.decisions, r.revisits,
+                        1e3 * r.decision_cpu_s / std::max(r.decisions, 1), r.cpu_s);
           rows << text << std::endl;
           std::printf("%s\n", text);
         } catch (const std::exception& error) {

@@ -148,6 +148,25 @@ void add_worth(const Situation& s, const DecisionConfig& config, Candidate& cand
   candidate.value.surviving_share = sum / static_cast<double>(nodes.size());
 }
 
+/// Judges the candidates' worth, the most promising first, until none can be better than the best: no path secures more
+/// than poses without errors would.
+void add_worths(const Situation& s, const DecisionConfig& config, std::vector<Candidate*> open) {
+  const double most_nats = s.worth->lost_nats();
+  for (Candidate* candidate : open) candidate->value.secured_nats = most_nats;
+  const Method& method = *config.method;
+  std::stable_sort(open.begin(), open.end(),
+                   [&](const Candidate* a, const Candidate* b) { return method.utility(*a) > method.utility(*b); });
+  double best = 0.0;
+  for (Candidate* candidate : open) {
+    if (method.utility(*candidate) * config.keep_factor < best) {
+      candidate->rejection = Rejection::kOutranked;
+    } else {
+      add_worth(s, config, *candidate);
+      best = std::max(best, method.utility(*candidate));
+    }
+  }
+}
+
 std::optional<std::size_t> best_by(const std::vector<Candidate>& candidates, const Method& method, const Memory& memory,
                                    double keep_factor) {
   const double kept = method.keeps_goal() ? keep_factor : 1.0;
@@ -229,7 +248,7 @@ std::string judge(const Situation& s, const DecisionConfig& config, const Asks& 
   }
   std::string problem = asks.spectrum ? add_gains(s, config, open) : "";
   if (asks.map_worth && s.worth != nullptr && s.graph != nullptr && s.landmarks != nullptr) {
-    for (Candidate* candidate : open) add_worth(s, config, *candidate);
+    add_worths(s, config, open);
   }
   for (Candidate* candidate : open) candidate->utility = config.method->utility(*candidate);
   return problem;

@@ -93,13 +93,15 @@ std::vector<LandmarkIndex::InView> LandmarkIndex::in_view(const geometry::Pinhol
                                                           const CovisibilityConfig& config) const {
   const geometry::Pose T_camera_map = T_map_camera.inverse();
   const Eigen::Vector3d eye = T_map_camera.translation();
+  const Eigen::Vector3d ahead = T_map_camera.linear().col(2);
+  const double reach_m2 = std::pow(config.max_range_m + resolution_m_, 2);
   std::vector<InView> views;
   std::uint32_t first = 0;
   for (std::size_t c = 0; c < cells_.size(); ++c) {
     const Cell& cell = cells_[c];
     const std::uint32_t begin = std::exchange(first, cell.landmarks_end);
-    if ((cell.center - eye).norm() > config.max_range_m + resolution_m_) continue;
-    if ((T_camera_map * cell.center).z() < -resolution_m_) continue;
+    if ((cell.center - eye).squaredNorm() > reach_m2) continue;
+    if (ahead.dot(cell.center - eye) < -resolution_m_) continue;
     std::vector<int> nodes;
     for (std::uint32_t i = begin; i < cell.landmarks_end; ++i) {
       const Eigen::Vector3d p_camera = T_camera_map * landmarks_[i].p_map.cast<double>();

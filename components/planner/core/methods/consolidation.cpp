@@ -6,7 +6,6 @@
 #include <utility>
 
 #include "planner/core/candidates/old_places.hpp"
-#include "planner/core/methods/expected.hpp"
 
 namespace lapis::planner {
 namespace {
@@ -36,23 +35,15 @@ class AmongOldPlaces : public Method {
   std::shared_ptr<const Method> judge_;
 };
 
-/// Drives through the old places that secure most of the map per metre.
-class MostWorth : public Expected {
- public:
-  std::vector<Candidate> propose(const ProposalInput& in) const override { return propose_worthy_revisits(in); }
-  bool has_own_candidates() const override { return true; }
-};
-
 }  // namespace
 
 const std::vector<std::string>& consolidation_names() {
-  static const std::vector<std::string> names{"nearest", "random", "lapis", "expected"};
+  static const std::vector<std::string> names{"nearest", "random", "lapis"};
   return names;
 }
 
 std::shared_ptr<const Method> make_consolidation(const std::string& name, const MethodsConfig& config) {
   if (name == "random") return std::make_shared<AmongOldPlaces>(std::make_shared<RandomPlace>());
-  if (name == "expected") return std::make_shared<MostWorth>();
   if (name == "nearest" || name == "lapis") return std::make_shared<AmongOldPlaces>(make_method(name, config));
   return nullptr;
 }

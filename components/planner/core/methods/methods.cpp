@@ -4,7 +4,6 @@
 #include <iterator>
 
 #include "planner/core/methods/dopt_only.hpp"
-#include "planner/core/methods/expected.hpp"
 #include "planner/core/methods/fixed_n.hpp"
 #include "planner/core/methods/mi_only.hpp"
 #include "planner/core/methods/nearest.hpp"
@@ -38,7 +37,6 @@ constexpr Entry kMethods[] = {
     {"mi_only", make<MiOnly>},
     {"dopt_only", make<DoptOnly>},
     {"placed", make<Placed>},
-    {"expected", make<Expected>},
 };
 
 constexpr const char* kLapis = "joint";  // docs/decisions/0031-the-method-called-lapis.md

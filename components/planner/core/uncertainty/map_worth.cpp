@@ -131,7 +131,7 @@ void MapWorth::note_stakes(const SurfaceStakes& stakes) {
     if (found == stakes.voxels.end()) continue;
     const Eigen::Vector2d ahead = keyframes[node].T_map_camera.linear().col(2).head<2>().normalized();
     Stake stake{static_cast<int>(node), {-ahead.y(), ahead.x()}, found->second};
-    for (double& value : stake.nats) value *= config_.voxel_nats;
+    for (double& value : stake.nats) whole_nats_ += value *= config_.voxel_nats;
     stakes_.push_back(std::move(stake));
   }
 }
@@ -161,66 +161,67 @@ Eigen::Matrix3d MapWorth::path_noise(double path_m) const {
   return (path_m * odometry_noise_).asDiagonal().toDenseMatrix();
 }
 
-/// M after these loops have closed. A loop measures the pose of the path's node against the old key-frame; the node is
-/// carried by the newest key-frame, with the noise of the path in between.
-double MapWorth::nats_with(std::span<const PossibleLoop> loops) const {
+/// What a loop measures: the pose of the path's node against the old key-frame; the node is carried by the newest
+/// key-frame, with the noise of the path in between.
+MapWorth::Measurement MapWorth::measurement_of(const PossibleLoop& loop) const {
   const int newest = static_cast<int>(graph_.keyframes().size()) - 1;
-  const auto size = 3 * static_cast<Eigen::Index>(loops.size());
-  std::vector<Eigen::Matrix3d> at_newest, at_old;
-  for (const PossibleLoop& loop : loops) {
-    at_newest.push_back(carried_to(loop.p_map_node, position_of(graph_.keyframes().back())));
-    at_old.push_back(carried_to(loop.p_map_node, position_of(graph_.keyframes()[index(loop.keyframe)])));
-  }
-  // C H^T of a node, by loops.
-  const auto columns_of = [&](int node) {
-    Eigen::MatrixXd columns(3, size);
-    for (std::size_t k = 0; k < loops.size(); ++k) {
-      columns.middleCols<3>(3 * static_cast<Eigen::Index>(k)) =
-          block(node, newest) * at_newest[k].transpose() - block(node, loops[k].keyframe) * at_old[k].transpose();
-    }
-    return columns;
-  };
+  Measurement measurement{loop.keyframe, loop.path_m,
+                          carried_to(loop.p_map_node, position_of(graph_.keyframes().back())),
+                          carried_to(loop.p_map_node, position_of(graph_.keyframes()[index(loop.keyframe)])), {}};
+  measurement.columns =
+      columns(newest) * measurement.at_newest.transpose() - columns(loop.keyframe) * measurement.at_old.transpose();
+  return measurement;
+}
+
+/// M after these loops have closed.
+double MapWorth::nats_with(std::span<const Measurement* const> loops) const {
+  const int newest = static_cast<int>(graph_.keyframes().size()) - 1;
+  const auto size = 3 * std::ssize(loops);
   Eigen::MatrixXd innovation = Eigen::MatrixXd::Zero(size, size);
-  const Eigen::MatrixXd of_newest = columns_of(newest);
-  for (std::size_t k = 0; k < loops.size(); ++k) {
-    const auto row = 3 * static_cast<Eigen::Index>(k);
-    innovation.middleRows<3>(row) = at_newest[k] * of_newest - at_old[k] * columns_of(loops[k].keyframe);
-    for (std::size_t m = 0; m < loops.size(); ++m) {  // the way up to the nearer node is common to both
-      innovation.block<3, 3>(row, 3 * static_cast<Eigen::Index>(m)) +=
-          path_noise(std::min(loops[k].path_m, loops[m].path_m));
+  for (Eigen::Index k = 0; k < std::ssize(loops); ++k) {
+    const Measurement& loop = *loops[static_cast<std::size_t>(k)];
+    for (Eigen::Index m = 0; m < std::ssize(loops); ++m) {
+      const Measurement& other = *loops[static_cast<std::size_t>(m)];
+      innovation.block<3, 3>(3 * k, 3 * m) = loop.at_newest * other.columns.middleRows<3>(3 * newest) -
+                                             loop.at_old * other.columns.middleRows<3>(3 * loop.keyframe) +
+                                             path_noise(std::min(loop.path_m, other.path_m));  // common to both
     }
-    innovation.block<3, 3>(row, row) += loop_noise_.asDiagonal().toDenseMatrix();
+    innovation.block<3, 3>(3 * k, 3 * k) += loop_noise_.asDiagonal().toDenseMatrix();
   }
   const Eigen::MatrixXd weight = innovation.ldlt().solve(Eigen::MatrixXd::Identity(size, size));
+  using Columns = Eigen::Matrix<double, 3, Eigen::Dynamic, 0, 3, 3 * static_cast<int>(kMostLoops)>;
+  Columns columns(3, size), weighted(3, size);
   double sum = 0.0;
   for (const Stake& stake : stakes_) {
-    Eigen::Matrix3d covariance = marginals_[index(stake.node)];
-    if (size > 0) {
-      const Eigen::MatrixXd columns = columns_of(stake.node);
-      covariance -= columns * weight * columns.transpose();
-    }
-    sum += worth_of(stake, covariance);
+    for (Eigen::Index k = 0; k < std::ssize(loops); ++k)
+      columns.middleCols<3>(3 * k) = loops[static_cast<std::size_t>(k)]->columns.middleRows<3>(3 * stake.node);
+    weighted.noalias() = columns.lazyProduct(weight);
+    sum += worth_of(stake, marginals_[index(stake.node)] - weighted.lazyProduct(columns.transpose()));
   }
   return sum;
 }
 
-double MapWorth::secured_nats(std::vector<PossibleLoop> loops) const {
+double MapWorth::secured_nats(const std::vector<PossibleLoop>& loops) const {
   if (config_.sigma_factor == 0.0) return 0.0;
-  std::vector<std::pair<double, PossibleLoop>> ranked;
-  for (const PossibleLoop& loop : loops)
-    ranked.emplace_back(-loop.probability * (nats_with(std::span(&loop, 1)) - nats_), loop);
+  std::vector<std::pair<double, std::size_t>> ranked;
+  std::vector<Measurement> measurements;
+  for (const PossibleLoop& loop : loops) measurements.push_back(measurement_of(loop));
+  for (std::size_t k = 0; k < loops.size(); ++k) {
+    const Measurement* const alone[] = {&measurements[k]};
+    ranked.emplace_back(-loops[k].probability * (nats_with(alone) - nats_), k);
+  }
   std::stable_sort(ranked.begin(), ranked.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  if (ranked.size() == 1) return -ranked.front().first;
   ranked.resize(std::min(ranked.size(), kMostLoops));
-  loops.clear();
-  for (const auto& entry : ranked) loops.push_back(entry.second);
   double expected = 0.0;
-  for (unsigned closed = 1; closed < 1U << loops.size(); ++closed) {
+  for (unsigned closed = 1; closed < 1U << ranked.size(); ++closed) {
     double probability = 1.0;
-    std::vector<PossibleLoop> of_set;
-    for (std::size_t k = 0; k < loops.size(); ++k) {
+    std::vector<const Measurement*> of_set;
+    for (std::size_t k = 0; k < ranked.size(); ++k) {
       const bool is_closed = (closed >> k & 1U) != 0;
-      probability *= is_closed ? loops[k].probability : 1.0 - loops[k].probability;
-      if (is_closed) of_set.push_back(loops[k]);
+      const double p = loops[ranked[k].second].probability;
+      probability *= is_closed ? p : 1.0 - p;
+      if (is_closed) of_set.push_back(&measurements[ranked[k].second]);
     }
     if (probability > 0.0) expected += probability * (nats_with(of_set) - nats_);
   }

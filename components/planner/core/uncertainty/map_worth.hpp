@@ -49,9 +49,11 @@ class MapWorth {
   const PlanarGraph& graph() const { return graph_; }
   /// M [nats].
   double nats() const { return nats_; }
+  /// What M lacks for poses without errors [nats].
+  double lost_nats() const { return whole_nats_ - nats_; }
   /// Expected growth of M by the loops of a path, each of which closes by itself with its probability [nats]. Only the
   /// kMostLoops count that are worth most by themselves.
-  double secured_nats(std::vector<PossibleLoop> loops) const;
+  double secured_nats(const std::vector<PossibleLoop>& loops) const;
   /// Share of what a view shows that survives in the map: of a camera at that place, after so much path from the
   /// newest key-frame.
   /// @param forward direction of the camera; only x and y count
@@ -66,14 +68,21 @@ class MapWorth {
     std::vector<double> nats;  // by distance
   };
 
+  struct Measurement {
+    int keyframe;
+    double path_m;
+    Eigen::Matrix3d at_newest, at_old;  // carry errors of the two key-frames to the path's node
+    Eigen::MatrixX3d columns;           // covariance of all nodes with what the loop measures
+  };
+
   MapWorth(PlanarGraph graph, const MapWorthConfig& config) : graph_(std::move(graph)), config_(config) {}
   void note_noise(std::span<const KeyframeEdge> edges);
   void note_stakes(const SurfaceStakes& stakes);
   double worth_of(const Stake& stake, const Eigen::Matrix3d& covariance) const;
-  double nats_with(std::span<const PossibleLoop> loops) const;
+  Measurement measurement_of(const PossibleLoop& loop) const;
+  double nats_with(std::span<const Measurement* const> loops) const;
   /// Covariance of all nodes with one; kept, because candidates share their places.
   const Eigen::MatrixX3d& columns(int node) const;
-  Eigen::Matrix3d block(int row, int column) const { return columns(column).middleRows<3>(3 * row); }
   Eigen::Matrix3d path_noise(double path_m) const;
 
   PlanarGraph graph_;
@@ -84,7 +93,7 @@ class MapWorth {
   mutable std::map<int, Eigen::MatrixX3d> columns_;
   Eigen::Vector3d odometry_noise_;  // variances per metre
   Eigen::Vector3d loop_noise_;      // variances of a loop closure
-  double nats_ = 0.0;
+  double nats_ = 0.0, whole_nats_ = 0.0;
 };
 
 }  // namespace lapis::planner

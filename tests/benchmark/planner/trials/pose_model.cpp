@@ -6,6 +6,7 @@
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 #include <Eigen/Dense>
 #include <Eigen/Geometry>
@@ -20,10 +21,13 @@ using geometry::Pose;
 constexpr double kKeyframe_m = 0.16;  // path_between of neighbouring key-frames in recorded tours
 constexpr double kMetresPerRadian = 0.5;
 constexpr double kSimilarTurn_rad = 0.05;  // links with turns within this are alike
-constexpr double kNear_m = 1.0, kAlike_rad = 0.5;
-constexpr double kLeastLoop_m = 5.0;    // path between the two ends of a loop
-constexpr double kLoopSpacing_m = 3.0;  // path between closed loops
-constexpr double kVerified = 0.9;       // share of revisits that slam closes
+// As slam's loop detector (slam.loop): what is near, how soon another key-frame has to find the same, and the path
+// between pairs of loops.
+constexpr double kNear_m = 1.5, kNear_rad = 0.7;
+constexpr std::size_t kConfirmWithin = 3;
+constexpr double kLoopSpacing_m = 5.0;
+constexpr double kLeastLoop_m = 5.0;  // path between the two ends of a loop
+constexpr double kVerified = 0.9;     // share of the key-frames near an old one that slam recognises
 constexpr double kStiff = 1e8;          // information of the directions that the floor fixes
 
 double turn_of(const Pose& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
@@ -54,14 +58,29 @@ std::uint64_t seed_of(const std::string& scene, std::uint64_t seed) {
   return seed << 32U | number[0];
 }
 
-const RunRecord& draw_run(const ErrorModel& model, const std::string& scene, std::mt19937_64& random) {
+/// The runs of buildings of the same kind; all runs if there are none.
+std::vector<const RunRecord*> runs_like(const ErrorModel& model, const std::string& scene) {
   std::vector<const RunRecord*> alike, all;
   for (const RunRecord& run : model.runs) {
     all.push_back(&run);
     if (kind_of(run.scene) == kind_of(scene)) alike.push_back(&run);
   }
-  const auto& from = alike.empty() ? all : alike;
-  return *from[std::uniform_int_distribution<std::size_t>(0, from.size() - 1)(random)];
+  return alike.empty() ? all : alike;
+}
+
+const RunRecord& draw_run(const ErrorModel& model, const std::string& scene, std::mt19937_64& random) {
+  const auto runs = runs_like(model, scene);
+  return *runs[std::uniform_int_distribution<std::size_t>(0, runs.size() - 1)(random)];
+}
+
+/// The loops of the runs of buildings of the same kind; those of all runs if there are none.
+std::vector<EdgeRecord> loops_of(const ErrorModel& model, const std::string& scene) {
+  std::vector<EdgeRecord> loops, all;
+  for (const RunRecord& run : model.runs) {
+    auto& into = kind_of(run.scene) == kind_of(scene) ? loops : all;
+    into.insert(into.end(), run.loops.begin(), run.loops.end() - std::ssize(run.loops) % 2);  // pairs
+  }
+  return loops.empty() ? all : loops;
 }
 
 EdgeRecord record_of(std::istringstream& cells) {
@@ -85,6 +104,7 @@ ErrorModel ErrorModel::read(const std::string& file) {
   if (!in) throw std::runtime_error(file + " cannot be read");
   ErrorModel model;
   std::map<std::string, std::map<int, LinkRecord>> runs;  // links by the index of their end
+  std::map<std::string, std::vector<EdgeRecord>> loops;
   std::string line;
   std::getline(in, line);
   while (std::getline(in, line)) {
@@ -92,29 +112,32 @@ ErrorModel ErrorModel::read(const std::string& file) {
     std::string run, seed, world, type, from, to, turn;
     for (std::string* cell : {&run, &world, &seed, &type, &from, &to, &turn}) std::getline(cells, *cell, ',');
     const EdgeRecord record = record_of(cells);
+    const std::string key = run + "," + world + "," + seed;
     if (type == "loop") {
-      model.loops.push_back(record);
+      loops[key].push_back(record);
     } else if (std::stoi(to) == std::stoi(from) + 1) {
-      LinkRecord& link = runs[run + "," + world + "," + seed][std::stoi(to)];
+      LinkRecord& link = runs[key][std::stoi(to)];
       link.turn_rad = std::stod(turn);
       (type == "odometry" ? link.odometry : link.vision) = record;
     }
   }
   for (auto& [name, links] : runs) {
-    auto& of_run = model.runs.emplace_back(RunRecord{name.substr(0, name.find(',')), {}});
-    for (auto& [to, link] : links) of_run.links.push_back(link);
+    auto& of_run = model.runs.emplace_back(RunRecord{name.substr(0, name.find(',')), {}, loops[name]});
+    for (auto& [to, link] : links) {
+      if (link.vision) of_run.links.push_back(link);  // a planner's drives have no others: they avoid blank walls
+    }
   }
-  if (model.runs.empty() || model.loops.empty()) throw std::runtime_error(file + " has no links or no loops");
+  if (model.runs.empty() || loops_of(model, "").empty()) throw std::runtime_error(file + " has no links or no loops");
   return model;
 }
 
 PoseModel::PoseModel(const ErrorModel& model, const std::string& scene, std::uint64_t seed)
-    : model_(model), random_(seed_of(scene, seed)), run_(draw_run(model, scene, random_)) {}
+    : random_(seed_of(scene, seed)), run_(draw_run(model, scene, random_)), closed_(loops_of(model, scene)) {}
 
 bool PoseModel::arrive(const Pose& T_map_true) {
   if (!truth_.empty() && length_of(truth_.back().inverse() * T_map_true) < kKeyframe_m) return false;
   add_keyframe(T_map_true);
-  close_loop();
+  close_loops();
   return true;
 }
 
@@ -164,27 +187,43 @@ void PoseModel::add_keyframe(const Pose& T_map_true) {
   ++graph_.version;
 }
 
-/// With the old key-frame that looks most alike, if slam verifies it.
-void PoseModel::close_loop() {
-  if (travelled_m_.back() - last_loop_m_ < kLoopSpacing_m) return;
-  const auto seen = [&](std::size_t i) { return truth_[i].inverse() * truth_.back(); };
-  std::optional<std::size_t> best;
+/// The old key-frame that looks most like the newest one, if slam verifies it.
+std::optional<PoseModel::Recognised> PoseModel::recognise() {
+  std::optional<Recognised> seen;
+  double nearest = 1.0;
   for (std::size_t i = 0; i + 1 < truth_.size() && travelled_m_.back() - travelled_m_[i] > kLeastLoop_m; ++i) {
-    const Pose T = seen(i);
-    if (T.translation().norm() > kNear_m || turn_of(T) > kAlike_rad) continue;
-    if (!best || length_of(T) < length_of(seen(*best))) best = i;
+    const Pose T = truth_[i].inverse() * truth_.back();
+    const double distance = T.translation().norm() / kNear_m + turn_of(T) / kNear_rad;
+    if (distance >= nearest) continue;
+    nearest = distance;
+    seen = {i, truth_.size() - 1};
   }
-  if (!best) return;
+  if (seen && std::uniform_real_distribution<double>()(random_) > kVerified) return std::nullopt;
+  return seen;
+}
+
+/// A loop counts when a second key-frame soon after finds one, too.
+void PoseModel::close_loops() {
+  const auto seen = recognise();
+  if (!seen) return;
+  const auto before = std::exchange(pending_, seen);
+  if (!before || seen->keyframe - before->keyframe > kConfirmWithin) return;
+  if (travelled_m_.back() - last_loop_m_ < kLoopSpacing_m) return;
   last_loop_m_ = travelled_m_.back();
-  if (std::uniform_real_distribution<double>()(random_) > kVerified) return;
-  const EdgeRecord& record =
-      model_.loops[std::uniform_int_distribution<std::size_t>(0, model_.loops.size() - 1)(random_)];
-  graph_.edges.push_back({graph_.nodes[*best].id, newest(), slam::EdgeType::kLoopClosure,
-                          seen(*best) * planar_exp(-record.error), in_space(record.information)});
-  ++loops_;
+  const std::size_t pair = std::uniform_int_distribution<std::size_t>(0, closed_.size() / 2 - 1)(random_);
+  add_loop(*before, closed_[2 * pair]);
+  add_loop(*seen, closed_[2 * pair + 1]);
   const auto correction = slam::correct_graph(graph_);
   for (std::size_t i = 0; i < graph_.nodes.size(); ++i) graph_.nodes[i].T_map_camera = correction.T_map_camera[i];
   ++graph_.version;
+}
+
+void PoseModel::add_loop(const Recognised& seen, const EdgeRecord& record) {
+  graph_.edges.push_back({graph_.nodes[seen.old_keyframe].id, graph_.nodes[seen.keyframe].id,
+                          slam::EdgeType::kLoopClosure,
+                          truth_[seen.old_keyframe].inverse() * truth_[seen.keyframe] * planar_exp(-record.error),
+                          in_space(record.information)});
+  ++loops_;
 }
 
 std::pair<double, double> PoseModel::ate_m() const {

@@ -30,13 +30,13 @@ struct LinkRecord {
 struct RunRecord {
   std::string scene;
   std::vector<LinkRecord> links;  ///< in the order of driving
+  std::vector<EdgeRecord> loops;  ///< pairs: slam confirms a loop by a second one
 };
 
 /// What slam's edges were off by in recorded tours. Links are kept by run, because calibration errors and noise are
 /// those of a run.
 struct ErrorModel {
   std::vector<RunRecord> runs;
-  std::vector<EdgeRecord> loops;
 
   /// Reads what lapis_surviving_share --edges wrote. Throws std::runtime_error that names the file.
   static ErrorModel read(const std::string& file);
@@ -63,16 +63,22 @@ class PoseModel {
 
  private:
   void add_keyframe(const geometry::Pose& T_map_true);
-  void close_loop();
+  struct Recognised {
+    std::size_t old_keyframe, keyframe;
+  };
+  std::optional<Recognised> recognise();
+  void close_loops();
+  void add_loop(const Recognised& seen, const EdgeRecord& record);
   const LinkRecord& draw(double turn_rad);
 
-  const ErrorModel& model_;
   std::mt19937_64 random_;
-  const RunRecord& run_;  // whose links are drawn
+  const RunRecord& run_;            // whose links are drawn
+  std::vector<EdgeRecord> closed_;  // pairs of loops that are drawn, of runs of the same kind
   std::size_t link_ = 0;  // the one drawn last
   slam::PoseGraphSnapshot graph_;
   std::vector<geometry::Pose> truth_;  // T_map_camera by key-frame
   std::vector<double> travelled_m_;    // path up to each key-frame
+  std::optional<Recognised> pending_;  // waits for a second one
   double last_loop_m_ = -1e9;
   int loops_ = 0;
 };

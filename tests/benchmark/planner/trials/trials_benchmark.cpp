@@ -1,17 +1,19 @@
 // Missions without images, controller and DDS, a row each.
-//   lapis_planner_trials --errors errors.csv --scenes flat_40,ring_40 --methods expected,mi_only:nearest --rows
+//   lapis_planner_trials --errors errors.csv --scenes flat_40,ring_40 --methods mi_only:nearest,expected:expected --rows
 //   trials.csv
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
 #include <exception>
 #include <fstream>
+#include <memory>
 #include <set>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "common/config/yaml.hpp"
+#include "planner/core/methods/expected.hpp"
 #include "simulator/set_up.hpp"
 #include "tests/benchmark/planner/trials/trial.hpp"
 
@@ -20,7 +22,7 @@ namespace {
 
 struct Options {
   std::string errors_file, rows_file;
-  std::vector<std::string> scenes, methods{"mi_only:nearest"}, overrides;
+  std::vector<std::string> scenes, methods{"mi_only:nearest", "expected:expected"}, overrides;
   std::vector<int> seeds{1};
   double longest_s = 300.0;
 };
@@ -29,7 +31,9 @@ constexpr const char* kHeader =
     "scene,seed,method,explored,t90_s,done_s,path_m,ate_se3_m,ate_raw_m,surviving,predicted,keyframes,loops,decisions,revisits,"
     "decision_ms,cpu_s";
 
-/// `method`: METHOD or METHOD:THEN.
+constexpr const char* kExpected = "expected";
+
+/// `method`: METHOD or METHOD:THEN, names of the planner's methods or `expected`.
 TrialSetting setting_of(const Options& options, const std::string& scene, int seed, const std::string& method) {
   TrialSetting setting;
   setting.longest_s = options.longest_s;
@@ -42,13 +46,16 @@ TrialSetting setting_of(const Options& options, const std::string& scene, int se
   schema("planner", setting.planner);
   for (const std::string& assignment : options.overrides) config::apply_override(schema, assignment);
   const auto colon = method.find(':');
-  config::apply_override(schema, "planner.method=" + method.substr(0, colon));
-  if (colon != std::string::npos) config::apply_override(schema, "planner.then=" + method.substr(colon + 1));
+  const std::string first = method.substr(0, colon), then = colon == std::string::npos ? "" : method.substr(colon + 1);
+  if (first != kExpected) config::apply_override(schema, "planner.method=" + first);
+  if (!then.empty()) config::apply_override(schema, "planner.then=" + (then == kExpected ? "nearest" : then));
   config::check(schema);
   setting.simulated.scene = scene;
   setting.simulated.seed = seed;
   setting.simulated.robot = setting.planner.robot = robot;
   setting.planner = completed(setting.planner);
+  if (first == kExpected) setting.planner.decision.method = std::make_shared<Expected>();
+  if (then == kExpected) setting.planner.consolidation = std::make_shared<ExpectedAmongOldPlaces>();
   return setting;
 }
 
@@ -109,7 +116,8 @@ int main(int argc, char** argv) {
       ->delimiter(',')
       ->required();
   app.add_option("--methods", options.methods,
-                 "METHOD, or METHOD:THEN with what is done when nothing is left to explore")
+                 "METHOD, or METHOD:THEN with what is done when nothing is left to explore; names of the planner's methods, "
+                 "or expected (expected map information)")
       ->delimiter(',');
   app.add_option("--seeds", options.seeds, "a mission each")->delimiter(',');
   app.add_option("--duration", options.longest_s, "simulated time of a mission [s]")->check(CLI::PositiveNumber);

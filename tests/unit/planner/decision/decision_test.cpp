@@ -4,13 +4,17 @@
 
 #include <algorithm>
 #include <limits>
+#include <memory>
 #include <numbers>
+#include <optional>
 #include <set>
 #include <utility>
 
 #include "planner/core/candidates/gap_views.hpp"
 #include "planner/core/decision/first_turn.hpp"
+#include "planner/core/methods/expected.hpp"
 #include "planner/core/methods/methods.hpp"
+#include "planner/core/uncertainty/map_worth.hpp"
 #include "tests/unit/planner/hallucination/small_world.hpp"
 #include "tests/unit/planner/space/flat_map.hpp"
 
@@ -551,6 +555,54 @@ TEST(Decide, RevisitsAnOldPlaceWhenItIsUnsure) {
   EXPECT_EQ(count(explorer.choose(memory), CandidateKind::kRevisit), 0) << "it drives to where slam tracked";
   explorer.config.method = make_method("nearest");
   EXPECT_EQ(count(explorer.choose(), CandidateKind::kRevisit), 0) << "loops are worth nothing to it";
+}
+
+// What the map at stake is worth: most of it hangs on the key-frames after the long way round.
+struct AtStake : LongAway {
+  explicit AtStake(double sigma_factor = 1.0)
+      : LongAway(kCorridor, 0.9, 0.0), in_corridor(test::tile_of(test::wall_at(6.5f, 0.9f), {10, 11}), of_graph, 0.25) {
+    landmarks = &in_corridor;
+    SurfaceStakes stakes;
+    for (std::uint64_t id = 10; id < 15; ++id) stakes.voxels[id] = {0.0, 20.0, 100.0, 200.0};
+    MapWorthConfig worth_config;
+    worth_config.sigma_factor = sigma_factor;
+    of_map.emplace(std::get<MapWorth>(MapWorth::make(chain.keyframes, chain.edges, stakes, worth_config)));
+    config.method = std::make_shared<Expected>();
+  }
+  Decision choose_by_worth() const {
+    return decide({world.grid, frontiers, field, view, geometry::T_base_camera({1.0, 0.0}), graph, landmarks, robot, {},
+                   &*of_map},
+                  {}, config);
+  }
+  LandmarkIndex in_corridor;
+  std::optional<MapWorth> of_map;
+};
+
+TEST(Decide, RevisitsWhatSecuresMostOfTheMap) {
+  const AtStake explorer;
+  const Decision decision = explorer.choose_by_worth();
+  ASSERT_EQ(count(decision, CandidateKind::kRevisit), 1) << "two key-frames at one place";
+  const Candidate& revisit = decision.candidates.back();
+  EXPECT_LT((revisit.target_map - Eigen::Vector2d(4.5, 0.9)).norm(), 0.3);
+  EXPECT_GT(revisit.value.secured_nats, 10.0);
+  EXPECT_LT(revisit.value.secured_nats, explorer.of_map->lost_nats());
+  for (const Candidate& candidate : decision.candidates) {
+    if (!candidate.is_open()) continue;
+    EXPECT_LT(candidate.value.surviving_share, 1.0);
+    EXPECT_DOUBLE_EQ(candidate.utility, (candidate.value.path_information * candidate.value.surviving_share +
+                                         candidate.value.secured_nats) /
+                                            candidate.value.paid_m());
+  }
+}
+
+TEST(Decide, WithExactPosesTheMapsWorthChangesNothing) {
+  AtStake explorer(0.0);
+  const Decision by_worth = explorer.choose_by_worth();
+  explorer.config.method = make_method("mi_only");
+  const Decision by_information = explorer.choose();
+  ASSERT_EQ(by_worth.candidates.size(), by_information.candidates.size());
+  EXPECT_EQ(by_worth.chosen, by_information.chosen);
+  EXPECT_EQ(by_worth.candidates[*by_worth.chosen].utility, by_information.candidates[*by_information.chosen].utility);
 }
 
 TEST(Decide, AnAlternativePassesAnOldPlaceInItsDirection) {

@@ -74,6 +74,18 @@ TEST(LandmarkIndex, NotThroughWalls) {
   EXPECT_THAT(world.seen_from(behind, free_field({{-1, -1, 0}, {-1, 0, 0}})), IsEmpty());
 }
 
+TEST(LandmarkIndex, PredictsOnlyForTheKeyframesThatAreWanted) {
+  const OneWall world;
+  const LandmarkIndex both(tile_of(wall_at(3.0f), {10, 11}), world.graph, 0.25);
+  const geometry::Pose pose = camera_at(0.2, 0.1, 0.1);
+  const auto seen = [&](const std::vector<bool>& wanted, int least) {
+    return both.predict(kCamera, pose, free_field(), world.config, wanted, least);
+  };
+  EXPECT_EQ(seen({true, true}, 1), both.predict(kCamera, pose, free_field(), world.config));
+  EXPECT_THAT(seen({false, true}, 100), ElementsAre(Covisibility{1, 100}));
+  EXPECT_THAT(seen({true, true}, 101), IsEmpty());
+}
+
 TEST(LandmarkIndex, LeavesOutLandmarksOfForgottenKeyframes) {
   const OneWall world;
   EXPECT_EQ(LandmarkIndex(tile_of(wall_at(3.0f), {99}), world.graph, 0.25).size(), 0u);

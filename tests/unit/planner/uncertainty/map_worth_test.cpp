@@ -123,6 +123,19 @@ TEST(MapWorth, LoopAcrossTheErrorIsWorthMore) {
   EXPECT_GT(worth.secured_nats({{2, here, 2.0, 1.0}}), 5.0 * worth.secured_nats({{6, here, 2.0, 1.0}}));
 }
 
+// A loop with a key-frame from after the blind stretch, at the same spot, does not mend what arose before it: the one
+// from before it is worth as much as ever, and the one from after it nothing more.
+TEST(MapWorth, LoopAfterTheErrorDoesNotSpoilTheOneAcrossIt) {
+  Drive drive = around_the_square(0.05);
+  const Eigen::Vector2d here(0.0, 0.4);
+  const PossibleLoop across{2, here, 2.0, 1.0}, after{6, here, 2.0, 1.0};
+  const double before_nats = drive.worth().secured_nats({across});
+  drive.edges.push_back({6, 31, information_of(0.01, 0.003), true});
+  const MapWorth closed = drive.worth();
+  EXPECT_GT(closed.secured_nats({across}), 0.8 * before_nats);
+  EXPECT_GT(closed.secured_nats({across}), 20.0 * closed.secured_nats({after}));
+}
+
 TEST(MapWorth, ViewsFarAwayAndAfterALongPathSurviveLess) {
   const MapWorth worth = around_the_square(0.05).worth();
   const Eigen::Vector3d ahead(1, 0, 0);

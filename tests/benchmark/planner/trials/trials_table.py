@@ -1,0 +1,117 @@
+#!/usr/bin/python3
+"""Judges what lapis_planner_trials --rows wrote: a method against another, by pairs of missions in the same building.
+
+usage: trials_table.py [--method METHOD[:THEN]] [--against METHOD[:THEN]] [--kinds] CSV_FILE...
+
+For each figure: 90th percentile and median of both, their ratios, the upper end of the one-sided 90 % bootstrap interval
+of each ratio (10,000 resamples of the buildings), and p of Wilcoxon's signed ranks (two-sided, of the logarithms of the
+ratios). With --kinds, a table of medians for each kind of building, too.
+"""
+
+import argparse
+import csv
+import pathlib
+import sys
+
+import numpy as np
+
+sys.path.insert(0, str(pathlib.Path(__file__).parents[4] / "launch_scripts"))
+from experiments import tables  # noqa: E402
+
+FIGURES = {  # heading, factor, digits
+    "ate_se3_m": ("key-frame ATE SE(3), cm", 100, 2),
+    "ate_raw_m": ("key-frame ATE, first pose, cm", 100, 2),
+    "lost": ("share of the map lost, %", 100, 2),
+    "explored": ("explored, %", 100, 1),
+    "path_m": ("path, m", 1, 1),
+}
+NUMBERS = ("explored", "path_m", "ate_se3_m", "ate_raw_m", "surviving")
+RESAMPLES = 10000
+
+
+def read_rows(file):
+    try:
+        with open(file, newline="", encoding="utf-8") as stream:
+            rows = list(csv.DictReader(stream))
+    except OSError as error:
+        sys.exit(f"{file}: {error.strerror}")
+    missing = {"scene", "seed", "method", *NUMBERS} - set(rows[0] if rows else {})
+    if missing:
+        sys.exit(f"{file}: not written by lapis_planner_trials --rows, the column {min(missing)} is not there")
+    for number, row in enumerate(rows, start=2):
+        if None in row or None in row.values():
+            sys.exit(f"{file}:{number}: the line has not as many cells as the header; is the file cut off?")
+        row.update({name: float(row[name]) for name in NUMBERS})
+        row["lost"] = 1.0 - row["surviving"]
+    return rows
+
+
+def pairs_of(rows, method, against):
+    """[(row of the method, row of the other)], by building and seed."""
+    known = {(row["scene"], row["seed"], row["method"]): row for row in rows}
+    keys = sorted({(row["scene"], row["seed"]) for row in rows})
+    return [(known[*key, method], known[*key, against]) for key in keys
+            if (*key, method) in known and (*key, against) in known]
+
+
+def column(pairs, figure):
+    return np.array([[row[figure] for row in pair] for pair in pairs])
+
+
+def ratio_cells(values, share):
+    """Both quantiles, their ratio, and the upper end of its one-sided 90 % interval."""
+    ours, other = np.quantile(values, share, axis=0)
+    picks = np.random.default_rng(1).integers(0, len(values), (RESAMPLES, len(values)))
+    resampled = np.quantile(values[picks], share, axis=1)
+    upper = np.quantile(resampled[:, 0] / resampled[:, 1], 0.9)
+    return ours, other, ours / other, upper
+
+
+def table(pairs):
+    lines = ["| figure | P90 | other's | ratio | upper end | median | other's | ratio | upper end | better in | p |",
+             "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |"]
+    for figure, (heading, factor, digits) in FIGURES.items():
+        values = column(pairs, figure)
+        cells = [heading]
+        for share in (0.9, 0.5):
+            ours, other, ratio, upper = ratio_cells(values, share)
+            cells += [f"{factor * ours:.{digits}f}", f"{factor * other:.{digits}f}", f"{ratio:.2f}", f"{upper:.2f}"]
+        logs = np.log(np.maximum(values[:, 0], 1e-12) / np.maximum(values[:, 1], 1e-12))
+        sign = -1 if figure == "explored" else 1
+        cells += [str(int(np.sum(sign * logs < 0))), f"{tables.wilcoxon(logs):.4f}"]
+        lines.append("| " + " | ".join(cells) + " |")
+    return lines
+
+
+def kinds_table(pairs):
+    lines = ["| kind | missions | " + " | ".join(heading for heading, _, _ in FIGURES.values()) + " |",
+             "| --- | --- |" + " --- |" * len(FIGURES)]
+    kinds = sorted({pair[0]["scene"].rsplit("_", 1)[0] for pair in pairs})
+    for kind in kinds:
+        of_kind = [pair for pair in pairs if pair[0]["scene"].rsplit("_", 1)[0] == kind]
+        cells = [kind, str(len(of_kind))]
+        for figure, (_, factor, digits) in FIGURES.items():
+            ours, other = factor * np.median(column(of_kind, figure), axis=0)
+            cells.append(f"{ours:.{digits}f} / {other:.{digits}f}")
+        lines.append("| " + " | ".join(cells) + " |")
+    return lines
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("files", nargs="+", metavar="CSV_FILE")
+    parser.add_argument("--method", default="expected:expected")
+    parser.add_argument("--against", default="mi_only:nearest")
+    parser.add_argument("--kinds", action="store_true", help="medians for each kind of building, too")
+    options = parser.parse_args()
+    pairs = pairs_of([row for file in options.files for row in read_rows(file)], options.method, options.against)
+    if len(pairs) < 2:
+        sys.exit(f"fewer than two buildings have missions of both {options.method} and {options.against}")
+    print(f"{options.method} against {options.against}: {len(pairs)} pairs\n")
+    print("\n".join(table(pairs)))
+    if options.kinds:
+        print("\n" + "\n".join(kinds_table(pairs)))
+
+
+if __name__ == "__main__":
+    main()

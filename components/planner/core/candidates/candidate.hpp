@@ -45,8 +45,8 @@ struct PathValue {
   double optimality = 0.0;
   /// D-optimality from the expected change of the log-determinant at an equal number of nodes.
   double fixed_n_d_optimality = 0.0;
-  int tour_place = 0;          ///< position of the goal in TARE's tour, counted from 1
-  double unknown_share = 0.0;  ///< share of unknown cells around the target, in [0, 1]
+  int tour_place = 0;            ///< position of the goal in TARE's tour, counted from 1
+  double unknown_share = 0.0;    ///< share of unknown cells around the target, in [0, 1]
   double surviving_share = 1.0;  ///< of what the path's views show, in the map (MapWorth)
   double secured_nats = 0.0;     ///< what the path's loops are expected to add to the worth of the map
 

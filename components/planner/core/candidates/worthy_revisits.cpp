@@ -25,7 +25,9 @@ std::vector<int> representatives(const Situation& s, const HallucinationConfig& 
     const int landmarks = s.landmarks->shared_landmarks(node);
     if (s.graph->path_from_newest_m[i] < config.min_loop_path_m || loop_probability(landmarks, config) < kLikely)
       continue;
-    const auto stretch = [&](int of) { return std::floor(s.graph->travelled_m[static_cast<std::size_t>(of)] / kVisit_m); };
+    const auto stretch = [&](int of) {
+      return std::floor(s.graph->travelled_m[static_cast<std::size_t>(of)] / kVisit_m);
+    };
     if (nodes.empty() || stretch(nodes.back()) != stretch(node)) {
       nodes.push_back(node);
     } else if (s.landmarks->shared_landmarks(nodes.back()) < landmarks) {
@@ -42,7 +44,8 @@ std::vector<Revisit> ranked(const ProposalInput& in, const HallucinationConfig& 
     const OldPlace place = place_of(s, node);
     const auto cost_m = in.tree.cost_m(place.cell);
     if (!s.grid.is_traversable(place.cell) || !cost_m) continue;
-    const PossibleLoop loop{node, place.pose.p_map, *cost_m, loop_probability(s.landmarks->shared_landmarks(node), config)};
+    const PossibleLoop loop{node, place.pose.p_map, *cost_m,
+                            loop_probability(s.landmarks->shared_landmarks(node), config)};
     const double nats_per_m = s.worth->secured_nats({loop}) / (*cost_m + kPass_m);
     if (nats_per_m > 0.0) revisits.push_back({place, nats_per_m});
   }
@@ -58,9 +61,8 @@ bool is_same(const Pose2& a, const Pose2& b) {
 bool is_left_alone(const ProposalInput& in, const Eigen::Vector2d& place_map) {
   const auto& visited = in.memory.visited_places;
   return why_left_alone(in.memory.old_places, place_map, std::nullopt, in.memory.radius_m) != Rejection::kNone ||
-         std::any_of(visited.begin(), visited.end(), [&](const Eigen::Vector2d& p_map) {
-           return (p_map - place_map).norm() < in.memory.radius_m;
-         });
+         std::any_of(visited.begin(), visited.end(),
+                     [&](const Eigen::Vector2d& p_map) { return (p_map - place_map).norm() < in.memory.radius_m; });
 }
 
 }  // namespace

@@ -20,8 +20,8 @@ std::vector<PossibleLoop> possible_loops(const AnalysedGraph& graph, const Landm
     before = &pose;
     std::vector<bool> is_old;
     for (const double since_m : graph.path_from_newest_m) is_old.push_back(since_m + path_m >= config.min_loop_path_m);
-    for (const Covisibility& seen : landmarks.predict(camera, pose, field, config.covisibility, is_old,
-                                                      config.impossible_landmarks + 1)) {
+    for (const Covisibility& seen :
+         landmarks.predict(camera, pose, field, config.covisibility, is_old, config.impossible_landmarks + 1)) {
       const double probability = loop_probability(seen.landmarks, config);
       if (probability == 0.0) continue;
       const PossibleLoop loop{seen.keyframe, pose.translation().head<2>(), path_m, probability};

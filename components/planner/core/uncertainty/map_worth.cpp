@@ -165,9 +165,11 @@ Eigen::Matrix3d MapWorth::path_noise(double path_m) const {
 /// key-frame, with the noise of the path in between.
 MapWorth::Measurement MapWorth::measurement_of(const PossibleLoop& loop) const {
   const int newest = static_cast<int>(graph_.keyframes().size()) - 1;
-  Measurement measurement{loop.keyframe, loop.path_m,
+  Measurement measurement{loop.keyframe,
+                          loop.path_m,
                           carried_to(loop.p_map_node, position_of(graph_.keyframes().back())),
-                          carried_to(loop.p_map_node, position_of(graph_.keyframes()[index(loop.keyframe)])), {}};
+                          carried_to(loop.p_map_node, position_of(graph_.keyframes()[index(loop.keyframe)])),
+                          {}};
   measurement.columns =
       columns(newest) * measurement.at_newest.transpose() - columns(loop.keyframe) * measurement.at_old.transpose();
   return measurement;

@@ -64,7 +64,7 @@ class MapWorth {
  private:
   struct Stake {
     int node;
-    Eigen::Vector2d across;  // unit vector perpendicular to the camera's direction
+    Eigen::Vector2d across;    // unit vector perpendicular to the camera's direction
     std::vector<double> nats;  // by distance
   };
 

@@ -28,7 +28,7 @@ constexpr std::size_t kConfirmWithin = 3;
 constexpr double kLoopSpacing_m = 5.0;
 constexpr double kLeastLoop_m = 5.0;  // path between the two ends of a loop
 constexpr double kVerified = 0.9;     // share of the key-frames near an old one that slam recognises
-constexpr double kStiff = 1e8;          // information of the directions that the floor fixes
+constexpr double kStiff = 1e8;        // information of the directions that the floor fixes
 
 double turn_of(const Pose& T) { return Eigen::AngleAxisd(T.linear()).angle(); }
 double length_of(const Pose& T) { return T.translation().norm() + kMetresPerRadian * turn_of(T); }

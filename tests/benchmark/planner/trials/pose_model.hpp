@@ -74,7 +74,7 @@ class PoseModel {
   std::mt19937_64 random_;
   const RunRecord& run_;            // whose links are drawn
   std::vector<EdgeRecord> closed_;  // pairs of loops that are drawn, of runs of the same kind
-  std::size_t link_ = 0;  // the one drawn last
+  std::size_t link_ = 0;            // the one drawn last
   slam::PoseGraphSnapshot graph_;
   std::vector<geometry::Pose> truth_;  // T_map_camera by key-frame
   std::vector<double> travelled_m_;    // path up to each key-frame

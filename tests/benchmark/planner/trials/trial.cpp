@@ -109,8 +109,8 @@ class Mission {
         camera_(robot::pinhole_camera(setting.simulated.robot.camera)),
         T_base_camera_(geometry::T_base_camera(robot::camera_mount(setting.simulated.robot.camera))),
         robot_(world.nav_map(), simulator::simulation_config(setting.simulated).robot, at_rest(start_)),
-        poses_(errors, setting.simulated.scene, static_cast<std::uint64_t>(setting.simulated.seed)), mapper_(mapper_config()),
-        true_map_(mapping::kDefaultResolution_m),
+        poses_(errors, setting.simulated.scene, static_cast<std::uint64_t>(setting.simulated.seed)),
+        mapper_(mapper_config()), true_map_(mapping::kDefaultResolution_m),
         obstacles_({}, setting.planner.surroundings.grid.band, mapping::kDefaultResolution_m),
         view_(view_config(setting.planner)),
         surroundings_(setting.planner.surroundings, mapping::SensorModel{}, mapping::kDefaultResolution_m),
@@ -227,31 +227,43 @@ class Mission {
     return edges;
   }
 
+  /// What a decision may need to know of the pose graph.
+  struct Known {
+    std::optional<AnalysedGraph> graph;
+    std::optional<LandmarkIndex> landmarks;
+    std::optional<MapWorth> worth;
+  };
+
+  Known known_for(const DecisionConfig& config) {
+    Known known;
+    const Asks asks = config.method->asks();
+    if (!asks.spectrum && !asks.map_worth && !config.method->has_own_candidates()) return known;
+    const std::vector<Keyframe> keyframes = keyframes_of(poses_.graph());
+    const std::vector<KeyframeEdge> edges = edges_of(poses_.graph());
+    auto graph = analyse_graph(keyframes, edges, config.graph);
+    if (std::holds_alternative<GraphError>(graph)) return known;  // as long as there is one key-frame
+    known.graph.emplace(std::get<AnalysedGraph>(std::move(graph)));
+    known.landmarks.emplace(landmarks_.tiles(poses_.graph()), *known.graph, mapping::kDefaultResolution_m);
+    if (!asks.map_worth) return known;
+    auto worth = MapWorth::make(keyframes, edges, stakes(), worth_config());
+    if (auto* made = std::get_if<MapWorth>(&worth)) known.worth.emplace(std::move(*made));
+    return known;
+  }
+
   void decide_at(const Pose2& here) {
     DecisionConfig config = setting_.planner.decision;
     if (explorer_.state() == State::kConsolidating) config.method = setting_.planner.consolidation;
-    const std::vector<Keyframe> keyframes = keyframes_of(poses_.graph());
-    const std::vector<KeyframeEdge> edges = edges_of(poses_.graph());
-    const auto graph = analyse_graph(keyframes, edges, config.graph);
-    const auto* analysed = std::get_if<AnalysedGraph>(&graph);
-    std::optional<LandmarkIndex> landmarks;
-    if (analysed != nullptr)
-      landmarks.emplace(landmarks_.tiles(poses_.graph()), *analysed, mapping::kDefaultResolution_m);
-    std::optional<MapWorth> worth;
-    if (analysed != nullptr && config.method->asks().map_worth) {
-      auto made = MapWorth::make(keyframes, edges, stakes(), worth_config());
-      if (auto* known = std::get_if<MapWorth>(&made)) worth.emplace(std::move(*known));
-    }
+    const Known known = known_for(config);
     const Situation situation{surroundings_.grid(),
                               surroundings_.frontiers(),
                               surroundings_.field(),
                               view_,
                               T_base_camera_,
-                              analysed,
-                              landmarks ? &*landmarks : nullptr,
+                              known.graph ? &*known.graph : nullptr,
+                              known.landmarks ? &*known.landmarks : nullptr,
                               here,
                               {},
-                              worth ? &*worth : nullptr};
+                              known.worth ? &*known.worth : nullptr};
     decision_ = decide(situation, explorer_.memory(now()), config);
   }
 

@@ -1,6 +1,6 @@
 // Missions without images, controller and DDS, a row each.
-//   lapis_planner_trials --errors errors.csv --scenes flat_40,ring_40 --methods mi_only:nearest,expected:expected --rows
-//   trials.csv
+//   lapis_planner_trials --errors errors.csv --scenes flat_40,ring_40 --methods mi_only:nearest,expected:expected
+//   --rows trials.csv
 #include <CLI/CLI.hpp>
 
 #include <cstdio>
@@ -28,7 +28,8 @@ struct Options {
 };
 
 constexpr const char* kHeader =
-    "scene,seed,method,explored,t90_s,done_s,path_m,ate_se3_m,ate_raw_m,surviving,predicted,keyframes,loops,decisions,revisits,"
+    "scene,seed,method,explored,t90_s,done_s,path_m,ate_se3_m,ate_raw_m,surviving,predicted,keyframes,loops,decisions,"
+    "revisits,"
     "decision_ms,cpu_s";
 
 constexpr const char* kExpected = "expected";
@@ -81,8 +82,8 @@ int run(const Options& options) {
           const TrialSetting setting = setting_of(options, scene, seed, method);
           const TrialResult r = run_trial(simulator::open_world(setting.simulated), setting, errors);
           char text[256];
-          std::snprintf(text, sizeof text, "%s,%.4f,%.0f,%.0f,%.1f,%.4f,%.4f,%.4f,%.4f,%d,%d,%d,%d,%.1f,%.1f", key.c_str(),
-                        r.explored_share, r.time_to_90_s, r.done_s, r.path_m, r.ate_se3_m, r.ate_raw_m,
+          std::snprintf(text, sizeof text, "%s,%.4f,%.0f,%.0f,%.1f,%.4f,%.4f,%.4f,%.4f,%d,%d,%d,%d,%.1f,%.1f",
+                        key.c_str(), r.explored_share, r.time_to_90_s, r.done_s, r.path_m, r.ate_se3_m, r.ate_raw_m,
                         r.surviving_share, r.predicted_share, r.keyframes, r.loops, r.decisions, r.revisits,
                         1e3 * r.decision_cpu_s / std::max(r.decisions, 1), r.cpu_s);
           rows << text << std::endl;
@@ -115,9 +116,10 @@ int main(int argc, char** argv) {
   app.add_option("--scenes", options.scenes, "bundled names, generated buildings, or files")
       ->delimiter(',')
       ->required();
-  app.add_option("--methods", options.methods,
-                 "METHOD, or METHOD:THEN with what is done when nothing is left to explore; names of the planner's methods, "
-                 "or expected (expected map information)")
+  app.add_option(
+         "--methods", options.methods,
+         "METHOD, or METHOD:THEN with what is done when nothing is left to explore; names of the planner's methods, "
+         "or expected (expected map information)")
       ->delimiter(',');
   app.add_option("--seeds", options.seeds, "a mission each")->delimiter(',');
   app.add_option("--duration", options.longest_s, "simulated time of a mission [s]")->check(CLI::PositiveNumber);

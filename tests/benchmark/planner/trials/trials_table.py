@@ -2,10 +2,14 @@
 """Judges what lapis_planner_trials --rows wrote: a method against another, by pairs of missions in the same building.
 
 usage: trials_table.py [--method METHOD[:THEN]] [--against METHOD[:THEN]] [--kinds] CSV_FILE...
+       trials_table.py --runs CSV_FILE CSV_FILE...
 
 For each figure: 90th percentile and median of both, their ratios, the upper end of the one-sided 90 % bootstrap interval
 of each ratio (10,000 resamples of the buildings), and p of Wilcoxon's signed ranks (two-sided, of the logarithms of the
 ratios). With --kinds, a table of medians for each kind of building, too.
+
+With --runs: the trials beside runs of the whole chain by `lapis` in world W in the same buildings (rows of
+benchmark.sh), a line each, and the medians of both.
 """
 
 import argparse
@@ -97,14 +101,48 @@ def kinds_table(pairs):
     return lines
 
 
+RUN_FIGURES = {  # heading, of trials, of runs, factor, digits
+    "key-frame ATE SE(3), cm": ("ate_se3_m", "keyframe_ate_se3_rmse_m", 100, 2),
+    "key-frame ATE, first pose, cm": ("ate_raw_m", "keyframe_ate_origin_rmse_m", 100, 2),
+    "explored, %": ("explored", "explored_share", 100, 1),
+    "90 % after, s": ("t90_s", "time_to_90_s", 1, 0),
+    "path, m": ("path_m", "path_length_m", 1, 0),
+    "loops": ("loops", "loop_closures", 1, 0),
+}
+
+
+def runs_table(rows, runs):
+    pairs = [(row, run) for row in rows for run in runs
+             if (run["scene"], run["seed"], run["method"], run["world"]) == (row["scene"], row["seed"], "lapis", "w")]
+    if not pairs:
+        sys.exit("no trial is in a building and with a seed of these runs")
+    lines = ["| building | " + " | ".join(RUN_FIGURES) + " |", "| --- |" + " --- |" * len(RUN_FIGURES)]
+    medians = ["median"]
+    for of_trial, of_run, factor, digits in RUN_FIGURES.values():
+        both = np.median([[factor * float(row[of_trial]), factor * float(run[of_run] or "nan")] for row, run in pairs], axis=0)
+        medians.append(f"{both[0]:.{digits}f} / {both[1]:.{digits}f}")
+    for row, run in pairs:
+        cells = [row["scene"]]
+        for of_trial, of_run, factor, digits in RUN_FIGURES.values():
+            cells.append(f"{factor * float(row[of_trial]):.{digits}f} / {factor * float(run[of_run] or 'nan'):.{digits}f}")
+        lines.append("| " + " | ".join(cells) + " |")
+    return lines + ["| " + " | ".join(medians) + " |"]
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("files", nargs="+", metavar="CSV_FILE")
     parser.add_argument("--method", default="expected:expected")
     parser.add_argument("--against", default="mi_only:nearest")
     parser.add_argument("--kinds", action="store_true", help="medians for each kind of building, too")
+    parser.add_argument("--runs", metavar="CSV_FILE", help="rows of benchmark.sh, to compare the trials with")
     options = parser.parse_args()
-    pairs = pairs_of([row for file in options.files for row in read_rows(file)], options.method, options.against)
+    rows = [row for file in options.files for row in read_rows(file)]
+    if options.runs:
+        with open(options.runs, newline="", encoding="utf-8") as stream:
+            print("trial / run\n\n" + "\n".join(runs_table(rows, list(csv.DictReader(stream)))))
+        return
+    pairs = pairs_of(rows, options.method, options.against)
     if len(pairs) < 2:
         sys.exit(f"fewer than two buildings have missions of both {options.method} and {options.against}")
     print(f"{options.method} against {options.against}: {len(pairs)} pairs\n")

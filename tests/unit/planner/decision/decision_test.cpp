@@ -570,7 +570,15 @@ struct AtStake : LongAway {
     config.method = std::make_shared<Expected>();
   }
   Decision choose_by_worth() const {
-    return decide({world.grid, frontiers, field, view, geometry::T_base_camera({1.0, 0.0}), graph, landmarks, robot, {},
+    return decide({world.grid,
+                   frontiers,
+                   field,
+                   view,
+                   geometry::T_base_camera({1.0, 0.0}),
+                   graph,
+                   landmarks,
+                   robot,
+                   {},
                    &*of_map},
                   {}, config);
   }

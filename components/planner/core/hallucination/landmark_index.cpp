@@ -88,61 +88,58 @@ LandmarkIndex::LandmarkIndex(const std::map<mapping::TileIndex, mapping::Landmar
   }
 }
 
-std::vector<LandmarkIndex::InView> LandmarkIndex::in_view(const geometry::PinholeCamera& camera,
-                                                          const geometry::Pose& T_map_camera,
-                                                          const CovisibilityConfig& config) const {
+std::vector<int> LandmarkIndex::counts(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
+                                       const InformationField* field, const CovisibilityConfig& config) const {
   const geometry::Pose T_camera_map = T_map_camera.inverse();
   const Eigen::Vector3d eye = T_map_camera.translation();
-  const Eigen::Vector3d ahead = T_map_camera.linear().col(2);
-  const double reach_m2 = std::pow(config.max_range_m + resolution_m_, 2);
-  std::vector<InView> views;
+  std::vector<int> counts(shared_.size(), 0);
   std::uint32_t first = 0;
-  for (std::size_t c = 0; c < cells_.size(); ++c) {
-    const Cell& cell = cells_[c];
+  for (const Cell& cell : cells_) {
     const std::uint32_t begin = std::exchange(first, cell.landmarks_end);
-    if ((cell.center - eye).squaredNorm() > reach_m2) continue;
-    if (ahead.dot(cell.center - eye) < -resolution_m_) continue;
-    std::vector<int> nodes;
+    if ((cell.center - eye).norm() > config.max_range_m + resolution_m_) continue;
+    if ((T_camera_map * cell.center).z() < -resolution_m_) continue;
+    bool is_visible = false;  // computed once for all landmarks of the cell, when the first is in the image
     for (std::uint32_t i = begin; i < cell.landmarks_end; ++i) {
       const Eigen::Vector3d p_camera = T_camera_map * landmarks_[i].p_map.cast<double>();
-      if (is_on_image(camera, p_camera, config.max_range_m)) collect_observers(i, eye.cast<float>(), config, nodes);
+      if (!is_on_image(camera, p_camera, config.max_range_m)) continue;
+      is_visible =
+          is_visible || field == nullptr || free_probability(*field, eye, cell.center) >= config.min_visibility;
+      if (!is_visible) break;
+      count(i, eye.cast<float>(), config, counts);
     }
-    if (!nodes.empty()) views.push_back({c, std::move(nodes)});
   }
-  return views;
+  return counts;
 }
 
 std::vector<Covisibility> LandmarkIndex::predict(const geometry::PinholeCamera& camera,
                                                  const geometry::Pose& T_map_camera, const InformationField& field,
                                                  const CovisibilityConfig& config) const {
-  return predict(camera, T_map_camera, field, config, std::vector<bool>(shared_.size(), true), 1);
+  const std::vector<int> seen = counts(camera, T_map_camera, &field, config);
+  std::vector<Covisibility> result;
+  for (std::size_t node = 0; node < seen.size(); ++node) {
+    if (seen[node] > 0) result.push_back({static_cast<int>(node), seen[node]});
+  }
+  return result;
 }
 
 std::vector<Covisibility> LandmarkIndex::predict(const geometry::PinholeCamera& camera,
                                                  const geometry::Pose& T_map_camera, const InformationField& field,
                                                  const CovisibilityConfig& config, const std::vector<bool>& wanted,
                                                  int least_landmarks) const {
-  const std::vector<InView> views = in_view(camera, T_map_camera, config);
-  std::vector<int> possible(shared_.size(), 0), counts(shared_.size(), 0);
-  for (const InView& view : views) {
-    for (const int node : view.seen_by) ++possible[index(node)];
-  }
-  const auto is_possible = [&](int node) { return wanted[index(node)] && possible[index(node)] >= least_landmarks; };
-  for (const InView& view : views) {
-    if (std::none_of(view.seen_by.begin(), view.seen_by.end(), is_possible)) continue;
-    const Eigen::Vector3d& center = cells_[view.cell].center;
-    if (free_probability(field, T_map_camera.translation(), center) < config.min_visibility) continue;
-    for (const int node : view.seen_by) ++counts[index(node)];
-  }
-  std::vector<Covisibility> result;
-  for (int node = 0; node < std::ssize(counts); ++node) {
-    if (is_possible(node) && counts[index(node)] >= least_landmarks) result.push_back({node, counts[index(node)]});
-  }
+  const std::vector<int> possible = counts(camera, T_map_camera, nullptr, config);
+  bool is_any = false;
+  for (std::size_t node = 0; node < possible.size(); ++node)
+    is_any = is_any || (wanted[node] && possible[node] >= least_landmarks);
+  if (!is_any) return {};
+  std::vector<Covisibility> result = predict(camera, T_map_camera, field, config);
+  std::erase_if(result, [&](const Covisibility& seen) {
+    return !wanted[index(seen.keyframe)] || seen.landmarks < least_landmarks;
+  });
   return result;
 }
 
-void LandmarkIndex::collect_observers(std::size_t landmark, const Eigen::Vector3f& camera,
-                                      const CovisibilityConfig& config, std::vector<int>& nodes) const {
+void LandmarkIndex::count(std::size_t landmark, const Eigen::Vector3f& camera, const CovisibilityConfig& config,
+                          std::vector<int>& counts) const {
   const Eigen::Vector3f towards = landmarks_[landmark].p_map - camera;
   const auto min_cosine = static_cast<float>(std::cos(config.max_viewing_angle_rad));
   const auto max_ratio = static_cast<float>(config.max_range_ratio);
@@ -152,7 +149,7 @@ void LandmarkIndex::collect_observers(std::size_t landmark, const Eigen::Vector3
     const Observation& seen = observations_[o];
     const float seen_range = seen.towards.norm();
     if (range > max_ratio * seen_range || seen_range > max_ratio * range) continue;
-    if (towards.dot(seen.towards) >= min_cosine * range * seen_range) nodes.push_back(seen.keyframe);
+    if (towards.dot(seen.towards) >= min_cosine * range * seen_range) ++counts[index(seen.keyframe)];
   }
 }
 

@@ -48,8 +48,8 @@ class LandmarkIndex {
   /// distance. Sorted by node, without zero counts.
   std::vector<Covisibility> predict(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
                                     const InformationField& field, const CovisibilityConfig& config) const;
-  /// The same, only for the key-frames that are `wanted` (by node) and have at least that many landmarks. It is faster,
-  /// because most rays need not be followed.
+  /// The same, only for the key-frames that are `wanted` (by node) and have at least that many landmarks. Faster where
+  /// there are none, because then no ray is followed.
   std::vector<Covisibility> predict(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
                                     const InformationField& field, const CovisibilityConfig& config,
                                     const std::vector<bool>& wanted, int least_landmarks) const;
@@ -68,15 +68,11 @@ class LandmarkIndex {
     std::uint32_t landmarks_end;  ///< end in landmarks_
   };
 
-  struct InView {
-    std::size_t cell;
-    std::vector<int> seen_by;  // nodes, one for each landmark in the image and key-frame that saw it alike
-  };
-
-  void collect_observers(std::size_t landmark, const Eigen::Vector3f& camera, const CovisibilityConfig& config,
-                         std::vector<int>& nodes) const;
-  std::vector<InView> in_view(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
-                              const CovisibilityConfig& config) const;
+  /// Landmarks by key-frame. @param field of which the rays have to be free; null: walls hide nothing
+  std::vector<int> counts(const geometry::PinholeCamera& camera, const geometry::Pose& T_map_camera,
+                          const InformationField* field, const CovisibilityConfig& config) const;
+  void count(std::size_t landmark, const Eigen::Vector3f& camera, const CovisibilityConfig& config,
+             std::vector<int>& counts) const;
 
   std::vector<int> shared_;  ///< number of shared landmarks by node
   double resolution_m_;

@@ -6,7 +6,6 @@
 #include <map>
 #include <optional>
 #include <stdexcept>
-#include <unordered_map>
 #include <utility>
 
 #include "planner/core/exploration/explorer.hpp"

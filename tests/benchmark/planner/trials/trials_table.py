@@ -8,8 +8,8 @@ For each figure: 90th percentile and median of both, their ratios, the upper end
 of each ratio (10,000 resamples of the buildings), and p of Wilcoxon's signed ranks (two-sided, of the logarithms of the
 ratios). With --kinds, a table of medians for each kind of building, too.
 
-With --runs: the trials beside runs of the whole chain by `lapis` in world W in the same buildings (rows of
-benchmark.sh), a line each, and the medians of both.
+With --runs: the trials beside runs of slam's in the same buildings in world W, a line each, and the means and medians of
+both. CSV_FILE has rows of benchmark.sh (the whole chain by `lapis`), or of lapis_surviving_share (tours).
 """
 
 import argparse
@@ -109,24 +109,36 @@ RUN_FIGURES = {  # heading, of trials, of runs, factor, digits
     "path, m": ("path_m", "path_length_m", 1, 0),
     "loops": ("loops", "loop_closures", 1, 0),
 }
+TOUR_FIGURES = {
+    "share of the map lost, %": ("lost", "lost", 100, 1),
+    "key-frame ATE, first pose, cm": ("ate_raw_m", "ate_m", 100, 2),
+    "path, m": ("path_m", "path_m", 1, 0),
+    "loops": ("loops", "loops", 1, 0),
+}
+
+
+def read_runs(file):
+    """{(building, seed): row} of runs of the whole chain by `lapis`, or of the ends of tours, in world W."""
+    with open(file, newline="", encoding="utf-8") as stream:
+        rows = [row for row in csv.DictReader(stream) if row["world"] == "w" and row.get("method", "lapis") == "lapis"]
+    if rows and "actual" in rows[0]:
+        rows = [{**row, "lost": 1.0 - float(row["actual"])} for row in rows]
+    return {(row["scene"], row["seed"]): row for row in rows}
 
 
 def runs_table(rows, runs):
-    pairs = [(row, run) for row in rows for run in runs
-             if (run["scene"], run["seed"], run["method"], run["world"]) == (row["scene"], row["seed"], "lapis", "w")]
+    pairs = [(row, runs[row["scene"], row["seed"]]) for row in rows if (row["scene"], row["seed"]) in runs]
     if not pairs:
         sys.exit("no trial is in a building and with a seed of these runs")
-    lines = ["| building | " + " | ".join(RUN_FIGURES) + " |", "| --- |" + " --- |" * len(RUN_FIGURES)]
-    medians = ["median"]
-    for of_trial, of_run, factor, digits in RUN_FIGURES.values():
-        both = np.median([[factor * float(row[of_trial]), factor * float(run[of_run] or "nan")] for row, run in pairs], axis=0)
-        medians.append(f"{both[0]:.{digits}f} / {both[1]:.{digits}f}")
-    for row, run in pairs:
-        cells = [row["scene"]]
-        for of_trial, of_run, factor, digits in RUN_FIGURES.values():
-            cells.append(f"{factor * float(row[of_trial]):.{digits}f} / {factor * float(run[of_run] or 'nan'):.{digits}f}")
-        lines.append("| " + " | ".join(cells) + " |")
-    return lines + ["| " + " | ".join(medians) + " |"]
+    figures = TOUR_FIGURES if "actual" in pairs[0][1] else RUN_FIGURES
+    lines = ["| building | " + " | ".join(figures) + " |", "| --- |" + " --- |" * len(figures)]
+    values = np.array([[[factor * float(row[of_trial]), factor * float(run[of_run] or "nan")]
+                        for of_trial, of_run, factor, _ in figures.values()] for row, run in pairs])
+    names = [row["scene"] for row, _ in pairs] + ["mean", "median"]
+    for name, line in zip(names, [*values, values.mean(axis=0), np.median(values, axis=0)]):
+        cells = [f"{ours:.{figure[3]}f} / {other:.{figure[3]}f}" for (ours, other), figure in zip(line, figures.values())]
+        lines.append("| " + " | ".join([name, *cells]) + " |")
+    return lines
 
 
 def main():
@@ -135,12 +147,11 @@ def main():
     parser.add_argument("--method", default="expected:expected")
     parser.add_argument("--against", default="mi_only:nearest")
     parser.add_argument("--kinds", action="store_true", help="medians for each kind of building, too")
-    parser.add_argument("--runs", metavar="CSV_FILE", help="rows of benchmark.sh, to compare the trials with")
+    parser.add_argument("--runs", metavar="CSV_FILE", help="runs to compare the trials with")
     options = parser.parse_args()
     rows = [row for file in options.files for row in read_rows(file)]
     if options.runs:
-        with open(options.runs, newline="", encoding="utf-8") as stream:
-            print("trial / run\n\n" + "\n".join(runs_table(rows, list(csv.DictReader(stream)))))
+        print("trial / run\n\n" + "\n".join(runs_table(rows, read_runs(options.runs))))
         return
     pairs = pairs_of(rows, options.method, options.against)
     if len(pairs) < 2:

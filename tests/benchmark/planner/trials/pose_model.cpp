@@ -112,7 +112,8 @@ ErrorModel ErrorModel::read(const std::string& file) {
     std::string run, seed, world, type, from, to, turn;
     for (std::string* cell : {&run, &world, &seed, &type, &from, &to, &turn}) std::getline(cells, *cell, ',');
     const EdgeRecord record = record_of(cells);
-    const std::string key = run + "," + world + "," + seed;
+    std::string key = run;
+    for (const std::string& cell : {world, seed}) key.append(",").append(cell);
     if (type == "loop") {
       loops[key].push_back(record);
     } else if (std::stoi(to) == std::stoi(from) + 1) {

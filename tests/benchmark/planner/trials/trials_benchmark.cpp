@@ -76,7 +76,8 @@ int run(const Options& options) {
   for (const std::string& scene : options.scenes) {
     for (const int seed : options.seeds) {
       for (const std::string& method : options.methods) {
-        const std::string key = scene + "," + std::to_string(seed) + "," + method;
+        std::string key = scene;
+        for (const std::string& cell : {std::to_string(seed), method}) key.append(",").append(cell);
         if (done.contains(key)) continue;
         try {
           const TrialSetting setting = setting_of(options, scene, seed, method);

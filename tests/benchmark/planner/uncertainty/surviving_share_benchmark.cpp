@@ -197,11 +197,12 @@ class Rows {
 };
 
 void travel(const Options& options, const std::string& scene, Rows& rows) {
-  auto [simulated, slam] = slam::benchmark::tour_config(options.overrides, options.worlds);
+  slam::benchmark::TourConfig config = slam::benchmark::tour_config(options.overrides, options.worlds);
+  auto& simulated = config.simulated;
   simulated.scene = scene;
   simulated.seed = options.seed;
   rows.forget();
-  Journey journey(slam.method, geometry::T_base_camera(camera_mount(simulated.robot.camera)));
+  Journey journey(config.slam.method, geometry::T_base_camera(camera_mount(simulated.robot.camera)));
   double next_s = options.period_s, now_s = 0.0;
   try {
     slam::benchmark::play_tour(simulated, {}, [&](const TourFrame& frame) {

@@ -1,7 +1,6 @@
 #include "tests/benchmark/planner/exploration/exploration.hpp"
 
 #include <cmath>
-#include <ctime>
 #include <limits>
 #include <optional>
 #include <stdexcept>
@@ -17,6 +16,7 @@
 #include "simulator/core/robot/robot.hpp"
 #include "simulator/core/truth/voxel_truth.hpp"
 #include "simulator/set_up.hpp"
+#include "tests/benchmark/planner/exploration/parts.hpp"
 
 namespace lapis::planner::benchmark {
 namespace {
@@ -29,58 +29,8 @@ constexpr double kTurnStep_rad = 0.6;  // as in decisions
 // Of a path through known space: at its end, and the time after which it is left.
 constexpr double kArrival_m = 0.4, kLongestWait_s = 10.0, kSlowest_m_s = 0.15;
 
-double cpu_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-Pose planar(const Eigen::Vector2d& position, double yaw_rad, double z_m) {
-  return geometry::make_pose({position.x(), position.y(), z_m},
-                             Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
-}
-
-simulator::RobotState at_rest(const simulator::StartPose& start) {
-  simulator::RobotState state;
-  state.position = start.position;
-  state.yaw_rad = start.yaw_rad;
-  return state;
-}
-
-/// Voxels that can be known, and how many of them are.
-class Explorable {
- public:
-  explicit Explorable(const mapping::VoxelMap& truth) {
-    truth.for_each_observed(
-        [&](const mapping::VoxelIndex& voxel, const mapping::VoxelCounts&) { voxels_.push_back(voxel); });
-    if (voxels_.empty()) throw std::runtime_error("nothing can be explored from the start");
-  }
-  double share_known(const mapping::VoxelMap& map) const {
-    std::size_t known = 0;
-    for (const mapping::VoxelIndex& voxel : voxels_) known += map.read(voxel).is_observed() ? 1 : 0;
-    return static_cast<double>(known) / static_cast<double>(voxels_.size());
-  }
-
- private:
-  std::vector<mapping::VoxelIndex> voxels_;
-};
-
-Explorable explorable(const simulator::World& world, const Pose& T_world_start, const ExplorationSetting& setting) {
-  const robot::RobotDescription& robot = setting.simulated.robot;
-  simulator::TruthConfig config;
-  config.sensing_range_m = robot.sensing_range_m;
-  config.robot_radius_m = robot.radius_m;
-  config.camera = robot::pinhole_camera(robot.camera);
-  config.mount = robot::camera_mount(robot.camera);
-  return Explorable(make_voxel_truth(world.scene(), world.raycaster(), world.nav_map(), T_world_start, config).mesh);
-}
-
 controller::Grid to_grid(const semantic_mapper::OccupancyGrid& grid) {
   return {grid.resolution_m, {grid.origin_x_m, grid.origin_y_m}, grid.width, grid.height, grid.cells};
-}
-
-ObstacleGrid to_obstacles(const semantic_mapper::OccupancyGrid& grid) {
-  return {{grid.origin_x_m, grid.origin_y_m}, grid.resolution_m, grid.width, grid.height, grid.cells};
 }
 
 /// One exploration as it goes on. The map frame is base_link at the start.
@@ -92,7 +42,7 @@ class Course {
         camera_(robot::pinhole_camera(setting.simulated.robot.camera)),
         T_base_camera_(geometry::T_base_camera(robot::camera_mount(setting.simulated.robot.camera))),
         robot_(world.nav_map(), simulator::simulation_config(setting.simulated).robot, at_rest(start_)),
-        explorable_(explorable(world, T_map_world_.inverse(), setting)), map_(mapping::kDefaultResolution_m),
+        explorable_(world, T_map_world_.inverse(), setting.simulated.robot), map_(mapping::kDefaultResolution_m),
         reader_(model_), band_(setting.planner.surroundings.grid.band), plan_(band_),
         obstacles_({}, band_, mapping::kDefaultResolution_m), view_(view_config(setting.planner)),
         surroundings_(setting.planner.surroundings, model_, mapping::kDefaultResolution_m),

@@ -86,7 +86,7 @@ std::vector<EdgeRecord> loops_of(const ErrorModel& model, const std::string& sce
 EdgeRecord record_of(std::istringstream& cells) {
   const auto next = [&] {
     std::string cell;
-    std::getline(cells, cell, ',');
+    if (!std::getline(cells, cell, ',')) throw std::invalid_argument("cut off");
     return std::stod(cell);
   };
   EdgeRecord record;
@@ -97,36 +97,49 @@ EdgeRecord record_of(std::istringstream& cells) {
   return record;
 }
 
+/// By run: scene, world, seed.
+struct Records {
+  std::map<std::string, std::map<int, LinkRecord>> links;  // by the index of their end
+  std::map<std::string, std::vector<EdgeRecord>> loops;
+
+  void take(const std::string& line) {
+    std::istringstream cells(line);
+    std::string key, world, seed, type, from, to, turn;
+    for (std::string* cell : {&key, &world, &seed, &type, &from, &to, &turn}) std::getline(cells, *cell, ',');
+    const EdgeRecord record = record_of(cells);
+    for (const std::string& cell : {world, seed}) key.append(",").append(cell);
+    if (type == "loop") {
+      loops[key].push_back(record);
+    } else if (std::stoi(to) == std::stoi(from) + 1) {
+      LinkRecord& link = links[key][std::stoi(to)];
+      link.turn_rad = std::stod(turn);
+      (type == "odometry" ? link.odometry : link.vision) = record;
+    }
+  }
+};
+
 }  // namespace
 
 ErrorModel ErrorModel::read(const std::string& file) {
   std::ifstream in(file);
   if (!in) throw std::runtime_error(file + " cannot be read");
-  ErrorModel model;
-  std::map<std::string, std::map<int, LinkRecord>> runs;  // links by the index of their end
-  std::map<std::string, std::vector<EdgeRecord>> loops;
+  Records records;
   std::string line;
   std::getline(in, line);
-  while (std::getline(in, line)) {
-    std::istringstream cells(line);
-    std::string run, seed, world, type, from, to, turn;
-    for (std::string* cell : {&run, &world, &seed, &type, &from, &to, &turn}) std::getline(cells, *cell, ',');
-    const EdgeRecord record = record_of(cells);
-    std::string key = run;
-    for (const std::string& cell : {world, seed}) key.append(",").append(cell);
-    if (type == "loop") {
-      loops[key].push_back(record);
-    } else if (std::stoi(to) == std::stoi(from) + 1) {
-      LinkRecord& link = runs[key][std::stoi(to)];
-      link.turn_rad = std::stod(turn);
-      (type == "odometry" ? link.odometry : link.vision) = record;
+  for (int number = 2; std::getline(in, line); ++number) {
+    try {
+      records.take(line);
+    } catch (const std::logic_error&) {  // std::stod, std::stoi
+      throw std::runtime_error(file + ":" + std::to_string(number) + ": not a line of lapis_surviving_share --edges");
     }
   }
-  for (auto& [name, links] : runs) {
-    auto& of_run = model.runs.emplace_back(RunRecord{name.substr(0, name.find(',')), {}, loops[name]});
+  ErrorModel model;
+  for (auto& [name, links] : records.links) {
+    RunRecord run{name.substr(0, name.find(',')), {}, records.loops[name]};
     for (auto& [to, link] : links) {
-      if (link.vision) of_run.links.push_back(link);  // a planner's drives have no others: they avoid blank walls
+      if (link.vision) run.links.push_back(link);  // a planner's drives have no others: they avoid blank walls
     }
+    if (!run.links.empty()) model.runs.push_back(std::move(run));
   }
   if (model.runs.empty() || loops_of(model, "").empty()) throw std::runtime_error(file + " has no links or no loops");
   return model;

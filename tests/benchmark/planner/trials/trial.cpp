@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <ctime>
 #include <map>
 #include <optional>
 #include <stdexcept>
@@ -17,6 +16,7 @@
 #include "simulator/core/robot/robot.hpp"
 #include "simulator/core/truth/voxel_truth.hpp"
 #include "simulator/set_up.hpp"
+#include "tests/benchmark/planner/exploration/parts.hpp"
 
 namespace lapis::planner::benchmark {
 namespace {
@@ -29,34 +29,12 @@ constexpr double kLandmark_m = 0.15;
 constexpr int kLandmarkStep_px = 14;
 constexpr double kLandmarkRange_m = 5.0;
 
-double cpu_s() {
-  timespec t{};
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) + 1e-9 * static_cast<double>(t.tv_nsec);
-}
-
-Pose planar(const Eigen::Vector2d& position, double yaw_rad, double z_m) {
-  return geometry::make_pose({position.x(), position.y(), z_m},
-                             Eigen::Quaterniond(Eigen::AngleAxisd(yaw_rad, Eigen::Vector3d::UnitZ())));
-}
-
 double wrapped(double angle) { return std::remainder(angle, 2.0 * std::numbers::pi); }
-
-simulator::RobotState at_rest(const simulator::StartPose& start) {
-  simulator::RobotState state;
-  state.position = start.position;
-  state.yaw_rad = start.yaw_rad;
-  return state;
-}
 
 semantic_mapper::MapperConfig mapper_config() {
   semantic_mapper::MapperConfig config;
   config.stakes_model.emplace();
   return config;
-}
-
-ObstacleGrid to_obstacles(const semantic_mapper::OccupancyGrid& grid) {
-  return {{grid.origin_x_m, grid.origin_y_m}, grid.resolution_m, grid.width, grid.height, grid.cells};
 }
 
 /// What the key-frames have seen: points on surfaces, by cells of the true map.
@@ -113,9 +91,7 @@ class Mission {
         obstacles_({}, setting.planner.surroundings.grid.band, mapping::kDefaultResolution_m),
         view_(view_config(setting.planner)),
         surroundings_(setting.planner.surroundings, mapping::SensorModel{}, mapping::kDefaultResolution_m),
-        explorer_(setting.planner.explorer) {
-    list_explorable();
-  }
+        explorer_(setting.planner.explorer), explorable_(world, T_map_world_.inverse(), setting.simulated.robot) {}
 
   TrialResult run() {
     const double before_s = cpu_s();
@@ -144,20 +120,6 @@ class Mission {
   Pose2 pose() const {
     const Pose T = poses_.estimate(T_map_camera_true()) * T_base_camera_.inverse();
     return {T.translation().head<2>(), std::atan2(T.linear()(1, 0), T.linear()(0, 0))};
-  }
-
-  void list_explorable() {
-    const robot::RobotDescription& robot = setting_.simulated.robot;
-    simulator::TruthConfig config;
-    config.sensing_range_m = robot.sensing_range_m;
-    config.robot_radius_m = robot.radius_m;
-    config.camera = robot::pinhole_camera(robot.camera);
-    config.mount = robot::camera_mount(robot.camera);
-    const auto truth =
-        make_voxel_truth(world_.scene(), world_.raycaster(), world_.nav_map(), T_map_world_.inverse(), config).mesh;
-    truth.for_each_observed(
-        [&](const mapping::VoxelIndex& voxel, const mapping::VoxelCounts&) { explorable_.push_back(voxel); });
-    if (explorable_.empty()) throw std::runtime_error("nothing can be explored from the start");
   }
 
   void see() {
@@ -312,11 +274,7 @@ class Mission {
     if (tick_ % 15 == 0 && result_.time_to_90_s == 0.0 && explored() >= 0.9) result_.time_to_90_s = now().seconds();
   }
 
-  double explored() const {
-    std::size_t known = 0;
-    for (const mapping::VoxelIndex& voxel : explorable_) known += true_map_.read(voxel).is_observed() ? 1 : 0;
-    return static_cast<double>(known) / static_cast<double>(explorable_.size());
-  }
+  double explored() const { return explorable_.share_known(true_map_); }
 
   TrialResult conclude() {
     follow_graph();
@@ -363,7 +321,7 @@ class Mission {
   Surroundings surroundings_;
   Explorer explorer_;
   Landmarks landmarks_;
-  std::vector<mapping::VoxelIndex> explorable_;
+  const Explorable explorable_;
   std::int64_t tick_ = 0;
   Decision decision_;
   std::optional<std::int64_t> due_;  // tick at which the decision takes effect

@@ -71,6 +71,7 @@ int run(const Options& options) {
   }
   std::ofstream rows(options.rows_file, std::ios::app);
   if (done.empty()) rows << kHeader << std::endl;
+  if (!rows) throw std::runtime_error(options.rows_file + " cannot be written");
   std::printf("%s\n", kHeader);
   bool are_complete = true;
   for (const std::string& scene : options.scenes) {
@@ -87,7 +88,7 @@ int run(const Options& options) {
                         key.c_str(), r.explored_share, r.time_to_90_s, r.done_s, r.path_m, r.ate_se3_m, r.ate_raw_m,
                         r.surviving_share, r.predicted_share, r.keyframes, r.loops, r.decisions, r.revisits,
                         1e3 * r.decision_cpu_s / std::max(r.decisions, 1), r.cpu_s);
-          rows << text << std::endl;
+          if (!(rows << text << std::endl)) throw std::runtime_error(options.rows_file + " cannot be written");
           std::printf("%s\n", text);
         } catch (const std::exception& error) {
           std::fprintf(stderr, "%s: %s\n", key.c_str(), error.what());

@@ -8,7 +8,7 @@ For each figure: 90th percentile and median of both, their ratios, the upper end
 of each ratio (10,000 resamples of the buildings), and p of Wilcoxon's signed ranks (two-sided, of the logarithms of the
 ratios). With --kinds, a table of medians for each kind of building, too.
 
-With --runs: the trials beside runs of slam's in the same buildings in world W, a line each, and the means and medians of
+With --runs: the trials beside runs in the same buildings in world W, a line each, and the means and medians of
 both. CSV_FILE has rows of benchmark.sh (the whole chain by `lapis`), or of lapis_surviving_share (tours).
 """
 
@@ -30,15 +30,18 @@ FIGURES = {  # heading, factor, digits
     "path_m": ("path, m", 1, 1),
 }
 NUMBERS = ("explored", "path_m", "ate_se3_m", "ate_raw_m", "surviving")
-RESAMPLES = 10000
+
+
+def read_csv(file):
+    try:
+        with open(file, newline="", encoding="utf-8") as stream:
+            return list(csv.DictReader(stream))
+    except OSError as error:
+        sys.exit(f"{file}: {error.strerror}")
 
 
 def read_rows(file):
-    try:
-        with open(file, newline="", encoding="utf-8") as stream:
-            rows = list(csv.DictReader(stream))
-    except OSError as error:
-        sys.exit(f"{file}: {error.strerror}")
+    rows = read_csv(file)
     missing = {"scene", "seed", "method", *NUMBERS} - set(rows[0] if rows else {})
     if missing:
         sys.exit(f"{file}: not written by lapis_planner_trials --rows, the column {min(missing)} is not there")
@@ -65,7 +68,7 @@ def column(pairs, figure):
 def ratio_cells(values, share):
     """Both quantiles, their ratio, and the upper end of its one-sided 90 % interval."""
     ours, other = np.quantile(values, share, axis=0)
-    picks = np.random.default_rng(1).integers(0, len(values), (RESAMPLES, len(values)))
+    picks = np.random.default_rng(1).integers(0, len(values), (tables.RESAMPLES, len(values)))
     resampled = np.quantile(values[picks], share, axis=1)
     upper = np.quantile(resampled[:, 0] / resampled[:, 1], 0.9)
     return ours, other, ours / other, upper
@@ -119,8 +122,7 @@ TOUR_FIGURES = {
 
 def read_runs(file):
     """{(building, seed): row} of runs of the whole chain by `lapis`, or of the ends of tours, in world W."""
-    with open(file, newline="", encoding="utf-8") as stream:
-        rows = [row for row in csv.DictReader(stream) if row["world"] == "w" and row.get("method", "lapis") == "lapis"]
+    rows = [row for row in read_csv(file) if row.get("world") == "w" and row.get("method", "lapis") == "lapis"]
     if rows and "actual" in rows[0]:
         rows = [{**row, "lost": 1.0 - float(row["actual"])} for row in rows]
     return {(row["scene"], row["seed"]): row for row in rows}

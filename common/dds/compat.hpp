@@ -6,6 +6,7 @@
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
+#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -15,6 +16,9 @@
 #include <fastdds/dds/subscriber/Subscriber.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
+
+#include <cstdint>
+#include <vector>
 #if __has_include(<fastdds/config.hpp>)
 #define LAPIS_FASTDDS_3 1
 #include <fastdds/rtps/common/WriteParams.hpp>
@@ -99,6 +103,27 @@ inline fdds::InstanceHandle_t no_instance() { return fdds::HANDLE_NIL; }
 #else
 inline fdds::InstanceHandle_t no_instance() { return fdds::InstanceHandle_t(); }
 #endif
+
+/// Reports the participants that discovery finds.
+class ParticipantListener : public fdds::DomainParticipantListener {
+ public:
+  /// Called from threads of DDS.
+  virtual void found(const rtps::GUID_t& participant, const std::vector<unsigned char>& user_data) = 0;
+
+ private:
+#ifdef LAPIS_FASTDDS_3
+  void on_participant_discovery(fdds::DomainParticipant*, rtps::ParticipantDiscoveryStatus status,
+                                const fdds::ParticipantBuiltinTopicData& info, bool&) final {
+    if (status == rtps::ParticipantDiscoveryStatus::DISCOVERED_PARTICIPANT) found(info.guid, info.user_data.getValue());
+  }
+#else
+  void on_participant_discovery(fdds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& discovered) final {
+    using Info = rtps::ParticipantDiscoveryInfo;
+    const auto& info = discovered.info;
+    if (discovered.status == Info::DISCOVERED_PARTICIPANT) found(info.m_guid, info.m_userData.getValue());
+  }
+#endif
+};
 
 inline DdsDuration duration(std::int64_t nanoseconds) {
   return DdsDuration(static_cast<std::int32_t>(nanoseconds / 1'000'000'000),

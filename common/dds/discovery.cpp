@@ -1,5 +1,6 @@
 #include "common/dds/discovery.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <cstdlib>
 #include <sstream>
@@ -7,6 +8,8 @@
 
 namespace lapis::dds {
 namespace {
+
+constexpr std::size_t kLongestRun = 64;
 
 int parse_domain(const std::string& text) {
   int domain = -1;
@@ -27,6 +30,17 @@ std::vector<std::string> split_peers(const std::string& text) {
   return peers;
 }
 
+std::string parse_run(const std::string& text) {
+  const auto is_allowed = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '_';
+  };
+  if (text.size() > kLongestRun || !std::all_of(text.begin(), text.end(), is_allowed)) {
+    throw std::runtime_error("LAPIS_RUN='" + text + "' is not an id: at most " + std::to_string(kLongestRun) +
+                             " letters, digits, dots, dashes and underscores");
+  }
+  return text;
+}
+
 DiscoveryRange parse_range(const std::string& text) {
   if (text.empty() || text == "SUBNET" || text == "SYSTEM_DEFAULT") return DiscoveryRange::kSubnet;
   if (text == "OFF") return DiscoveryRange::kOff;
@@ -44,6 +58,7 @@ DiscoverySettings discovery_from_environment(const Environment& environment) {
   DiscoverySettings settings;
   const std::string domain = environment("ROS_DOMAIN_ID").value_or("");
   if (!domain.empty()) settings.domain = parse_domain(domain);
+  settings.run = parse_run(environment("LAPIS_RUN").value_or(""));
   if (environment("ROS_LOCALHOST_ONLY").value_or("0") == "1") {
     settings.range = DiscoveryRange::kLocalhost;
     return settings;

@@ -21,18 +21,33 @@ void Executor::at(Clock::time_point due, std::function<void()> action) {
 
 void Executor::spin() {
   while (!stopping_) spin_once(std::chrono::seconds(1));
-  for (Source* source : sources_) source->dispatch();  // samples that arrived before the stop
+  constexpr int kLastTurns = 100;  // for the samples that arrived before the stop; a flood would have no end
+  for (int turn = 0; turn < kLastTurns && dispatch_all() > 0; ++turn) {
+  }
 }
 
 void Executor::spin_once(Clock::duration timeout) {
-  const auto patience = std::chrono::duration_cast<std::chrono::nanoseconds>(until_next_timer(timeout));
+  const auto longest = has_more_ ? Clock::duration::zero() : until_next_timer(timeout);
+  const auto patience = std::chrono::duration_cast<std::chrono::nanoseconds>(longest);
   compat::fdds::ConditionSeq active;
   wait_set_.wait(active, compat::duration(patience.count()));
   bool worked = guard_.get_trigger_value();
   if (worked) guard_.set_trigger_value(false);  // an unconditional reset could lose a wake() that came in between
-  for (Source* source : sources_) worked |= source->dispatch() > 0;
+  worked |= dispatch_all() > 0;
   worked |= run_due_timers();
   if (worked && cycle_ && !stopping_) cycle_();
+}
+
+/// Gives every source its turn; returns the number of samples.
+std::size_t Executor::dispatch_all() {
+  std::size_t samples = 0;
+  has_more_ = false;
+  for (Source* source : sources_) {
+    const std::size_t taken = source->dispatch(kMostPerTurn);
+    samples += taken;
+    has_more_ |= taken >= kMostPerTurn;
+  }
+  return samples;
 }
 
 void Executor::stop() {
@@ -44,7 +59,13 @@ void Executor::wake() { guard_.set_trigger_value(true); }
 
 Executor::Clock::duration Executor::until_next_timer(Clock::duration longest) const {
   const auto now = Clock::now();
-  for (const auto& timer : timers_) longest = std::min(longest, std::max(timer.due - now, Clock::duration::zero()));
+  const auto wait_for = [&](Clock::time_point due) {
+    longest = std::min(longest, std::max(due - now, Clock::duration::zero()));
+  };
+  for (const auto& timer : timers_) wait_for(timer.due);
+  for (const Source* source : sources_) {
+    if (const auto due = source->due()) wait_for(*due);
+  }
   return longest;
 }
 

@@ -25,6 +25,9 @@ class Executor {
   void at(Clock::time_point due, std::function<void()> action);
   void set_cycle(std::function<void()> cycle) { cycle_ = std::move(cycle); }
 
+  /// Samples of one source that are handled before the next source's turn, so that none starves the others.
+  static constexpr std::size_t kMostPerTurn = 100;
+
   /// Handles events until stop().
   void spin();
   /// Handles all pending events and waits at most `timeout` for the first one; for clients and tests.
@@ -42,10 +45,12 @@ class Executor {
   };
   Clock::duration until_next_timer(Clock::duration longest) const;
   bool run_due_timers();
+  std::size_t dispatch_all();
 
   compat::fdds::WaitSet wait_set_;
   compat::fdds::GuardCondition guard_;
   std::vector<Source*> sources_;
+  bool has_more_ = false;  // a source may have samples left, of which the wait set says nothing
   std::vector<Timer> timers_;
   std::function<void()> cycle_;
   std::atomic<bool> stopping_{false};

@@ -4,6 +4,7 @@
 #include <compare>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 
 #include "common/dds/compat.hpp"
 
@@ -20,6 +21,18 @@ inline Gid to_gid(const compat::rtps::GUID_t& guid) {
   for (std::size_t i = 0; i < 12; ++i) gid[i] = guid.guidPrefix.value[i];
   for (std::size_t i = 0; i < 4; ++i) gid[12 + i] = guid.entityId.value[i];
   return gid;
+}
+
+/// The bytes in hexadecimal, separated by dots, as ROS 2 prints them.
+inline std::string to_text(const Gid& gid) {
+  constexpr const char* kDigits = "0123456789abcdef";
+  std::string text;
+  for (const std::uint8_t byte : gid) {
+    if (!text.empty()) text += '.';
+    text += kDigits[byte >> 4U];
+    text += kDigits[byte & 15U];
+  }
+  return text;
 }
 
 }  // namespace lapis::dds

@@ -65,9 +65,11 @@ void apply_discovery(const DiscoverySettings& discovery, compat::fdds::DomainPar
   }
 }
 
-compat::fdds::DomainParticipant* create_participant(int domain, const compat::fdds::DomainParticipantQos& qos) {
+compat::fdds::DomainParticipant* create_participant(int domain, const compat::fdds::DomainParticipantQos& qos,
+                                                    compat::fdds::DomainParticipantListener* listener = nullptr) {
   auto* factory = compat::fdds::DomainParticipantFactory::get_instance();
-  auto* participant = factory->create_participant(static_cast<std::uint32_t>(domain), qos);
+  auto* participant = factory->create_participant(static_cast<std::uint32_t>(domain), qos, listener,
+                                                  compat::fdds::StatusMask::none());
   if (participant == nullptr) {
     throw std::runtime_error("DDS participant could not be created in domain " + std::to_string(domain) +
                              "; see the Fast DDS message above");
@@ -83,15 +85,29 @@ rmw_dds_common::msg::Gid to_message(const Gid& gid) {
 
 }  // namespace
 
-Participant::Participant(const ParticipantOptions& options) : options_(options) {
+class Participant::Listener : public compat::ParticipantListener {
+ public:
+  explicit Listener(Peers& peers) : peers_(peers) {}
+  void found(const compat::rtps::GUID_t& participant, const std::vector<unsigned char>& user_data) override {
+    peers_.add(to_gid(participant), {user_data.begin(), user_data.end()});
+  }
+
+ private:
+  Peers& peers_;
+};
+
+Participant::Participant(const ParticipantOptions& options)
+    : options_(options), peers_(options.discovery.run), listener_(std::make_unique<Listener>(peers_)) {
   compat::fdds::DomainParticipantQos qos;
   qos.name("/");  // the enclave, which is also the name that rmw_fastrtps gives its participants
-  const std::string enclave = "enclave=/;";
-  qos.user_data().setValue(std::vector<unsigned char>(enclave.begin(), enclave.end()));
+  std::string user_data = "enclave=/;";
+  if (!peers_.run().empty()) user_data += "run=" + peers_.run() + ";";
+  qos.user_data().setValue(std::vector<unsigned char>(user_data.begin(), user_data.end()));
   apply_transport(options, qos);
   apply_discovery(options.discovery, qos);
   compat::announce_no_type_information(qos);
-  participant_ = create_participant(options.discovery.domain, qos);
+  participant_ = create_participant(options.discovery.domain, qos, listener_.get());
+  peers_.add(gid(), user_data);
   // Fast DDS announces a participant before it listens, and other participants answer only the first announcement. So a
   // second participant is created and deleted, and the first one hears the answers to its announcement: decision 0029.
   compat::fdds::DomainParticipantFactory::get_instance()->delete_participant(
@@ -126,6 +142,11 @@ compat::fdds::Topic& Participant::topic(const std::string& dds_name, const std::
 }
 
 Gid Participant::gid() const { return to_gid(participant_->guid()); }
+
+std::string Participant::describe_other_run(const std::string& run) const {
+  return "run " + run + " is in DDS domain " + std::to_string(options_.discovery.domain) +
+         ", too: what it publishes is refused; ROS_DOMAIN_ID gives one of the two another domain";
+}
 
 void Participant::announce_graph() {
   rmw_dds_common::msg::NodeEntitiesInfo node;

@@ -7,6 +7,7 @@
 #include "common/dds/compat.hpp"
 #include "common/dds/discovery.hpp"
 #include "common/dds/gid.hpp"
+#include "common/dds/peers.hpp"
 
 namespace lapis::dds {
 
@@ -37,6 +38,10 @@ class Participant {
   compat::fdds::Topic& topic(const std::string& dds_name, const std::string& type_name, compat::fdds::TypeSupport type);
 
   Gid gid() const;
+  /// The other participants of the domain.
+  Peers& peers() { return peers_; }
+  /// A line for the log: another run has been found in the domain, what follows, and the remedy.
+  std::string describe_other_run(const std::string& run) const;
   const std::string& name_space() const { return options_.name_space; }
 
   /// Endpoints report themselves, so that the ROS 2 graph can list them.
@@ -46,7 +51,11 @@ class Participant {
   void announce_graph();
 
  private:
+  class Listener;
+
   ParticipantOptions options_;
+  Peers peers_;
+  std::unique_ptr<Listener> listener_;
   compat::fdds::DomainParticipant* participant_ = nullptr;
   compat::fdds::Publisher* publisher_ = nullptr;
   compat::fdds::Subscriber* subscriber_ = nullptr;

@@ -8,8 +8,9 @@
 namespace lapis::dds {
 
 Reader::Reader(Participant& participant, const std::string& dds_name, const std::string& type_name,
-               compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos)
-    : participant_(participant), dds_name_(dds_name), is_latched_(qos.latched) {
+               compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos, Writers writers)
+    : participant_(participant), dds_name_(dds_name), is_latched_(qos.latched),
+      writers_(participant.peers(), writers == Writers::kOne) {
   auto& topic = participant.topic(dds_name, type_name, std::move(type));
   const auto mask = compat::fdds::StatusMask::subscription_matched()
                     << compat::fdds::StatusMask::requested_incompatible_qos();
@@ -30,7 +31,18 @@ Reader::Taken Reader::take(void* sample, compat::fdds::SampleInfo& info) {
   // Latched (and so all keyed) topics skip sequence numbers by design.
   if (!is_latched_ && newest != 0 && sequence > newest + 1) missed_ += sequence - newest - 1;
   newest = std::max(newest, sequence);
+  if (!is_accepted(writer)) return Taken::kRefused;
   return info.valid_data ? Taken::kSample : Taken::kKeyEnded;
+}
+
+bool Reader::is_accepted(const Gid& writer) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (writers_.accepts(writer, StreamOwner::Clock::now())) return true;
+  }
+  ++refused_;
+  refused_writer_ = writer;
+  return false;
 }
 
 std::uint64_t Reader::received(const Gid& writer) const {
@@ -40,20 +52,17 @@ std::uint64_t Reader::received(const Gid& writer) const {
 
 std::size_t Reader::matched() const {
   const std::lock_guard lock(mutex_);
-  return writers_.size();
+  return writers_.matched();
 }
 
 bool Reader::is_matched(const Gid& writer) const {
   const std::lock_guard lock(mutex_);
-  return writers_.contains(writer);
+  return writers_.is_matched(writer);
 }
 
 bool Reader::is_participant_matched(const Gid& participant) const {
-  const auto is_of_it = [&](const Gid& writer) {
-    return std::equal(writer.begin(), writer.begin() + kGidPrefixBytes, participant.begin());
-  };
   const std::lock_guard lock(mutex_);
-  return std::any_of(writers_.begin(), writers_.end(), is_of_it);
+  return writers_.is_participant_matched(participant);
 }
 
 void Reader::on_subscription_matched(compat::fdds::DataReader* /*reader*/,
@@ -61,9 +70,9 @@ void Reader::on_subscription_matched(compat::fdds::DataReader* /*reader*/,
   const Gid writer = to_gid(compat::rtps::iHandle2GUID(status.last_publication_handle));
   const std::lock_guard lock(mutex_);
   if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is that of the match
-    writers_.insert(writer);
+    writers_.match(writer);
   } else {
-    writers_.erase(writer);
+    writers_.unmatch(writer);
   }
 }
 

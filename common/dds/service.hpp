@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <deque>
 #include <functional>
 #include <map>
 #include <optional>
@@ -21,11 +22,14 @@ struct RequestId {
   Gid client{};
 };
 
-/// Serves one service; requests are handled on the executor's thread.
+/// Serves one service; requests are handled on the executor's thread. Equal requests that wait together are handled
+/// once and answered alike, and after each handling the service rests for as long as the handling took, so that a flood
+/// of requests takes at most half of the process's time.
 template <class Service>
 class ServiceServer : public Source {
   using Request = typename idl::ServiceSupport<Service>::Request;
   using Response = typename idl::ServiceSupport<Service>::Response;
+  using Clock = std::chrono::steady_clock;
 
  public:
   using Handler = std::function<Response(const Request&)>;
@@ -33,31 +37,38 @@ class ServiceServer : public Source {
   ServiceServer(Participant& participant, const ServiceTopic<Service>& service, Handler handler)
       : Source(participant, request_dds_name(full_name(service, participant.name_space())),
                idl::TypeSupport<Request>::kDdsName, make_type_support<Request>(), idl::TypeSupport<Request>::kHash,
-               kService),
+               kService, Writers::kMany),
         reply_(participant, reply_dds_name(full_name(service, participant.name_space())),
                idl::TypeSupport<Response>::kDdsName, make_type_support<Response>(), idl::TypeSupport<Response>::kHash,
                kService),
         handler_(std::move(handler)) {}
 
-  std::size_t dispatch() override {
-    std::size_t count = 0;
-    compat::fdds::SampleInfo info;
-    for (auto taken = take(&request_, info); taken != Taken::kNothing; taken = take(&request_, info)) {
-      const auto deadline = std::chrono::steady_clock::now() + kMatchingPatience;
-      if (taken == Taken::kSample) pending_.push_back({request_id(info), handler_(request_), deadline});
-      ++count;
-    }
+  std::size_t dispatch(std::size_t most) override {
+    const std::size_t count = take_each(most, &request_, [this](const auto& info) {
+      waiting_.push_back({request_id(info), request_});
+      if (waiting_.size() > kMostWaiting) waiting_.pop_front();
+    });
+    if (!waiting_.empty() && Clock::now() >= rested_) handle_oldest();
     send_replies();
     return count;
   }
 
+  std::optional<Clock::time_point> due() const override {
+    return waiting_.empty() ? std::nullopt : std::optional(rested_);
+  }
+
  private:
   static constexpr std::chrono::seconds kMatchingPatience{2};
+  static constexpr std::size_t kMostWaiting = 1000;
 
+  struct Waiting {
+    RequestId id;
+    Request request;
+  };
   struct Pending {
     RequestId id;
     Response response;
-    std::chrono::steady_clock::time_point deadline;  // the reply waits until then for the client's reader to match
+    Clock::time_point deadline;  // the reply waits until then for the client's reader to match
   };
 
   static RequestId request_id(const compat::fdds::SampleInfo& info) {
@@ -69,9 +80,22 @@ class ServiceServer : public Source {
     return id;
   }
 
+  void handle_oldest() {
+    const Request request = waiting_.front().request;
+    const auto begin = Clock::now();
+    const Response response = handler_(request);
+    const auto end = Clock::now();
+    rested_ = end + (end - begin);
+    std::erase_if(waiting_, [&](const Waiting& waiting) {
+      if (!(waiting.request == request)) return false;
+      pending_.push_back({waiting.id, response, end + kMatchingPatience});
+      return true;
+    });
+  }
+
   // A VOLATILE writer loses a reply whose reader it has not matched yet; such replies wait for the match.
   void send_replies() {
-    const auto now = std::chrono::steady_clock::now();
+    const auto now = Clock::now();
     std::erase_if(pending_, [this, now](Pending& pending) {
       const bool names_reader = (pending.id.client[15] & 0x04) != 0;  // entity kind of readers
       if (names_reader && !reply_.is_matched(pending.id.client) && now < pending.deadline) return false;
@@ -85,6 +109,8 @@ class ServiceServer : public Source {
   Writer reply_;
   Handler handler_;
   Request request_;
+  std::deque<Waiting> waiting_;
+  Clock::time_point rested_;  // when the next request may be handled
   std::vector<Pending> pending_;
 };
 
@@ -98,7 +124,7 @@ class ServiceClient : public Source {
   ServiceClient(Participant& participant, const ServiceTopic<Service>& service)
       : Source(participant, reply_dds_name(full_name(service, participant.name_space())),
                idl::TypeSupport<Response>::kDdsName, make_type_support<Response>(), idl::TypeSupport<Response>::kHash,
-               kService),
+               kService, Writers::kMany),
         request_(participant, request_dds_name(full_name(service, participant.name_space())),
                  idl::TypeSupport<Request>::kDdsName, make_type_support<Request>(), idl::TypeSupport<Request>::kHash,
                  kService) {}
@@ -125,18 +151,12 @@ class ServiceClient : public Source {
     return response;
   }
 
-  std::size_t dispatch() override {
-    std::size_t count = 0;
-    compat::fdds::SampleInfo info;
-    for (auto taken = take(&response_, info); taken != Taken::kNothing; taken = take(&response_, info)) {
+  std::size_t dispatch(std::size_t most) override {
+    return take_each(most, &response_, [this](const auto& info) {
       const Gid client = to_gid(info.related_sample_identity.writer_guid());
       const bool is_mine = client == gid() || client == request_.gid();  // all clients receive all replies
-      if (taken == Taken::kSample && is_mine) {
-        replies_[info.related_sample_identity.sequence_number().to64long()] = response_;
-      }
-      ++count;
-    }
-    return count;
+      if (is_mine) replies_[info.related_sample_identity.sequence_number().to64long()] = response_;
+    });
   }
 
  private:

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
+#include <optional>
 #include <utility>
 
 #include "common/dds/reader.hpp"
@@ -13,9 +15,25 @@ namespace lapis::dds {
 class Source : public Reader {
  public:
   using Reader::Reader;
-  /// Takes all samples that are available and calls the handler for each; returns the number of samples, including
-  /// those that only end a key.
-  virtual std::size_t dispatch() = 0;
+  /// Takes up to `most` available samples and calls the handler for each; returns the number of samples taken,
+  /// including those that only end a key and those that were refused.
+  virtual std::size_t dispatch(std::size_t most) = 0;
+  /// When dispatch() has work even if no sample arrives.
+  virtual std::optional<std::chrono::steady_clock::time_point> due() const { return std::nullopt; }
+
+ protected:
+  /// Takes up to `most` samples into `sample` and calls `handle(info)` for each that carries data.
+  template <class Handle>
+  std::size_t take_each(std::size_t most, void* sample, const Handle& handle) {
+    std::size_t count = 0;
+    compat::fdds::SampleInfo info;
+    for (; count < most; ++count) {
+      const Taken taken = take(sample, info);
+      if (taken == Taken::kNothing) break;
+      if (taken == Taken::kSample) handle(info);
+    }
+    return count;
+  }
 };
 
 /// Receives the messages of one topic of the topic table. The handler runs on the executor's thread and may move from
@@ -27,17 +45,12 @@ class Subscription : public Source {
 
   Subscription(Participant& participant, const Topic<Message>& topic, Handler handler)
       : Source(participant, lapis::dds::dds_name(topic, participant.name_space()), Support::kDdsName,
-               make_type_support<Message>(), Support::kHash, topic.qos),
+               make_type_support<Message>(), Support::kHash, topic.qos,
+               topic.has_many_writers ? Writers::kMany : Writers::kOne),
         handler_(std::move(handler)) {}
 
-  std::size_t dispatch() override {
-    std::size_t count = 0;
-    compat::fdds::SampleInfo info;
-    for (auto taken = take(&message_, info); taken != Taken::kNothing; taken = take(&message_, info)) {
-      if (taken == Taken::kSample) handler_(message_);
-      ++count;
-    }
-    return count;
+  std::size_t dispatch(std::size_t most) override {
+    return take_each(most, &message_, [this](const auto&) { handler_(message_); });
   }
 
  private:

@@ -17,6 +17,7 @@ struct Topic {
   const char* rate;        ///< when
   const char* meaning;     ///< one line for docs/topics.md
   bool is_global = false;  ///< true: never prefixed by --namespace (/tf, /clock, ...)
+  bool has_many_writers = false;
 };
 
 /// A service; the names of its request and reply topics derive from its name.

@@ -1,5 +1,6 @@
 #include "common/dds/writer.hpp"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "common/dds/endpoint_qos.hpp"
@@ -56,7 +57,9 @@ bool Writer::wait_until_acknowledged(double timeout_s) {
 
 std::size_t Writer::matched() const {
   const std::lock_guard lock(mutex_);
-  return readers_.size();
+  return static_cast<std::size_t>(std::count_if(readers_.begin(), readers_.end(), [this](const Gid& reader) {
+    return participant_.peers().kinship(reader) != Kinship::kOtherRun;
+  }));
 }
 
 bool Writer::is_matched(const Gid& reader) const {

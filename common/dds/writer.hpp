@@ -36,7 +36,7 @@ class Writer : private compat::fdds::DataWriterListener {
   std::uint64_t failed() const { return failed_; }
   const std::string& dds_name() const { return dds_name_; }
   Gid gid() const { return gid_; }
-  /// Number of matched readers.
+  /// Number of matched readers that are not of another run.
   std::size_t matched() const;
   bool is_matched(const Gid& reader) const;
   /// Number of matches since the start; an increase means that a new reader has matched.

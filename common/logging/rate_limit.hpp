@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
@@ -8,17 +9,20 @@
 
 namespace lapis::logging {
 
-/// Lets a repeated message through once per period and counts the suppressed ones. For use by one thread only.
+/// Lets a repeated message through once per period and counts the suppressed ones. Keys may quote what others send:
+/// from the kMostKeys-th on all new ones count as one. For use by one thread only.
 class RateLimit {
  public:
   using Clock = std::chrono::steady_clock;
+  static constexpr std::size_t kMostKeys = 200;
 
   explicit RateLimit(Clock::duration period = std::chrono::seconds(5)) : period_(period) {}
 
   /// Returns nothing when the message with this key was let through less than a period ago, otherwise the number of
   /// messages that were suppressed since then.
   std::optional<std::uint64_t> pass(const std::string& key, Clock::time_point now = Clock::now()) {
-    auto [it, is_new] = seen_.try_emplace(key, Seen{now, 0});
+    const bool has_place = seen_.contains(key) || seen_.size() + 1 < kMostKeys;
+    auto [it, is_new] = seen_.try_emplace(has_place ? key : "", Seen{now, 0});
     if (!is_new && now - it->second.last < period_) {
       ++it->second.held_back;
       return std::nullopt;

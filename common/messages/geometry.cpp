@@ -64,7 +64,9 @@ std::array<double, 36> to_row_major(const geometry::Matrix6d& covariance) {
 std::string StaticTransforms::add(const tf2_msgs::msg::TFMessage& message) {
   std::string problem;
   for (const auto& transform : message.transforms()) {
-    if (const auto T = from_message(transform.transform())) {
+    if (links_.size() >= kMostFrames && !links_.contains(transform.child_frame_id())) {
+      problem = "there are " + std::to_string(kMostFrames) + " frames already";
+    } else if (const auto T = from_message(transform.transform())) {
       links_[transform.child_frame_id()] = {transform.header().frame_id(), *T};
     } else {
       problem = T.reason;

@@ -25,7 +25,10 @@ std::array<double, 36> to_row_major(const geometry::Matrix6d& covariance);
 /// Static transforms by child frame, as announced on /tf_static so far (the transforms of several writers are merged).
 class StaticTransforms {
  public:
-  /// Stores the valid transforms; returns the reason why the last of the others was refused, or an empty text.
+  static constexpr std::size_t kMostFrames = 1000;
+
+  /// Stores the valid transforms, of up to kMostFrames child frames; returns the reason why the last of the others was
+  /// refused, or an empty text.
   std::string add(const tf2_msgs::msg::TFMessage& message);
   /// T_parent_child along the chain of announced transforms; nothing until the chain is complete.
   std::optional<geometry::Pose> find(const std::string& parent, const std::string& child) const;

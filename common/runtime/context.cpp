@@ -92,6 +92,26 @@ void Context::add_incompatible(const Endpoint& endpoint, diagnostic_msgs::msg::D
   }
 }
 
+/// Reports samples that were refused because of who wrote them, and other runs that have appeared in the domain.
+void Context::report_strangers(diagnostic_msgs::msg::DiagnosticStatus& entry) {
+  dds::Peers& peers = participant_.peers();
+  if (!peers.run().empty()) entry.values().push_back(key_value("run", peers.run()));
+  for (const std::string& run : peers.take_other_runs()) spdlog::warn("{}", participant_.describe_other_run(run));
+  const auto report = [&](const dds::Source& source) {
+    if (source.refused() == 0) return;
+    entry.values().push_back(key_value("refused samples " + source.dds_name(), std::to_string(source.refused())));
+    if (rate_limit_.pass("refused " + source.dds_name())) {
+      const bool is_of_other_run = peers.kinship(source.refused_writer()) == dds::Kinship::kOtherRun;
+      spdlog::warn("{}: {} samples refused, the last of writer {}: {}", source.dds_name(), source.refused(),
+                   dds::to_text(source.refused_writer()),
+                   is_of_other_run ? "it belongs to another run" : "another process publishes this topic");
+    }
+  };
+  for (const auto& source : sources_) report(*source);
+  for (const auto& service : services_) report(*service);
+  if (clock_source_) report(*clock_source_);
+}
+
 void Context::publish_diagnostics() {
   diagnostic_msgs::msg::DiagnosticStatus entry;
   entry.level(static_cast<std::uint8_t>(status_.level()));
@@ -116,6 +136,7 @@ void Context::publish_diagnostics() {
       entry.values().push_back(key_value("missed samples " + source->dds_name(), std::to_string(source->missed())));
     }
   }
+  report_strangers(entry);
   if (const std::uint64_t undecodable = dds::undecodable_samples; undecodable > 0) {
     entry.values().push_back(key_value("samples that cannot be decoded", std::to_string(undecodable)));
     if (rate_limit_.pass("undecodable")) spdlog::warn("samples that cannot be decoded: {}", undecodable);

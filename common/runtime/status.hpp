@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <string>
@@ -10,6 +11,10 @@ namespace lapis::runtime {
 /// Status of a component, which is published on /diagnostics.
 class Status {
  public:
+  static constexpr std::size_t kMostCounters = 100;
+  static constexpr std::size_t kLongestKey = 200;
+  static constexpr const char* kOtherCounters = "other counters";
+
   enum class Level { kOk = 0, kWarn = 1, kError = 2 };
 
   void set(Level level, const std::string& message) {
@@ -19,8 +24,13 @@ class Status {
   }
   void value(const std::string& key, const std::string& text) { values_[key] = text; }
   void value(const std::string& key, std::uint64_t number) { values_[key] = std::to_string(number); }
-  /// Adds to a counter, for example of dropped input; the key says what is counted and why.
-  void count(const std::string& key, std::uint64_t more = 1) { counters_[key] += more; }
+  /// Adds to a counter, for example of dropped input; the key says what is counted and why. Keys may quote what others
+  /// send: they are cut to kLongestKey bytes, and from the kMostCounters-th on all new ones share one counter.
+  void count(const std::string& key, std::uint64_t more = 1) {
+    const std::string name = key.substr(0, kLongestKey);
+    const bool has_place = counters_.contains(name) || counters_.size() + 1 < kMostCounters;
+    counters_[has_place ? name : kOtherCounters] += more;
+  }
   std::uint64_t counter(const std::string& key) const {
     const auto it = counters_.find(key);
     return it == counters_.end() ? 0 : it->second;

@@ -12,6 +12,7 @@ inline constexpr dds::Topic<diagnostic_msgs::msg::DiagnosticArray> kDiagnostics{
     "all but the supervisor",
     "1 Hz and on change",
     "health, counters, CPU time and memory of the process",
+    true,
     true};
 
 }  // namespace lapis::topics

@@ -11,6 +11,7 @@ inline constexpr dds::Topic<lapis_msgs::msg::Heartbeat> kHeartbeat{"/heartbeat",
                                                                    "all but the supervisor",
                                                                    "2 Hz and before long work",
                                                                    "life, phase and activity, for the supervisor",
+                                                                   true,
                                                                    true};
 
 }  // namespace lapis::topics

@@ -21,6 +21,7 @@ inline constexpr dds::Topic<lapis_msgs::msg::Ack> kAck{"/sim/ack",
                                                        "all that take part",
                                                        "each stage of a tick",
                                                        "answer to a tick with the counts of samples published",
+                                                       true,
                                                        true};
 
 }  // namespace lapis::topics

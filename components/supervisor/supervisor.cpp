@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
 #include <ctime>
 #include <fstream>
 #include <iomanip>
 #include <iostream>
+#include <random>
 #include <sstream>
 
 #include "common/config/schema.hpp"
@@ -45,7 +47,17 @@ std::string read_text(const std::filesystem::path& file) {
   return text.str();
 }
 
+/// Gives the run an id, for this process and those that it starts, unless it has one already: processes on several
+/// machines are given the same.
+void name_run() {
+  std::random_device random;
+  std::ostringstream id;
+  id << std::hex << std::setfill('0') << std::setw(8) << random() << std::setw(8) << random();
+  setenv("LAPIS_RUN", id.str().c_str(), 0);  // NOLINT(concurrency-mt-unsafe): before threads start
+}
+
 dds::ParticipantOptions participant_options() {
+  name_run();
   dds::ParticipantOptions options;
   options.node_name = "supervisor";
   options.discovery = dds::discovery_from_environment();
@@ -246,6 +258,10 @@ void Supervisor::turn() {
   }
   turned_s_ = now;
   take_signals();
+  for (const std::string& run : participant_.peers().take_other_runs()) {
+    progress_.end();
+    std::cerr << title_ << ": " << participant_.describe_other_run(run) << "\n";
+  }
   for (auto& process : processes_) {
     if (!is_over()) look_after(process);
   }

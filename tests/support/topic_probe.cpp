@@ -52,7 +52,7 @@ bool TopicProbe::wait_until_known_by(const std::string& component, Seconds deadl
   });
   return wait_until(
       [&] {
-        newest.dispatch();
+        newest.dispatch(dds::Executor::kMostPerTurn);
         return is_known;
       },
       deadline);

@@ -17,7 +17,7 @@ namespace lapis::test {
 
 /// What every node says of itself once its endpoints exist. Not in the topic table: it belongs to ROS 2's middleware.
 inline constexpr dds::Topic<rmw_dds_common::msg::ParticipantEntitiesInfo> kRosGraph{
-    "ros_discovery_info", {.depth = 100, .latched = true}, "all", "on change", "ROS 2 graph", true};
+    "ros_discovery_info", {.depth = 100, .latched = true}, "all", "on change", "ROS 2 graph", true, true};
 
 /// Takes part in the DDS domain of a test: collects what is published and publishes what a test wants to say.
 /// Nothing happens in the background: samples are taken while the test waits.

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <chrono>
 #include <string>
+#include <thread>
 
 #include "common/messages/time.hpp"
 #include "common/runtime/run_component.hpp"
@@ -15,12 +17,14 @@ namespace lapis::test {
 struct EchoConfig {
   int tiles = 30;
   std::string greeting = "hello";
+  double answer_s = 0.0;
 };
 
 template <class Field>
 void describe(Field& field, EchoConfig& c) {
   field("tiles", c.tiles, config::in_range(0, 10000), "keyed samples published at the start");
   field("greeting", c.greeting, config::anything(), "answer of the service");
+  field("answer_s", c.answer_s, config::in_range(0.0, 10.0), "time that an answer of the service takes [s]");
 }
 
 /// Answers every colour image with an odometry of the same stamp; carries a topic of every kind.
@@ -34,7 +38,9 @@ class EchoComponent {
       : context_(context), odometry_(context.advertise(topics::kSlamOdometry)),
         path_(context.advertise(topics::kKeyframePath)), tiles_(context.advertise(topics::kVoxelTiles)) {
     context.subscribe(topics::kColor, [this](Image& m) { store(m); });
-    context.serve(topics::kSaveMap, [config](const auto&) {
+    context.serve(topics::kSaveMap, [this, config](const auto&) {
+      std::this_thread::sleep_for(std::chrono::duration<double>(config.answer_s));  // work, as a save would be
+      context_.status().value("answers", ++answers_);
       std_srvs::srv::Trigger_Response response;
       response.success(true);
       response.message(config.greeting);
@@ -89,7 +95,7 @@ class EchoComponent {
   dds::Publisher<nav_msgs::msg::Path>& path_;
   dds::Publisher<lapis_msgs::msg::VoxelTile>& tiles_;
   time::StampBuffer<Image> images_;
-  std::uint64_t images_answered_ = 0;
+  std::uint64_t images_answered_ = 0, answers_ = 0;
 };
 
 }  // namespace lapis::test

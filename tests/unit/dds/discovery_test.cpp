@@ -50,6 +50,15 @@ TEST(Discovery, StaticPeersAreSeparatedBySemicolons) {
   EXPECT_EQ(settings({{"ROS_STATIC_PEERS", ";10.0.0.7;;"}}).static_peers, (std::vector<std::string>{"10.0.0.7"}));
 }
 
+TEST(Discovery, RunIsAnIdThatFitsIntoUserData) {
+  EXPECT_EQ(settings({}).run, "");
+  EXPECT_EQ(settings({{"LAPIS_RUN", "Run_7.a-b"}}).run, "Run_7.a-b");
+  EXPECT_EQ(settings({{"LAPIS_RUN", "a"}, {"ROS_LOCALHOST_ONLY", "1"}}).run, "a");
+  for (const std::string& bad : {std::string("a;b"), std::string("a=b"), std::string("a b"), std::string(65, 'a')}) {
+    EXPECT_THROW(settings({{"LAPIS_RUN", bad}}), std::runtime_error) << bad;
+  }
+}
+
 TEST(Discovery, LocalhostOnlyOverridesTheOtherTwo) {
   const auto found = settings({{"ROS_LOCALHOST_ONLY", "1"},
                                {"ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"},

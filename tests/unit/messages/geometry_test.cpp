@@ -108,6 +108,18 @@ TEST(StaticTransforms, LastAnnouncementOfAChildWins) {
   EXPECT_TRUE(transforms.find("base_link", "camera")->isApprox(second, 1e-12));
 }
 
+TEST(StaticTransforms, InventedFramesDoNotGrowWithoutEnd) {
+  StaticTransforms transforms;
+  const Pose T = Pose::Identity();
+  EXPECT_EQ(transforms.add(announce({link("base_link", "camera", T)})), "");
+  for (std::size_t i = 0; i + 1 < StaticTransforms::kMostFrames; ++i) {
+    EXPECT_EQ(transforms.add(announce({link("a", "invented_" + std::to_string(i), T)})), "");
+  }
+  EXPECT_NE(transforms.add(announce({link("a", "one_more", T)})), "");
+  EXPECT_FALSE(transforms.find("a", "one_more"));
+  EXPECT_EQ(transforms.add(announce({link("base_link", "camera", T)})), "") << "known frames may change";
+}
+
 TEST(StaticTransforms, RingEnds) {
   StaticTransforms transforms;
   const Pose T = Pose::Identity();

@@ -25,5 +25,15 @@ TEST(RateLimit, KeysDoNotHoldEachOtherBack) {
   EXPECT_FALSE(limit.pass("depth", start));
 }
 
+TEST(RateLimit, NewKeysCountAsOneWhenThereAreMany) {
+  RateLimit limit(milliseconds(1000));
+  const RateLimit::Clock::time_point start{};
+  std::size_t passed = 0;
+  for (int i = 0; i < 10'000; ++i) passed += limit.pass("frame " + std::to_string(i), start) ? 1 : 0;
+  EXPECT_EQ(passed, RateLimit::kMostKeys);
+  EXPECT_FALSE(limit.pass("frame 0", start));
+  EXPECT_EQ(limit.pass("frame 0", start + milliseconds(1000)), 1u);
+}
+
 }  // namespace
 }  // namespace lapis::logging

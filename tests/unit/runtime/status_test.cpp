@@ -33,5 +33,23 @@ TEST(Status, CountersAddUp) {
   EXPECT_EQ(status.counters().size(), 1u);
 }
 
+// Foreign text may become part of a key, so a flood of names must not grow without end.
+TEST(Status, NewCountersShareOneWhenThereAreMany) {
+  Status status;
+  status.count("dropped");
+  for (int i = 0; i < 10'000; ++i) status.count("frame " + std::to_string(i));
+  status.count("dropped");
+  EXPECT_EQ(status.counters().size(), Status::kMostCounters);
+  EXPECT_EQ(status.counter("dropped"), 2u);
+  EXPECT_EQ(status.counter("frame 0"), 1u);
+  EXPECT_EQ(status.counter(Status::kOtherCounters), 10'001u - (Status::kMostCounters - 1));
+}
+
+TEST(Status, LongKeysAreCut) {
+  Status status;
+  status.count(std::string(1'000'000, 'x'));
+  EXPECT_EQ(status.counters().begin()->first.size(), Status::kLongestKey);
+}
+
 }  // namespace
 }  // namespace lapis::runtime

@@ -32,7 +32,8 @@ std::vector<std::string> split_peers(const std::string& text) {
 
 std::string parse_run(const std::string& text) {
   const auto is_allowed = [](char c) {
-    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' || c == '_';
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '.' || c == '-' ||
+           c == '_';
   };
   if (text.size() > kLongestRun || !std::all_of(text.begin(), text.end(), is_allowed)) {
     throw std::runtime_error("LAPIS_RUN='" + text + "' is not an id: at most " + std::to_string(kLongestRun) +

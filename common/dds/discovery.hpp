@@ -30,9 +30,9 @@ using Environment = std::function<std::optional<std::string>(const std::string& 
 std::optional<std::string> process_environment(const std::string& name);
 
 /// Reads ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and ROS_LOCALHOST_ONLY (1 forces LOCALHOST and
-/// ignores the other two), and LAPIS_RUN. An unknown range means LOCALHOST, as in rcl. Throws std::runtime_error when the
-/// domain is not a number from 0 to kLargestDomain, or the run not of letters, digits, dots, dashes and underscores.
-/// ROS_DISCOVERY_SERVER is read by Fast DDS itself.
+/// ignores the other two), and LAPIS_RUN. An unknown range means LOCALHOST, as in rcl. Throws std::runtime_error when
+/// the domain is not a number from 0 to kLargestDomain, or the run not of letters, digits, dots, dashes and
+/// underscores. ROS_DISCOVERY_SERVER is read by Fast DDS itself.
 DiscoverySettings discovery_from_environment(const Environment& environment = process_environment);
 
 }  // namespace lapis::dds

@@ -68,8 +68,8 @@ void apply_discovery(const DiscoverySettings& discovery, compat::fdds::DomainPar
 compat::fdds::DomainParticipant* create_participant(int domain, const compat::fdds::DomainParticipantQos& qos,
                                                     compat::fdds::DomainParticipantListener* listener = nullptr) {
   auto* factory = compat::fdds::DomainParticipantFactory::get_instance();
-  auto* participant = factory->create_participant(static_cast<std::uint32_t>(domain), qos, listener,
-                                                  compat::fdds::StatusMask::none());
+  auto* participant =
+      factory->create_participant(static_cast<std::uint32_t>(domain), qos, listener, compat::fdds::StatusMask::none());
   if (participant == nullptr) {
     throw std::runtime_error("DDS participant could not be created in domain " + std::to_string(domain) +
                              "; see the Fast DDS message above");

@@ -14,6 +14,9 @@
 #include <fastdds/dds/subscriber/DataReaderListener.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
+#include <fastdds/dds/topic/ContentFilteredTopic.hpp>
+#include <fastdds/dds/topic/IContentFilter.hpp>
+#include <fastdds/dds/topic/IContentFilterFactory.hpp>
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
@@ -54,6 +57,7 @@ template <class ReaderQos>
 void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
   qos.reliable_reader_qos().times.heartbeat_response_delay = response_delay;
 }
+inline const fdds::ReturnCode_t kReturnOk = fdds::RETCODE_OK;
 using Payload = rtps::SerializedPayload_t&;
 inline void announce_no_type_information(fdds::TypeSupport&) {}
 inline void announce_no_type_information(fdds::DomainParticipantQos& qos) {
@@ -81,6 +85,7 @@ template <class ReaderQos>
 void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
   qos.reliable_reader_qos().times.heartbeatResponseDelay = response_delay;
 }
+inline const eprosima::fastrtps::types::ReturnCode_t kReturnOk = eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
 using Payload = rtps::SerializedPayload_t*;
 inline void announce_no_type_information(fdds::TypeSupport& type) {
   type->auto_fill_type_object(false);
@@ -103,6 +108,28 @@ inline fdds::InstanceHandle_t no_instance() { return fdds::HANDLE_NIL; }
 #else
 inline fdds::InstanceHandle_t no_instance() { return fdds::InstanceHandle_t(); }
 #endif
+
+/// A filter of one reader, by the writer that signed a sample with its own identity (Writer::write). Fast DDS applies
+/// it when a sample arrives, before it takes a place in the reader's history, and does not say there who wrote the
+/// sample.
+class SignatureFilter : private fdds::IContentFilter, public fdds::IContentFilterFactory {
+ public:
+  virtual ~SignatureFilter() = default;
+  /// Called from threads of DDS. @param signer unknown() for a sample that is not signed
+  virtual bool admits(const rtps::GUID_t& signer) const = 0;
+
+ private:
+  /// The end of a key has no payload, cannot be signed, and ends nothing but what its own writer has written.
+  bool evaluate(const SerializedPayload& payload, const FilterSampleInfo& info, const rtps::GUID_t&) const final {
+    return payload.length == 0 || admits(info.sample_identity.writer_guid());
+  }
+  ReturnCode_t create_content_filter(const char*, const char*, const fdds::TopicDataType*, const char*,
+                                     const ParameterSeq&, fdds::IContentFilter*& filter) final {
+    filter = this;
+    return kReturnOk;
+  }
+  ReturnCode_t delete_content_filter(const char*, fdds::IContentFilter*) final { return kReturnOk; }
+};
 
 /// Reports the participants that discovery finds.
 class ParticipantListener : public fdds::DomainParticipantListener {

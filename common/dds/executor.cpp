@@ -24,6 +24,7 @@ void Executor::spin() {
   constexpr int kLastTurns = 100;  // for the samples that arrived before the stop; a flood would have no end
   for (int turn = 0; turn < kLastTurns && dispatch_all() > 0; ++turn) {
   }
+  for (Source* source : sources_) source->finish();
 }
 
 void Executor::spin_once(Clock::duration timeout) {

@@ -30,7 +30,8 @@ class Executor {
 
   /// Handles events until stop().
   void spin();
-  /// Handles all pending events and waits at most `timeout` for the first one; for clients and tests.
+  /// Gives every source with pending samples a turn, and waits at most `timeout` for the first one; for clients and
+  /// tests.
   void spin_once(Clock::duration timeout);
   /// Ends spin(); may be called from any thread.
   void stop();

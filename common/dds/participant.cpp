@@ -106,7 +106,7 @@ Participant::Participant(const ParticipantOptions& options)
   apply_transport(options, qos);
   apply_discovery(options.discovery, qos);
   compat::announce_no_type_information(qos);
-  participant_ = create_participant(options.discovery.domain, qos, listener_.get());
+  participant_.reset(create_participant(options.discovery.domain, qos, listener_.get()));
   peers_.add(gid(), user_data);
   // Fast DDS announces a participant before it listens, and other participants answer only the first announcement. So a
   // second participant is created and deleted, and the first one hears the answers to its announcement: decision 0029.
@@ -121,9 +121,26 @@ Participant::Participant(const ParticipantOptions& options)
   if (graph_writer_ == nullptr) throw std::runtime_error("DDS writer of ros_discovery_info could not be created");
 }
 
-Participant::~Participant() {
-  participant_->delete_contained_entities();
-  compat::fdds::DomainParticipantFactory::get_instance()->delete_participant(participant_);
+Participant::~Participant() = default;
+
+void Participant::Deleter::operator()(compat::fdds::DomainParticipant* participant) const {
+  participant->delete_contained_entities();
+  compat::fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
+}
+
+/// Each filter has a name of its own, because a writer applies a filter of that name that its own process has.
+compat::fdds::ContentFilteredTopic& Participant::filter(compat::fdds::Topic& topic, compat::SignatureFilter& filter) {
+  const std::string name = "lapis/" + to_text(gid()) + "/" + std::to_string(++filters_);
+  participant_->register_content_filter_factory(name.c_str(), &filter);
+  auto* filtered = participant_->create_contentfilteredtopic(name, &topic, "signature", {}, name.c_str());
+  if (filtered == nullptr) throw std::runtime_error("DDS topic " + topic.get_name() + " could not be filtered");
+  return *filtered;
+}
+
+void Participant::drop(compat::fdds::ContentFilteredTopic& topic) {
+  const std::string name = topic.get_name();
+  participant_->delete_contentfilteredtopic(&topic);
+  participant_->unregister_content_filter_factory(name.c_str());
 }
 
 compat::fdds::Topic& Participant::topic(const std::string& dds_name, const std::string& type_name,

@@ -27,7 +27,7 @@ class Participant {
  public:
   /// Throws std::runtime_error, which names the domain, when DDS cannot create the participant.
   explicit Participant(const ParticipantOptions& options);
-  ~Participant();
+  ~Participant();  // in the source file, where Listener is known
   Participant(const Participant&) = delete;
   Participant& operator=(const Participant&) = delete;
 
@@ -36,6 +36,10 @@ class Participant {
   /// The topic with a DDS name, created at its first use. Throws std::runtime_error when the name is in use with
   /// another type.
   compat::fdds::Topic& topic(const std::string& dds_name, const std::string& type_name, compat::fdds::TypeSupport type);
+
+  /// A topic whose samples the filter admits. Whoever makes it drops it, after its reader and before the filter.
+  compat::fdds::ContentFilteredTopic& filter(compat::fdds::Topic& topic, compat::SignatureFilter& filter);
+  void drop(compat::fdds::ContentFilteredTopic& topic);
 
   Gid gid() const;
   /// The other participants of the domain.
@@ -53,10 +57,15 @@ class Participant {
  private:
   class Listener;
 
+  struct Deleter {
+    void operator()(compat::fdds::DomainParticipant* participant) const;
+  };
+
   ParticipantOptions options_;
   Peers peers_;
   std::unique_ptr<Listener> listener_;
-  compat::fdds::DomainParticipant* participant_ = nullptr;
+  std::unique_ptr<compat::fdds::DomainParticipant, Deleter> participant_;  // after what its threads use
+  int filters_ = 0;
   compat::fdds::Publisher* publisher_ = nullptr;
   compat::fdds::Subscriber* subscriber_ = nullptr;
   compat::fdds::DataWriter* graph_writer_ = nullptr;

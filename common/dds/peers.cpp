@@ -28,8 +28,9 @@ void Peers::add(const Gid& participant, const std::string& user_data) {
   const std::string run = value_of(user_data, "run");
   if (run.empty()) return;
   const std::lock_guard lock(mutex_);
-  runs_[prefix_of(participant)] = run;
-  if (run_.empty() || run == run_ || std::find(other_runs_.begin(), other_runs_.end(), run) != other_runs_.end())
+  if (runs_.size() < kMostParticipants) runs_[prefix_of(participant)] = run;
+  if (other_runs_.size() >= kMostRuns || run_.empty() || run == run_ ||
+      std::find(other_runs_.begin(), other_runs_.end(), run) != other_runs_.end())
     return;
   other_runs_.push_back(run);
   new_runs_.push_back(run);

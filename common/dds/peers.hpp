@@ -13,7 +13,7 @@ namespace lapis::dds {
 /// How another participant of the domain is related to this process.
 enum class Kinship {
   kOwnRun,
-  kNoRun,    ///< it names no run, as the processes of ROS 2 do, or this process names none
+  kNoRun,    ///< it names no run, or has not been found yet, or this process names none
   kOtherRun  ///< it belongs to another run, whose data must not mix with that of this one
 };
 
@@ -33,6 +33,9 @@ class Peers {
   std::vector<std::string> take_other_runs();
 
  private:
+  static constexpr std::size_t kMostParticipants = 10'000;  // that name a run; further ones count as of no run
+  static constexpr std::size_t kMostRuns = 100;             // that are named
+
   using Prefix = std::array<std::uint8_t, kGidPrefixBytes>;
   static Prefix prefix_of(const Gid& gid);
 

@@ -26,7 +26,7 @@ inline constexpr Qos kLatchedByMany{.depth = 1, .latched = true, .reader_depth =
 inline constexpr Qos kCommand{.depth = 1};
 inline constexpr Qos kLockstep{.depth = 100, .urgent = true};
 inline constexpr Qos kKeyedTiles{.depth = 1, .latched = true, .keyed = true};
-inline constexpr Qos kService{.depth = 10, .reader_depth = 100};  ///< requests wait while one is handled
+inline constexpr Qos kService{.depth = 100};  ///< requests wait while one is handled
 
 inline constexpr std::int64_t kUrgentHeartbeatNs = 20'000'000;
 inline constexpr std::int64_t kHeartbeatNs = 100'000'000;

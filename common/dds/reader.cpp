@@ -7,42 +7,81 @@
 
 namespace lapis::dds {
 
+class Reader::Filter : public compat::SignatureFilter {
+ public:
+  explicit Filter(Reader& reader) : reader_(reader) {}
+  bool admits(const compat::rtps::GUID_t& signer) const override { return reader_.admits(signer); }
+
+ private:
+  Reader& reader_;
+};
+
 Reader::Reader(Participant& participant, const std::string& dds_name, const std::string& type_name,
                compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos, Writers writers)
-    : participant_(participant), dds_name_(dds_name), is_latched_(qos.latched),
-      writers_(participant.peers(), writers == Writers::kOne) {
-  auto& topic = participant.topic(dds_name, type_name, std::move(type));
+    : participant_(participant), dds_name_(dds_name), is_latched_(qos.latched), is_keyed_(qos.keyed),
+      writers_(participant.peers()) {
+  compat::fdds::TopicDescription* topic = &participant.topic(dds_name, type_name, std::move(type));
+  if (writers == Writers::kOne && !participant.peers().run().empty()) {
+    filter_ = std::make_unique<Filter>(*this);
+    topic = filtered_ = &participant.filter(static_cast<compat::fdds::Topic&>(*topic), *filter_);
+  }
   const auto mask = compat::fdds::StatusMask::subscription_matched()
                     << compat::fdds::StatusMask::requested_incompatible_qos();
-  reader_ = participant.subscriber().create_datareader(&topic, reader_qos(qos, type_hash), this, mask);
+  reader_ = participant.subscriber().create_datareader(topic, reader_qos(qos, type_hash), this, mask);
   if (reader_ == nullptr) throw std::runtime_error("DDS reader of " + dds_name + " could not be created");
   reader_->get_statuscondition().set_enabled_statuses(compat::fdds::StatusMask::data_available());
   gid_ = to_gid(reader_->guid());
   participant.add_reader(gid_);
 }
 
-Reader::~Reader() { participant_.subscriber().delete_datareader(reader_); }
+Reader::~Reader() {
+  participant_.subscriber().delete_datareader(reader_);
+  if (filtered_ != nullptr) participant_.drop(*filtered_);
+}
 
 Reader::Taken Reader::take(void* sample, compat::fdds::SampleInfo& info) {
-  if (!compat::ok(reader_->take_next_sample(sample, &info))) return Taken::kNothing;
+  if (!compat::ok(reader_->take_next_sample(sample, &info))) {
+    if (is_keyed_) newest_ = reached_;
+    return Taken::kNothing;
+  }
   const Gid writer = to_gid(info.sample_identity.writer_guid());
+  if (!is_accepted(writer)) return Taken::kRefused;
   const std::uint64_t sequence = info.sample_identity.sequence_number().to64long();
-  std::uint64_t& newest = newest_[writer];
+  std::uint64_t& newest = reached_[writer];
   // Latched (and so all keyed) topics skip sequence numbers by design.
   if (!is_latched_ && newest != 0 && sequence > newest + 1) missed_ += sequence - newest - 1;
   newest = std::max(newest, sequence);
-  if (!is_accepted(writer)) return Taken::kRefused;
+  // Samples of a keyed topic come in the order of their keys, so none is missing only when none is left.
+  if (!is_keyed_) newest_[writer] = newest;
   return info.valid_data ? Taken::kSample : Taken::kKeyEnded;
 }
 
-bool Reader::is_accepted(const Gid& writer) {
-  {
-    const std::lock_guard lock(mutex_);
-    if (writers_.accepts(writer, StreamOwner::Clock::now())) return true;
-  }
-  ++refused_;
-  refused_writer_ = writer;
+bool Reader::admits(const compat::rtps::GUID_t& signer) {
+  const bool is_signed = signer != compat::rtps::GUID_t::unknown();
+  const std::lock_guard lock(mutex_);
+  if (writers_.admits(is_signed ? std::optional(to_gid(signer)) : std::nullopt)) return true;
+  note_refusal(is_signed ? to_gid(signer) : Gid{});
   return false;
+}
+
+bool Reader::is_accepted(const Gid& writer) {
+  const std::lock_guard lock(mutex_);
+  const bool is_welcome = filter_ ? writers_.accepts(writer, StreamOwner::Clock::now())
+                                  : participant_.peers().kinship(writer) != Kinship::kOtherRun;
+  if (is_welcome) return true;
+  note_refusal(writer);
+  return false;
+}
+
+/// The mutex must be locked.
+void Reader::note_refusal(const Gid& writer) {
+  ++refused_.count;
+  refused_.newest = writer;
+}
+
+Reader::Refused Reader::refused() const {
+  const std::lock_guard lock(mutex_);
+  return refused_;
 }
 
 std::uint64_t Reader::received(const Gid& writer) const {

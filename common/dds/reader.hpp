@@ -3,6 +3,7 @@
 #include <atomic>
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <mutex>
 #include <string>
 
@@ -33,10 +34,12 @@ class Reader : private compat::fdds::DataReaderListener {
   /// Number of samples that were overwritten or lost before they could be taken.
   std::uint64_t missed() const { return missed_; }
   std::uint64_t incompatible() const { return incompatible_; }
-  /// Number of samples that were refused, because they came from another run or from a second writer of the stream.
-  std::uint64_t refused() const { return refused_; }
-  /// The writer of the newest refused sample.
-  const Gid& refused_writer() const { return refused_writer_; }
+  /// Samples that were refused, because they came from another run or from a second writer of the stream.
+  struct Refused {
+    std::uint64_t count = 0;
+    Gid newest{};  ///< writer of the newest one; zeros when it has not signed
+  };
+  Refused refused() const;
   const std::string& dds_name() const { return dds_name_; }
   /// True when writers give a late joiner their last samples.
   bool is_latched() const { return is_latched_; }
@@ -49,7 +52,11 @@ class Reader : private compat::fdds::DataReaderListener {
   compat::fdds::StatusCondition& condition() { return reader_->get_statuscondition(); }
 
  private:
+  class Filter;
+
+  bool admits(const compat::rtps::GUID_t& signer);
   bool is_accepted(const Gid& writer);
+  void note_refusal(const Gid& writer);
   void on_subscription_matched(compat::fdds::DataReader* reader,
                                const compat::fdds::SubscriptionMatchedStatus& status) override;
   void on_requested_incompatible_qos(compat::fdds::DataReader* reader,
@@ -57,16 +64,19 @@ class Reader : private compat::fdds::DataReaderListener {
 
   Participant& participant_;
   std::string dds_name_;
-  compat::fdds::DataReader* reader_ = nullptr;
   bool is_latched_ = false;
+  bool is_keyed_ = false;
   Gid gid_{};
-  std::map<Gid, std::uint64_t> newest_;
+  std::map<Gid, std::uint64_t> newest_;   // all samples up to this number have been taken, or never will be
+  std::map<Gid, std::uint64_t> reached_;  // largest number taken
   std::uint64_t missed_ = 0;
-  std::uint64_t refused_ = 0;
-  Gid refused_writer_{};
   std::atomic<std::uint64_t> incompatible_{0};
-  mutable std::mutex mutex_;  // guards writers_, which DDS threads change
+  mutable std::mutex mutex_;  // guards writers_ and refused_, which DDS threads change
   StreamOwner writers_;
+  Refused refused_;
+  std::unique_ptr<Filter> filter_;
+  compat::fdds::ContentFilteredTopic* filtered_ = nullptr;  // null: the topic is not filtered
+  compat::fdds::DataReader* reader_ = nullptr;
 };
 
 }  // namespace lapis::dds

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <deque>
 #include <functional>
@@ -23,8 +24,8 @@ struct RequestId {
 };
 
 /// Serves one service; requests are handled on the executor's thread. Equal requests that wait together are handled
-/// once and answered alike, and after each handling the service rests for as long as the handling took, so that a flood
-/// of requests takes at most half of the process's time.
+/// once and answered alike, unless every call counts, and after each handling the service rests for as long as the
+/// handling took, so that a flood of requests takes at most half of the process's time.
 template <class Service>
 class ServiceServer : public Source {
   using Request = typename idl::ServiceSupport<Service>::Request;
@@ -41,16 +42,21 @@ class ServiceServer : public Source {
         reply_(participant, reply_dds_name(full_name(service, participant.name_space())),
                idl::TypeSupport<Response>::kDdsName, make_type_support<Response>(), idl::TypeSupport<Response>::kHash,
                kService),
-        handler_(std::move(handler)) {}
+        handler_(std::move(handler)), every_call_counts_(service.every_call_counts) {}
 
   std::size_t dispatch(std::size_t most) override {
-    const std::size_t count = take_each(most, &request_, [this](const auto& info) {
+    const std::size_t room = kMostWaiting - waiting_.size();  // the others wait in the reader
+    std::size_t count = take_each(std::min(most, room), &request_, [this](const auto& info) {
       waiting_.push_back({request_id(info), request_});
-      if (waiting_.size() > kMostWaiting) waiting_.pop_front();
     });
-    if (!waiting_.empty() && Clock::now() >= rested_) handle_oldest();
+    if (!waiting_.empty() && Clock::now() >= rested_) count += handle_oldest();
     send_replies();
     return count;
+  }
+
+  void finish() override {
+    while (!waiting_.empty()) handle_oldest();
+    send_replies();
   }
 
   std::optional<Clock::time_point> due() const override {
@@ -59,7 +65,7 @@ class ServiceServer : public Source {
 
  private:
   static constexpr std::chrono::seconds kMatchingPatience{2};
-  static constexpr std::size_t kMostWaiting = 1000;
+  static constexpr std::size_t kMostWaiting = 100;
 
   struct Waiting {
     RequestId id;
@@ -80,14 +86,16 @@ class ServiceServer : public Source {
     return id;
   }
 
-  void handle_oldest() {
+  /// Returns the number of requests that are answered.
+  std::size_t handle_oldest() {
     const Request request = waiting_.front().request;
     const auto begin = Clock::now();
     const Response response = handler_(request);
     const auto end = Clock::now();
     rested_ = end + (end - begin);
-    std::erase_if(waiting_, [&](const Waiting& waiting) {
-      if (!(waiting.request == request)) return false;
+    bool is_first = true;
+    return std::erase_if(waiting_, [&](const Waiting& waiting) {
+      if (!(waiting.request == request) || (every_call_counts_ && !std::exchange(is_first, false))) return false;
       pending_.push_back({waiting.id, response, end + kMatchingPatience});
       return true;
     });
@@ -108,6 +116,7 @@ class ServiceServer : public Source {
 
   Writer reply_;
   Handler handler_;
+  bool every_call_counts_;
   Request request_;
   std::deque<Waiting> waiting_;
   Clock::time_point rested_;  // when the next request may be handled

@@ -4,7 +4,13 @@
 
 namespace lapis::dds {
 
-/// The order of writers of the own run is kept, because samples of one that has left may still be taken.
+StreamOwner::Peer& StreamOwner::note(const Gid& writer) {
+  const auto [it, is_new] = writers_.try_emplace(writer);
+  if (is_new) it->second.ordinal = ++seen_;
+  return it->second;
+}
+
+/// Writers of the own run keep their place in the order: one whose connection was lost comes back as the older one.
 void StreamOwner::unmatch(const Gid& writer) {
   const auto it = writers_.find(writer);
   if (it == writers_.end()) return;
@@ -30,31 +36,27 @@ bool StreamOwner::is_participant_matched(const Gid& participant) const {
   });
 }
 
-bool StreamOwner::accepts(const Gid& writer, Clock::time_point now) {
-  const Kinship kinship = peers_.kinship(writer);
-  if (kinship == Kinship::kOtherRun) return false;
-  if (!has_one_writer_ || peers_.run().empty()) return true;
-  if (!(kinship == Kinship::kOwnRun ? succeeds(writer) : substitutes(writer, now))) return false;
-  owner_ = writer;
-  heard_ = now;
+bool StreamOwner::admits(const std::optional<Gid>& signer) {
+  if (!signer) return !owner_ || !is_matched(*owner_);
+  switch (peers_.kinship(*signer)) {
+    case Kinship::kOtherRun: return false;
+    case Kinship::kNoRun: return true;  // discovery has not told its run yet, but it has one
+    case Kinship::kOwnRun: break;
+  }
+  const std::uint64_t ordinal = note(*signer).ordinal;
+  if (owner_ && ordinal < note(*owner_).ordinal) return false;
+  owner_ = *signer;
   return true;
 }
 
-/// Whether a writer of the own run may have the stream.
-bool StreamOwner::succeeds(const Gid& writer) const {
-  const bool has_kin = owner_ && peers_.kinship(*owner_) == Kinship::kOwnRun;
-  return !has_kin || ordinal(writer) >= ordinal(*owner_);
-}
-
-/// Whether a writer without a run may have the stream.
-bool StreamOwner::substitutes(const Gid& writer, Clock::time_point now) const {
-  if (!owner_ || writer == *owner_ || !is_matched(*owner_)) return true;
-  return peers_.kinship(*owner_) != Kinship::kOwnRun && now - heard_ > kSilence;
-}
-
-std::uint64_t StreamOwner::ordinal(const Gid& writer) const {
-  const auto it = writers_.find(writer);
-  return it == writers_.end() ? 0 : it->second.ordinal;
+bool StreamOwner::accepts(const Gid& writer, Clock::time_point now) {
+  const Kinship kinship = peers_.kinship(writer);
+  if (kinship != Kinship::kNoRun || peers_.run().empty()) return kinship != Kinship::kOtherRun;
+  const bool has_other = stranger_ && *stranger_ != writer && is_matched(*stranger_) && now - heard_ <= kSilence;
+  if (has_other) return false;
+  stranger_ = writer;
+  heard_ = now;
+  return true;
 }
 
 }  // namespace lapis::dds

@@ -18,6 +18,8 @@ class Source : public Reader {
   /// Takes up to `most` available samples and calls the handler for each; returns the number of samples taken,
   /// including those that only end a key and those that were refused.
   virtual std::size_t dispatch(std::size_t most) = 0;
+  /// Does at the end of the process what dispatch() has put off.
+  virtual void finish() {}
   /// When dispatch() has work even if no sample arrives.
   virtual std::optional<std::chrono::steady_clock::time_point> due() const { return std::nullopt; }
 

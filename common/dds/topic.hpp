@@ -27,7 +27,8 @@ struct ServiceTopic {
   const char* name;
   const char* from;
   const char* meaning;
-  bool is_global = false;  ///< true: never prefixed by --namespace
+  bool is_global = false;          ///< true: never prefixed by --namespace
+  bool every_call_counts = false;  ///< false: equal calls that wait together are answered as one
 };
 
 template <class Message>

@@ -36,8 +36,14 @@ bool Writer::write(const void* sample, compat::rtps::WriteParams& params) {
   return true;
 }
 
+/// In a run, a sample is signed with the identity of its writer, by which the filters of readers know it.
 bool Writer::write(const void* sample) {
   compat::rtps::WriteParams params;
+  if (!participant_.peers().run().empty()) {
+    compat::rtps::SampleIdentity signature;
+    signature.writer_guid(writer_->guid());
+    params.related_sample_identity(signature);
+  }
   return write(sample, params);
 }
 
@@ -73,7 +79,7 @@ void Writer::on_publication_matched(compat::fdds::DataWriter* /*writer*/,
   const std::lock_guard lock(mutex_);
   if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is that of the match
     readers_.insert(reader);
-    ++total_matches_;
+    if (participant_.peers().kinship(reader) != Kinship::kOtherRun) ++total_matches_;
   } else {
     readers_.erase(reader);
   }

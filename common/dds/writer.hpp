@@ -39,7 +39,8 @@ class Writer : private compat::fdds::DataWriterListener {
   /// Number of matched readers that are not of another run.
   std::size_t matched() const;
   bool is_matched(const Gid& reader) const;
-  /// Number of matches since the start; an increase means that a new reader has matched.
+  /// Number of matches since the start, but for readers of another run; an increase means that a new reader has
+  /// matched.
   std::uint64_t total_matches() const { return total_matches_; }
   /// Number of readers that were refused because of an incompatible QoS.
   std::uint64_t incompatible() const { return incompatible_; }

@@ -98,13 +98,14 @@ void Context::report_strangers(diagnostic_msgs::msg::DiagnosticStatus& entry) {
   if (!peers.run().empty()) entry.values().push_back(key_value("run", peers.run()));
   for (const std::string& run : peers.take_other_runs()) spdlog::warn("{}", participant_.describe_other_run(run));
   const auto report = [&](const dds::Source& source) {
-    if (source.refused() == 0) return;
-    entry.values().push_back(key_value("refused samples " + source.dds_name(), std::to_string(source.refused())));
+    const auto [count, writer] = source.refused();
+    if (count == 0) return;
+    entry.values().push_back(key_value("refused samples " + source.dds_name(), std::to_string(count)));
     if (rate_limit_.pass("refused " + source.dds_name())) {
-      const bool is_of_other_run = peers.kinship(source.refused_writer()) == dds::Kinship::kOtherRun;
-      spdlog::warn("{}: {} samples refused, the last of writer {}: {}", source.dds_name(), source.refused(),
-                   dds::to_text(source.refused_writer()),
-                   is_of_other_run ? "it belongs to another run" : "another process publishes this topic");
+      spdlog::warn("{}: {} samples refused, the last of {}; {}", source.dds_name(), count,
+                   writer == dds::Gid{} ? "a writer without a run" : "writer " + dds::to_text(writer),
+                   peers.kinship(writer) == dds::Kinship::kOtherRun ? "it belongs to another run"
+                                                                    : "another process publishes this topic");
     }
   };
   for (const auto& source : sources_) report(*source);

@@ -32,7 +32,7 @@ class Status {
     counters_[has_place ? name : kOtherCounters] += more;
   }
   std::uint64_t counter(const std::string& key) const {
-    const auto it = counters_.find(key);
+    const auto it = counters_.find(key.substr(0, kLongestKey));
     return it == counters_.end() ? 0 : it->second;
   }
 

@@ -11,7 +11,7 @@ inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kSaveMap{"/semantic_m
 inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kPause{"/sim/pause", "simulator", "no further tick", true};
 inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kRun{"/sim/run", "simulator", "resume after a pause", true};
 inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kStep{"/sim/step", "simulator", "pause, but for one tick",
-                                                                 true};
+                                                                 true, true};
 inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kReset{"/sim/reset", "simulator",
                                                                   "back to the start and to time 0: a new run", true};
 inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kStartExploring{"/planner/start", "planner",

@@ -50,10 +50,11 @@ std::string read_text(const std::filesystem::path& file) {
 /// Gives the run an id, for this process and those that it starts, unless it has one already: processes on several
 /// machines are given the same.
 void name_run() {
+  if (!dds::process_environment("LAPIS_RUN").value_or("").empty()) return;
   std::random_device random;
   std::ostringstream id;
   id << std::hex << std::setfill('0') << std::setw(8) << random() << std::setw(8) << random();
-  setenv("LAPIS_RUN", id.str().c_str(), 0);  // NOLINT(concurrency-mt-unsafe): before threads start
+  setenv("LAPIS_RUN", id.str().c_str(), 1);  // NOLINT(concurrency-mt-unsafe): before threads start
 }
 
 dds::ParticipantOptions participant_options() {

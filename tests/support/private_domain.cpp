@@ -85,7 +85,7 @@ int reserve_domain() {
 }  // namespace
 
 std::string enter_private_domain() {
-  for (const char* name : {"ROS_STATIC_PEERS", "ROS_LOCALHOST_ONLY", "ROS_DISCOVERY_SERVER",
+  for (const char* name : {"ROS_STATIC_PEERS", "ROS_LOCALHOST_ONLY", "ROS_DISCOVERY_SERVER", "LAPIS_RUN",
                            "FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE"}) {
     unsetenv(name);
   }

@@ -14,7 +14,7 @@ namespace lapis::dds {
 /// run are refused. The stream belongs to the newest writer of the own run, so that a restarted process takes the place
 /// of the one before it. A writer without a run is accepted while no writer of the own run has the stream; among
 /// several of these, the first one keeps it until it has left or has been silent for kSilence. The reasons are in
-/// docs/decisions/0053-one-writer-per-stream.md. The caller sees to it that threads take turns.
+/// docs/decisions/0054-one-writer-per-stream.md. The caller sees to it that threads take turns.
 class StreamOwner {
  public:
   using Clock = std::chrono::steady_clock;

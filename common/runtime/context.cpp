@@ -51,6 +51,8 @@ std::string Context::frame(const std::string& id) const {
   return name_space.empty() ? id : name_space + "/" + id;
 }
 
+bool Context::is_free() const { return lockstep_->is_free(); }
+
 void Context::finish() { executor_.stop(); }
 
 void Context::fail(const std::string& reason) {

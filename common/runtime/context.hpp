@@ -82,6 +82,8 @@ class Context {
   Heart& heart() { return heart_; }
   logging::RateLimit& rate_limit() { return rate_limit_; }
   time::Time now() const { return clock_.now(); }
+  /// True while the process works on its inputs as they come, not in lock-step.
+  bool is_free() const;
   const std::string& name() const { return options_.name; }
   /// Frame id with the robot's namespace: "map" -> "robot1/map".
   std::string frame(const std::string& id) const;

@@ -20,6 +20,8 @@ class LockstepParticipant {
 
   /// The executor's cycle function, called after handlers have run.
   void after_handlers();
+  /// True when cycles follow their inputs as they come: outside lock-step, and in the process that drives it.
+  bool is_free() const;
 
  private:
   using Tick = lapis_msgs::msg::Tick;
@@ -28,7 +30,6 @@ class LockstepParticipant {
   void leave_if_demoted(const Tick& tick);
   void answer_pending();
   bool is_active() const;
-  bool is_free() const;
   std::string obstacle(const Tick& tick) const;
   bool are_endpoints_matched(const Tick& tick) const;
   bool is_admitted(const Tick& tick) const;

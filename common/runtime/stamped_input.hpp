@@ -8,11 +8,14 @@
 #include "common/messages/time.hpp"
 #include "common/runtime/context.hpp"
 #include "common/time/stamp_buffer.hpp"
+#include "common/time/stamp_judge.hpp"
 
 namespace lapis::runtime {
 
 /// The messages of one topic, which wait in the order of their stamps to be joined with those of other topics. Unusable
-/// messages are counted on /diagnostics by stream and reason.
+/// messages are counted on /diagnostics by stream and reason. In free run a message whose stamp does not fit its
+/// arrival waits for the next one, which decides whether the clock of the source was set. In lock-step stamps are
+/// believed.
 template <class Message>
 class StampedInput {
  public:
@@ -25,10 +28,14 @@ class StampedInput {
   StampedInput(const StampedInput&) = delete;
   StampedInput& operator=(const StampedInput&) = delete;
 
-  /// Sets the function that is called for every message that arrives, before it is stored.
+  /// Sets the function that is called for every message before it is stored.
   void on_arrival(std::function<void(time::Time stamp)> action) { on_arrival_ = std::move(action); }
-  /// Sets the function that is called when the source has restarted: its stamps went back by more than a second.
+  /// Sets the function that is called when the source has restarted in lock-step: its stamps went back by more than a
+  /// second.
   void on_restart(std::function<void()> action) { on_restart_ = std::move(action); }
+  /// Sets the function that is called in free run when the clock of the source was set, or the source has restarted; if
+  /// it was set back, the oldest message is the first one since. `step`: how far the clock was set.
+  void on_clock_set(std::function<void(time::Duration step)> action) { on_clock_set_ = std::move(action); }
 
   bool has_publisher() const { return source_.matched() > 0; }
   /// Number of messages that were lost before they could be taken.
@@ -51,19 +58,36 @@ class StampedInput {
  private:
   template <class Sample>
   void store(Sample& sample) {
-    using time::Push;
+    using Verdict = time::StampJudge::Verdict;
     const time::Time stamp = messages::from_message(sample.header().stamp());
+    if (!context_.is_free()) return put(stamp, Message(std::move(sample)));
+    const Verdict verdict = judge_.judge(stamp, time::StampJudge::Arrival::clock::now());
+    const bool is_stray = verdict == Verdict::kStray || (verdict == Verdict::kDoubtful && doubtful_);
+    if (is_stray) count(" dropped: stamp far from those before and after it");
+    if (verdict == Verdict::kDoubtful) {
+      doubtful_.emplace(stamp, Message(std::move(sample)));
+      return;
+    }
+    if (verdict == Verdict::kStepped) put(doubtful_->first, std::move(doubtful_->second));
+    doubtful_.reset();
+    put(stamp, Message(std::move(sample)));
+    if (verdict != Verdict::kStepped) return;
+    count(": the clock of its source was set");
+    if (on_clock_set_) on_clock_set_(judge_.step());
+  }
+  void put(time::Time stamp, Message message) {
+    using time::Push;
     if (on_arrival_) on_arrival_(stamp);
     const std::size_t waiting = buffer_.size();
-    switch (buffer_.push(stamp, Message(std::move(sample)))) {
+    switch (buffer_.push(stamp, std::move(message))) {
       case Push::kStored: return;
       case Push::kDuplicate: return count(" dropped: stamp was there before");
       case Push::kLate: return count(" dropped: older than what was processed");
       case Push::kOverflow: return count(" dropped: its partners did not come");
       case Push::kRestarted:
-        count(": stamps went back, the source began anew");
-        if (waiting > 0) count(" dropped: waited when its source began anew", waiting);
-        if (on_restart_) on_restart_();
+        count(": stamps went back");
+        if (waiting > 0) count(" dropped: waited when stamps went back", waiting);
+        if (on_restart_ && !context_.is_free()) on_restart_();
         return;
     }
   }
@@ -74,6 +98,9 @@ class StampedInput {
   time::StampBuffer<Message> buffer_;
   std::function<void(time::Time)> on_arrival_;
   std::function<void()> on_restart_;
+  std::function<void(time::Duration)> on_clock_set_;
+  time::StampJudge judge_;
+  std::optional<std::pair<time::Time, Message>> doubtful_;
   dds::Source& source_;  // last member, because its handler uses the others
 };
 

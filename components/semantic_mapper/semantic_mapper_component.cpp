@@ -90,7 +90,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
-  tracked_.on_restart([this] { end_map(); });
+  tracked_.on_clock_set([this](time::Duration step) { follow_clock(step); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
   describe_map();
 }
@@ -231,7 +231,7 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
     case IntegrationStatus::kMapIsFull: return drop("map is full");
   }
   stamp_ = stamp;
-  obstacle_layer_->add(stamp, report.votes);
+  obstacle_layer_->add(stamp - clock_steps_, report.votes);
   ++frames_integrated_;
   context_.status().value("frames", frames_integrated_);
   context_.status().value("stored_frames_mb", std::to_string(mapper_->frame_bytes() >> 20));
@@ -283,6 +283,16 @@ void SemanticMapperComponent::end_map() {
   }
   mapper_.reset();
   forget_resumed();
+}
+
+/// Continues when the stamps of frames have jumped; whether the map is still right is for slam to say.
+void SemanticMapperComponent::follow_clock(time::Duration step) {
+  clock_steps_ = {clock_steps_.nanoseconds + step.nanoseconds};
+  stamp_ = stamp_ + step;
+  for (auto* stamp : {&tiles_stamp_, &views_stamp_, &obstacles_stamp_, &provisional_stamp_}) {
+    if (*stamp) *stamp = **stamp + step;
+  }
+  disk_.note_save(stamp_);
 }
 
 /// The first map of the process resumes the saved one, if there is one.

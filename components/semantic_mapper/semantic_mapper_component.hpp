@@ -50,6 +50,7 @@ class SemanticMapperComponent {
   void start_new_map(std::int64_t session, time::Time stamp);
   void begin_epoch(time::Time stamp);
   void end_map();
+  void follow_clock(time::Duration step);
   void forget_resumed();
   std::unique_ptr<SemanticMapper> begin_map(std::int64_t session);
   void publish(bool is_final);
@@ -103,6 +104,7 @@ class SemanticMapperComponent {
   std::optional<time::Time> views_stamp_;
   std::optional<time::Time> obstacles_stamp_;
   std::optional<time::Time> provisional_stamp_;
+  time::Duration clock_steps_;                           // sum of the steps by which the clock of the frames was set
   OccupancyGrid provisional_area_;                       // published last
   std::optional<std::uint64_t> provisional_changes_;     // count of changes at the last look
   std::set<std::tuple<int, int, int>> published_tiles_;  // of this epoch

@@ -25,7 +25,14 @@ FrameInput::FrameInput(const FrameInputConfig& config, runtime::Context& context
                                           : Color(context, topics::kColor, "colour", kWaitingMessages)),
       depth_(context, topics::kDepth, "depth", kWaitingMessages),
       info_(context, topics::kColorInfo, "camera info", kWaitingMessages) {
-  color_.on_restart([this] { begin_anew(); });
+  color_.on_restart([this] {
+    begin_anew();
+    if (on_restart_) on_restart_();
+  });
+  color_.on_clock_set([this](time::Duration step) {
+    begin_anew();
+    if (on_clock_set_) on_clock_set_(step);
+  });
 }
 
 void FrameInput::begin_anew() {
@@ -34,7 +41,6 @@ void FrameInput::begin_anew() {
   info_.expect_restart(first);
   periods_.clear();
   popped_.reset();
-  if (on_restart_) on_restart_();
 }
 
 std::optional<JoinedFrame> FrameInput::oldest(const runtime::Cycle& cycle) {

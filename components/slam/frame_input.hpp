@@ -33,8 +33,10 @@ class FrameInput {
  public:
   FrameInput(const FrameInputConfig& config, runtime::Context& context);
 
-  /// Called when the camera has restarted: stamps of colour went back by more than a second.
+  /// Called when the camera has restarted in lock-step: stamps of colour went back by more than a second.
   void on_restart(std::function<void()> action) { on_restart_ = std::move(action); }
+  /// Called in free run when the stamps of colour have jumped, by `step`, and go on from there.
+  void on_clock_set(std::function<void(time::Duration step)> action) { on_clock_set_ = std::move(action); }
 
   /// The oldest frame, or nothing while its partners may still come.
   std::optional<JoinedFrame> oldest(const runtime::Cycle& cycle);
@@ -57,6 +59,7 @@ class FrameInput {
   std::deque<time::Duration> periods_;  // between the newest colour images that were popped
   std::optional<time::Time> popped_;
   std::function<void()> on_restart_;
+  std::function<void(time::Duration)> on_clock_set_;
   FrameConverter converter_;
   Color color_;
   runtime::StampedInput<Image> depth_;

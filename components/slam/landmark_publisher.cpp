@@ -29,8 +29,7 @@ void LandmarkPublisher::begin_session(std::int64_t session) {
   published_.clear();
   session_ = session;
   landmarks_ = LandmarkTiles(LandmarkTileConfig{});
-  version_stamp_.reset();
-  part_stamp_.reset();
+  forget_stamps();
   graph_version_ = 0;
   left_.clear();
   is_announced_ = true;
@@ -39,6 +38,11 @@ void LandmarkPublisher::begin_session(std::int64_t session) {
 bool LandmarkPublisher::wants(std::uint64_t graph_version, time::Time stamp, bool is_final) const {
   const bool is_due = is_final || !version_stamp_ || (stamp - *version_stamp_).seconds() >= period_s_;
   return is_announced_ && is_due && graph_version != graph_version_;
+}
+
+void LandmarkPublisher::forget_stamps() {
+  version_stamp_.reset();
+  part_stamp_.reset();
 }
 
 void LandmarkPublisher::begin_version(const Map& map, std::uint64_t graph_version,

@@ -22,6 +22,8 @@ class LandmarkPublisher {
   void begin_session(std::int64_t session);
   /// True when `graph_version` is new, the previous version is out, and the period is over or no frames follow.
   bool wants(std::uint64_t graph_version, time::Time stamp, bool is_final) const;
+  /// The clock of the frames was set, so no time since the last version is known.
+  void forget_stamps();
   /// Begins a version: finds the tiles that differ from those of the previous version.
   void begin_version(const Map& map, std::uint64_t graph_version, const std_msgs::msg::Header& header);
   /// Publishes the part that belongs to the frame with this stamp; a second call with the same stamp does nothing.

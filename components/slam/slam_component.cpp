@@ -18,6 +18,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr std::size_t kEarlyReadings = 1000;
+constexpr int kMostDoubtfulFrames = 15;  // about as many as a recognised place needs to be confirmed, several times
 constexpr double kFarewell_s = 1.0;
 constexpr double kLongestSave_s = 600.0;
 constexpr const char* kGraphFile = "pose_graph.g2o";
@@ -50,7 +51,12 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
             context) {
   cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
   load_map();
-  input_.on_restart([this] { end_map(); });
+  input_.on_restart([this] {
+    if (slam_ == nullptr) return;  // none has begun since the camera restarted last
+    spdlog::warn("the camera's stamps went back, so it has started anew: a new map begins");
+    end_map();
+  });
+  input_.on_clock_set([this](time::Duration step) { follow_clock(step); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { add_mount(m); });
   context.subscribe(topics::kWheelOdometry, [this](const auto& m) { add_odometry(m); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
@@ -130,7 +136,7 @@ std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
 }
 
 void SlamComponent::track(const JoinedFrame& joined) {
-  const auto frame = input_.convert(joined);
+  auto frame = input_.convert(joined);
   if (!frame) return drop(joined.stamp, frame.reason);
   if (saved_camera_ && !is_same_camera(*saved_camera_, frame->camera)) {
     throw runtime::BadSetup(disk_.misfit("was made with another camera, of " + std::to_string(saved_camera_->width) +
@@ -139,9 +145,11 @@ void SlamComponent::track(const JoinedFrame& joined) {
   saved_camera_.reset();
   ++frames_total_;
   frame_.stamp = joined.stamp;
+  frame->stamp = clock_.advance(joined.stamp);
   const TrackingResult result = slam_->process(*frame);
   if (result.state == TrackingState::kTracking) ++frames_tracked_;
   publish(result);
+  judge_clock(result);
 }
 
 void SlamComponent::add_mount(const tf2_msgs::msg::TFMessage& message) {
@@ -160,8 +168,8 @@ void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
     problem = "its frame is '" + message.header().frame_id() + "', not '" + ids_.odom + "'";
   } else if (!T_odom_base) {
     problem = T_odom_base.reason;
-  } else if (!use_odometry(messages::from_message(message.header().stamp()), *T_odom_base)) {
-    problem = "its stamp is not later than the one before";
+  } else {
+    problem = use_odometry(messages::from_message(message.header().stamp()), *T_odom_base);
   }
   if (problem.empty()) {
     has_odometry_ = true;
@@ -171,12 +179,15 @@ void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
   if (context_.rate_limit().pass("odometry")) spdlog::warn("odometry dropped: {}", problem);
 }
 
-/// Keeps readings from before the first frame for it. False when the reading cannot be used.
-bool SlamComponent::use_odometry(time::Time stamp, const geometry::Pose& T_odom_base) {
-  if (slam_ != nullptr) return slam_->add_odometry(stamp, T_odom_base);
-  early_odometry_.emplace_back(stamp, T_odom_base);
+/// Keeps readings from before the first frame for it. Returns why the reading cannot be used, or an empty text.
+std::string SlamComponent::use_odometry(time::Time stamp, const geometry::Pose& T_odom_base) {
+  const auto time = context_.is_free() ? clock_.of_odometry(stamp, time::StampJudge::Arrival::clock::now()) : stamp;
+  if (!time) return "its stamp is far from the one before";
+  if (slam_ != nullptr)
+    return slam_->add_odometry(*time, T_odom_base) ? "" : "its stamp is not later than the one before";
+  early_odometry_.emplace_back(*time, T_odom_base);
   if (early_odometry_.size() > kEarlyReadings) early_odometry_.pop_front();
-  return true;
+  return "";
 }
 
 /// Counts a frame that cannot be used as not tracked, and publishes this for those who wait for its pose.
@@ -188,15 +199,39 @@ void SlamComponent::drop(time::Time stamp, const std::string& reason) {
   waits_for_ = reason;
   if (slam_ == nullptr) return;  // no session yet to which it could belong
   frame_.stamp = stamp;
-  publish(slam_->skip(stamp, reason));
+  publish(slam_->skip(clock_.advance(stamp), reason));
+}
+
+/// Continues in the time of the map when the stamps of frames have jumped.
+void SlamComponent::follow_clock(time::Duration step) {
+  clock_.set_camera(step);
+  if (slam_ == nullptr) return;
+  spdlog::warn("the clock of the camera was set by {:+.1f} s", step.seconds());
+  doubtful_frames_ = 0;
+  last_pose_.reset();
+  graph_stamp_.reset();
+  landmarks_.forget_stamps();
+  disk_.note_save(frame_.stamp + step);
+}
+
+/// Where stamps jump, the source may have restarted elsewhere. The map is right if vision or odometry continues in it;
+/// where neither does so for a while, a new map begins.
+void SlamComponent::judge_clock(const TrackingResult& result) {
+  if (!doubtful_frames_) return;
+  if (has_pose(result)) {
+    spdlog::info("the map continues");
+    doubtful_frames_.reset();
+  } else if (++*doubtful_frames_ >= kMostDoubtfulFrames) {
+    spdlog::warn("the place is not in the map, so the camera has started anew: a new map begins");
+    end_map();
+  }
 }
 
 void SlamComponent::end_map() {
-  if (slam_ == nullptr) return;  // none has begun since the camera restarted last
-  spdlog::warn("the camera's stamps went back, so it has started anew: a new map begins");
   slam_->settle();
   if (const auto problem = write_files()) spdlog::error("{}; tracking continues", *problem);
   slam_.reset();
+  doubtful_frames_.reset();
   saved_version_ = 0;
   last_pose_.reset();
   graph_stamp_.reset();
@@ -225,7 +260,7 @@ void SlamComponent::publish_odometry(const TrackingResult& result) {
 void SlamComponent::publish_transforms(const nav_msgs::msg::Odometry& odometry) {
   if (config_.publish_odom_frame == "always" || (config_.publish_odom_frame == "auto" && !has_odometry_)) {
     transforms_.publish(to_transforms(odometry, ids_));
-  } else if (const auto T_odom_base = slam_->odometry_at(frame_.stamp)) {
+  } else if (const auto T_odom_base = slam_->odometry_at(clock_.now())) {
     transforms_.publish(to_correction(odometry, *T_odom_base, ids_));
   }
 }

@@ -13,6 +13,7 @@
 #include "slam/frame_input.hpp"
 #include "slam/landmark_publisher.hpp"
 #include "slam/map_saver.hpp"
+#include "slam/slam_clock.hpp"
 #include "slam/slam_config.hpp"
 
 namespace lapis::slam {
@@ -36,9 +37,11 @@ class SlamComponent {
   void track(const JoinedFrame& joined);
   void add_mount(const tf2_msgs::msg::TFMessage& message);
   void add_odometry(const nav_msgs::msg::Odometry& message);
-  bool use_odometry(time::Time stamp, const geometry::Pose& T_odom_base);
+  std::string use_odometry(time::Time stamp, const geometry::Pose& T_odom_base);
   void drop(time::Time stamp, const std::string& reason);
   void end_map();
+  void follow_clock(time::Duration step);
+  void judge_clock(const TrackingResult& result);
   void publish(const TrackingResult& result);
   void publish_odometry(const TrackingResult& result);
   void publish_transforms(const nav_msgs::msg::Odometry& odometry);
@@ -71,6 +74,8 @@ class SlamComponent {
   std::unique_ptr<RgbdSlam> slam_;                       // exists once the camera's mount is known
   std::deque<std::pair<time::Time, geometry::Pose>> early_odometry_;  // T_odom_base from before that
   FrameContext frame_;                                                // of the newest frame
+  SlamClock clock_;
+  std::optional<int> doubtful_frames_;  // since the camera's clock was set, until the map is known to be still right
   std::int64_t session_ = -1;
   bool has_odometry_ = false;                                       // somebody else publishes odom -> base_link
   std::optional<std::pair<time::Time, geometry::Pose>> last_pose_;  // T_map_base

@@ -36,6 +36,22 @@ inline bool is_finite(const nav_msgs::msg::Odometry& message) {
          std::isfinite(twist.angular().x()) && std::isfinite(twist.angular().y()) && std::isfinite(twist.angular().z());
 }
 
+/// Sends frames in which nothing can be seen, from `index` on, whose stamps are far from those before, until slam
+/// begins a new map; `index` is then that of the next frame. `answers` sends a frame and waits for its answer.
+template <class Answers>
+bool begin_anew(const ChildProcess& slam, CameraFeed& feed, int& index, const Answers& answers) {
+  const auto blind = [&feed](int i) {
+    CameraFrame frame = feed.frame(i);
+    std::fill(frame.color->data().begin(), frame.color->data().end(), std::uint8_t{0});
+    return frame;
+  };
+  feed.send(blind(index++));  // is kept until the next one has come
+  for (const int last = index + 30; slam.log().find("a new map begins") == std::string::npos; ++index) {
+    if (index == last || !answers(blind(index), index)) return false;
+  }
+  return true;
+}
+
 /// slam, a camera and somebody who listens.
 class SlamContract : public ::testing::Test {
  protected:
@@ -67,9 +83,13 @@ class SlamContract : public ::testing::Test {
 
   /// Waits for the pose of the frame with this stamp; null when none comes.
   const nav_msgs::msg::Odometry* odometry_at(time::Time stamp) {
-    probe.wait_until([&] { return !odometry.empty() && stamp_of(odometry.back()) >= stamp; }, Seconds(2));
-    const auto at =
-        std::find_if(odometry.rbegin(), odometry.rend(), [&](const auto& m) { return stamp_of(m) == stamp; });
+    auto at = odometry.rend();
+    probe.wait_until(
+        [&] {
+          at = std::find_if(odometry.rbegin(), odometry.rend(), [&](const auto& m) { return stamp_of(m) == stamp; });
+          return at != odometry.rend();
+        },
+        Seconds(2));
     return at == odometry.rend() ? nullptr : &*at;
   }
   /// Compares the pose published for `stamp` with where the camera is, when it was at `T_box_first` in a map's first

@@ -42,6 +42,11 @@ class Fields {
     const std::uint64_t high = u32();
     return static_cast<std::int64_t>((high << 32U) | u32());
   }
+  Bytes take(std::size_t count) {
+    const Bytes from = bytes_;
+    skip(count);
+    return is_short_ ? Bytes{} : from.first(count);
+  }
   void skip(std::size_t count) {
     is_short_ = is_short_ || count > bytes_.size();
     bytes_ = bytes_.subspan(is_short_ ? bytes_.size() : count);
@@ -64,6 +69,21 @@ class Fields {
   bool is_short_ = false;
 };
 
+/// What has been read of a message that later submessages refer to.
+struct MessageSource {
+  Gid writer{};  // the entity id is that of the last submessage
+  SequenceJudge& judge;
+
+  void set_prefix(Bytes prefix) { std::copy(prefix.begin(), prefix.end(), writer.begin()); }
+  /// Reads the ids of reader and writer.
+  void read_writer(Fields& fields) {
+    fields.skip(4);
+    const Bytes id = fields.take(4);
+    std::copy(id.begin(), id.end(), writer.begin() + kGidPrefixBytes);
+  }
+  Fault check(std::int64_t number) { return judge.believes(writer, number) ? kFine : PacketFault::kJump; }
+};
+
 bool is_sequence(std::int64_t number) { return number >= 1 && number <= kLargestSequence; }
 
 /// Reads the size and the bits of a set; its base has been read.
@@ -74,23 +94,23 @@ Fault check_set(Fields& fields) {
   return fields.is_short() ? PacketFault::kLength : kFine;
 }
 
-Fault check_heartbeat(Fields fields) {
-  fields.skip(kEntitiesBytes);
+Fault check_heartbeat(Fields fields, MessageSource& source) {
+  source.read_writer(fields);
   const std::int64_t first = fields.sequence();
   const std::int64_t last = fields.sequence();
   fields.skip(4);  // count
   if (fields.is_short()) return PacketFault::kLength;
   const bool is_range = is_sequence(first) && last >= first - 1 && last <= kLargestSequence;
-  return is_range ? kFine : PacketFault::kSequence;
+  return is_range ? source.check(last) : PacketFault::kSequence;
 }
 
-Fault check_gap(Fields fields) {
-  fields.skip(kEntitiesBytes);
+Fault check_gap(Fields fields, MessageSource& source) {
+  source.read_writer(fields);
   const std::int64_t start = fields.sequence();
   const std::int64_t base = fields.sequence();
   if (const Fault fault = check_set(fields)) return fault;
   if (!is_sequence(start) || !is_sequence(base) || base < start) return PacketFault::kSequence;
-  return base - start <= kLongestGap ? kFine : PacketFault::kGap;
+  return base - start <= kLongestGap ? source.check(base) : PacketFault::kGap;
 }
 
 /// A base of 0 asks for everything.
@@ -129,20 +149,21 @@ Fault skip_to_payload(Fields& fields, std::uint16_t octets_to_inline_qos, std::s
   return fields.is_short() ? PacketFault::kData : kFine;
 }
 
-Fault check_data(Fields fields, std::uint8_t flags) {
+Fault check_data(Fields fields, std::uint8_t flags, MessageSource& source) {
   fields.skip(2);  // extra flags
   const std::uint16_t octets_to_inline_qos = fields.u16();
-  fields.skip(kEntitiesBytes);
+  source.read_writer(fields);
   const std::int64_t sequence = fields.sequence();
   if (fields.is_short()) return PacketFault::kLength;
   if (!is_sequence(sequence)) return PacketFault::kSequence;
-  return skip_to_payload(fields, octets_to_inline_qos, 16, (flags & 2U) != 0);
+  const Fault fault = skip_to_payload(fields, octets_to_inline_qos, 16, (flags & 2U) != 0);
+  return fault ? fault : source.check(sequence);
 }
 
-Fault check_data_frag(Fields fields, std::uint8_t flags) {
+Fault check_data_frag(Fields fields, std::uint8_t flags, MessageSource& source) {
   fields.skip(2);  // extra flags
   const std::uint16_t octets_to_inline_qos = fields.u16();
-  fields.skip(kEntitiesBytes);
+  source.read_writer(fields);
   const std::int64_t sequence = fields.sequence();
   const std::uint64_t first = fields.u32();
   const std::uint64_t count = fields.u16();
@@ -158,24 +179,28 @@ Fault check_data_frag(Fields fields, std::uint8_t flags) {
   const std::uint64_t begin = (first - 1) * size;
   if (begin + (count - 1) * size >= sample) return PacketFault::kFragments;
   const std::uint64_t expected = std::min(count * size, sample - begin);
-  return fields.left() >= expected ? kFine : PacketFault::kFragments;
+  return fields.left() >= expected ? source.check(sequence) : PacketFault::kFragments;
 }
 
 /// @param left bytes of the message after this submessage
-Fault check_submessage(std::uint8_t id, std::uint8_t flags, Bytes body, std::size_t left, bool is_of_eprosima) {
+Fault check_submessage(std::uint8_t id, std::uint8_t flags, Bytes body, std::size_t left, bool is_of_eprosima,
+                       MessageSource& source) {
   const Fields fields(body, (flags & 1U) != 0);
   const auto at_least = [&](std::size_t size) { return body.size() >= size ? kFine : PacketFault::kLength; };
   switch (id) {
     case kAckNack: return check_acknack(fields);
-    case kHeartbeat: return check_heartbeat(fields);
-    case kGap: return check_gap(fields);
+    case kHeartbeat: return check_heartbeat(fields, source);
+    case kGap: return check_gap(fields, source);
     case kInfoTimestamp: return at_least((flags & 2U) != 0 ? 0 : 8);
-    case kInfoSource: return body.size() == 20 ? kFine : PacketFault::kLength;
+    case kInfoSource:
+      if (body.size() != 20) return PacketFault::kLength;
+      source.set_prefix(body.last(kGidPrefixBytes));
+      return kFine;
     case kInfoDestination: return at_least(12);
     case kNackFrag: return check_nack_frag(fields);
     case kHeartbeatFrag: return at_least(24);
-    case kData: return check_data(fields, flags);
-    case kDataFrag: return check_data_frag(fields, flags);
+    case kData: return check_data(fields, flags, source);
+    case kDataFrag: return check_data_frag(fields, flags, source);
     case kStatistics:
       // Fast DDS asserts that one of this size is the last one, and skips others.
       return is_of_eprosima && body.size() == kStatisticsBytes && left > 0 ? Fault(PacketFault::kStatistics) : kFine;
@@ -185,12 +210,14 @@ Fault check_submessage(std::uint8_t id, std::uint8_t flags, Bytes body, std::siz
 
 }  // namespace
 
-Fault find_fault(Bytes message) {
+Fault find_fault(Bytes message, SequenceJudge& judge) {
   constexpr std::uint8_t kVersion = 2;
   if (message.size() < kHeaderBytes || std::memcmp(message.data(), "RTPS", 4) != 0 || message[4] != kVersion) {
     return PacketFault::kHeader;
   }
   const bool is_of_eprosima = std::equal(kEprosima.begin(), kEprosima.end(), &message[6]);
+  MessageSource source{.judge = judge};
+  source.set_prefix(message.subspan(8, kGidPrefixBytes));
   Bytes rest = message.subspan(kHeaderBytes);
   while (!rest.empty()) {
     if (rest.size() < kSubmessageHeaderBytes) return PacketFault::kLength;
@@ -203,7 +230,7 @@ Fault find_fault(Bytes message) {
     const Bytes body = rest.first(length);
     // Fast DDS looks for the next one at a multiple of four bytes.
     rest = rest.subspan(std::min((length + 3) / 4 * 4, rest.size()));
-    if (const Fault fault = check_submessage(id, flags, body, rest.size(), is_of_eprosima)) return fault;
+    if (const Fault fault = check_submessage(id, flags, body, rest.size(), is_of_eprosima, source)) return fault;
   }
   return kFine;
 }

@@ -6,6 +6,8 @@
 #include <optional>
 #include <span>
 
+#include "common/dds/gid.hpp"
+
 namespace lapis::dds {
 
 /// Why a datagram does not reach Fast DDS.
@@ -17,15 +19,16 @@ enum class PacketFault {
   kData,        ///< inline QoS that does not end within its submessage
   kFragments,   ///< fragments that are not those of a sample, or not there
   kSequence,    ///< a sequence number below 1 or above kLargestSequence, or a range that ends before it begins
+  kJump,        ///< a sequence number far beyond those that the writer has used before
   kGap,         ///< more than kLongestGap numbers at once
   kSet          ///< a set of numbers that is larger than 256
 };
-inline constexpr std::size_t kPacketFaults = 9;
+inline constexpr std::size_t kPacketFaults = 10;
 inline constexpr std::array<const char*, kPacketFaults> kPacketFaultNames{
-    "sender", "header", "length", "statistics", "data", "fragments", "sequence", "gap", "set"};
+    "sender", "header", "length", "statistics", "data", "fragments", "sequence", "jump", "gap", "set"};
 
-/// Fast DDS counts from the last sequence number to a new one, one by one and with the reader locked. 12 days at 500
-/// Hz.
+/// Fast DDS counts from the last sequence number to a new one, one by one (0.1 us each) and with the reader locked. 12
+/// days at 500 Hz.
 inline constexpr std::int64_t kLargestSequence = std::int64_t{1} << 29;
 /// It also keeps the numbers of a gap one by one. A late joiner of a keyed topic is told of all samples that later ones
 /// of the same key have replaced: 80 tiles per second for 14 hours.
@@ -33,10 +36,17 @@ inline constexpr std::int64_t kLongestGap = std::int64_t{1} << 22;
 /// It allocates a sample when the first of its fragments arrives.
 inline constexpr std::uint32_t kLargestSample = 128U << 20U;
 
-/// Checks an RTPS message before Fast DDS 2.9 reads it, which ends the process or reads past the message when certain
-/// fields are wrong. What is checked, and why: docs/decisions/0055-packet-guard.md. Nothing is said about a message
-/// that is well formed and lies.
+/// Decides whether a writer can have come as far as a sequence number.
+class SequenceJudge {
+ public:
+  virtual ~SequenceJudge() = default;
+  virtual bool believes(const Gid& writer, std::int64_t number) = 0;
+};
+
+/// Checks an RTPS message before Fast DDS 2.9 reads it, which ends the process, reads past the message or counts for
+/// ever when certain fields are wrong. What is checked, and why: docs/decisions/0055-packet-guard.md. Nothing is said
+/// about a message that is well formed and lies.
 /// @return nothing when the message may pass; layout: OMG RTPS 2.3, section 9.4
-std::optional<PacketFault> find_fault(std::span<const std::uint8_t> message);
+std::optional<PacketFault> find_fault(std::span<const std::uint8_t> message, SequenceJudge& judge);
 
 }  // namespace lapis::dds

@@ -14,11 +14,23 @@ std::uint32_t address_of(const compat::rtps::Locator_t& locator) {
 
 }  // namespace
 
+bool WriterProgress::believes(const Gid& writer, std::int64_t number, Clock::time_point now) {
+  const std::lock_guard lock(mutex_);
+  if (writers_.size() >= kMostWriters && !writers_.contains(writer)) writers_.clear();
+  const auto [it, is_new] = writers_.try_emplace(writer, Progress{number, now});
+  if (is_new) return true;
+  Progress& known = it->second;
+  const auto silence_s = std::chrono::ceil<std::chrono::seconds>(now - known.heard).count();
+  if (number - known.number > kLongestJump + silence_s * kHighestRateHz) return false;
+  if (number >= known.number) known = {number, now};
+  return true;
+}
+
 bool PacketGuard::admits(std::span<const std::uint8_t> message, const compat::rtps::Locator_t& sender, bool is_local) {
   const std::uint32_t address = address_of(sender);
   const auto has_sender = [&](const Network& network) { return network.contains(address); };
   const bool is_allowed = is_local || !senders_ || std::any_of(senders_->begin(), senders_->end(), has_sender);
-  const auto fault = is_allowed ? find_fault(message) : PacketFault::kSender;
+  const auto fault = is_allowed ? find_fault(message, progress_) : PacketFault::kSender;
   if (!fault) return true;
   Counter& counter = dropped_[static_cast<std::size_t>(*fault)];
   counter.newest_sender = address;

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <functional>
 #include <vector>
 
 #include "common/dds/packet_guard.hpp"
@@ -50,6 +51,12 @@ Bytes& add(Bytes& message, std::uint8_t id, std::uint8_t flags, const Body& body
   put(message, body.bytes.size(), 2);
   message.insert(message.end(), body.bytes.begin(), body.bytes.end());
   return message;
+}
+
+/// Believes everything.
+std::optional<PacketFault> find_fault(std::span<const std::uint8_t> message) {
+  WriterProgress progress;
+  return dds::find_fault(message, progress);
 }
 
 std::optional<PacketFault> fault_of(std::uint8_t id, const Body& body, std::uint8_t flags = 0) {
@@ -167,7 +174,7 @@ TEST(PacketCheck, SetsHoldAtMost256Numbers) {
   EXPECT_EQ(fault_of(0x12, nack_frag(7, 1, 256)), std::nullopt);
   EXPECT_EQ(fault_of(0x12, nack_frag(7, 0, 2)), PacketFault::kSet);
   EXPECT_EQ(fault_of(0x12, nack_frag(7, UINT32_MAX, 2)), PacketFault::kSet);
-  EXPECT_EQ(fault_of(0x12, nack_frag(7, 1, UINT32_MAX & ~31U)), PacketFault::kSet);
+  EXPECT_EQ(fault_of(0x12, nack_frag(7, 1, 1000)), PacketFault::kSet);
   EXPECT_EQ(fault_of(0x12, nack_frag(0, 1, 1)), PacketFault::kSequence);
 }
 
@@ -216,6 +223,40 @@ TEST(PacketCheck, UnknownSubmessagesAreSkipped) {
   EXPECT_EQ(fault_of(0x0c, Body().zeros(20)), std::nullopt);
   EXPECT_EQ(fault_of(0x0c, Body().zeros(24)), PacketFault::kLength);
   EXPECT_EQ(fault_of(0x0e, Body().zeros(8)), PacketFault::kLength);
+}
+
+TEST(PacketCheck, AWriterDoesNotJump) {
+  const std::vector<std::pair<std::uint8_t, std::function<Body(std::int64_t)>>> kinds{
+      {0x07, [](std::int64_t n) { return heartbeat(1, n); }},
+      {0x08, [](std::int64_t n) { return gap(n - 1, n); }},
+      {0x15, [](std::int64_t n) { return data(16, n); }}};
+  for (const auto& [id, body] : kinds) {
+    WriterProgress progress;
+    Bytes near = header(), far = header(), of_another = header();
+    of_another[19] = 8;
+    add(far, id, 0, body(1 << 28));
+    EXPECT_EQ(dds::find_fault(add(near, id, 0, body(5)), progress), std::nullopt) << int(id);
+    EXPECT_EQ(dds::find_fault(far, progress), PacketFault::kJump) << int(id);
+    EXPECT_EQ(dds::find_fault(add(of_another, id, 0, body(1 << 28)), progress), std::nullopt) << "a new writer";
+    Bytes told = header();  // INFO_SRC names the first writer's participant again
+    Body source;
+    source.zeros(8).bytes.resize(20, 7);
+    told[19] = 8;
+    add(add(told, 0x0c, 0, source), id, 0, body(1 << 28));
+    EXPECT_EQ(dds::find_fault(told, progress), PacketFault::kJump) << int(id);
+  }
+}
+
+TEST(WriterProgress, SilenceIsTimeToWrite) {
+  WriterProgress progress;
+  const Gid writer{1};
+  const WriterProgress::Clock::time_point start{};
+  EXPECT_TRUE(progress.believes(writer, 400'000'000, start)) << "a late joiner hears of a writer that is old";
+  EXPECT_TRUE(progress.believes(writer, 7, start)) << "repeated";
+  EXPECT_TRUE(progress.believes(writer, 400'000'000 + WriterProgress::kLongestJump, start));
+  EXPECT_FALSE(progress.believes(writer, 400'000'001 + 2 * WriterProgress::kLongestJump, start));
+  EXPECT_TRUE(
+      progress.believes(writer, 400'000'001 + 2 * WriterProgress::kLongestJump, start + std::chrono::seconds(1)));
 }
 
 compat::rtps::Locator_t from(const std::string& address) {

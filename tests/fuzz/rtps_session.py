@@ -3,6 +3,7 @@
 Packets are kept as templates: the ids of the two participants, which each start draws anew, are replaced by marks, and
 ports by their number among those of the echo. So a packet of one session can be sent in another one.
 """
+import atexit
 import collections
 import os
 import select
@@ -29,6 +30,7 @@ class Process:
         with open(log, "wb") as file:
             self.child = subprocess.Popen([str(part) for part in command], stdin=subprocess.DEVNULL, stdout=file,
                                           stderr=subprocess.STDOUT)
+        atexit.register(self.child.kill)  # whatever ends the script; nothing when it has been waited for
 
     def text(self):
         return self.log.read_text(errors="replace")

@@ -25,8 +25,8 @@ RANGES = ("LOCALHOST", "SUBNET")
 KILL = bytes.fromhex("52545053 0203 010f") + bytes(range(12)) + 2 * (bytes.fromhex("8001 3800") + bytes(56))
 
 
-def ip(*arguments):
-    subprocess.run(["ip", *arguments], check=True, capture_output=True)
+def ip(*arguments, enter=()):
+    subprocess.run([*enter, "ip", *arguments], check=True, capture_output=True)
 
 
 class OtherHost:
@@ -35,16 +35,17 @@ class OtherHost:
     def __init__(self):
         self.holder = subprocess.Popen(["unshare", "--net", "sleep", "infinity"])
         self.enter = ["nsenter", f"--net=/proc/{self.holder.pid}/ns/net"]
+
+    def link(self):
         own = os.readlink("/proc/self/ns/net")
         while os.readlink(f"/proc/{self.holder.pid}/ns/net") == own and self.holder.poll() is None:
             time.sleep(0.01)
         ip("link", "add", "here", "type", "veth", "peer", "name", "there", "netns", str(self.holder.pid))
         for enter, link, address in (([], "here", HERE), (self.enter, "there", THERE)):
-            run = lambda *arguments: subprocess.run([*enter, "ip", *arguments], check=True, capture_output=True)
-            run("link", "set", "lo", "up")
-            run("address", "add", address + "/24", "dev", link)
-            run("link", "set", link, "up")
-            subprocess.run([*enter, "ip", "route", "replace", "224.0.0.0/4", "dev", link], check=True)
+            ip("link", "set", "lo", "up", enter=enter)
+            ip("address", "add", address + "/24", "dev", link, enter=enter)
+            ip("link", "set", link, "up", enter=enter)
+            ip("route", "replace", "224.0.0.0/4", "dev", link, enter=enter)
 
     def send(self, message, addresses):
         """Datagrams from there, each to (address, port)."""
@@ -89,9 +90,13 @@ class Child:
 class LocalhostTest(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
+        cls.other_host = None
         try:
             cls.other_host = OtherHost()
+            cls.other_host.link()
         except (OSError, subprocess.CalledProcessError) as error:
+            if cls.other_host:
+                cls.other_host.close()
             print("SKIPPED: no link between network namespaces:", error)
             sys.exit(SKIPPED)
         cls.addClassCleanup(cls.other_host.close)

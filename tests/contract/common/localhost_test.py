@@ -125,7 +125,8 @@ class LocalhostTest(unittest.TestCase):
             with self.subTest(lapis=own, jazzy=of_jazzy):
                 echo = self.echo(ROS_AUTOMATIC_DISCOVERY_RANGE=own)
                 jazzy = self.jazzy(of_jazzy)
-                self.assertTrue(jazzy.says("answer 5\n", ANSWER_S))
+                self.assertTrue(jazzy.says("answer 30\n", ANSWER_S))  # with three of the echo's reports
+                self.assertNotIn("dropped", echo.text())
                 jazzy.close()
                 echo.close()
 

@@ -172,7 +172,7 @@ def main():
                 return 1
         print(run.session.echo.text()[-2000:])
         fault = run.ends_well()
-        print(f"seed {options.seed}: {options.packets} packets, then the process", fault or "answered and ended with status 0")
+        print(f"seed {options.seed}: {options.packets} packets, then the process {fault or 'answered and ended well'}")
         return 1 if fault else 0
 
 

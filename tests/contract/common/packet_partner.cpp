@@ -21,7 +21,7 @@ namespace {
 volatile std::sig_atomic_t is_asked_to_stop = 0;
 
 time::Time now() {
-  return time::Time(std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count());
+  return time::Time{std::chrono::nanoseconds(std::chrono::system_clock::now().time_since_epoch()).count()};
 }
 
 void run(std::size_t image_bytes, Seconds period) {

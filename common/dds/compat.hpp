@@ -20,16 +20,21 @@
 #include <fastdds/dds/topic/Topic.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 
+#include <chrono>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 #if __has_include(<fastdds/config.hpp>)
 #define LAPIS_FASTDDS_3 1
 #include <fastdds/rtps/common/WriteParams.hpp>
+#include <fastdds/rtps/transport/ChainingTransport.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.hpp>
 #include <fastdds/utils/IPLocator.hpp>
 #else
 #include <fastdds/rtps/common/WriteParams.h>
+#include <fastdds/rtps/transport/ChainingTransport.h>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #include <fastrtps/utils/IPLocator.h>
@@ -108,6 +113,79 @@ inline fdds::InstanceHandle_t no_instance() { return fdds::HANDLE_NIL; }
 #else
 inline fdds::InstanceHandle_t no_instance() { return fdds::InstanceHandle_t(); }
 #endif
+
+/// Decides which datagrams Fast DDS may read. Called from threads of DDS, several at once.
+class PacketInspector {
+ public:
+  virtual ~PacketInspector() = default;
+  /// @param is_local the sender has an address of this host
+  virtual bool admits(std::span<const std::uint8_t> message, const rtps::Locator_t& sender, bool is_local) = 0;
+};
+
+/// Settings of a transport that lets an inspector see what another transport receives.
+class InspectedTransportDescriptor : public eprosima::fastdds::rtps::ChainingTransportDescriptor {
+ public:
+  InspectedTransportDescriptor(std::shared_ptr<UDPv4TransportDescriptor> udp,
+                               std::shared_ptr<PacketInspector> inspector)
+      : ChainingTransportDescriptor(std::move(udp)), inspector_(std::move(inspector)) {}
+  eprosima::fastdds::rtps::TransportInterface* create_transport() const override;
+
+ private:
+  std::shared_ptr<PacketInspector> inspector_;
+};
+
+/// Sends to this host's own addresses by the loopback interface, even where a list of interfaces does not contain them:
+/// ROS 2 Jazzy announces them in each of its discovery ranges and receives there. Fast DDS 2.9 would drop them.
+class InspectedTransport : public eprosima::fastdds::rtps::ChainingTransport {
+ public:
+  InspectedTransport(const InspectedTransportDescriptor& descriptor, std::shared_ptr<PacketInspector> inspector)
+      : ChainingTransport(descriptor), inspector_(std::move(inspector)) {}
+
+  void receive(eprosima::fastdds::rtps::TransportReceiverInterface* next, const rtps::octet* message,
+               std::uint32_t size, const rtps::Locator_t& own, const rtps::Locator_t& sender) override {
+    if (inspector_->admits({message, size}, sender, is_local_locator(sender))) {
+      next->OnDataReceived(message, size, own, sender);
+    }
+  }
+
+  eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override {
+    return low_level_transport_->get_configuration();
+  }
+
+#ifdef LAPIS_FASTDDS_3
+  using Buffers = std::vector<rtps::NetworkBuffer>;
+  bool send(rtps::SenderResource* below, const Buffers& buffers, std::uint32_t bytes, rtps::LocatorsIterator* begin,
+            rtps::LocatorsIterator* end, const std::chrono::steady_clock::time_point& timeout) override {
+    return below->send(buffers, bytes, begin, end, timeout);
+  }
+  bool transform_remote_locator(const rtps::Locator_t& remote, rtps::Locator_t& result, bool is_remote_open,
+                                bool is_local_open) const override {
+    return to_loopback(remote, result) ||
+           ChainingTransport::transform_remote_locator(remote, result, is_remote_open, is_local_open);
+  }
+#else
+  bool send(rtps::SenderResource* below, const rtps::octet* message, std::uint32_t size, rtps::LocatorsIterator* begin,
+            rtps::LocatorsIterator* end, const std::chrono::steady_clock::time_point& timeout) override {
+    return below->send(message, size, begin, end, timeout);
+  }
+  bool transform_remote_locator(const rtps::Locator_t& remote, rtps::Locator_t& result) const override {
+    return to_loopback(remote, result) || ChainingTransport::transform_remote_locator(remote, result);
+  }
+#endif
+
+ private:
+  bool to_loopback(const rtps::Locator_t& remote, rtps::Locator_t& result) const {
+    if (!IsLocatorSupported(remote) || !is_local_locator(remote)) return false;
+    result = remote;
+    return IPLocator::setIPv4(result, "127.0.0.1");
+  }
+
+  std::shared_ptr<PacketInspector> inspector_;
+};
+
+inline eprosima::fastdds::rtps::TransportInterface* InspectedTransportDescriptor::create_transport() const {
+  return new InspectedTransport(*this, inspector_);  // Fast DDS owns it
+}
 
 /// A filter of one reader, by the writer that signed a sample with its own identity (Writer::write). Fast DDS applies
 /// it when a sample arrives, before it takes a place in the reader's history, and does not say there who wrote the

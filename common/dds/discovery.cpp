@@ -1,5 +1,7 @@
 #include "common/dds/discovery.hpp"
 
+#include <arpa/inet.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdlib>
@@ -28,6 +30,28 @@ std::vector<std::string> split_peers(const std::string& text) {
     if (!peer.empty()) peers.push_back(peer);
   }
   return peers;
+}
+
+std::optional<std::uint32_t> parse_address(const std::string& text) {
+  in_addr address{};
+  if (inet_pton(AF_INET, text.c_str(), &address) != 1) return std::nullopt;
+  return ntohl(address.s_addr);
+}
+
+Network parse_network(const std::string& text) {
+  const auto slash = text.find('/');
+  const auto address = parse_address(text.substr(0, slash));
+  unsigned bits = 32;
+  bool is_valid = address.has_value();
+  if (slash != std::string::npos) {
+    const char* end = text.data() + text.size();
+    const auto result = std::from_chars(text.data() + slash + 1, end, bits);
+    is_valid = is_valid && result.ec == std::errc() && result.ptr == end && bits <= 32;
+  }
+  if (!is_valid) {
+    throw std::runtime_error("LAPIS_ALLOWED_PEERS: '" + text + "' is neither an IPv4 address nor a network");
+  }
+  return {*address, bits == 0 ? 0 : ~std::uint32_t{0} << (32 - bits)};
 }
 
 std::string parse_run(const std::string& text) {
@@ -60,6 +84,9 @@ DiscoverySettings discovery_from_environment(const Environment& environment) {
   const std::string domain = environment("ROS_DOMAIN_ID").value_or("");
   if (!domain.empty()) settings.domain = parse_domain(domain);
   settings.run = parse_run(environment("LAPIS_RUN").value_or(""));
+  for (const auto& peer : split_peers(environment("LAPIS_ALLOWED_PEERS").value_or(""))) {
+    settings.allowed_peers.push_back(parse_network(peer));
+  }
   if (environment("ROS_LOCALHOST_ONLY").value_or("0") == "1") {
     settings.range = DiscoveryRange::kLocalhost;
     return settings;
@@ -67,6 +94,15 @@ DiscoverySettings discovery_from_environment(const Environment& environment) {
   settings.range = parse_range(environment("ROS_AUTOMATIC_DISCOVERY_RANGE").value_or(""));
   settings.static_peers = split_peers(environment("ROS_STATIC_PEERS").value_or(""));
   return settings;
+}
+
+std::optional<std::vector<Network>> allowed_senders(const DiscoverySettings& settings) {
+  if (settings.range == DiscoveryRange::kSubnet && settings.allowed_peers.empty()) return std::nullopt;
+  std::vector<Network> senders = settings.allowed_peers;
+  for (const auto& peer : settings.static_peers) {
+    if (const auto address = parse_address(peer)) senders.push_back({*address});
+  }
+  return senders;
 }
 
 }  // namespace lapis::dds

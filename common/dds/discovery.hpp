@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -16,12 +17,20 @@ inline constexpr int kLargestDomain = (65535 - 7400 - 11 - 2 * (kPeersPerHost - 
 
 enum class DiscoveryRange { kSubnet, kLocalhost, kOff };
 
+/// Addresses with the same first bits.
+struct Network {
+  std::uint32_t address = 0;  ///< IPv4, the first byte highest
+  std::uint32_t mask = ~std::uint32_t{0};
+  bool contains(std::uint32_t other) const { return (other & mask) == (address & mask); }
+};
+
 /// Who may discover this process; the settings mean the same as ROS 2 Jazzy's environment variables.
 struct DiscoverySettings {
   int domain = 0;                                  ///< ROS_DOMAIN_ID
   DiscoveryRange range = DiscoveryRange::kSubnet;  ///< ROS_AUTOMATIC_DISCOVERY_RANGE
   std::vector<std::string> static_peers;           ///< ROS_STATIC_PEERS, separated by ';'
-  std::string run;                                 ///< LAPIS_RUN: id of the run; empty: the process belongs to none
+  std::vector<Network> allowed_peers;  ///< LAPIS_ALLOWED_PEERS, separated by ';'; empty: see allowed_senders
+  std::string run;                     ///< LAPIS_RUN: id of the run; empty: the process belongs to none
 };
 
 using Environment = std::function<std::optional<std::string>(const std::string& name)>;
@@ -30,9 +39,14 @@ using Environment = std::function<std::optional<std::string>(const std::string& 
 std::optional<std::string> process_environment(const std::string& name);
 
 /// Reads ROS_DOMAIN_ID, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS and ROS_LOCALHOST_ONLY (1 forces LOCALHOST and
-/// ignores the other two), and LAPIS_RUN. An unknown range means LOCALHOST, as in rcl. Throws std::runtime_error when
-/// the domain is not a number from 0 to kLargestDomain, or the run not of letters, digits, dots, dashes and
+/// ignores the other two), LAPIS_ALLOWED_PEERS and LAPIS_RUN. An unknown range means LOCALHOST, as in rcl. Throws
+/// std::runtime_error when the domain is not a number from 0 to kLargestDomain, a peer that is allowed is neither an
+/// IPv4 address ("10.0.0.7") nor a network ("10.0.0.0/24"), or the run not of letters, digits, dots, dashes and
 /// underscores. ROS_DISCOVERY_SERVER is read by Fast DDS itself.
 DiscoverySettings discovery_from_environment(const Environment& environment = process_environment);
+
+/// Hosts, beside the own one, whose datagrams are read. Nothing: all, which is so on SUBNET without
+/// LAPIS_ALLOWED_PEERS. Static peers are always among them.
+std::optional<std::vector<Network>> allowed_senders(const DiscoverySettings& settings);
 
 }  // namespace lapis::dds

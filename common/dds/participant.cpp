@@ -27,7 +27,8 @@ Locator_t peer_locator(const std::string& address) {
   return locator;
 }
 
-void apply_transport(const ParticipantOptions& options, compat::fdds::DomainParticipantQos& qos) {
+void apply_transport(const ParticipantOptions& options, const std::shared_ptr<PacketGuard>& guard,
+                     compat::fdds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<compat::UDPv4TransportDescriptor>();
   udp->sendBufferSize = udp->receiveBufferSize = static_cast<std::uint32_t>(options.socket_buffer_bytes);
   udp->maxInitialPeersRange = kPeersPerHost;
@@ -35,7 +36,7 @@ void apply_transport(const ParticipantOptions& options, compat::fdds::DomainPart
   const bool is_local = options.discovery.range == DiscoveryRange::kLocalhost && options.discovery.static_peers.empty();
   if (is_local) udp->interfaceWhiteList.emplace_back("127.0.0.1");
   qos.transport().use_builtin_transports = false;
-  qos.transport().user_transports.push_back(udp);
+  qos.transport().user_transports.push_back(std::make_shared<compat::InspectedTransportDescriptor>(udp, guard));
   if (options.transport == Transport::kSharedMemory) {
     auto shared = std::make_shared<compat::SharedMemTransportDescriptor>();
     shared->segment_size(kSharedMemorySegmentBytes);
@@ -97,13 +98,14 @@ class Participant::Listener : public compat::ParticipantListener {
 };
 
 Participant::Participant(const ParticipantOptions& options)
-    : options_(options), peers_(options.discovery.run), listener_(std::make_unique<Listener>(peers_)) {
+    : options_(options), peers_(options.discovery.run), guard_(std::make_shared<PacketGuard>(options.discovery)),
+      listener_(std::make_unique<Listener>(peers_)) {
   compat::fdds::DomainParticipantQos qos;
   qos.name("/");  // the enclave, which is also the name that rmw_fastrtps gives its participants
   std::string user_data = "enclave=/;";
   if (!peers_.run().empty()) user_data += "run=" + peers_.run() + ";";
   qos.user_data().setValue(std::vector<unsigned char>(user_data.begin(), user_data.end()));
-  apply_transport(options, qos);
+  apply_transport(options, guard_, qos);
   apply_discovery(options.discovery, qos);
   compat::announce_no_type_information(qos);
   participant_.reset(create_participant(options.discovery.domain, qos, listener_.get()));

@@ -7,6 +7,7 @@
 #include "common/dds/compat.hpp"
 #include "common/dds/discovery.hpp"
 #include "common/dds/gid.hpp"
+#include "common/dds/packet_guard.hpp"
 #include "common/dds/peers.hpp"
 
 namespace lapis::dds {
@@ -44,6 +45,8 @@ class Participant {
   Gid gid() const;
   /// The other participants of the domain.
   Peers& peers() { return peers_; }
+  /// What has been kept away from Fast DDS.
+  const PacketGuard& guard() const { return *guard_; }
   /// A line for the log: another run has been found in the domain, what follows, and the remedy.
   std::string describe_other_run(const std::string& run) const;
   const std::string& name_space() const { return options_.name_space; }
@@ -63,6 +66,7 @@ class Participant {
 
   ParticipantOptions options_;
   Peers peers_;
+  std::shared_ptr<PacketGuard> guard_;
   std::unique_ptr<Listener> listener_;
   std::unique_ptr<compat::fdds::DomainParticipant, Deleter> participant_;  // after what its threads use
   int filters_ = 0;

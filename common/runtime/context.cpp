@@ -94,6 +94,19 @@ void Context::add_incompatible(const Endpoint& endpoint, diagnostic_msgs::msg::D
   }
 }
 
+/// Reports datagrams that were kept away from Fast DDS.
+void Context::report_dropped_packets(diagnostic_msgs::msg::DiagnosticStatus& entry) {
+  for (std::size_t i = 0; i < dds::kPacketFaults; ++i) {
+    const auto [count, sender] = participant_.guard().dropped(static_cast<dds::PacketFault>(i));
+    if (count == 0) continue;
+    const std::string name = dds::kPacketFaultNames[i];
+    entry.values().push_back(key_value("dropped packets " + name, std::to_string(count)));
+    if (rate_limit_.pass("dropped " + name)) {
+      spdlog::warn("{} RTPS packets dropped ({}), the last of {}", count, name, sender);
+    }
+  }
+}
+
 /// Reports samples that were refused because of who wrote them, and other runs that have appeared in the domain.
 void Context::report_strangers(diagnostic_msgs::msg::DiagnosticStatus& entry) {
   dds::Peers& peers = participant_.peers();
@@ -140,6 +153,7 @@ void Context::publish_diagnostics() {
     }
   }
   report_strangers(entry);
+  report_dropped_packets(entry);
   if (const std::uint64_t undecodable = dds::undecodable_samples; undecodable > 0) {
     entry.values().push_back(key_value("samples that cannot be decoded", std::to_string(undecodable)));
     if (rate_limit_.pass("undecodable")) spdlog::warn("samples that cannot be decoded: {}", undecodable);

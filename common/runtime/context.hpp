@@ -109,6 +109,7 @@ class Context {
   void run_cycle(const Cycle& cycle);
   void publish_diagnostics();
   void report_strangers(diagnostic_msgs::msg::DiagnosticStatus& entry);
+  void report_dropped_packets(diagnostic_msgs::msg::DiagnosticStatus& entry);
   template <class Endpoint>
   void add_incompatible(const Endpoint& endpoint, diagnostic_msgs::msg::DiagnosticStatus& entry);
 

@@ -86,7 +86,7 @@ int reserve_domain() {
 
 std::string enter_private_domain() {
   for (const char* name : {"ROS_STATIC_PEERS", "ROS_LOCALHOST_ONLY", "ROS_DISCOVERY_SERVER", "LAPIS_RUN",
-                           "FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE"}) {
+                           "LAPIS_ALLOWED_PEERS", "FASTRTPS_DEFAULT_PROFILES_FILE", "FASTDDS_DEFAULT_PROFILES_FILE"}) {
     unsetenv(name);
   }
   setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);

@@ -50,6 +50,27 @@ TEST(Discovery, StaticPeersAreSeparatedBySemicolons) {
   EXPECT_EQ(settings({{"ROS_STATIC_PEERS", ";10.0.0.7;;"}}).static_peers, (std::vector<std::string>{"10.0.0.7"}));
 }
 
+TEST(Discovery, AllowedPeersAreAddressesOrNetworks) {
+  const auto peers = settings({{"LAPIS_ALLOWED_PEERS", "192.168.1.7;10.0.0.9/8;1.2.3.4/0"}}).allowed_peers;
+  ASSERT_EQ(peers.size(), 3U);
+  EXPECT_TRUE(peers[0].contains(0xc0a80107));
+  EXPECT_FALSE(peers[0].contains(0xc0a80108));
+  EXPECT_TRUE(peers[1].contains(0x0aff0001));
+  EXPECT_FALSE(peers[1].contains(0x0b000009));
+  EXPECT_TRUE(peers[2].contains(0xffffffff));
+  for (const char* bad : {"localhost", "10.0.0", "10.0.0.1/33", "10.0.0.1/", "10.0.0.1/-1", "10.0.0.1/8x", "::1"}) {
+    EXPECT_THROW(settings({{"LAPIS_ALLOWED_PEERS", bad}}), std::runtime_error) << bad;
+  }
+}
+
+TEST(Discovery, AllMaySendOnTheSubnetUnlessPeersAreNamed) {
+  EXPECT_FALSE(allowed_senders(settings({})));
+  EXPECT_FALSE(allowed_senders(settings({{"ROS_STATIC_PEERS", "10.0.0.7"}})));
+  EXPECT_TRUE(allowed_senders(settings({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}}))->empty());
+  EXPECT_EQ(allowed_senders(settings({{"LAPIS_ALLOWED_PEERS", "10.0.0.7"}, {"ROS_STATIC_PEERS", "10.0.0.8"}}))->size(),
+            2U);
+}
+
 TEST(Discovery, RunIsAnIdThatFitsIntoUserData) {
   EXPECT_EQ(settings({}).run, "");
   EXPECT_EQ(settings({{"LAPIS_RUN", "Run_7.a-b"}}).run, "Run_7.a-b");

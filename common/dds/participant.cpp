@@ -152,7 +152,7 @@ compat::fdds::Topic& Participant::topic(const std::string& dds_name, const std::
     return *static_cast<compat::fdds::Topic*>(known);
   }
   compat::announce_no_type_information(type);
-  type.register_type(participant_, type_name);
+  type.register_type(participant_.get(), type_name);
   auto* topic = participant_->create_topic(dds_name, type_name, compat::fdds::TOPIC_QOS_DEFAULT);
   if (topic == nullptr) throw std::runtime_error("DDS topic " + dds_name + " could not be created");
   return *topic;

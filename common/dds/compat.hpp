@@ -53,6 +53,10 @@ void set_timings(WriterQos& qos, DdsDuration heartbeat_period, DdsDuration respo
   qos.reliable_writer_qos().times.heartbeat_period = heartbeat_period;
   qos.reliable_writer_qos().times.nack_response_delay = response_delay;
 }
+template <class WriterQos>
+void set_nack_suppression(WriterQos& qos, DdsDuration duration) {
+  qos.reliable_writer_qos().times.nack_supression_duration = duration;
+}
 template <class ReaderQos>
 void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
   qos.reliable_reader_qos().times.heartbeat_response_delay = response_delay;
@@ -80,6 +84,10 @@ template <class WriterQos>
 void set_timings(WriterQos& qos, DdsDuration heartbeat_period, DdsDuration response_delay) {
   qos.reliable_writer_qos().times.heartbeatPeriod = heartbeat_period;
   qos.reliable_writer_qos().times.nackResponseDelay = response_delay;
+}
+template <class WriterQos>
+void set_nack_suppression(WriterQos& qos, DdsDuration duration) {
+  qos.reliable_writer_qos().times.nackSupressionDuration = duration;
 }
 template <class ReaderQos>
 void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {

@@ -27,13 +27,13 @@ Locator_t peer_locator(const std::string& address) {
   return locator;
 }
 
-void apply_transport(const ParticipantOptions& options, compat::fdds::DomainParticipantQos& qos) {
+void apply_transport(const ParticipantOptions& options, const LinkSettings& link,
+                     compat::fdds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<compat::UDPv4TransportDescriptor>();
   udp->sendBufferSize = udp->receiveBufferSize = static_cast<std::uint32_t>(options.socket_buffer_bytes);
+  udp->maxMessageSize = static_cast<std::uint32_t>(link.message_bytes);
   udp->maxInitialPeersRange = kPeersPerHost;
-  // Static peers may be on other hosts, which only the other interfaces reach.
-  const bool is_local = options.discovery.range == DiscoveryRange::kLocalhost && options.discovery.static_peers.empty();
-  if (is_local) udp->interfaceWhiteList.emplace_back("127.0.0.1");
+  if (stays_on_host(options.discovery)) udp->interfaceWhiteList.emplace_back("127.0.0.1");
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(udp);
   if (options.transport == Transport::kSharedMemory) {
@@ -41,6 +41,16 @@ void apply_transport(const ParticipantOptions& options, compat::fdds::DomainPart
     shared->segment_size(kSharedMemorySegmentBytes);
     qos.transport().user_transports.push_back(shared);
   }
+}
+
+void apply_pace(const LargeSettings& large, compat::fdds::DomainParticipantQos& qos) {
+  if (large.bytes_per_period == 0) return;
+  auto pace = std::make_shared<eprosima::fastdds::rtps::FlowControllerDescriptor>();
+  pace->name = kPaceName;
+  pace->scheduler = eprosima::fastdds::rtps::FlowControllerSchedulerPolicy::ROUND_ROBIN;
+  pace->max_bytes_per_period = large.bytes_per_period;
+  pace->period_ms = static_cast<std::uint64_t>(large.pace_period_ms);
+  qos.flow_controllers().push_back(pace);
 }
 
 // Mirrors what Jazzy's rmw_fastrtps does for the same environment (ros2-interop 3.1).
@@ -97,13 +107,15 @@ class Participant::Listener : public compat::ParticipantListener {
 };
 
 Participant::Participant(const ParticipantOptions& options)
-    : options_(options), peers_(options.discovery.run), listener_(std::make_unique<Listener>(peers_)) {
+    : options_(options), link_(options.link.value_or(link_of(options.discovery))), peers_(options.discovery.run),
+      listener_(std::make_unique<Listener>(peers_)) {
   compat::fdds::DomainParticipantQos qos;
   qos.name("/");  // the enclave, which is also the name that rmw_fastrtps gives its participants
   std::string user_data = "enclave=/;";
   if (!peers_.run().empty()) user_data += "run=" + peers_.run() + ";";
   qos.user_data().setValue(std::vector<unsigned char>(user_data.begin(), user_data.end()));
-  apply_transport(options, qos);
+  apply_transport(options, link_, qos);
+  apply_pace(link_.large, qos);
   apply_discovery(options.discovery, qos);
   compat::announce_no_type_information(qos);
   participant_.reset(create_participant(options.discovery.domain, qos, listener_.get()));

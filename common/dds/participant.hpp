@@ -1,12 +1,14 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/dds/compat.hpp"
 #include "common/dds/discovery.hpp"
 #include "common/dds/gid.hpp"
+#include "common/dds/link.hpp"
 #include "common/dds/peers.hpp"
 
 namespace lapis::dds {
@@ -19,6 +21,7 @@ struct ParticipantOptions {
   DiscoverySettings discovery;
   Transport transport = Transport::kUdp;
   int socket_buffer_bytes = 4 << 20;
+  std::optional<LinkSettings> link;  ///< none: what the discovery range asks for
 };
 
 /// One DDS participant, which is also one ROS 2 node: its endpoints appear in `ros2 node info`.
@@ -46,6 +49,7 @@ class Participant {
   Peers& peers() { return peers_; }
   /// A line for the log: another run has been found in the domain, what follows, and the remedy.
   std::string describe_other_run(const std::string& run) const;
+  const LinkSettings& link() const { return link_; }
   const std::string& name_space() const { return options_.name_space; }
 
   /// Endpoints report themselves, so that the ROS 2 graph can list them.
@@ -62,6 +66,7 @@ class Participant {
   };
 
   ParticipantOptions options_;
+  LinkSettings link_;
   Peers peers_;
   std::unique_ptr<Listener> listener_;
   std::unique_ptr<compat::fdds::DomainParticipant, Deleter> participant_;  // after what its threads use

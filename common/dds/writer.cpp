@@ -13,7 +13,8 @@ Writer::Writer(Participant& participant, const std::string& dds_name, const std:
   auto& topic = participant.topic(dds_name, type_name, std::move(type));
   const auto mask = compat::fdds::StatusMask::publication_matched()
                     << compat::fdds::StatusMask::offered_incompatible_qos();
-  writer_ = participant.publisher().create_datawriter(&topic, writer_qos(qos, type_hash), this, mask);
+  writer_ =
+      participant.publisher().create_datawriter(&topic, writer_qos(qos, type_hash, participant.link()), this, mask);
   if (writer_ == nullptr) throw std::runtime_error("DDS writer of " + dds_name + " could not be created");
   gid_ = to_gid(writer_->guid());
   participant.add_writer(gid_);

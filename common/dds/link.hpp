@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstdint>
+
+#include "common/dds/discovery.hpp"
+
+namespace lapis::dds {
+
+/// How large samples (Qos::large) travel: images and tiles, hundreds of datagrams each.
+struct LargeSettings {
+  int bytes_per_period = 0;  ///< most bytes sent in a pace_period_ms; 0: write() sends all at once, in its own thread
+  int pace_period_ms = 1;
+  int depth = 0;                  ///< history depth at least, so that a sample is repaired before newer ones replace it
+  std::int64_t heartbeat_ns = 0;  ///< 0: as for other samples
+  std::int64_t heartbeat_response_ns = 0;  ///< how long a reader waits for what is under way before it asks again
+  std::int64_t nack_response_ns = 0;       ///< how long a writer collects what readers ask for
+  std::int64_t nack_suppression_ns = 0;    ///< how long a writer ignores that whole samples are asked for again
+  bool heartbeat_with_data = true;         ///< false: only periodic heartbeats
+};
+
+/// How a participant sends, by what lies between it and the others.
+struct LinkSettings {
+  int message_bytes = 65'500;  ///< largest RTPS message, which is one UDP datagram
+  LargeSettings large;
+};
+
+/// Nothing is lost: few and large datagrams, sent by write() itself, and an answer at once to what is missing.
+inline constexpr LinkSettings kLoopbackLink{};
+
+/// One datagram for each frame of Ethernet, so that a lost frame costs 1.4 kB, and heartbeats slower than the round
+/// trip.
+inline constexpr LinkSettings kNetworkLink{.message_bytes = 1'400,
+                                           .large = {.bytes_per_period = 40'000,
+                                                     .pace_period_ms = 2,
+                                                     .depth = 30,
+                                                     .heartbeat_ns = 120'000'000,
+                                                     .heartbeat_response_ns = 10'000'000,
+                                                     .nack_response_ns = 5'000'000,
+                                                     .nack_suppression_ns = 500'000'000,
+                                                     .heartbeat_with_data = false}};
+
+/// The loopback interface alone, or the network.
+bool stays_on_host(const DiscoverySettings& discovery);
+LinkSettings link_of(const DiscoverySettings& discovery);
+
+}  // namespace lapis::dds

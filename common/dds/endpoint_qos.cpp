@@ -36,9 +36,7 @@ void apply_large(const LargeSettings& large, DataWriterQos& qos) {
     qos.publish_mode().kind = ASYNCHRONOUS_PUBLISH_MODE;
     qos.publish_mode().flow_controller_name = kPaceName;
   }
-  if (large.heartbeat_ns > 0) {
-    compat::set_timings(qos, compat::duration(large.heartbeat_ns), compat::duration(large.nack_response_ns));
-  }
+  if (large.heartbeat_ns > 0) compat::set_timings(qos, compat::duration(large.heartbeat_ns), compat::duration(0));
   compat::set_nack_suppression(qos, compat::duration(large.nack_suppression_ns));
   // While a history is full, which it always is after a while, Fast DDS adds a heartbeat to each datagram, and each
   // heartbeat makes the reader ask for all that is still under way.

@@ -13,7 +13,6 @@ struct LargeSettings {
   int depth = 0;                  ///< history depth at least, so that a sample is repaired before newer ones replace it
   std::int64_t heartbeat_ns = 0;  ///< 0: as for other samples
   std::int64_t heartbeat_response_ns = 0;  ///< how long a reader waits for what is under way before it asks again
-  std::int64_t nack_response_ns = 0;       ///< how long a writer collects what readers ask for
   std::int64_t nack_suppression_ns = 0;    ///< how long a writer ignores that whole samples are asked for again
   bool heartbeat_with_data = true;         ///< false: only periodic heartbeats
 };
@@ -30,12 +29,11 @@ inline constexpr LinkSettings kLoopbackLink{};
 /// One datagram for each frame of Ethernet, so that a lost frame costs 1.4 kB, and heartbeats slower than the round
 /// trip.
 inline constexpr LinkSettings kNetworkLink{.message_bytes = 1'400,
-                                           .large = {.bytes_per_period = 40'000,
+                                           .large = {.bytes_per_period = 80'000,
                                                      .pace_period_ms = 2,
                                                      .depth = 30,
-                                                     .heartbeat_ns = 120'000'000,
-                                                     .heartbeat_response_ns = 10'000'000,
-                                                     .nack_response_ns = 5'000'000,
+                                                     .heartbeat_ns = 30'000'000,
+                                                     .heartbeat_response_ns = 20'000'000,
                                                      .nack_suppression_ns = 500'000'000,
                                                      .heartbeat_with_data = false}};
 

@@ -29,7 +29,6 @@ void add_settings(CLI::App& app, dds::ParticipantOptions& options) {
   app.add_option("--depth", large.depth, "depth of the history of images");
   app.add_option("--heartbeat-ns", large.heartbeat_ns, "period of heartbeats; 0: that of the topic");
   app.add_option("--heartbeat-response-ns", large.heartbeat_response_ns, "delay of a reader's answers");
-  app.add_option("--nack-response-ns", large.nack_response_ns, "delay of a writer's answers");
   app.add_option("--nack-suppression-ns", large.nack_suppression_ns, "time in which requests are ignored");
   app.add_option("--heartbeat-with-data", large.heartbeat_with_data, "heartbeats with data, too");
 }

@@ -17,8 +17,8 @@ ROOT = Path(__file__).resolve().parents[4]
 KERNEL_DEFAULT = 212_992  # net.core.rmem_max of Linux [B]
 # As Lapis 1.0 sent, on every link.
 BEFORE = ["--message-bytes", "65500", "--pace-bytes", "0", "--depth", "0", "--heartbeat-ns", "0",
-          "--heartbeat-response-ns", "0", "--nack-response-ns", "0", "--nack-suppression-ns", "0",
-          "--heartbeat-with-data", "true"]
+          "--heartbeat-response-ns", "0", "--nack-suppression-ns", "0", "--heartbeat-with-data", "true"]
+REAL_TIME = ["chrt", "--rr", "5"]
 LOADS = {"raw": [], "compressed": ["--image-bytes", "90000"]}
 COLUMNS = ("library", "settings", "load", "loss_percent", "delay_ms", "images_percent", "images_hz", "age_p50_ms",
            "age_p95_ms", "tiles_percent", "tiles_s", "sent_per_payload", "write_p50_ms", "write_p99_ms",
@@ -55,7 +55,7 @@ def measure(arguments, settings, load, loss, delay):
     children = []
 
     def start(command, **options):
-        children.append(Process(command, **options))
+        children.append(Process([*REAL_TIME, *command] if arguments.real_time else command, **options))
         return children[-1]
 
     try:
@@ -112,6 +112,8 @@ def parse():
     parser.add_argument("--seconds", type=float, default=20, help="of images")
     parser.add_argument("--socket-buffer", type=int, default=KERNEL_DEFAULT, help="that is asked for [B]")
     parser.add_argument("--queue", type=int, default=10_000, help="packets that wait at an end of the link")
+    parser.add_argument("--real-time", action="store_true",
+                        help="real-time priority for all that is measured, on a machine that has other work, too")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--domain", type=int, default=151)
     parser.add_argument("--csv", type=Path)

@@ -26,8 +26,9 @@ struct LinkSettings {
 /// Nothing is lost: few and large datagrams, sent by write() itself, and an answer at once to what is missing.
 inline constexpr LinkSettings kLoopbackLink{};
 
-/// One datagram for each frame of Ethernet, so that a lost frame costs 1.4 kB, and heartbeats slower than the round
-/// trip.
+/// One datagram for each frame of Ethernet, so that a lost frame costs 1.4 kB, sent no faster than socket buffers of
+/// the size that Linux grants by default take; and readers ask for what is missing when the rest of a sample has had
+/// time to arrive. Found by tests/benchmark/dds/lossy_link.
 inline constexpr LinkSettings kNetworkLink{.message_bytes = 1'400,
                                            .large = {.bytes_per_period = 80'000,
                                                      .pace_period_ms = 2,

@@ -45,5 +45,22 @@ TEST(EndpointQos, WritersOfferOnlyPlainCdr) {
   }
 }
 
+TEST(EndpointQos, LargeSamplesArePacedOnANetworkOnly) {
+  for (const auto& wanted : kProfiles) {
+    const auto on_host = writer_qos(wanted, "RIHS01_abc");
+    EXPECT_EQ(on_host.publish_mode().kind, SYNCHRONOUS_PUBLISH_MODE);
+    EXPECT_FALSE(on_host.reliable_writer_qos().disable_heartbeat_piggyback);
+    const auto on_network = writer_qos(wanted, "RIHS01_abc", kNetworkLink);
+    EXPECT_EQ(on_network.publish_mode().kind, wanted.large ? ASYNCHRONOUS_PUBLISH_MODE : SYNCHRONOUS_PUBLISH_MODE);
+    EXPECT_EQ(on_network.reliable_writer_qos().disable_heartbeat_piggyback, wanted.large);
+  }
+}
+
+TEST(EndpointQos, ImagesStayInTheHistoryForASecondOnANetwork) {
+  EXPECT_EQ(writer_qos(kSensor, "RIHS01_abc", kNetworkLink).history().depth, 30);
+  EXPECT_EQ(reader_qos(kSensor, "RIHS01_abc", kNetworkLink).history().depth, 30);
+  EXPECT_EQ(writer_qos(kKeyedTiles, "RIHS01_abc", kNetworkLink).history().depth, 1);
+}
+
 }  // namespace
 }  // namespace lapis::dds

@@ -107,8 +107,8 @@ class Participant::Listener : public compat::ParticipantListener {
 };
 
 Participant::Participant(const ParticipantOptions& options)
-    : options_(options), link_(options.link.value_or(link_of(options.discovery))), peers_(options.discovery.run),
-      listener_(std::make_unique<Listener>(peers_)) {
+    : options_(options), link_(options.link.value_or(link_of(options.discovery))), pace_(link_.large),
+      peers_(options.discovery.run), listener_(std::make_unique<Listener>(peers_)) {
   compat::fdds::DomainParticipantQos qos;
   qos.name("/");  // the enclave, which is also the name that rmw_fastrtps gives its participants
   std::string user_data = "enclave=/;";

@@ -9,6 +9,7 @@
 #include "common/dds/discovery.hpp"
 #include "common/dds/gid.hpp"
 #include "common/dds/link.hpp"
+#include "common/dds/pace.hpp"
 #include "common/dds/peers.hpp"
 
 namespace lapis::dds {
@@ -50,6 +51,7 @@ class Participant {
   /// A line for the log: another run has been found in the domain, what follows, and the remedy.
   std::string describe_other_run(const std::string& run) const;
   const LinkSettings& link() const { return link_; }
+  Pace& pace() { return pace_; }
   const std::string& name_space() const { return options_.name_space; }
 
   /// Endpoints report themselves, so that the ROS 2 graph can list them.
@@ -67,6 +69,7 @@ class Participant {
 
   ParticipantOptions options_;
   LinkSettings link_;
+  Pace pace_;
   Peers peers_;
   std::unique_ptr<Listener> listener_;
   std::unique_ptr<compat::fdds::DomainParticipant, Deleter> participant_;  // after what its threads use

@@ -9,7 +9,7 @@ namespace lapis::dds {
 
 Writer::Writer(Participant& participant, const std::string& dds_name, const std::string& type_name,
                compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos)
-    : participant_(participant), dds_name_(dds_name) {
+    : participant_(participant), dds_name_(dds_name), qos_(qos) {
   auto& topic = participant.topic(dds_name, type_name, std::move(type));
   const auto mask = compat::fdds::StatusMask::publication_matched()
                     << compat::fdds::StatusMask::offered_incompatible_qos();
@@ -28,7 +28,19 @@ Writer::~Writer() {
   participant_.publisher().delete_datawriter(writer_);
 }
 
+bool Writer::is_admitted(const void* sample) {
+  if (!qos_.large || qos_.latched) return true;  // what is latched arrives late rather than never
+  const auto now = Pace::Clock::now();
+  if (!participant_.pace().has_room(now)) {
+    ++left_out_;
+    return false;
+  }
+  participant_.pace().add(compat::serialized_size(*writer_, sample), now);
+  return true;
+}
+
 bool Writer::write(const void* sample, compat::rtps::WriteParams& params) {
+  if (!is_admitted(sample)) return true;
   if (!compat::ok(compat::write(*writer_, sample, params))) {
     ++failed_;
     return false;

@@ -9,6 +9,7 @@
 #include <sys/signalfd.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <csignal>
@@ -24,8 +25,9 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr std::size_t kLargestPacket = 1'500;   // MTU of the devices [B]
-constexpr std::size_t kMostInFlight = 200'000;  // packets of one direction; 100 MB/s for 3 s
+constexpr std::size_t kLargestPacket = 1'500;                  // MTU of the devices [B]
+constexpr auto kLongestQueue = std::chrono::milliseconds(50);  // of packets that wait for their turn on a slow link
+constexpr std::size_t kMostInFlight = 200'000;                 // packets of one direction; 100 MB/s for 3 s
 
 int checked(int result, const char* what) {
   if (result < 0) throw std::system_error(errno, std::generic_category(), what);
@@ -62,7 +64,7 @@ class Direction {
  public:
   Direction(int from, int to, const LinkOptions& options, std::uint64_t number)
       : from_(from), to_(to), delay_(std::chrono::microseconds(static_cast<std::int64_t>(options.delay_ms * 1e3))),
-        is_lost_(options.loss_percent / 100.0), random_(2 * options.seed + number) {}
+        is_lost_(options.loss_percent / 100.0), random_(2 * options.seed + number), options_(options) {}
 
   void receive() {
     Packet packet;
@@ -71,12 +73,14 @@ class Direction {
       if (size <= 0) return;
       ++packets_;
       bytes_ += static_cast<std::uint64_t>(size);
-      if (is_lost_(random_)) {
+      const auto now = Clock::now();
+      if (is_lost_(random_) || is_out(now)) {
         ++lost_;
-      } else if (in_flight_.size() >= kMostInFlight) {
+      } else if (in_flight_.size() >= kMostInFlight || free_ > now + kLongestQueue) {
         ++overflown_;
       } else {
-        packet.due = Clock::now() + delay_;
+        free_ = std::max(free_, now) + time_on_link(static_cast<double>(size));
+        packet.due = free_ + delay_;
         packet.size = static_cast<std::size_t>(size);
         in_flight_.push_back(packet);
       }
@@ -98,11 +102,25 @@ class Direction {
   }
 
  private:
+  static Clock::duration seconds(double s) {
+    return std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(s));
+  }
+  Clock::duration time_on_link(double bytes) const {
+    return options_.mbit_per_s > 0.0 ? seconds(8e-6 * bytes / options_.mbit_per_s) : Clock::duration::zero();
+  }
+  bool is_out(Clock::time_point now) const {
+    const auto out_since = began_ + seconds(options_.outage_after_s);
+    return now >= out_since && now < out_since + seconds(options_.outage_s);
+  }
+
   int from_;
   int to_;
   Clock::duration delay_;
   std::bernoulli_distribution is_lost_;
   std::mt19937_64 random_;
+  LinkOptions options_;
+  Clock::time_point began_ = Clock::now();
+  Clock::time_point free_;  // when the link has sent all that has come
   std::deque<Packet> in_flight_;
   std::uint64_t packets_ = 0;
   std::uint64_t bytes_ = 0;

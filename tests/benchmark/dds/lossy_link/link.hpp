@@ -8,7 +8,10 @@ namespace lapis::test {
 struct LinkOptions {
   double loss_percent = 0.0;  ///< share of packets lost, each by itself, in both directions
   double delay_ms = 0.0;      ///< one way
-  std::uint64_t seed = 1;     ///< the n-th packet of a direction is lost or not by the seed alone
+  double mbit_per_s = 0.0;    ///< rate of each direction, with a queue of 50 ms; 0: any
+  double outage_after_s = 0.0;
+  double outage_s = 0.0;   ///< how long nothing arrives
+  std::uint64_t seed = 1;  ///< the n-th packet of a direction is lost or not by the seed alone
 };
 
 /// Makes two network namespaces with a TUN device each and carries packets between them until SIGTERM or SIGINT. Prints

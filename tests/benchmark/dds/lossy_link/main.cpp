@@ -42,6 +42,9 @@ int run(int argc, char** argv) {
   LinkOptions link_options;
   link->add_option("--loss", link_options.loss_percent, "packets lost [%]")->check(CLI::Range(0.0, 100.0));
   link->add_option("--delay", link_options.delay_ms, "delay one way [ms]")->check(CLI::Range(0.0, 10'000.0));
+  link->add_option("--rate", link_options.mbit_per_s, "rate [Mbit/s]; 0: any");
+  link->add_option("--outage-after", link_options.outage_after_s, "time until nothing arrives for a while [s]");
+  link->add_option("--outage", link_options.outage_s, "length of that while [s]");
   link->add_option("--seed", link_options.seed, "seed of the losses");
   dds::ParticipantOptions options;
   options.node_name = "lossy_link";

@@ -19,7 +19,7 @@ KERNEL_DEFAULT = 212_992  # net.core.rmem_max of Linux [B]
 BEFORE = ["--message-bytes", "65500", "--pace-bytes", "0", "--depth", "0", "--heartbeat-ns", "0",
           "--heartbeat-response-ns", "0", "--nack-suppression-ns", "0", "--heartbeat-with-data", "true"]
 REAL_TIME = ["chrt", "--rr", "5"]
-LOADS = {"raw": [], "compressed": ["--image-bytes", "90000"]}
+LOADS = {"three": ["--image-bytes", "1843200"], "no_tiles": ["--tiles", "0"], "raw": [], "compressed": ["--image-bytes", "90000"]}
 COLUMNS = ("library", "settings", "load", "loss_percent", "delay_ms", "images_percent", "images_hz", "age_p50_ms",
            "age_p95_ms", "tiles_percent", "tiles_s", "sent_per_payload", "write_p50_ms", "write_p99_ms",
            "publisher_cpu_percent", "subscriber_cpu_percent")
@@ -54,12 +54,14 @@ def configure(namespace, number, queue):
 def measure(arguments, settings, load, loss, delay):
     children = []
 
-    def start(command, **options):
-        children.append(Process([*REAL_TIME, *command] if arguments.real_time else command, **options))
+    def start(command, real_time, **options):
+        children.append(Process([*REAL_TIME, *command] if real_time else command, **options))
         return children[-1]
 
     try:
-        link = start([arguments.program, "link", "--loss", loss, "--delay", delay, "--seed", arguments.seed])
+        link = start([arguments.program, "link", "--loss", loss, "--delay", delay, "--seed", arguments.seed,
+                      "--rate", arguments.rate, "--outage-after", 4, "--outage", arguments.outage],
+                     real_time=True)  # a real one does not wait for a processor
         namespaces = link.line()["namespaces"]
         for number, namespace in enumerate(namespaces, start=1):
             configure(namespace, number, arguments.queue)
@@ -68,7 +70,8 @@ def measure(arguments, settings, load, loss, delay):
         environment = {**os.environ, "ROS_DOMAIN_ID": str(arguments.domain), "ROS_AUTOMATIC_DISCOVERY_RANGE": "SUBNET"}
         environment.pop("LAPIS_RUN", None)
         subscriber, publisher = (
-            start(["nsenter", f"--net={namespace}", arguments.program, name, *common, *options], env=environment)
+            start(["nsenter", f"--net={namespace}", arguments.program, name, *common, *options], arguments.real_time,
+                  env=environment)
             for name, namespace, options in (
                 ("subscribe", namespaces[1], []),
                 ("publish", namespaces[0], [*LOADS[load], "--images", int(15 * arguments.seconds)])))
@@ -85,13 +88,13 @@ def row(arguments, settings, load, loss, delay, sent, received, carried):
     result.update(library=arguments.library, settings=settings, load=load, loss_percent=loss, delay_ms=delay)
     if not sent or not received:
         return result
-    image_bytes = int(LOADS[load][1]) if LOADS[load] else 691_200
+    image_bytes = int(LOADS[load][1]) if load == "compressed" else 691_200
     payload = sent["images"] * image_bytes + sent["tiles"] * 100_000
     result.update(
         images_percent=round(100 * received["images"] / sent["images"], 1),
         images_hz=round(received["images"] / sent["seconds"], 1),
         age_p50_ms=round(1e3 * received["age_p50_s"]), age_p95_ms=round(1e3 * received["age_p95_s"]),
-        tiles_percent=round(100 * received["tiles"] / sent["tiles"], 1), tiles_s=round(received["tiles_s"], 2),
+        tiles_percent=round(100 * received["tiles"] / max(1, sent["tiles"]), 1), tiles_s=round(received["tiles_s"], 2),
         sent_per_payload=round(carried["forth"]["bytes"] / payload, 2),
         write_p50_ms=round(sent["write_p50_ms"], 2), write_p99_ms=round(sent["write_p99_ms"], 2),
         publisher_cpu_percent=round(100 * sent["cpu_s"] / sent["seconds"]),
@@ -110,10 +113,12 @@ def parse():
     parser.add_argument("--loss", nargs="+", type=float, default=[0, 1, 5], help="[%%]")
     parser.add_argument("--delay", nargs="+", type=float, default=[0, 50], help="one way [ms]")
     parser.add_argument("--seconds", type=float, default=20, help="of images")
+    parser.add_argument("--rate", type=float, default=0, help="of the link [Mbit/s]; default: any")
+    parser.add_argument("--outage", type=float, default=0, help="how long nothing arrives, from the 4th second on [s]")
     parser.add_argument("--socket-buffer", type=int, default=KERNEL_DEFAULT, help="that is asked for [B]")
     parser.add_argument("--queue", type=int, default=10_000, help="packets that wait at an end of the link")
     parser.add_argument("--real-time", action="store_true",
-                        help="real-time priority for all that is measured, on a machine that has other work, too")
+                        help="real-time priority for both sides, too, on a machine that has other work")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--domain", type=int, default=151)
     parser.add_argument("--csv", type=Path)

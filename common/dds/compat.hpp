@@ -66,6 +66,8 @@ void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
 }
 inline const fdds::ReturnCode_t kReturnOk = fdds::RETCODE_OK;
 using FilterResult = fdds::ReturnCode_t;
+/// 3.1.2 ends a process by an assertion, soon after its start, when its participant has a flow controller.
+inline constexpr bool kHasFlowControllers = false;
 using Payload = rtps::SerializedPayload_t&;
 inline void announce_no_type_information(fdds::TypeSupport&) {}
 inline void announce_no_type_information(fdds::DomainParticipantQos& qos) {
@@ -101,6 +103,7 @@ void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
   qos.reliable_reader_qos().times.heartbeatResponseDelay = response_delay;
 }
 using FilterResult = eprosima::fastrtps::types::ReturnCode_t;
+inline constexpr bool kHasFlowControllers = true;
 inline const eprosima::fastrtps::types::ReturnCode_t kReturnOk = eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
 using Payload = rtps::SerializedPayload_t*;
 inline void announce_no_type_information(fdds::TypeSupport& type) {

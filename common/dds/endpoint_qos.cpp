@@ -34,7 +34,7 @@ void apply_common(const Qos& wanted, const std::string& type_hash, const LinkSet
 void apply_large(const LargeSettings& large, DataWriterQos& qos) {
   if (large.bytes_per_period > 0) {
     qos.publish_mode().kind = ASYNCHRONOUS_PUBLISH_MODE;
-    qos.publish_mode().flow_controller_name = kPaceName;
+    if (compat::kHasFlowControllers) qos.publish_mode().flow_controller_name = kPaceName;
   }
   if (large.heartbeat_ns > 0) compat::set_timings(qos, compat::duration(large.heartbeat_ns), compat::duration(0));
   compat::set_nack_suppression(qos, compat::duration(large.nack_suppression_ns));

@@ -44,7 +44,7 @@ void apply_transport(const ParticipantOptions& options, const LinkSettings& link
 }
 
 void apply_pace(const LargeSettings& large, compat::fdds::DomainParticipantQos& qos) {
-  if (large.bytes_per_period == 0) return;
+  if (large.bytes_per_period == 0 || !compat::kHasFlowControllers) return;
   auto pace = std::make_shared<eprosima::fastdds::rtps::FlowControllerDescriptor>();
   pace->name = kPaceName;
   pace->scheduler = eprosima::fastdds::rtps::FlowControllerSchedulerPolicy::ROUND_ROBIN;

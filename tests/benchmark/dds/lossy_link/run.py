@@ -19,7 +19,7 @@ KERNEL_DEFAULT = 212_992  # net.core.rmem_max of Linux [B]
 BEFORE = ["--message-bytes", "65500", "--pace-bytes", "0", "--depth", "0", "--heartbeat-ns", "0",
           "--heartbeat-response-ns", "0", "--nack-suppression-ns", "0", "--heartbeat-with-data", "true"]
 REAL_TIME = ["chrt", "--rr", "5"]
-LOADS = {"three": ["--image-bytes", "1843200"], "no_tiles": ["--tiles", "0"], "raw": [], "compressed": ["--image-bytes", "90000"]}
+LOADS = {"raw": [], "no_tiles": ["--tiles", "0"], "compressed": ["--image-bytes", "90000"]}
 COLUMNS = ("library", "settings", "load", "loss_percent", "delay_ms", "images_percent", "images_hz", "age_p50_ms",
            "age_p95_ms", "tiles_percent", "tiles_s", "sent_per_payload", "write_p50_ms", "write_p99_ms",
            "publisher_cpu_percent", "subscriber_cpu_percent")

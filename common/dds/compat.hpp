@@ -58,11 +58,21 @@ void set_timings(WriterQos& qos, DdsDuration heartbeat_period, DdsDuration respo
   qos.reliable_writer_qos().times.heartbeat_period = heartbeat_period;
   qos.reliable_writer_qos().times.nack_response_delay = response_delay;
 }
+inline std::size_t serialized_size(const fdds::DataWriter& writer, const void* sample) {
+  return writer.get_type().get()->calculate_serialized_size(sample, fdds::XCDR_DATA_REPRESENTATION);
+}
+template <class WriterQos>
+void set_nack_suppression(WriterQos& qos, DdsDuration duration) {
+  qos.reliable_writer_qos().times.nack_supression_duration = duration;
+}
 template <class ReaderQos>
 void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
   qos.reliable_reader_qos().times.heartbeat_response_delay = response_delay;
 }
 inline const fdds::ReturnCode_t kReturnOk = fdds::RETCODE_OK;
+using FilterResult = fdds::ReturnCode_t;
+/// 3.1.2 ends a process by an assertion, soon after its start, when its participant has a flow controller.
+inline constexpr bool kHasFlowControllers = false;
 using Payload = rtps::SerializedPayload_t&;
 inline void announce_no_type_information(fdds::TypeSupport&) {}
 inline void announce_no_type_information(fdds::DomainParticipantQos& qos) {
@@ -86,10 +96,19 @@ void set_timings(WriterQos& qos, DdsDuration heartbeat_period, DdsDuration respo
   qos.reliable_writer_qos().times.heartbeatPeriod = heartbeat_period;
   qos.reliable_writer_qos().times.nackResponseDelay = response_delay;
 }
+inline std::size_t serialized_size(const fdds::DataWriter& writer, const void* sample) {
+  return writer.get_type().get()->getSerializedSizeProvider(const_cast<void*>(sample))();  // it only reads
+}
+template <class WriterQos>
+void set_nack_suppression(WriterQos& qos, DdsDuration duration) {
+  qos.reliable_writer_qos().times.nackSupressionDuration = duration;
+}
 template <class ReaderQos>
 void set_reader_timings(ReaderQos& qos, DdsDuration response_delay) {
   qos.reliable_reader_qos().times.heartbeatResponseDelay = response_delay;
 }
+using FilterResult = eprosima::fastrtps::types::ReturnCode_t;
+inline constexpr bool kHasFlowControllers = true;
 inline const eprosima::fastrtps::types::ReturnCode_t kReturnOk = eprosima::fastrtps::types::ReturnCode_t::RETCODE_OK;
 using Payload = rtps::SerializedPayload_t*;
 inline void announce_no_type_information(fdds::TypeSupport& type) {
@@ -201,12 +220,12 @@ class SignatureFilter : private fdds::IContentFilter, public fdds::IContentFilte
   bool evaluate(const SerializedPayload& payload, const FilterSampleInfo& info, const rtps::GUID_t&) const final {
     return payload.length == 0 || admits(info.sample_identity.writer_guid());
   }
-  ReturnCode_t create_content_filter(const char*, const char*, const fdds::TopicDataType*, const char*,
+  FilterResult create_content_filter(const char*, const char*, const fdds::TopicDataType*, const char*,
                                      const ParameterSeq&, fdds::IContentFilter*& filter) final {
     filter = this;
     return kReturnOk;
   }
-  ReturnCode_t delete_content_filter(const char*, fdds::IContentFilter*) final { return kReturnOk; }
+  FilterResult delete_content_filter(const char*, fdds::IContentFilter*) final { return kReturnOk; }
 };
 
 /// Reports the participants that discovery finds.

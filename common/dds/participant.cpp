@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/dds/endpoint_qos.hpp"
+#include "common/dds/shared_memory.hpp"
 #include "common/dds/type_support.hpp"
 #include "idl/rmw_dds_common.hpp"
 
@@ -27,21 +28,31 @@ Locator_t peer_locator(const std::string& address) {
   return locator;
 }
 
-void apply_transport(const ParticipantOptions& options, const std::shared_ptr<PacketGuard>& guard,
-                     compat::fdds::DomainParticipantQos& qos) {
+void add_udp(const ParticipantOptions& options, const LinkSettings& link, const std::shared_ptr<PacketGuard>& guard,
+             compat::fdds::DomainParticipantQos& qos) {
   auto udp = std::make_shared<compat::UDPv4TransportDescriptor>();
   udp->sendBufferSize = udp->receiveBufferSize = static_cast<std::uint32_t>(options.socket_buffer_bytes);
+  udp->maxMessageSize = static_cast<std::uint32_t>(link.message_bytes);
   udp->maxInitialPeersRange = kPeersPerHost;
-  // Static peers may be on other hosts, which only the other interfaces reach.
-  const bool is_local = options.discovery.range == DiscoveryRange::kLocalhost && options.discovery.static_peers.empty();
-  if (is_local) udp->interfaceWhiteList.emplace_back("127.0.0.1");
+  if (stays_on_host(options.discovery)) udp->interfaceWhiteList.emplace_back("127.0.0.1");
   qos.transport().use_builtin_transports = false;
   qos.transport().user_transports.push_back(std::make_shared<compat::InspectedTransportDescriptor>(udp, guard));
-  if (options.transport == Transport::kSharedMemory) {
-    auto shared = std::make_shared<compat::SharedMemTransportDescriptor>();
-    shared->segment_size(kSharedMemorySegmentBytes);
-    qos.transport().user_transports.push_back(shared);
-  }
+}
+
+void add_shared_memory(compat::fdds::DomainParticipantQos& qos) {
+  auto shared = std::make_shared<compat::SharedMemTransportDescriptor>();
+  shared->segment_size(kSharedMemorySegmentBytes);
+  qos.transport().user_transports.push_back(shared);
+}
+
+void apply_pace(const LargeSettings& large, compat::fdds::DomainParticipantQos& qos) {
+  if (large.bytes_per_period == 0 || !compat::kHasFlowControllers) return;
+  auto pace = std::make_shared<eprosima::fastdds::rtps::FlowControllerDescriptor>();
+  pace->name = kPaceName;
+  pace->scheduler = eprosima::fastdds::rtps::FlowControllerSchedulerPolicy::ROUND_ROBIN;
+  pace->max_bytes_per_period = large.bytes_per_period;
+  pace->period_ms = static_cast<std::uint64_t>(large.pace_period_ms);
+  qos.flow_controllers().push_back(pace);
 }
 
 // Mirrors what Jazzy's rmw_fastrtps does for the same environment (ros2-interop 3.1).
@@ -98,22 +109,20 @@ class Participant::Listener : public compat::ParticipantListener {
 };
 
 Participant::Participant(const ParticipantOptions& options)
-    : options_(options), peers_(options.discovery.run), guard_(std::make_shared<PacketGuard>(options.discovery)),
+    : options_(options), link_(options.link.value_or(link_of(options.discovery))), pace_(link_.large),
+      peers_(options.discovery.run), guard_(std::make_shared<PacketGuard>(options.discovery)),
       listener_(std::make_unique<Listener>(peers_)) {
   compat::fdds::DomainParticipantQos qos;
   qos.name("/");  // the enclave, which is also the name that rmw_fastrtps gives its participants
   std::string user_data = "enclave=/;";
   if (!peers_.run().empty()) user_data += "run=" + peers_.run() + ";";
   qos.user_data().setValue(std::vector<unsigned char>(user_data.begin(), user_data.end()));
-  apply_transport(options, guard_, qos);
+  add_udp(options, link_, guard_, qos);
+  apply_pace(link_.large, qos);
   apply_discovery(options.discovery, qos);
   compat::announce_no_type_information(qos);
-  participant_.reset(create_participant(options.discovery.domain, qos, listener_.get()));
+  join(qos);
   peers_.add(gid(), user_data);
-  // Fast DDS announces a participant before it listens, and other participants answer only the first announcement. So a
-  // second participant is created and deleted, and the first one hears the answers to its announcement: decision 0029.
-  compat::fdds::DomainParticipantFactory::get_instance()->delete_participant(
-      create_participant(options.discovery.domain, qos));
   publisher_ = participant_->create_publisher(compat::fdds::PUBLISHER_QOS_DEFAULT);
   subscriber_ = participant_->create_subscriber(compat::fdds::SUBSCRIBER_QOS_DEFAULT);
   using Info = rmw_dds_common::msg::ParticipantEntitiesInfo;
@@ -121,6 +130,24 @@ Participant::Participant(const ParticipantOptions& options)
   auto& graph_topic = topic("ros_discovery_info", Support::kDdsName, make_type_support<Info>());
   graph_writer_ = publisher_->create_datawriter(&graph_topic, writer_qos(kLatched, Support::kHash));
   if (graph_writer_ == nullptr) throw std::runtime_error("DDS writer of ros_discovery_info could not be created");
+}
+
+/// Creates the participant, by shared memory too if that is wanted and has room.
+void Participant::join(compat::fdds::DomainParticipantQos qos) {
+  const compat::fdds::DomainParticipantQos by_udp = qos;
+  const SharedMemory memory;
+  std::optional<SharedMemory::Turn> turn;
+  if (options_.transport == Transport::kSharedMemory) {
+    turn.emplace(memory);
+    memory.reap();
+    shared_memory_obstacle_ = memory.obstacle(kSharedMemorySegmentBytes);
+    if (shared_memory_obstacle_.empty()) add_shared_memory(qos);
+  }
+  participant_.reset(create_participant(options_.discovery.domain, qos, listener_.get()));
+  // Fast DDS announces a participant before it listens, and other participants answer only the first announcement. So a
+  // second participant is created and deleted, and the first one hears the answers to its announcement: decision 0029.
+  compat::fdds::DomainParticipantFactory::get_instance()->delete_participant(
+      create_participant(options_.discovery.domain, by_udp));
 }
 
 Participant::~Participant() = default;

@@ -1,12 +1,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "common/dds/compat.hpp"
 #include "common/dds/discovery.hpp"
 #include "common/dds/gid.hpp"
+#include "common/dds/link.hpp"
+#include "common/dds/pace.hpp"
 #include "common/dds/packet_guard.hpp"
 #include "common/dds/peers.hpp"
 
@@ -20,6 +23,7 @@ struct ParticipantOptions {
   DiscoverySettings discovery;
   Transport transport = Transport::kUdp;
   int socket_buffer_bytes = 4 << 20;
+  std::optional<LinkSettings> link;  ///< none: what the discovery range asks for
 };
 
 /// One DDS participant, which is also one ROS 2 node: its endpoints appear in `ros2 node info`.
@@ -49,7 +53,11 @@ class Participant {
   const PacketGuard& guard() const { return *guard_; }
   /// A line for the log: another run has been found in the domain, what follows, and the remedy.
   std::string describe_other_run(const std::string& run) const;
+  const LinkSettings& link() const { return link_; }
+  Pace& pace() { return pace_; }
   const std::string& name_space() const { return options_.name_space; }
+  /// Why shared memory is not used, although the options ask for it; empty when all is as asked for.
+  const std::string& shared_memory_obstacle() const { return shared_memory_obstacle_; }
 
   /// Endpoints report themselves, so that the ROS 2 graph can list them.
   void add_reader(const Gid& gid) { readers_.push_back(gid); }
@@ -60,15 +68,20 @@ class Participant {
  private:
   class Listener;
 
+  void join(compat::fdds::DomainParticipantQos qos);
+
   struct Deleter {
     void operator()(compat::fdds::DomainParticipant* participant) const;
   };
 
   ParticipantOptions options_;
+  LinkSettings link_;
+  Pace pace_;
   Peers peers_;
   std::shared_ptr<PacketGuard> guard_;
   std::unique_ptr<Listener> listener_;
   std::unique_ptr<compat::fdds::DomainParticipant, Deleter> participant_;  // after what its threads use
+  std::string shared_memory_obstacle_;
   int filters_ = 0;
   compat::fdds::Publisher* publisher_ = nullptr;
   compat::fdds::Subscriber* subscriber_ = nullptr;

@@ -27,7 +27,8 @@ Reader::Reader(Participant& participant, const std::string& dds_name, const std:
   }
   const auto mask = compat::fdds::StatusMask::subscription_matched()
                     << compat::fdds::StatusMask::requested_incompatible_qos();
-  reader_ = participant.subscriber().create_datareader(topic, reader_qos(qos, type_hash), this, mask);
+  reader_ =
+      participant.subscriber().create_datareader(topic, reader_qos(qos, type_hash, participant.link()), this, mask);
   if (reader_ == nullptr) throw std::runtime_error("DDS reader of " + dds_name + " could not be created");
   reader_->get_statuscondition().set_enabled_statuses(compat::fdds::StatusMask::data_available());
   gid_ = to_gid(reader_->guid());

@@ -97,7 +97,7 @@ std::string SharedMemory::obstacle(std::uint64_t segment_bytes) const {
 }
 
 SharedMemory::Turn::Turn(const SharedMemory& memory)
-    : file_(::open((memory.folder_ / kTurnFile).c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666)) {
+    : file_(::open((memory.folder_ / kTurnFile).c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0666)) {
   if (file_ >= 0) ::flock(file_, LOCK_EX);
 }
 

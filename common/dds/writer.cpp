@@ -9,11 +9,12 @@ namespace lapis::dds {
 
 Writer::Writer(Participant& participant, const std::string& dds_name, const std::string& type_name,
                compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos)
-    : participant_(participant), dds_name_(dds_name) {
+    : participant_(participant), dds_name_(dds_name), qos_(qos) {
   auto& topic = participant.topic(dds_name, type_name, std::move(type));
   const auto mask = compat::fdds::StatusMask::publication_matched()
                     << compat::fdds::StatusMask::offered_incompatible_qos();
-  writer_ = participant.publisher().create_datawriter(&topic, writer_qos(qos, type_hash), this, mask);
+  writer_ =
+      participant.publisher().create_datawriter(&topic, writer_qos(qos, type_hash, participant.link()), this, mask);
   if (writer_ == nullptr) throw std::runtime_error("DDS writer of " + dds_name + " could not be created");
   gid_ = to_gid(writer_->guid());
   participant.add_writer(gid_);
@@ -27,7 +28,20 @@ Writer::~Writer() {
   participant_.publisher().delete_datawriter(writer_);
 }
 
+bool Writer::is_admitted(const void* sample) {
+  if (participant_.link().large.bytes_per_period == 0) return true;
+  if (!qos_.large || qos_.latched) return true;  // what is latched arrives late rather than never
+  const auto now = Pace::Clock::now();
+  if (!participant_.pace().has_room(now)) {
+    ++left_out_;
+    return false;
+  }
+  participant_.pace().add(compat::serialized_size(*writer_, sample), now);
+  return true;
+}
+
 bool Writer::write(const void* sample, compat::rtps::WriteParams& params) {
+  if (!is_admitted(sample)) return true;
   if (!compat::ok(compat::write(*writer_, sample, params))) {
     ++failed_;
     return false;

@@ -20,7 +20,8 @@ class Writer : private compat::fdds::DataWriterListener {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// Writes one sample; a refusal by DDS is counted and returned.
+  /// Writes one sample; a refusal by DDS is counted and returned. An image that could not be sent in time on a slow
+  /// network is left out, which is counted apart, and true returned: a newer one follows.
   bool write(const void* sample, compat::rtps::WriteParams& params);
   bool write(const void* sample);
   /// Unregisters a key, so that no sample of it remains. Keys are never disposed, because late joiners would receive
@@ -34,6 +35,7 @@ class Writer : private compat::fdds::DataWriterListener {
   /// RTPS sequence number of the last sample: the number of samples written since the start.
   std::uint64_t written() const { return written_; }
   std::uint64_t failed() const { return failed_; }
+  std::uint64_t left_out() const { return left_out_; }
   const std::string& dds_name() const { return dds_name_; }
   Gid gid() const { return gid_; }
   /// Number of matched readers that are not of another run.
@@ -46,6 +48,8 @@ class Writer : private compat::fdds::DataWriterListener {
   std::uint64_t incompatible() const { return incompatible_; }
 
  private:
+  /// Whether a large sample is to be written, which then counts.
+  bool is_admitted(const void* sample);
   void on_publication_matched(compat::fdds::DataWriter* writer,
                               const compat::fdds::PublicationMatchedStatus& status) override;
   void on_offered_incompatible_qos(compat::fdds::DataWriter* writer,
@@ -53,10 +57,12 @@ class Writer : private compat::fdds::DataWriterListener {
 
   Participant& participant_;
   std::string dds_name_;
+  Qos qos_;
   compat::fdds::DataWriter* writer_ = nullptr;
   Gid gid_{};
   std::uint64_t written_ = 0;
   std::uint64_t failed_ = 0;
+  std::uint64_t left_out_ = 0;
   std::atomic<std::uint64_t> total_matches_{0};
   std::atomic<std::uint64_t> incompatible_{0};
   mutable std::mutex mutex_;  // guards readers_, which DDS threads change

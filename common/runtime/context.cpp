@@ -24,6 +24,9 @@ double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 *
 Context::Context(const ContextOptions& options)
     : options_(options), clock_(options.use_sim_time ? time::Clock::Kind::kSimulated : time::Clock::Kind::kSystem),
       participant_(options.participant), heart_(participant_, frame(options.name)) {
+  if (const std::string& obstacle = participant_.shared_memory_obstacle(); !obstacle.empty()) {
+    spdlog::warn("shared memory: {}; UDP is used instead", obstacle);
+  }
   diagnostics_ =
       std::make_unique<dds::Publisher<diagnostic_msgs::msg::DiagnosticArray>>(participant_, topics::kDiagnostics);
   if (options.use_sim_time) {
@@ -144,6 +147,13 @@ void Context::publish_diagnostics() {
     if (writer->incompatible() > 0) add_incompatible(*writer, entry);
     if (writer->failed() > 0) {
       entry.values().push_back(key_value("refused writes " + writer->dds_name(), std::to_string(writer->failed())));
+    }
+    if (writer->left_out() > 0) {
+      entry.values().push_back(key_value("left out " + writer->dds_name(), std::to_string(writer->left_out())));
+      if (rate_limit_.pass("left out " + writer->dds_name())) {
+        spdlog::warn("{}: {} samples left out, because the network is given less than they need", writer->dds_name(),
+                     writer->left_out());
+      }
     }
   }
   for (const auto& source : sources_) {

@@ -7,22 +7,22 @@
 namespace lapis::topics {
 
 // What a camera and a segmentation of its images publish.
-inline constexpr dds::Topic<sensor_msgs::msg::Image> kColor{"/camera/color/image_raw", dds::kSensor, "camera",
+inline constexpr dds::Topic<sensor_msgs::msg::Image> kColor{"/camera/color/image_raw", dds::kImage, "camera",
                                                             "15 or 30 Hz", "rgb8, bgr8, rgba8, bgra8 or mono8"};
 inline constexpr dds::Topic<sensor_msgs::msg::CompressedImage> kCompressedColor{
-    "/camera/color/image_raw/compressed", dds::kSensor, "camera", "camera rate",
+    "/camera/color/image_raw/compressed", dds::kImage, "camera", "camera rate",
     "JPEG or PNG; read instead of image_raw with slam.input.color: compressed"};
 inline constexpr dds::Topic<sensor_msgs::msg::Image> kDepth{
-    "/camera/depth/image_raw", dds::kSensor, "camera", "camera rate",
+    "/camera/depth/image_raw", dds::kImage, "camera", "camera rate",
     "16UC1 in mm or 32FC1 in m, registered to colour; 0 = none"};
-inline constexpr dds::Topic<sensor_msgs::msg::CameraInfo> kColorInfo{"/camera/color/camera_info", dds::kSensor,
+inline constexpr dds::Topic<sensor_msgs::msg::CameraInfo> kColorInfo{"/camera/color/camera_info", dds::kImageInfo,
                                                                      "camera", "camera rate", "intrinsics"};
 inline constexpr dds::Topic<sensor_msgs::msg::CameraInfo> kDepthInfo{
-    "/camera/depth/camera_info", dds::kSensor, "camera", "camera rate", "intrinsics, the same as colour"};
+    "/camera/depth/camera_info", dds::kImageInfo, "camera", "camera rate", "intrinsics, the same as colour"};
 inline constexpr dds::Topic<sensor_msgs::msg::Image> kLabels{
-    "/camera/semantic/image_raw", dds::kSensor, "camera, or a segmentation", "camera rate or less",
+    "/camera/semantic/image_raw", dds::kImage, "camera, or a segmentation", "camera rate or less",
     "mono8 or mono16 class ids; 0 and the largest id = unlabelled"};
-inline constexpr dds::Topic<sensor_msgs::msg::Image> kLabelConfidence{"/camera/semantic/confidence", dds::kSensor,
+inline constexpr dds::Topic<sensor_msgs::msg::Image> kLabelConfidence{"/camera/semantic/confidence", dds::kImage,
                                                                       "camera, or a segmentation", "as the labels",
                                                                       "optional; 32FC1 or mono8"};
 inline constexpr dds::Topic<vision_msgs::msg::LabelInfo> kLabelInfo{

@@ -9,6 +9,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr std::size_t kWaitingMessages = 8;
+constexpr std::size_t kWaitingInfos = 64;  // small messages are ahead of their images, on a network by half a second
 constexpr std::size_t kPeriods = 9;  // their lower quartile is the camera's period, even where images are missing
 constexpr time::Duration kLargestTolerance{120'000'000};  // 0.6 of the period at 5 Hz
 
@@ -24,7 +25,7 @@ FrameInput::FrameInput(const FrameInputConfig& config, runtime::Context& context
       color_(config.color == "compressed" ? Color(context, topics::kCompressedColor, "colour", kWaitingMessages)
                                           : Color(context, topics::kColor, "colour", kWaitingMessages)),
       depth_(context, topics::kDepth, "depth", kWaitingMessages),
-      info_(context, topics::kColorInfo, "camera info", kWaitingMessages) {
+      info_(context, topics::kColorInfo, "camera info", kWaitingInfos) {
   color_.on_restart([this] {
     begin_anew();
     if (on_restart_) on_restart_();

@@ -7,8 +7,7 @@ namespace {
 
 using namespace compat::fdds;  // NOLINT(google-build-using-namespace): policy names only
 
-constexpr Qos kProfiles[] = {kSensor, kState,    kFrameState, kLatched, kCommand,
-                             kBurst,  kLockstep, kKeyedTiles, kService};
+constexpr Qos kProfiles[] = {kImage, kState, kFrameState, kLatched, kCommand, kBurst, kLockstep, kKeyedTiles, kService};
 
 template <class EndpointQos>
 void expect_common(const EndpointQos& qos, const Qos& wanted) {
@@ -43,6 +42,23 @@ TEST(EndpointQos, WritersOfferOnlyPlainCdr) {
     ASSERT_EQ(qos.representation().m_value.size(), 1u);
     EXPECT_EQ(qos.representation().m_value[0], XCDR_DATA_REPRESENTATION);
   }
+}
+
+TEST(EndpointQos, LargeSamplesArePacedOnANetworkOnly) {
+  for (const auto& wanted : kProfiles) {
+    const auto on_host = writer_qos(wanted, "RIHS01_abc");
+    EXPECT_EQ(on_host.publish_mode().kind, SYNCHRONOUS_PUBLISH_MODE);
+    EXPECT_FALSE(on_host.reliable_writer_qos().disable_heartbeat_piggyback);
+    const auto on_network = writer_qos(wanted, "RIHS01_abc", kNetworkLink);
+    EXPECT_EQ(on_network.publish_mode().kind, wanted.large ? ASYNCHRONOUS_PUBLISH_MODE : SYNCHRONOUS_PUBLISH_MODE);
+    EXPECT_EQ(on_network.reliable_writer_qos().disable_heartbeat_piggyback, wanted.large);
+  }
+}
+
+TEST(EndpointQos, ImagesStayInTheHistoryForASecondOnANetwork) {
+  EXPECT_EQ(writer_qos(kImage, "RIHS01_abc", kNetworkLink).history().depth, 30);
+  EXPECT_EQ(reader_qos(kImage, "RIHS01_abc", kNetworkLink).history().depth, 30);
+  EXPECT_EQ(writer_qos(kKeyedTiles, "RIHS01_abc", kNetworkLink).history().depth, 1);
 }
 
 }  // namespace

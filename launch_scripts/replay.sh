@@ -35,7 +35,7 @@ TEXT
 }
 
 of_data_set=() of_scene=() # options given that the other kind of source does not know
-export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
+[ -n "${ROS_DISCOVERY_SERVER:-}" ] || export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
 command="${0##*/} $*" dataset="" scene="" rate="" out="" duration="" options=()
 while [ $# -gt 0 ]; do
   case $1 in

@@ -167,6 +167,9 @@ class InspectedTransport : public eprosima::fastdds::rtps::ChainingTransport {
     }
   }
 
+  /// Others may send larger datagrams than this process does, which is what the transport below would ask for.
+  std::uint32_t max_recv_buffer_size() const override { return kLargestDatagram; }
+
   eprosima::fastdds::rtps::TransportDescriptorInterface* get_configuration() override {
     return low_level_transport_->get_configuration();
   }
@@ -198,6 +201,8 @@ class InspectedTransport : public eprosima::fastdds::rtps::ChainingTransport {
     result = remote;
     return IPLocator::setIPv4(result, "127.0.0.1");
   }
+
+  static constexpr std::uint32_t kLargestDatagram = 65'535;
 
   std::shared_ptr<PacketInspector> inspector_;
 };

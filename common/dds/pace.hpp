@@ -27,7 +27,7 @@ class Pace {
   void add(std::size_t bytes, Clock::time_point now);
 
  private:
-  static constexpr double kSentPerPayload = 2.0;  // headers, repairs, and what is asked for again while it is under way
+  static constexpr double kSentPerPayload = 1.2;  // headers and repairs, up to 1 % of loss
   static constexpr auto kLongestBacklog = std::chrono::milliseconds(150);
 
   const double bytes_per_s_;

@@ -29,7 +29,7 @@ Writer::~Writer() {
 }
 
 bool Writer::is_admitted(const void* sample) {
-  if (participant_.link().large.bytes_per_period == 0) return true;
+  if (participant_.link().large.bytes_per_period == 0 || !compat::kHasFlowControllers || matched() == 0) return true;
   if (!qos_.large || qos_.latched) return true;  // what is latched arrives late rather than never
   const auto now = Pace::Clock::now();
   if (!participant_.pace().has_room(now)) {

@@ -33,8 +33,8 @@ class StampedInput {
   /// Sets the function that is called when the source has restarted in lock-step: its stamps went back by more than a
   /// second.
   void on_restart(std::function<void()> action) { on_restart_ = std::move(action); }
-  /// Sets the function that is called in free run when the clock of the source was set, or the source has restarted; if
-  /// it was set back, the oldest message is the first one since. `step`: how far the clock was set.
+  /// Sets the function that is called in free run when the clock of the source was set, or the source has restarted:
+  /// the oldest message is the first one since. `step`: how far the clock was set.
   void on_clock_set(std::function<void(time::Duration step)> action) { on_clock_set_ = std::move(action); }
 
   bool has_publisher() const { return source_.matched() > 0; }
@@ -60,20 +60,31 @@ class StampedInput {
   void store(Sample& sample) {
     using Verdict = time::StampJudge::Verdict;
     const time::Time stamp = messages::from_message(sample.header().stamp());
-    if (!context_.is_free()) return put(stamp, Message(std::move(sample)));
-    const Verdict verdict = judge_.judge(stamp, time::StampJudge::Arrival::clock::now());
+    if (!context_.is_free()) return believe(stamp, Message(std::move(sample)));
+    const Verdict verdict = judge_.judge(stamp, time::Arrival::clock::now());
     const bool is_stray = verdict == Verdict::kStray || (verdict == Verdict::kDoubtful && doubtful_);
     if (is_stray) count(" dropped: stamp far from those before and after it");
     if (verdict == Verdict::kDoubtful) {
       doubtful_.emplace(stamp, Message(std::move(sample)));
       return;
     }
-    if (verdict == Verdict::kStepped) put(doubtful_->first, std::move(doubtful_->second));
+    const bool was_set = verdict == Verdict::kStepped;
+    if (was_set) {
+      if (!buffer_.empty()) count(" dropped: waited when the clock of its source was set", buffer_.size());
+      buffer_.begin_anew();
+      put(doubtful_->first, std::move(doubtful_->second));
+    }
     doubtful_.reset();
     put(stamp, Message(std::move(sample)));
-    if (verdict != Verdict::kStepped) return;
+    if (!was_set) return;
     count(": the clock of its source was set");
     if (on_clock_set_) on_clock_set_(judge_.step());
+  }
+  /// In lock-step.
+  void believe(time::Time stamp, Message message) {
+    if (doubtful_) put(doubtful_->first, std::move(doubtful_->second));
+    doubtful_.reset();
+    put(stamp, std::move(message));
   }
   void put(time::Time stamp, Message message) {
     using time::Push;

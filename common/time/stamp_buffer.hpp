@@ -57,6 +57,14 @@ class StampBuffer {
     return result;
   }
 
+  /// Forgets all messages and stamps, because the clock of the source was set.
+  void begin_anew() {
+    entries_.clear();
+    newest_.reset();
+    taken_.reset();
+    is_restart_expected_ = false;
+  }
+
   bool empty() const { return entries_.empty(); }
   std::size_t size() const { return entries_.size(); }
   bool is_full() const { return entries_.size() >= capacity_; }

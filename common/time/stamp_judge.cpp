@@ -9,20 +9,20 @@ namespace {
 
 constexpr std::int64_t kFastestPlayback = 10;  // of a recording, which may have gaps
 
-std::int64_t nanoseconds_between(StampJudge::Arrival from, StampJudge::Arrival to) {
+std::int64_t nanoseconds_between(Arrival from, Arrival to) {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(to - from).count();
 }
 
 }  // namespace
 
-bool StampJudge::follows(const Message& before, const Message& now) {
+bool follows(const Stamped& before, const Stamped& now) {
   const Duration ahead = now.stamp - before.stamp;
   const std::int64_t elapsed_ns = nanoseconds_between(before.arrival, now.arrival);
   return ahead >= -kRestartGap && ahead.nanoseconds <= kRestartGap.nanoseconds + kFastestPlayback * elapsed_ns;
 }
 
 StampJudge::Verdict StampJudge::judge(Time stamp, Arrival arrival) {
-  const Message message{stamp, arrival};
+  const Stamped message{stamp, arrival};
   if (newest_ && !follows(*newest_, message)) {
     if (!doubtful_ || !follows(*doubtful_, message) || stamp == doubtful_->stamp) {
       doubtful_ = message;

@@ -7,13 +7,23 @@
 
 namespace lapis::time {
 
+/// When a process handled a message first. Handlers only store their messages, so this is close to their arrival.
+using Arrival = std::chrono::steady_clock::time_point;
+
+/// A message of a stream: its stamp, and when it came.
+struct Stamped {
+  Time stamp;
+  Arrival arrival;
+};
+
+/// Whether a message can follow another one of the same clock in free run: its stamp is at most kRestartGap before the
+/// other's, and not further ahead of it than that and the time between their arrivals explain.
+bool follows(const Stamped& before, const Stamped& now);
+
 /// Tells the messages of a clock that was set from single messages with wrong stamps, for one stream of a source in
-/// free run. A stamp fits when it is at most kRestartGap before the newest one, and not further ahead of it than
-/// that and the time since that one arrived explain. What follows a stamp that does not fit decides about it.
+/// free run. What comes after a message that does not follow the one before decides about it.
 class StampJudge {
  public:
-  using Arrival = std::chrono::steady_clock::time_point;
-
   enum class Verdict {
     kFits,
     kDoubtful,  ///< to be kept until the next verdict; one that was kept before is a stray
@@ -26,14 +36,8 @@ class StampJudge {
   Duration step() const { return step_; }
 
  private:
-  struct Message {
-    Time stamp;
-    Arrival arrival;
-  };
-  static bool follows(const Message& before, const Message& now);
-
-  std::optional<Message> newest_;    // that fits
-  std::optional<Message> doubtful_;  // that was kept
+  std::optional<Stamped> newest_;    // that fits
+  std::optional<Stamped> doubtful_;  // that was kept
   Duration step_;
 };
 

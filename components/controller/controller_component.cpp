@@ -20,6 +20,7 @@ namespace {
 
 constexpr double kFarewell_s = 1.0;
 constexpr std::size_t kWaitingFrames = 10;
+constexpr std::size_t kWaitingInfos = 64;  // on a network they are ahead of their images by half a second
 constexpr time::Duration kStatusPeriod{1'000'000'000};
 
 time::Time steady_now() {
@@ -54,7 +55,7 @@ ControllerComponent::ControllerComponent(const Config& config, runtime::Context&
       status_(context.advertise(topics::kControllerStatus)),
       pose_(context, topics::kSlamOdometry, "pose", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
-      info_(context, topics::kDepthInfo, "camera info", kWaitingFrames) {
+      info_(context, topics::kDepthInfo, "camera info", kWaitingInfos) {
   depth_.on_arrival([this](time::Time stamp) { camera_stamp_ = stamp; });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { add_mount(m); });
   context.subscribe(topics::kTrackedFrame, [this](const auto& m) { note_frame(m); });

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kWaitingMessages = 8;
 constexpr std::size_t kWaitingInfos = 64;  // small messages are ahead of their images, on a network by half a second
-constexpr std::size_t kPeriods = 9;  // their lower quartile is the camera's period, even where images are missing
+constexpr std::size_t kPeriods = 9;        // their lower quartile is the camera's period, even where images are missing
 constexpr time::Duration kLargestTolerance{120'000'000};  // 0.6 of the period at 5 Hz
 
 /// Half of a period, and a tenth for its jitter. A neighbour's depth image is not taken instead: each is used once.

@@ -145,7 +145,7 @@ void SlamComponent::track(const JoinedFrame& joined) {
   saved_camera_.reset();
   ++frames_total_;
   frame_.stamp = joined.stamp;
-  frame->stamp = clock_.advance(joined.stamp);
+  frame->stamp = clock_.advance(joined.stamp, time::Arrival::clock::now());
   const TrackingResult result = slam_->process(*frame);
   if (result.state == TrackingState::kTracking) ++frames_tracked_;
   publish(result);
@@ -181,8 +181,8 @@ void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
 
 /// Keeps readings from before the first frame for it. Returns why the reading cannot be used, or an empty text.
 std::string SlamComponent::use_odometry(time::Time stamp, const geometry::Pose& T_odom_base) {
-  const auto time = context_.is_free() ? clock_.of_odometry(stamp, time::StampJudge::Arrival::clock::now()) : stamp;
-  if (!time) return "its stamp is far from the one before";
+  const auto time = context_.is_free() ? clock_.of_odometry(stamp, time::Arrival::clock::now()) : stamp;
+  if (!time) return "its stamp is far from those of the camera";
   if (slam_ != nullptr)
     return slam_->add_odometry(*time, T_odom_base) ? "" : "its stamp is not later than the one before";
   early_odometry_.emplace_back(*time, T_odom_base);
@@ -199,13 +199,13 @@ void SlamComponent::drop(time::Time stamp, const std::string& reason) {
   waits_for_ = reason;
   if (slam_ == nullptr) return;  // no session yet to which it could belong
   frame_.stamp = stamp;
-  publish(slam_->skip(clock_.advance(stamp), reason));
+  publish(slam_->skip(clock_.advance(stamp, time::Arrival::clock::now()), reason));
 }
 
 /// Continues in the time of the map when the stamps of frames have jumped.
 void SlamComponent::follow_clock(time::Duration step) {
-  clock_.set_camera(step);
   if (slam_ == nullptr) return;
+  clock_.set(step);
   spdlog::warn("the clock of the camera was set by {:+.1f} s", step.seconds());
   doubtful_frames_ = 0;
   last_pose_.reset();
@@ -231,6 +231,7 @@ void SlamComponent::end_map() {
   slam_->settle();
   if (const auto problem = write_files()) spdlog::error("{}; tracking continues", *problem);
   slam_.reset();
+  clock_ = {};
   doubtful_frames_.reset();
   saved_version_ = 0;
   last_pose_.reset();

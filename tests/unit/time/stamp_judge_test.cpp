@@ -12,7 +12,7 @@ using std::chrono::milliseconds;
 class Camera {
  public:
   Verdict send(int frame, Duration clock = {}) {
-    const auto arrival = StampJudge::Arrival{} + milliseconds(100 * frame + 1'000'000);
+    const auto arrival = Arrival{} + milliseconds(100 * frame + 1'000'000);
     return judge.judge(stamp(frame) + clock, arrival);
   }
   static Time stamp(int frame) { return Time::from_seconds(5000.0 + 0.1 * frame); }
@@ -32,8 +32,8 @@ TEST(StampJudge, DisorderAndPausesFit) {
 TEST(StampJudge, RecordingWithAGapMayBePlayedTenTimesAsFast) {
   StampJudge judge;
   EXPECT_EQ(judge.judge(Time::from_seconds(0.0), {}), Verdict::kFits);
-  EXPECT_EQ(judge.judge(Time::from_seconds(60.0), StampJudge::Arrival{} + milliseconds(6000)), Verdict::kFits);
-  EXPECT_EQ(judge.judge(Time::from_seconds(60.9), StampJudge::Arrival{} + milliseconds(6001)), Verdict::kFits);
+  EXPECT_EQ(judge.judge(Time::from_seconds(60.0), Arrival{} + milliseconds(6000)), Verdict::kFits);
+  EXPECT_EQ(judge.judge(Time::from_seconds(60.9), Arrival{} + milliseconds(6001)), Verdict::kFits);
 }
 
 TEST(StampJudge, OneWrongStampIsAStray) {
@@ -59,8 +59,7 @@ TEST(StampJudge, TheSameWrongStampTwiceIsNoClock) {
   Camera camera;
   camera.send(0);
   EXPECT_EQ(camera.send(1, kHour), Verdict::kDoubtful);
-  EXPECT_EQ(camera.judge.judge(Camera::stamp(1) + kHour, StampJudge::Arrival{} + milliseconds(1'000'150)),
-            Verdict::kDoubtful);
+  EXPECT_EQ(camera.judge.judge(Camera::stamp(1) + kHour, Arrival{} + milliseconds(1'000'150)), Verdict::kDoubtful);
   EXPECT_EQ(camera.send(2), Verdict::kStray);
 }
 

@@ -30,7 +30,8 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
                    is lost with it: docs/architecture.md
   --set KEY=VALUE  configuration, as for replay.sh; planner. and controller. are components, too
 
-The processes meet on this host only, unless ROS_AUTOMATIC_DISCOVERY_RANGE or ROS_STATIC_PEERS says otherwise (docs/ros2.md).
+The processes meet on this host only, unless ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS or ROS_DISCOVERY_SERVER
+says otherwise (docs/ros2.md).
 Results of an earlier run in DIR are removed, but for the maps that slam.resume_from and semantic_mapper.resume_from
 name. Exit status: 0 ran to the end, 1 a process failed or no frame came, 2 bad set-up, 130 and 143 interrupted; then,
 too, everything up to there is in DIR, but for the figures.

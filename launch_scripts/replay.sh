@@ -28,7 +28,8 @@ a simulated building, and leaves a run folder with trajectory, pose graph, seman
   --set KEY=VALUE  configuration, for example semantic_mapper.resolution_m=0.1 or dds.socket_buffer_bytes=212992; it goes
                    to every process that knows KEY. --print-config of each process lists its keys
 
-The processes meet on this host only, unless ROS_AUTOMATIC_DISCOVERY_RANGE or ROS_STATIC_PEERS says otherwise (docs/ros2.md).
+The processes meet on this host only, unless ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_STATIC_PEERS or ROS_DISCOVERY_SERVER
+says otherwise (docs/ros2.md).
 Results of an earlier run in DIR are removed, but for the maps that slam.resume_from and semantic_mapper.resume_from
 name. Exit status: 0 played to the end, 1 a process failed or no frame came, 2 bad set-up, 130 and 143 interrupted.
 TEXT

@@ -25,6 +25,8 @@
 #include <memory>
 #include <span>
 #include <vector>
+
+#include "common/dds/host_addresses.hpp"
 #if __has_include(<fastdds/config.hpp>)
 #define LAPIS_FASTDDS_3 1
 #include <fastdds/rtps/common/WriteParams.hpp>
@@ -133,6 +135,13 @@ inline fdds::InstanceHandle_t no_instance() { return fdds::HANDLE_NIL; }
 inline fdds::InstanceHandle_t no_instance() { return fdds::InstanceHandle_t(); }
 #endif
 
+/// The IPv4 address of a locator as a number, the first byte highest; a locator keeps it in its last four bytes.
+inline std::uint32_t ipv4_of(const rtps::Locator_t& locator) {
+  std::uint32_t address = 0;
+  for (std::size_t i = 12; i < 16; ++i) address = (address << 8U) | locator.address[i];
+  return address;
+}
+
 /// Decides which datagrams Fast DDS may read. Called from threads of DDS, several at once.
 class PacketInspector {
  public:
@@ -167,6 +176,10 @@ class InspectedTransport : public eprosima::fastdds::rtps::ChainingTransport {
     }
   }
 
+  bool is_local_locator(const rtps::Locator_t& locator) const override {
+    return IsLocatorSupported(locator) && host_.contains(ipv4_of(locator));
+  }
+
   /// Others may send larger datagrams than this process does, which is what the transport below would ask for.
   std::uint32_t max_recv_buffer_size() const override { return kLargestDatagram; }
 
@@ -197,7 +210,7 @@ class InspectedTransport : public eprosima::fastdds::rtps::ChainingTransport {
 
  private:
   bool to_loopback(const rtps::Locator_t& remote, rtps::Locator_t& result) const {
-    if (!IsLocatorSupported(remote) || !is_local_locator(remote)) return false;
+    if (!is_local_locator(remote)) return false;
     result = remote;
     return IPLocator::setIPv4(result, "127.0.0.1");
   }
@@ -205,6 +218,7 @@ class InspectedTransport : public eprosima::fastdds::rtps::ChainingTransport {
   static constexpr std::uint32_t kLargestDatagram = 65'535;
 
   std::shared_ptr<PacketInspector> inspector_;
+  mutable HostAddresses host_;
 };
 
 inline eprosima::fastdds::rtps::TransportInterface* InspectedTransportDescriptor::create_transport() const {
@@ -221,7 +235,7 @@ class SignatureFilter : private fdds::IContentFilter, public fdds::IContentFilte
   virtual bool admits(const rtps::GUID_t& signer) const = 0;
 
  private:
-  /// The end of a key has no payload, cannot be signed, and ends nothing but what its own writer has written.
+  /// The end of a key has no payload and cannot be signed, so everybody's is admitted (decision 0054, price).
   bool evaluate(const SerializedPayload& payload, const FilterSampleInfo& info, const rtps::GUID_t&) const final {
     return payload.length == 0 || admits(info.sample_identity.writer_guid());
   }

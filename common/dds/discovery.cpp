@@ -87,6 +87,7 @@ DiscoverySettings discovery_from_environment(const Environment& environment) {
   for (const auto& peer : split_peers(environment("LAPIS_ALLOWED_PEERS").value_or(""))) {
     settings.allowed_peers.push_back(parse_network(peer));
   }
+  settings.has_server = !environment("ROS_DISCOVERY_SERVER").value_or("").empty();
   if (environment("ROS_LOCALHOST_ONLY").value_or("0") == "1") {
     settings.range = DiscoveryRange::kLocalhost;
     return settings;
@@ -97,7 +98,8 @@ DiscoverySettings discovery_from_environment(const Environment& environment) {
 }
 
 std::optional<std::vector<Network>> allowed_senders(const DiscoverySettings& settings) {
-  if (settings.range == DiscoveryRange::kSubnet && settings.allowed_peers.empty()) return std::nullopt;
+  const bool meets_strangers = settings.range == DiscoveryRange::kSubnet || settings.has_server;
+  if (meets_strangers && settings.allowed_peers.empty()) return std::nullopt;
   std::vector<Network> senders = settings.allowed_peers;
   for (const auto& peer : settings.static_peers) {
     if (const auto address = parse_address(peer)) senders.push_back({*address});

@@ -29,6 +29,7 @@ struct DiscoverySettings {
   int domain = 0;                                  ///< ROS_DOMAIN_ID
   DiscoveryRange range = DiscoveryRange::kSubnet;  ///< ROS_AUTOMATIC_DISCOVERY_RANGE
   std::vector<std::string> static_peers;           ///< ROS_STATIC_PEERS, separated by ';'
+  bool has_server = false;                         ///< ROS_DISCOVERY_SERVER names one, which Fast DDS reads itself
   std::vector<Network> allowed_peers;  ///< LAPIS_ALLOWED_PEERS, separated by ';'; empty: see allowed_senders
   std::string run;                     ///< LAPIS_RUN: id of the run; empty: the process belongs to none
 };
@@ -42,11 +43,11 @@ std::optional<std::string> process_environment(const std::string& name);
 /// ignores the other two), LAPIS_ALLOWED_PEERS and LAPIS_RUN. An unknown range means LOCALHOST, as in rcl. Throws
 /// std::runtime_error when the domain is not a number from 0 to kLargestDomain, a peer that is allowed is neither an
 /// IPv4 address ("10.0.0.7") nor a network ("10.0.0.0/24"), or the run not of letters, digits, dots, dashes and
-/// underscores. ROS_DISCOVERY_SERVER is read by Fast DDS itself.
+/// underscores.
 DiscoverySettings discovery_from_environment(const Environment& environment = process_environment);
 
-/// Hosts, beside the own one, whose datagrams are read. Nothing: all, which is so on SUBNET without
-/// LAPIS_ALLOWED_PEERS. Static peers are always among them.
+/// Hosts, beside the own one, whose datagrams are read. Nothing: all, which is so on SUBNET or with a discovery server,
+/// which introduces hosts that nobody has named, without LAPIS_ALLOWED_PEERS. Static peers are always among them.
 std::optional<std::vector<Network>> allowed_senders(const DiscoverySettings& settings);
 
 }  // namespace lapis::dds

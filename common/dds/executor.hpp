@@ -17,8 +17,9 @@ class Executor {
 
   Executor();
 
-  /// The source must outlive the executor's last spin().
+  /// The source must outlive the executor's last spin(), and whoever reads sources() later.
   void add(Source& source);
+  const std::vector<Source*>& sources() const { return sources_; }
   /// Calls `action` every `period` of wall-clock time, for book-keeping only.
   void every(Clock::duration period, std::function<void()> action);
   /// Calls `action` once, when the steady clock reaches `due`.

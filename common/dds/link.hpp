@@ -6,6 +6,8 @@
 
 namespace lapis::dds {
 
+enum class Transport { kUdp, kSharedMemory };
+
 /// How large samples (Qos::large) travel: images and tiles, hundreds of datagrams each.
 struct LargeSettings {
   int bytes_per_period = 0;  ///< most bytes sent in a pace_period_ms; 0: write() sends all at once, in its own thread
@@ -38,8 +40,13 @@ inline constexpr LinkSettings kNetworkLink{.message_bytes = 1'400,
                                                      .nack_suppression_ns = 500'000'000,
                                                      .heartbeat_with_data = false}};
 
-/// The loopback interface alone, or the network.
+/// Whether the loopback interface alone is used.
 bool stays_on_host(const DiscoverySettings& discovery);
-LinkSettings link_of(const DiscoverySettings& discovery);
+
+/// What lies between a participant and the others. Who asks for shared memory has its readers on this host: Fast DDS
+/// gives all transports of a participant the smallest of their message sizes, and kNetworkLink would cut each image
+/// into hundreds of messages and send them at the pace of a network. Other hosts get the large datagrams, too, which
+/// needs a link that loses nothing.
+LinkSettings link_of(const DiscoverySettings& discovery, Transport transport = Transport::kUdp);
 
 }  // namespace lapis::dds

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <mutex>
@@ -11,7 +10,11 @@ namespace lapis::dds {
 
 /// How far the writers of large samples of a participant are behind what they were given. Fast DDS sends in the order
 /// of writing and lets new samples replace old ones of which half has been sent, so that on a slow link nearly none
-/// arrives whole. So what would come too late is not written at all.
+/// arrives whole. So who publishes frames asks before each one, and leaves out the whole frame, its small messages too,
+/// when it would come too late.
+///
+/// Fast DDS counts a message once, though it sends a copy to each process that reads: with readers in n processes on
+/// other hosts, the network carries n times the pace.
 class Pace {
  public:
   using Clock = std::chrono::steady_clock;
@@ -19,21 +22,19 @@ class Pace {
   explicit Pace(const LargeSettings& settings)
       : bytes_per_s_(1e3 * settings.bytes_per_period / settings.pace_period_ms) {}
 
-  /// Whether a sample that a newer one will replace would be sent soon. Always true when nothing is paced.
-  bool has_room(Clock::time_point now);
-  /// In lock-step the next frame waits until this one has been worked on, so all of it is sent. From any thread.
-  void leave_nothing_out() { leaves_nothing_out_ = true; }
-  /// Notes a sample that is written.
+  bool is_limited() const { return bytes_per_s_ > 0.0; }
+  /// Whether what is written now would be sent soon. Always true without a limit. From any thread.
+  bool has_room(Clock::time_point now) const;
+  /// Notes a sample that is written. From any thread.
   void add(std::size_t bytes, Clock::time_point now);
 
  private:
-  static constexpr double kSentPerPayload = 1.2;  // headers and repairs, up to 1 % of loss
+  static constexpr double kSentPerPayload = 1.1;  // headers and repairs
   static constexpr auto kLongestBacklog = std::chrono::milliseconds(150);
 
   const double bytes_per_s_;
-  std::atomic<bool> leaves_nothing_out_{false};
-  std::mutex mutex_;
-  Clock::time_point free_;  // when all that has been written will have been sent
+  mutable std::mutex mutex_;
+  Clock::time_point free_ = Clock::time_point::min();  // when all that has been written will have been sent
 };
 
 }  // namespace lapis::dds

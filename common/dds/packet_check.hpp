@@ -27,9 +27,10 @@ inline constexpr std::size_t kPacketFaults = 10;
 inline constexpr std::array<const char*, kPacketFaults> kPacketFaultNames{
     "sender", "header", "length", "statistics", "data", "fragments", "sequence", "jump", "gap", "set"};
 
-/// Fast DDS counts from the last sequence number to a new one, one by one (0.1 us each) and with the reader locked. 12
-/// days at 500 Hz.
-inline constexpr std::int64_t kLargestSequence = std::int64_t{1} << 29;
+/// Beyond what any writer reaches, and far from where sums overflow. How far a certain writer can have come is for the
+/// SequenceJudge to say: Fast DDS counts from the last number that a reader knows to a new one, one by one (0.1 us
+/// each) and with the reader locked.
+inline constexpr std::int64_t kLargestSequence = std::int64_t{1} << 48;
 /// It also keeps the numbers of a gap one by one. A late joiner of a keyed topic is told of all samples that later ones
 /// of the same key have replaced: 80 tiles per second for 14 hours.
 inline constexpr std::int64_t kLongestGap = std::int64_t{1} << 22;

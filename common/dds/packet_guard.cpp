@@ -3,22 +3,16 @@
 #include <algorithm>
 
 namespace lapis::dds {
-namespace {
-
-/// The address as a number, the first byte highest; a locator keeps it in its last four bytes.
-std::uint32_t address_of(const compat::rtps::Locator_t& locator) {
-  std::uint32_t address = 0;
-  for (std::size_t i = 12; i < 16; ++i) address = (address << 8U) | locator.address[i];
-  return address;
-}
-
-}  // namespace
 
 bool WriterProgress::believes(const Gid& writer, std::int64_t number, Clock::time_point now) {
   const std::lock_guard lock(mutex_);
-  if (writers_.size() >= kMostWriters && !writers_.contains(writer)) writers_.clear();
-  const auto [it, is_new] = writers_.try_emplace(writer, Progress{number, now});
-  if (is_new) return true;
+  const auto it = writers_.find(writer);
+  if (it == writers_.end()) {
+    if (number > kLargestFirst) return false;
+    if (writers_.size() >= kMostWriters) writers_.clear();
+    writers_.emplace(writer, Progress{number, now});
+    return true;
+  }
   Progress& known = it->second;
   const auto silence_s = std::chrono::ceil<std::chrono::seconds>(now - known.heard).count();
   if (number - known.number > kLongestJump + silence_s * kHighestRateHz) return false;
@@ -27,7 +21,7 @@ bool WriterProgress::believes(const Gid& writer, std::int64_t number, Clock::tim
 }
 
 bool PacketGuard::admits(std::span<const std::uint8_t> message, const compat::rtps::Locator_t& sender, bool is_local) {
-  const std::uint32_t address = address_of(sender);
+  const std::uint32_t address = compat::ipv4_of(sender);
   const auto has_sender = [&](const Network& network) { return network.contains(address); };
   const bool is_allowed = is_local || !senders_ || std::any_of(senders_->begin(), senders_->end(), has_sender);
   const auto fault = is_allowed ? find_fault(message, progress_) : PacketFault::kSender;

@@ -15,10 +15,13 @@
 
 namespace lapis::dds {
 
-/// Knows how far writers have come. A new one may be anywhere; after that it gets no further than it can have written.
+/// Knows how far writers have come. A new one may have written for weeks; after that it gets no further than it can
+/// have written since.
 class WriterProgress : public SequenceJudge {
  public:
   using Clock = std::chrono::steady_clock;
+  /// 50 days at 1 kHz. A reader that joins counts up to there, which takes it seven minutes.
+  static constexpr std::int64_t kLargestFirst = std::int64_t{1} << 32;
   static constexpr std::int64_t kLongestJump = 1 << 20;   ///< samples
   static constexpr std::int64_t kHighestRateHz = 10'000;  ///< samples per second, on top of a jump
 

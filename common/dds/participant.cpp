@@ -109,9 +109,9 @@ class Participant::Listener : public compat::ParticipantListener {
 };
 
 Participant::Participant(const ParticipantOptions& options)
-    : options_(options), link_(options.link.value_or(link_of(options.discovery))), pace_(link_.large),
-      peers_(options.discovery.run), guard_(std::make_shared<PacketGuard>(options.discovery)),
-      listener_(std::make_unique<Listener>(peers_)) {
+    : options_(options), link_(options.link.value_or(link_of(options.discovery, options.transport))),
+      pace_(compat::kHasFlowControllers ? link_.large : LargeSettings{}), peers_(options.discovery.run),
+      guard_(std::make_shared<PacketGuard>(options.discovery)), listener_(std::make_unique<Listener>(peers_)) {
   compat::fdds::DomainParticipantQos qos;
   qos.name("/");  // the enclave, which is also the name that rmw_fastrtps gives its participants
   std::string user_data = "enclave=/;";
@@ -139,7 +139,7 @@ void Participant::join(compat::fdds::DomainParticipantQos qos) {
   std::optional<SharedMemory::Turn> turn;
   if (options_.transport == Transport::kSharedMemory) {
     turn.emplace(memory);
-    memory.reap();
+    memory.reap(*turn);
     shared_memory_obstacle_ = memory.obstacle(kSharedMemorySegmentBytes);
     if (shared_memory_obstacle_.empty()) add_shared_memory(qos);
   }

@@ -15,15 +15,13 @@
 
 namespace lapis::dds {
 
-enum class Transport { kUdp, kSharedMemory };
-
 struct ParticipantOptions {
   std::string node_name;   ///< "slam"; with the namespace the node's ROS name
   std::string name_space;  ///< "robot1" or empty
   DiscoverySettings discovery;
   Transport transport = Transport::kUdp;
   int socket_buffer_bytes = 4 << 20;
-  std::optional<LinkSettings> link;  ///< none: what the discovery range asks for
+  std::optional<LinkSettings> link;  ///< none: link_of(discovery, transport)
 };
 
 /// One DDS participant, which is also one ROS 2 node: its endpoints appear in `ros2 node info`.

@@ -29,7 +29,10 @@ Reader::Reader(Participant& participant, const std::string& dds_name, const std:
                     << compat::fdds::StatusMask::requested_incompatible_qos();
   reader_ =
       participant.subscriber().create_datareader(topic, reader_qos(qos, type_hash, participant.link()), this, mask);
-  if (reader_ == nullptr) throw std::runtime_error("DDS reader of " + dds_name + " could not be created");
+  if (reader_ == nullptr) {
+    if (filtered_ != nullptr) participant.drop(*filtered_);
+    throw std::runtime_error("DDS reader of " + dds_name + " could not be created");
+  }
   reader_->get_statuscondition().set_enabled_statuses(compat::fdds::StatusMask::data_available());
   gid_ = to_gid(reader_->guid());
   participant.add_reader(gid_);
@@ -46,14 +49,17 @@ Reader::Taken Reader::take(void* sample, compat::fdds::SampleInfo& info) {
     return Taken::kNothing;
   }
   const Gid writer = to_gid(info.sample_identity.writer_guid());
-  if (!is_accepted(writer)) return Taken::kRefused;
+  const Welcome welcome = welcome_of(writer);
   const std::uint64_t sequence = info.sample_identity.sequence_number().to64long();
   std::uint64_t& newest = reached_[writer];
   // Latched (and so all keyed) topics skip sequence numbers by design.
-  if (!is_latched_ && newest != 0 && sequence > newest + 1) missed_ += sequence - newest - 1;
+  if (welcome == Welcome::kExpected && !is_latched_ && newest != 0 && sequence > newest + 1) {
+    missed_ += sequence - newest - 1;
+  }
   newest = std::max(newest, sequence);
   // Samples of a keyed topic come in the order of their keys, so none is missing only when none is left.
   if (!is_keyed_) newest_[writer] = newest;
+  if (welcome == Welcome::kRefused) return Taken::kRefused;
   return info.valid_data ? Taken::kSample : Taken::kKeyEnded;
 }
 
@@ -65,13 +71,18 @@ bool Reader::admits(const compat::rtps::GUID_t& signer) {
   return false;
 }
 
-bool Reader::is_accepted(const Gid& writer) {
+Reader::Welcome Reader::welcome_of(const Gid& writer) {
   const std::lock_guard lock(mutex_);
-  const bool is_welcome = filter_ ? writers_.accepts(writer, StreamOwner::Clock::now())
-                                  : participant_.peers().kinship(writer) != Kinship::kOtherRun;
-  if (is_welcome) return true;
+  const bool is_accepted = filter_ ? writers_.accepts(writer, StreamOwner::Clock::now())
+                                   : participant_.peers().kinship(writer) != Kinship::kOtherRun;
+  if (is_accepted) return writers_.was_interrupted(writer) ? Welcome::kInterrupted : Welcome::kExpected;
   note_refusal(writer);
-  return false;
+  return Welcome::kRefused;
+}
+
+bool Reader::refuses(const Gid& writer) const {
+  const std::lock_guard lock(mutex_);
+  return filter_ ? writers_.refuses(writer) : participant_.peers().kinship(writer) == Kinship::kOtherRun;
 }
 
 /// The mutex must be locked.

@@ -40,6 +40,8 @@ class Reader : private compat::fdds::DataReaderListener {
     Gid newest{};  ///< writer of the newest one; zeros when it has not signed
   };
   Refused refused() const;
+  /// Whether what a writer sends now would be refused, so that it need not be waited for.
+  bool refuses(const Gid& writer) const;
   const std::string& dds_name() const { return dds_name_; }
   /// True when writers give a late joiner their last samples.
   bool is_latched() const { return is_latched_; }
@@ -53,9 +55,10 @@ class Reader : private compat::fdds::DataReaderListener {
 
  private:
   class Filter;
+  enum class Welcome { kExpected, kInterrupted /* samples before it may have been refused */, kRefused };
 
   bool admits(const compat::rtps::GUID_t& signer);
-  bool is_accepted(const Gid& writer);
+  Welcome welcome_of(const Gid& writer);
   void note_refusal(const Gid& writer);
   void on_subscription_matched(compat::fdds::DataReader* reader,
                                const compat::fdds::SubscriptionMatchedStatus& status) override;
@@ -68,7 +71,7 @@ class Reader : private compat::fdds::DataReaderListener {
   bool is_keyed_ = false;
   Gid gid_{};
   std::map<Gid, std::uint64_t> newest_;   // all samples up to this number have been taken, or never will be
-  std::map<Gid, std::uint64_t> reached_;  // largest number taken
+  std::map<Gid, std::uint64_t> reached_;  // largest number taken, be it refused
   std::uint64_t missed_ = 0;
   std::atomic<std::uint64_t> incompatible_{0};
   mutable std::mutex mutex_;  // guards writers_ and refused_, which DDS threads change

@@ -51,6 +51,7 @@ class ServiceServer : public Source {
     });
     if (!waiting_.empty() && Clock::now() >= rested_) count += handle_oldest();
     send_replies();
+    wake_for_requests(waiting_.size() < kMostWaiting);
     return count;
   }
 
@@ -84,6 +85,12 @@ class ServiceServer : public Source {
     if (related != compat::rtps::GUID_t::unknown()) id.identity.writer_guid(related);
     id.client = to_gid(id.identity.writer_guid());
     return id;
+  }
+
+  /// Requests that wait in the reader must not wake the executor while nobody takes them: it would spin.
+  void wake_for_requests(bool wanted) {
+    using compat::fdds::StatusMask;
+    condition().set_enabled_statuses(wanted ? StatusMask::data_available() : StatusMask::none());
   }
 
   /// Returns the number of requests that are answered.

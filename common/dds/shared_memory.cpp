@@ -5,9 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <fstream>
-#include <set>
+#include <cerrno>
 #include <system_error>
+#include <thread>
 #include <vector>
 
 namespace lapis::dds {
@@ -19,12 +19,13 @@ constexpr const char* kPrefix = "fastrtps_";
 constexpr const char* kPortPrefix = "fastrtps_port";
 constexpr const char* kLockSuffix = "_el";
 constexpr const char* kTurnFile = "lapis_turn";
+constexpr std::chrono::milliseconds kNap(10);   // while another process has its turn
 constexpr std::uint64_t kRoomBeside = 1 << 20;  // for ports
 
 /// A file that is closed at the end of its scope, and with it the lock on it.
 class File {
  public:
-  File(const fs::path& path, int flags) : file_(::open(path.c_str(), flags | O_CLOEXEC, 0666)) {}
+  File(const fs::path& path, int flags) : file_(::open(path.c_str(), flags | O_CLOEXEC)) {}
   ~File() {
     if (file_ >= 0) ::close(file_);
   }
@@ -41,18 +42,10 @@ bool is_own(const fs::path& path) {
   return ::lstat(path.c_str(), &status) == 0 && S_ISREG(status.st_mode) && status.st_uid == ::geteuid();
 }
 
-/// Files of a folder that any process which may be looked at has mapped.
-std::set<std::string> mapped_files(const fs::path& folder) {
-  std::set<std::string> mapped;
-  std::error_code error;
-  for (const auto& process : fs::directory_iterator("/proc", error)) {
-    std::ifstream maps(process.path() / "maps");
-    for (std::string line; std::getline(maps, line);) {
-      const auto at = line.find(folder.string() + "/");
-      if (at != std::string::npos) mapped.insert(line.substr(at));
-    }
-  }
-  return mapped;
+/// Linux lets nobody open another user's file with O_CREAT in a folder such as /dev/shm.
+int open_or_create(const fs::path& path) {
+  const int file = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  return file >= 0 || errno != ENOENT ? file : ::open(path.c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0666);
 }
 
 void remove(const fs::path& path, SharedMemory::Reaped& reaped) {
@@ -65,21 +58,19 @@ void remove(const fs::path& path, SharedMemory::Reaped& reaped) {
 
 }  // namespace
 
-SharedMemory::Reaped SharedMemory::reap() const {
+SharedMemory::Reaped SharedMemory::reap(const Turn& turn) const {
   Reaped reaped;
+  if (!turn.is_held()) return reaped;
   std::error_code error;
   std::vector<std::string> names;
   for (const auto& entry : fs::directory_iterator(folder_, error)) names.push_back(entry.path().filename().string());
-  const std::set<std::string> mapped = mapped_files(folder_);
   for (const std::string& name : names) {
-    if (!name.starts_with(kPrefix) || !name.ends_with(kLockSuffix) || !is_own(folder_ / name)) continue;
-    const std::string locked = name.substr(0, name.size() - std::string(kLockSuffix).size());
-    // Other processes write to a port, and would not notice that it is another file now.
-    if (locked.starts_with(kPortPrefix) && mapped.contains((folder_ / locked).string())) continue;
+    const bool is_lock_of_segment =
+        name.starts_with(kPrefix) && !name.starts_with(kPortPrefix) && name.ends_with(kLockSuffix);
+    if (!is_lock_of_segment || !is_own(folder_ / name)) continue;
     const File lock(folder_ / name, O_RDWR);
     if (!lock.lock()) continue;
-    remove(folder_ / locked, reaped);
-    remove(folder_ / ("sem." + locked + "_mutex"), reaped);
+    remove(folder_ / name.substr(0, name.size() - std::string(kLockSuffix).size()), reaped);
     remove(folder_ / name, reaped);
   }
   return reaped;
@@ -96,9 +87,14 @@ std::string SharedMemory::obstacle(std::uint64_t segment_bytes) const {
          std::to_string(needed >> 20) + " MB";
 }
 
-SharedMemory::Turn::Turn(const SharedMemory& memory)
-    : file_(::open((memory.folder_ / kTurnFile).c_str(), O_RDONLY | O_CREAT | O_CLOEXEC, 0666)) {
-  if (file_ >= 0) ::flock(file_, LOCK_EX);
+SharedMemory::Turn::Turn(const SharedMemory& memory, std::chrono::milliseconds patience)
+    : file_(open_or_create(memory.folder_ / kTurnFile)) {
+  const auto deadline = std::chrono::steady_clock::now() + patience;
+  while (file_ >= 0) {
+    is_held_ = ::flock(file_, LOCK_EX | LOCK_NB) == 0;
+    if (is_held_ || std::chrono::steady_clock::now() >= deadline) return;
+    std::this_thread::sleep_for(kNap);
+  }
 }
 
 SharedMemory::Turn::~Turn() {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -13,29 +14,35 @@ class SharedMemory {
   /// @param folder other folders are for tests
   explicit SharedMemory(std::filesystem::path folder = "/dev/shm") : folder_(std::move(folder)) {}
 
+  /// While it is held, no other process holds one: each finds the room that is left, and reaps no segment of which the
+  /// lock is about to be taken.
+  class Turn {
+   public:
+    /// Waits for the others, but no longer than `patience`; then it is not held. Nor is it where its file cannot be
+    /// opened.
+    explicit Turn(const SharedMemory& memory, std::chrono::milliseconds patience = std::chrono::seconds(10));
+    ~Turn();
+    Turn(const Turn&) = delete;
+    Turn& operator=(const Turn&) = delete;
+    bool is_held() const { return is_held_; }
+
+   private:
+    int file_ = -1;
+    bool is_held_ = false;
+  };
+
   struct Reaped {
     int files = 0;
     std::uint64_t bytes = 0;
   };
-  /// Removes what processes that have ended left behind, which nobody else does. Leaves what other users own, and ports
-  /// that a process of this user still has open.
-  Reaped reap() const;
+  /// Removes the segments that processes of this user left behind, which nobody else does; nothing if the turn is not
+  /// held. That nobody has the lock says that the process has ended, even one in another container. Ports stay: they
+  /// are small (52 kB) and used again, and who still writes to one cannot be seen from another container.
+  Reaped reap(const Turn& turn) const;
 
   /// Why a participant cannot have a segment here, for people; empty when it can. A process that touches a page which
   /// the folder has no room for is ended by SIGBUS, so the room is looked for first.
   std::string obstacle(std::uint64_t segment_bytes) const;
-
-  /// While it lives, no other process that holds one creates a participant here: each finds the room that is left.
-  class Turn {
-   public:
-    explicit Turn(const SharedMemory& memory);
-    ~Turn();
-    Turn(const Turn&) = delete;
-    Turn& operator=(const Turn&) = delete;
-
-   private:
-    int file_ = -1;
-  };
 
  private:
   std::filesystem::path folder_;

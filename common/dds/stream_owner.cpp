@@ -1,6 +1,7 @@
 #include "common/dds/stream_owner.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace lapis::dds {
 
@@ -37,7 +38,11 @@ bool StreamOwner::is_participant_matched(const Gid& participant) const {
 }
 
 bool StreamOwner::admits(const std::optional<Gid>& signer) {
-  if (!signer) return !owner_ || !is_matched(*owner_);
+  if (!signer) {
+    if (!is_owner_matched()) return true;
+    ++refused_unsigned_;
+    return false;
+  }
   switch (peers_.kinship(*signer)) {
     case Kinship::kOtherRun: return false;
     case Kinship::kNoRun: return true;  // discovery has not told its run yet, but it has one
@@ -57,6 +62,23 @@ bool StreamOwner::accepts(const Gid& writer, Clock::time_point now) {
   stranger_ = writer;
   heard_ = now;
   return true;
+}
+
+bool StreamOwner::refuses(const Gid& writer) const {
+  switch (peers_.kinship(writer)) {
+    case Kinship::kOtherRun: return true;
+    case Kinship::kNoRun: return is_owner_matched();
+    case Kinship::kOwnRun: break;
+  }
+  const auto it = writers_.find(writer);
+  return owner_ && it != writers_.end() && it->second.ordinal < writers_.at(*owner_).ordinal;
+}
+
+/// Nobody knows whose samples those are that are not signed. An older writer of the own run is never heard again.
+bool StreamOwner::was_interrupted(const Gid& writer) {
+  const auto it = writers_.find(writer);
+  if (it == writers_.end() || peers_.kinship(writer) != Kinship::kNoRun) return false;
+  return std::exchange(it->second.refused_unsigned, refused_unsigned_) != refused_unsigned_;
 }
 
 }  // namespace lapis::dds

@@ -37,14 +37,21 @@ class StreamOwner {
   /// Whether an admitted sample is accepted when it is taken: settles which of several writers without a run has the
   /// stream.
   bool accepts(const Gid& writer, Clock::time_point now);
+  /// Whether samples that a writer sends now would be refused when they arrive, so that nobody needs to wait for them.
+  bool refuses(const Gid& writer) const;
+  /// Whether samples of a writer may have been refused when they arrived, since this was asked last: what is missing
+  /// among its numbers is no loss then.
+  bool was_interrupted(const Gid& writer);
 
  private:
   struct Peer {
     std::uint64_t ordinal = 0;  // in the order in which they were first seen
     bool is_matched = false;
+    std::uint64_t refused_unsigned = 0;  // when was_interrupted() was asked last
   };
 
   Peer& note(const Gid& writer);
+  bool is_owner_matched() const { return owner_ && is_matched(*owner_); }
 
   const Peers& peers_;
   std::map<Gid, Peer> writers_;
@@ -52,6 +59,7 @@ class StreamOwner {
   std::optional<Gid> owner_;     // of the own run
   std::optional<Gid> stranger_;  // without a run
   Clock::time_point heard_;      // the stranger's newest sample
+  std::uint64_t refused_unsigned_ = 0;
 };
 
 }  // namespace lapis::dds

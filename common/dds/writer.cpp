@@ -28,20 +28,14 @@ Writer::~Writer() {
   participant_.publisher().delete_datawriter(writer_);
 }
 
-bool Writer::is_admitted(const void* sample) {
-  if (participant_.link().large.bytes_per_period == 0 || !compat::kHasFlowControllers || matched() == 0) return true;
-  if (!qos_.large || qos_.latched) return true;  // what is latched arrives late rather than never
-  const auto now = Pace::Clock::now();
-  if (!participant_.pace().has_room(now)) {
-    ++left_out_;
-    return false;
-  }
-  participant_.pace().add(compat::serialized_size(*writer_, sample), now);
-  return true;
+/// What is latched counts, too, when it is written; what late joiners are sent of it later does not.
+void Writer::add_to_pace(const void* sample) {
+  if (!qos_.large || !participant_.pace().is_limited() || matched() == 0) return;
+  participant_.pace().add(compat::serialized_size(*writer_, sample), Pace::Clock::now());
 }
 
 bool Writer::write(const void* sample, compat::rtps::WriteParams& params) {
-  if (!is_admitted(sample)) return true;
+  add_to_pace(sample);
   if (!compat::ok(compat::write(*writer_, sample, params))) {
     ++failed_;
     return false;

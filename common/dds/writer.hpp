@@ -20,10 +20,11 @@ class Writer : private compat::fdds::DataWriterListener {
   Writer(const Writer&) = delete;
   Writer& operator=(const Writer&) = delete;
 
-  /// Writes one sample; a refusal by DDS is counted and returned. An image that could not be sent in time on a slow
-  /// network is left out, which is counted apart, and true returned: a newer one follows.
+  /// Writes one sample; a refusal by DDS is counted and returned.
   bool write(const void* sample, compat::rtps::WriteParams& params);
   bool write(const void* sample);
+  /// Counts a sample that is not written, because a slow network would carry it too late (Pace).
+  void leave_out() { ++left_out_; }
   /// Unregisters a key, so that no sample of it remains. Keys are never disposed, because late joiners would receive
   /// the disposed keys, too.
   bool unregister(const void* sample);
@@ -48,8 +49,7 @@ class Writer : private compat::fdds::DataWriterListener {
   std::uint64_t incompatible() const { return incompatible_; }
 
  private:
-  /// Whether a large sample is to be written, which then counts.
-  bool is_admitted(const void* sample);
+  void add_to_pace(const void* sample);
   void on_publication_matched(compat::fdds::DataWriter* writer,
                               const compat::fdds::PublicationMatchedStatus& status) override;
   void on_offered_incompatible_qos(compat::fdds::DataWriter* writer,

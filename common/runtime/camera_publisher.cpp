@@ -14,11 +14,12 @@ constexpr std::chrono::milliseconds kSettling(500);
 
 }  // namespace
 
-CameraPublisher::CameraPublisher(Context& context, const Parts& parts)
+CameraPublisher::CameraPublisher(Context& context, const Parts& parts, bool is_live)
     : ids_{context.frame("base_link"), context.frame("camera_link"), context.frame("camera_color_optical_frame"),
            "world"},
-      color_(context.advertise(topics::kColor)), depth_(context.advertise(topics::kDepth)),
-      color_info_(context.advertise(topics::kColorInfo)), depth_info_(context.advertise(topics::kDepthInfo)),
+      pace_(context.participant().pace()), is_live_(is_live), color_(context.advertise(topics::kColor)),
+      depth_(context.advertise(topics::kDepth)), color_info_(context.advertise(topics::kColorInfo)),
+      depth_info_(context.advertise(topics::kDepthInfo)),
       static_transforms_(context.advertise(topics::kStaticTransforms)), clock_(context.advertise(topics::kClock)) {
   if (parts.has_labels) {
     labels_ = &context.advertise(topics::kLabels);
@@ -45,11 +46,16 @@ void CameraPublisher::publish_latched(const geometry::CameraMount& mount, const 
 
 void CameraPublisher::publish(const messages::CameraMessages& messages) {
   if (messages.ground_truth && ground_truth_ != nullptr) ground_truth_->publish(*messages.ground_truth);
-  color_info_.publish(messages.info);
-  depth_info_.publish(messages.info);
-  color_.publish(messages.color);
-  if (messages.depth) depth_.publish(*messages.depth);
-  if (messages.labels && labels_ != nullptr) labels_->publish(*messages.labels);
+  const bool is_late = is_live_ && !pace_.has_room(dds::Pace::Clock::now());
+  const auto send = [is_late](auto& publisher, const auto& message) {
+    if (is_late) return publisher.leave_out();
+    publisher.publish(message);
+  };
+  send(color_info_, messages.info);
+  send(depth_info_, messages.info);
+  send(color_, messages.color);
+  if (messages.depth) send(depth_, *messages.depth);
+  if (messages.labels && labels_ != nullptr) send(*labels_, *messages.labels);
   rosgraph_msgs::msg::Clock now;
   now.clock(messages.color.header().stamp());
   clock_.publish(now);

@@ -18,7 +18,9 @@ class CameraPublisher {
     bool has_labels = false;
     bool has_ground_truth = false;
   };
-  CameraPublisher(Context& context, const Parts& parts);
+  /// @param is_live frames come by the wall clock, whether or not the last one has arrived. So one that a slow network
+  /// would carry too late is left out. In lock-step each one is worked on, however late.
+  CameraPublisher(Context& context, const Parts& parts, bool is_live);
 
   const messages::CameraFrameIds& ids() const { return ids_; }
   /// True when the depth images have had `number` readers for half a second, within which the readers' other
@@ -27,12 +29,15 @@ class CameraPublisher {
   /// Publishes the camera mount and the classes, once.
   void publish_latched(const geometry::CameraMount& mount, const mapping::LabelList& labels, time::Time stamp);
   /// Publishes the frame, and then its stamp on /clock. Lock-step publishes a frame again when a participant is late.
+  /// Images and their infos are all published or all left out, which their writers count.
   void publish(const messages::CameraMessages& messages);
 
  private:
   using Clock = std::chrono::steady_clock;
 
   messages::CameraFrameIds ids_;
+  dds::Pace& pace_;
+  bool is_live_;
   std::optional<Clock::time_point> matched_since_;
   dds::Publisher<sensor_msgs::msg::Image>& color_;
   dds::Publisher<sensor_msgs::msg::Image>& depth_;

@@ -115,24 +115,20 @@ void Context::report_strangers(diagnostic_msgs::msg::DiagnosticStatus& entry) {
   dds::Peers& peers = participant_.peers();
   if (!peers.run().empty()) entry.values().push_back(key_value("run", peers.run()));
   for (const std::string& run : peers.take_other_runs()) spdlog::warn("{}", participant_.describe_other_run(run));
-  const auto report = [&](const dds::Source& source) {
-    const auto [count, writer] = source.refused();
-    if (count == 0) return;
-    entry.values().push_back(key_value("refused samples " + source.dds_name(), std::to_string(count)));
-    if (rate_limit_.pass("refused " + source.dds_name())) {
-      spdlog::warn("{}: {} samples refused, the last of {}; {}", source.dds_name(), count,
+  for (const dds::Source* source : executor_.sources()) {  // those of the runtime, too: /clock, /sim/tick, /sim/ack
+    const auto [count, writer] = source->refused();
+    if (count == 0) continue;
+    entry.values().push_back(key_value("refused samples " + source->dds_name(), std::to_string(count)));
+    if (rate_limit_.pass("refused " + source->dds_name())) {
+      spdlog::warn("{}: {} samples refused, the last of {}; {}", source->dds_name(), count,
                    writer == dds::Gid{} ? "a writer without a run" : "writer " + dds::to_text(writer),
                    peers.kinship(writer) == dds::Kinship::kOtherRun ? "it belongs to another run"
                                                                     : "another process publishes this topic");
     }
-  };
-  for (const auto& source : sources_) report(*source);
-  for (const auto& service : services_) report(*service);
-  if (clock_source_) report(*clock_source_);
+  }
 }
 
-void Context::publish_diagnostics() {
-  diagnostic_msgs::msg::DiagnosticStatus entry;
+void Context::report_process(diagnostic_msgs::msg::DiagnosticStatus& entry) const {
   entry.level(static_cast<std::uint8_t>(status_.level()));
   entry.name(frame(options_.name));
   entry.message(status_.message());
@@ -143,25 +139,33 @@ void Context::publish_diagnostics() {
   entry.values().push_back(key_value("peak_rss_mb", std::to_string(usage.ru_maxrss / 1024)));
   for (const auto& [key, value] : status_.values()) entry.values().push_back(key_value(key, value));
   for (const auto& [key, value] : status_.counters()) entry.values().push_back(key_value(key, std::to_string(value)));
-  for (const auto& writer : writers_) {
-    if (writer->incompatible() > 0) add_incompatible(*writer, entry);
-    if (writer->failed() > 0) {
-      entry.values().push_back(key_value("refused writes " + writer->dds_name(), std::to_string(writer->failed())));
-    }
-    if (writer->left_out() > 0) {
-      entry.values().push_back(key_value("left out " + writer->dds_name(), std::to_string(writer->left_out())));
-      if (rate_limit_.pass("left out " + writer->dds_name())) {
-        spdlog::warn("{}: {} samples left out, because the network is given less than they need", writer->dds_name(),
-                     writer->left_out());
-      }
-    }
+}
+
+void Context::report_writer(const dds::Writer& writer, diagnostic_msgs::msg::DiagnosticStatus& entry) {
+  if (writer.incompatible() > 0) add_incompatible(writer, entry);
+  if (writer.failed() > 0) {
+    entry.values().push_back(key_value("refused writes " + writer.dds_name(), std::to_string(writer.failed())));
   }
-  for (const auto& source : sources_) {
-    if (source->incompatible() > 0) add_incompatible(*source, entry);
-    if (source->missed() > 0) {
-      entry.values().push_back(key_value("missed samples " + source->dds_name(), std::to_string(source->missed())));
-    }
+  if (writer.left_out() == 0) return;
+  entry.values().push_back(key_value("left out " + writer.dds_name(), std::to_string(writer.left_out())));
+  if (rate_limit_.pass("left out " + writer.dds_name())) {
+    spdlog::warn("{}: {} samples left out, because the network is given less than they need", writer.dds_name(),
+                 writer.left_out());
   }
+}
+
+void Context::report_source(const dds::Source& source, diagnostic_msgs::msg::DiagnosticStatus& entry) {
+  if (source.incompatible() > 0) add_incompatible(source, entry);
+  if (source.missed() > 0) {
+    entry.values().push_back(key_value("missed samples " + source.dds_name(), std::to_string(source.missed())));
+  }
+}
+
+void Context::publish_diagnostics() {
+  diagnostic_msgs::msg::DiagnosticStatus entry;
+  report_process(entry);
+  for (const auto& writer : writers_) report_writer(*writer, entry);
+  for (const auto& source : sources_) report_source(*source, entry);
   report_strangers(entry);
   report_dropped_packets(entry);
   if (const std::uint64_t undecodable = dds::undecodable_samples; undecodable > 0) {

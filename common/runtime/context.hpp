@@ -108,6 +108,9 @@ class Context {
   friend class LockstepParticipant;
   void run_cycle(const Cycle& cycle);
   void publish_diagnostics();
+  void report_process(diagnostic_msgs::msg::DiagnosticStatus& entry) const;
+  void report_writer(const dds::Writer& writer, diagnostic_msgs::msg::DiagnosticStatus& entry);
+  void report_source(const dds::Source& source, diagnostic_msgs::msg::DiagnosticStatus& entry);
   void report_strangers(diagnostic_msgs::msg::DiagnosticStatus& entry);
   void report_dropped_packets(diagnostic_msgs::msg::DiagnosticStatus& entry);
   template <class Endpoint>

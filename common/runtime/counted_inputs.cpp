@@ -19,7 +19,7 @@ const lapis_msgs::msg::TopicCount* CountedInputs::missing(const Counts& counts, 
     if (source == nullptr) return false;
     const auto forgiven = forgiven_.find(count.writer_gid());
     if (forgiven != forgiven_.end() && count.count() <= forgiven->second) return false;
-    return source->received(count.writer_gid()) < count.count();
+    return source->received(count.writer_gid()) < count.count() && !source->refuses(count.writer_gid());
   });
   return it == counts.end() ? nullptr : &*it;
 }

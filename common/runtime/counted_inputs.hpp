@@ -17,7 +17,7 @@ class CountedInputs {
   using Sources = std::vector<std::unique_ptr<dds::Source>>;
 
   /// The first count, on a topic of `sources`, whose samples have been neither taken nor forgiven; null when there is
-  /// none.
+  /// none. Samples of a writer that is refused, because the topic has another one, never come and do not count.
   const lapis_msgs::msg::TopicCount* missing(const Counts& counts, const Sources& sources) const;
   /// Stops waiting for the samples of volatile topics up to these counts: they were published before the endpoints
   /// matched and never arrive.

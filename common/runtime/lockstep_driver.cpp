@@ -33,7 +33,6 @@ std::string joined(const std::vector<std::string>& words) {
 LockstepDriver::LockstepDriver(Context& context, const LockstepConfig& config, std::function<void()> republish)
     : context_(context), config_(config), republish_(std::move(republish)),
       acks_(context.participant(), topics::kAck, [this](Ack& ack) { on_ack(ack); }) {
-  context.participant().pace().leave_nothing_out();
   context.executor().add(acks_);
   context.every(kJoinRepeat_s / 2, [this] { check_time(); });
   restart();

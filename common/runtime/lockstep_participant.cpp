@@ -63,7 +63,6 @@ void LockstepParticipant::on_tick(const Tick& tick) {
   const std::pair<std::uint64_t, std::uint32_t> number(tick.tick(), tick.stage());
   const bool is_new_run = tick.run_gid() != run_;
   if (is_new_run) {
-    context_.participant().pace().leave_nothing_out();
     run_ = tick.run_gid();
     has_joined_ = false;
     answered_.reset();

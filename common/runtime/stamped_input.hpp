@@ -80,8 +80,9 @@ class StampedInput {
     count(": the clock of its source was set");
     if (on_clock_set_) on_clock_set_(judge_.step());
   }
-  /// In lock-step.
+  /// In lock-step. Free run begins anew afterwards, because the driver may have set the clock.
   void believe(time::Time stamp, Message message) {
+    judge_ = {};
     if (doubtful_) put(doubtful_->first, std::move(doubtful_->second));
     doubtful_.reset();
     put(stamp, std::move(message));

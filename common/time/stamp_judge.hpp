@@ -7,10 +7,11 @@
 
 namespace lapis::time {
 
-/// When a process handled a message first. Handlers only store their messages, so this is close to their arrival.
+/// When a process handled a message first, not when the message was received. Handlers only store their messages, so
+/// the two are close together, except after the process was busy: what came meanwhile is handled at one moment.
 using Arrival = std::chrono::steady_clock::time_point;
 
-/// A message of a stream: its stamp, and when it came.
+/// A message of a stream: its stamp, and when it was handled.
 struct Stamped {
   Time stamp;
   Arrival arrival;
@@ -21,7 +22,8 @@ struct Stamped {
 bool follows(const Stamped& before, const Stamped& now);
 
 /// Tells the messages of a clock that was set from single messages with wrong stamps, for one stream of a source in
-/// free run. What comes after a message that does not follow the one before decides about it.
+/// free run. What comes after a message that does not follow the one before decides about it. Arrivals are times of
+/// handling: after the process was busy, its pause counts for the first message, and nothing for those that follow.
 class StampJudge {
  public:
   enum class Verdict {

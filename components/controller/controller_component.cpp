@@ -57,6 +57,11 @@ ControllerComponent::ControllerComponent(const Config& config, runtime::Context&
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       info_(context, topics::kDepthInfo, "camera info", kWaitingInfos) {
   depth_.on_arrival([this](time::Time stamp) { camera_stamp_ = stamp; });
+  depth_.on_clock_set([this](time::Duration step) { follow_clock(step); });
+  pose_.on_clock_set([this](time::Duration) {
+    depth_.expect_restart(pose_.front().first);
+    info_.expect_restart(pose_.front().first);
+  });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { add_mount(m); });
   context.subscribe(topics::kTrackedFrame, [this](const auto& m) { note_frame(m); });
   context.subscribe(topics::kPlannerPath, [this](Path& m) { path_ = std::move(m); });
@@ -65,6 +70,18 @@ ControllerComponent::ControllerComponent(const Config& config, runtime::Context&
   context.subscribe(topics::kObstacles, [this](OccupancyGrid& m) { obstacles_ = std::move(m); });
   context.every(1.0 / config_.rate_hz, [this] { is_due_ = true; });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+}
+
+/// The obstacles that the camera has seen and the ages of all inputs stay what they are. The step is known to the
+/// jitter of delays only, and time must not go back.
+void ControllerComponent::follow_clock(time::Duration step) {
+  const time::Duration steps{clock_steps_.nanoseconds + step.nanoseconds};
+  clock_steps_ = std::min(steps, depth_.front().first - seen_at_);
+}
+
+/// False while one of two streams has noticed that their clock was set, and the other one has not.
+bool ControllerComponent::is_of_camera(time::Time stamp) const {
+  return camera_stamp_.nanoseconds == 0 || abs(stamp - camera_stamp_) <= time::kRestartGap;
 }
 
 /// In lock-step, time is that of the frames, and each tick has one command. Otherwise the age of an input is the time
@@ -77,7 +94,10 @@ void ControllerComponent::work(const runtime::Cycle& cycle) {
 }
 
 void ControllerComponent::take_inputs(const runtime::Cycle& cycle, time::Time now) {
-  if (camera_stamp_.nanoseconds != 0) controller_.note_camera(camera_stamp_, now);
+  if (camera_stamp_.nanoseconds != 0) {
+    seen_at_ = camera_stamp_ - clock_steps_;
+    controller_.note_camera(seen_at_, now);
+  }
   while (next_frame(cycle, now)) {
   }
   take_map(now);
@@ -115,7 +135,9 @@ void ControllerComponent::take_frame(const Odometry& odometry, const Image* dept
   }
   const auto T_map_base = to_core(odometry.pose().pose());
   if (!T_map_base) return drop("pose", T_map_base.reason);
-  controller_.set_pose(*T_map_base, messages::from_message(odometry.header().stamp()), now);
+  const time::Time stamp = messages::from_message(odometry.header().stamp());
+  if (!is_of_camera(stamp)) return drop("pose", "its stamp is far from those of the camera");
+  controller_.set_pose(*T_map_base, stamp - clock_steps_, now);
   if (depth == nullptr || info == nullptr)
     return drop("pose without view", "no depth image or camera info of its stamp");
   see(*depth, *info, now);
@@ -126,9 +148,10 @@ void ControllerComponent::see(const Image& depth, const Info& info, time::Time n
   if (!T_base_camera) return drop("depth", "no transform from " + base_frame_ + " to its frame on /tf_static");
   const auto view = to_core(depth, info, *T_base_camera);
   if (!view) return drop("depth", view.reason);
-  controller_.see(*view, messages::from_message(depth.header().stamp()), now);
+  controller_.see(*view, messages::from_message(depth.header().stamp()) - clock_steps_, now);
 }
 
+/// Obstacles whose stamp is far from those of the camera wait for it, or for newer ones.
 void ControllerComponent::take_map(time::Time now) {
   const auto convert = [this](std::optional<OccupancyGrid>& message) -> std::optional<Grid> {
     if (!message) return std::nullopt;
@@ -139,10 +162,13 @@ void ControllerComponent::take_map(time::Time now) {
     return std::move(grid.value);
   };
   if (auto plan = convert(plan_)) controller_.set_plan(std::move(*plan));
-  if (auto obstacles = convert(obstacles_)) {
-    controller_.set_obstacles(std::move(*obstacles), messages::from_message(obstacles_->header().stamp()), now);
-  }
   plan_.reset();
+  if (!obstacles_) return;
+  const time::Time stamp = messages::from_message(obstacles_->header().stamp());
+  if (!is_of_camera(stamp)) return;
+  if (auto obstacles = convert(obstacles_)) {
+    controller_.set_obstacles(std::move(*obstacles), stamp - clock_steps_, now);
+  }
   obstacles_.reset();
 }
 

@@ -31,6 +31,8 @@ class ControllerComponent {
   using OccupancyGrid = nav_msgs::msg::OccupancyGrid;
   using Path = nav_msgs::msg::Path;
 
+  void follow_clock(time::Duration step);
+  bool is_of_camera(time::Time stamp) const;
   void work(const runtime::Cycle& cycle);
   void take_inputs(const runtime::Cycle& cycle, time::Time now);
   bool next_frame(const runtime::Cycle& cycle, time::Time now);
@@ -65,8 +67,10 @@ class ControllerComponent {
 
   messages::StaticTransforms static_transforms_;
   std::uint64_t frames_ = 0;
-  time::Time camera_stamp_;  // stamp of the depth image that arrived last
-  bool is_due_ = false;      // a command is due by the wall clock
+  time::Time camera_stamp_;     // stamp of the depth image that arrived last
+  time::Time seen_at_;          // time of the newest one that was noted, by the clock as it was set first
+  time::Duration clock_steps_;  // sum of the steps by which the camera's clock was set
+  bool is_due_ = false;         // a command is due by the wall clock
   std::optional<time::Time> reported_at_;
   Decision reported_;
 };

@@ -26,6 +26,7 @@ namespace lapis::evaluator {
 namespace {
 
 constexpr std::size_t kWaitingFrames = 30;
+constexpr std::size_t kWaitingInfos = 64;  // on a network they are ahead of their images by half a second
 constexpr std::chrono::seconds kProgressPeriod(2);
 constexpr double kLongestJudging_s = 900.0;  // to compare maps, write files and draw figures
 
@@ -51,16 +52,12 @@ std::filesystem::path truth_folder(const EvaluatorConfig& config) {
   return std::filesystem::path(config.output_dir) / "ground_truth";
 }
 
-Trajectory keyframes_of(const lapis_msgs::msg::PoseGraph& graph) {
-  Trajectory trajectory;
+KeyframePoses keyframes_of(const lapis_msgs::msg::PoseGraph& graph) {
+  KeyframePoses keyframes;
   for (const auto& node : graph.nodes()) {
-    const time::Time stamp = messages::from_message(node.stamp());
-    const auto T_map_camera = messages::from_message(node.pose());
-    if (T_map_camera && (trajectory.empty() || trajectory.back().stamp < stamp)) {
-      trajectory.push_back({stamp, *T_map_camera});
-    }
+    if (const auto T_map_camera = messages::from_message(node.pose())) keyframes.emplace(node.id(), *T_map_camera);
   }
-  return trajectory;
+  return keyframes;
 }
 
 }  // namespace
@@ -71,12 +68,14 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
       truth_(context, topics::kGroundTruth, "ground truth", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
-      info_(context, topics::kDepthInfo, "camera info", kWaitingFrames), maps_(truth_folder(config)) {
+      info_(context, topics::kDepthInfo, "camera info", kWaitingInfos), maps_(truth_folder(config)) {
   if (config_.output_dir.empty()) {
     throw std::runtime_error("evaluator.output_dir is not set; give --set evaluator.output_dir=FOLDER");
   }
   files::require_writable_folder(config_.output_dir, "evaluator.output_dir");
   info_.on_arrival([this](time::Time stamp) { record_.count_camera_frame(stamp); });
+  info_.on_clock_set([this](time::Duration step) { record_.follow_camera_clock(step); });
+  tracked_.on_clock_set([this](time::Duration step) { follow_clock(step); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
   context.subscribe(topics::kPoseGraph, [this](auto& m) {
     if (!record_.session() || m.session() == *record_.session()) graph_ = std::move(m);
@@ -88,6 +87,15 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
   context.subscribe(topics::kDiagnostics, [this](const auto& m) { on_diagnostics(m); });
   context.subscribe(topics::kCollision, [this](const std_msgs::msg::Bool& m) { count_contact(m.data()); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+}
+
+/// The frames that wait are the first ones by the clock as it is set now. Their partners may notice that later.
+void EvaluatorComponent::follow_clock(time::Duration step) {
+  const time::Time first = tracked_.front().first;
+  for (auto* poses : {&odometry_, &truth_}) poses->expect_restart(first);
+  for (auto* images : {&depth_, &labels_}) images->expect_restart(first);
+  info_.expect_restart(first);
+  record_.follow_clock(step, first);
 }
 
 void EvaluatorComponent::count_contact(bool is_in_contact) {
@@ -224,6 +232,7 @@ void EvaluatorComponent::record(const Tracked& tracked, const Partners& partners
   frame.session = tracked.session();
   frame.T_map_camera = pose_of(tracked);
   if (frame.T_map_camera) frame.tier = tier_of(tracked);
+  if (tracked.is_keyframe()) frame.keyframe_id = tracked.keyframe_id();
   if (partners.odometry != nullptr) frame.position_sigma_m = position_sigma_m(*partners.odometry);
   if (partners.truth != nullptr) frame.T_world_camera = true_camera_pose(*partners.truth, tracked.header().frame_id());
   const bool is_judged = record_.add(frame);
@@ -234,7 +243,7 @@ void EvaluatorComponent::record(const Tracked& tracked, const Partners& partners
       partners.info != nullptr) {
     add_to_references(*record_.T_map_world() * *frame.T_world_camera, *partners.depth, partners.labels, *partners.info);
   }
-  add_timeline_row(frame.stamp);
+  add_timeline_row();
 }
 
 /// Pose of the camera in the map; none when slam had no pose.
@@ -277,7 +286,8 @@ void EvaluatorComponent::add_to_references(const geometry::Pose& T_map_camera, c
   if (!problem.empty()) refuse(problem);
 }
 
-void EvaluatorComponent::add_timeline_row(time::Time stamp) {
+void EvaluatorComponent::add_timeline_row() {
+  const time::Time stamp = record_.newest();
   if (timeline_stamp_ && (stamp - *timeline_stamp_).seconds() < config_.timeline_period_s) return;
   timeline_stamp_ = stamp;
   const FrameRow& frame = record_.frames().back();

@@ -46,6 +46,7 @@ class EvaluatorComponent {
     Info* info = nullptr;
   };
 
+  void follow_clock(time::Duration step);
   void count_contact(bool is_in_contact);
   void on_diagnostics(const diagnostic_msgs::msg::DiagnosticArray& message);
   void on_map_description(const lapis_msgs::msg::MapDescription& message);
@@ -62,7 +63,7 @@ class EvaluatorComponent {
   std::string find_truth();
   std::optional<geometry::Pose> true_camera_pose(const Odometry& truth, const std::string& optical_frame);
   void add_to_references(const geometry::Pose& T_map_camera, const Image& depth, const Image* labels, const Info& info);
-  void add_timeline_row(time::Time stamp);
+  void add_timeline_row();
   void report_progress();
   std::string how_far() const;
   std::int64_t loop_closures() const;

@@ -180,6 +180,7 @@ void PlannerComponent::begin_session(std::int64_t session, time::Time first_fram
   if (obstacles_ && !is_of_session(messages::from_message(obstacles_->header().stamp()))) obstacles_.reset();
   if (provisional_area_ && !is_first && !is_of_session(messages::from_message(provisional_area_->header().stamp())))
     provisional_area_.reset();
+  clock_ = {};
   surroundings_.reset();
   surroundings_state_.reset();
   decision_ = {};
@@ -191,13 +192,23 @@ void PlannerComponent::begin_session(std::int64_t session, time::Time first_fram
 }
 
 void PlannerComponent::note_frame(const Tracked& frame) {
-  if (frame.session() != session_) begin_session(frame.session(), messages::from_message(frame.header().stamp()));
+  const time::Time stamp = messages::from_message(frame.header().stamp());
+  if (frame.session() != session_) begin_session(frame.session(), stamp);
   context_.status().value("frames", ++frames_);
-  stamp_ = messages::from_message(frame.header().stamp());
+  note_stamp(stamp);
   tracking_ = tracking_of(frame);
   drift_m_ = frame.drift_m();
   slam_reason_ = frame.reason();
   if (tracking_ == Tracking::kLost) robot_.reset();
+}
+
+/// The controller's stamps, which are compared with that of the path, follow a clock that was set, too.
+void PlannerComponent::note_stamp(time::Time stamp) {
+  if (!context_.is_free()) return clock_.believe(stamp);
+  const auto step = clock_.advance(stamp, time::Arrival::clock::now());
+  if (!step) return;
+  path_stamp_ = path_stamp_ + *step;
+  context_.status().count("slam frame: the clock of its source was set");
 }
 
 /// Once there are frames, they contain the reason themselves.
@@ -247,11 +258,11 @@ void PlannerComponent::take_decision(bool waits) {
   const Decision* driven = is_taken && decision.chosen ? &decision : nullptr;
   if (driven != nullptr) driven_by_ = decision.explanation;
   const Learnt learnt{surroundings_->information_nats(), knowledge_ ? &knowledge_->graph : nullptr};
-  write_down(decision, ledger_.note(driven, learnt, last_robot_, stamp_));
+  write_down(decision, ledger_.note(driven, learnt, last_robot_, clock_.now()));
 }
 
 void PlannerComponent::write_down(const Decision& decision, const std::optional<DrivenPath>& ended) {
-  if (log_ && !log_->write(decision, ended, decisions_, deciding_method_, stamp_)) {
+  if (log_ && !log_->write(decision, ended, decisions_, deciding_method_, clock_.now())) {
     spdlog::error("{}/{} cannot be written; exploration continues without it", config_.output_dir, DecisionLog::kFile);
     log_.reset();
   }
@@ -300,11 +311,13 @@ void PlannerComponent::update_map() {
 
 void PlannerComponent::update_obstacles() {
   if (!obstacles_) return;
+  const time::Time seen_at = clock_.of(messages::from_message(obstacles_->header().stamp()));
+  const bool is_of_other_clock = seen_at - clock_.now() > kLongestLead;
+  if (is_of_other_clock) return;  // a later frame, or a later grid, shows that the clock was set
   const auto grid = to_core(*obstacles_);
-  const time::Time stamp = messages::from_message(obstacles_->header().stamp());
   if (!grid) {
     drop("obstacles", grid.reason);
-  } else if (!surroundings_->update_obstacles(*grid, stamp)) {
+  } else if (!surroundings_->update_obstacles(*grid, seen_at)) {
     drop("obstacles", "resolution or size of the grid");
   }
   obstacles_.reset();
@@ -323,7 +336,7 @@ void PlannerComponent::update_provisional_area() {
 
 Report PlannerComponent::report() const {
   const bool is_map_behind = surroundings_state_ && surroundings_state_->frames_off > 0;
-  return {stamp_, robot_, tracking_, is_blocked_, drift_m_, is_map_behind};
+  return {clock_.now(), robot_, tracking_, is_blocked_, drift_m_, is_map_behind};
 }
 
 /// Why the mission is in its state; without a pose, also what slam lacks.
@@ -353,7 +366,7 @@ void PlannerComponent::begin_decision() {
   input.view = &view_;
   input.T_base_camera = T_base_camera_;
   input.robot = *robot_;
-  input.memory = explorer_.memory(stamp_);
+  input.memory = explorer_.memory(clock_.now());
   input.config = config_.decision;
   deciding_method_ = method_of_state();
   if (is_consolidating()) input.config.method = config_.consolidation;
@@ -382,7 +395,7 @@ void PlannerComponent::record(const DecisionInput& input) {
       {*map_.map(),
        surroundings_model_,
        description_->labels,
-       {{"decision", std::to_string(number)}, {"stamp", to_string(stamp_)}, {"method", config_.method}}},
+       {{"decision", std::to_string(number)}, {"stamp", to_string(clock_.stamp())}, {"method", config_.method}}},
       surroundings_->grid().marks(),
       input.robot,
       input.memory,
@@ -395,7 +408,7 @@ void PlannerComponent::record(const DecisionInput& input) {
 void PlannerComponent::publish() {
   if (explorer_.path_number() != published_path_) {
     published_path_ = explorer_.path_number();
-    path_stamp_ = stamp_;
+    path_stamp_ = clock_.stamp();
     is_blocked_ = false;
     path_.publish(to_message(explorer_.path(), header(explorer_.is_turn() ? base_frame_ : map_frame_)));
   }
@@ -417,9 +430,9 @@ void PlannerComponent::publish_status() {
   const bool has_changed =
       is_new_lack || explorer_.state() != reported_state_ || explorer_.reason() != reported_reason_;
   const bool has_decided = decisions_ != reported_decisions_;  // the time of each decision is published
-  if (reported_at_ == stamp_ && !has_changed && !has_decided) return;
+  if (reported_at_ == clock_.stamp() && !has_changed && !has_decided) return;
   if (has_changed) spdlog::info("{}", reason());
-  reported_at_ = stamp_;
+  reported_at_ = clock_.stamp();
   reported_state_ = explorer_.state();
   reported_reason_ = explorer_.reason();
   reported_lack_ = slam_reason_;
@@ -442,7 +455,7 @@ void PlannerComponent::drop(const std::string& what, const std::string& reason) 
 }
 
 std_msgs::msg::Header PlannerComponent::header(const std::string& frame) const {
-  return messages::header(stamp_, frame);
+  return messages::header(clock_.stamp(), frame);
 }
 
 /// Stops the robot first, because a decision may take long.

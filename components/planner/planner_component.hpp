@@ -16,6 +16,7 @@
 #include "planner/decision_log.hpp"
 #include "planner/decision_plan.hpp"
 #include "planner/decision_worker.hpp"
+#include "planner/mission_clock.hpp"
 #include "planner/planner_config.hpp"
 
 namespace CLI {  // NOLINT(readability-identifier-naming): CLI11 calls itself so
@@ -53,6 +54,7 @@ class PlannerComponent {
   void set_provisional_area(nav_msgs::msg::OccupancyGrid message);
   void begin_session(std::int64_t session, time::Time first_frame);
   void note_frame(const Tracked& frame);
+  void note_stamp(time::Time stamp);
   void note_slam(const lapis_msgs::msg::SlamStatus& message);
   void set_pose(const nav_msgs::msg::Odometry& message);
   void note_controller(const lapis_msgs::msg::ControllerStatus& message);
@@ -98,7 +100,7 @@ class PlannerComponent {
   std::optional<nav_msgs::msg::OccupancyGrid> obstacles_, provisional_area_;  // newest, not yet applied
   std::int64_t session_ = 0;                                                  // of slam
   std::uint64_t frames_ = 0;
-  time::Time stamp_;  // of the newest frame
+  MissionClock clock_;  // by the stamps of frames
   Tracking tracking_ = Tracking::kLost;
   double drift_m_ = 0.0;     // standard deviation of its position since slam tracked last
   std::string slam_reason_;  // of the newest frame, or of slam's status before the first frame; empty while slam tracks
@@ -129,7 +131,7 @@ class PlannerComponent {
   // Empty until a path is published. The first path is empty, because a controller may follow one from an earlier run
   // of the planner.
   std::optional<std::uint64_t> published_path_;
-  time::Time path_stamp_;  // time stamp of the frame with which the path was published
+  time::Time path_stamp_;  // of the frame with which the path was published, by the clock as it is set now
   std::optional<time::Time> reported_at_;
   State reported_state_ = State::kIdle;
   std::string reported_reason_, reported_lack_;

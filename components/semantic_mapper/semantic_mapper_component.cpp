@@ -2,6 +2,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <filesystem>
 
@@ -28,6 +29,7 @@ constexpr double kFarewell_s = 1.0;
 constexpr double kLongestSave_s = 300.0;
 constexpr double kLongestFlush_s = 600.0;
 constexpr std::size_t kWaitingFrames = 30;  // images wait here for slam's pose: one second at 30 Hz
+constexpr std::size_t kWaitingInfos = 64;   // on a network they are ahead of their images by half a second more
 
 double seconds_since(const std::optional<time::Time>& then, time::Time now) {
   return then ? (now - *then).seconds() : std::numeric_limits<double>::infinity();
@@ -72,12 +74,12 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       confidence_(context, topics::kLabelConfidence, "label confidence", kWaitingFrames),
-      info_(context, topics::kColorInfo, "camera info", kWaitingFrames), disk_({SemanticMapperComponent::kName,
-                                                                                config.output_dir,
-                                                                                config.resume_from,
-                                                                                {kMapFile, kOctreeFile, kPointsFile},
-                                                                                config.save_period_s},
-                                                                               context) {
+      info_(context, topics::kColorInfo, "camera info", kWaitingInfos), disk_({SemanticMapperComponent::kName,
+                                                                               config.output_dir,
+                                                                               config.resume_from,
+                                                                               {kMapFile, kOctreeFile, kPointsFile},
+                                                                               config.save_period_s},
+                                                                              context) {
   config_.map.integration.max_range_m = config_.robot.sensing_range_m;
   config_.map.band = {config_.robot.obstacle_min_height_m, config_.robot.obstacle_max_height_m};
   if (config_.sensor_model.fusion == "bki") {
@@ -285,8 +287,13 @@ void SemanticMapperComponent::end_map() {
   forget_resumed();
 }
 
-/// Continues when the stamps of frames have jumped; whether the map is still right is for slam to say.
+/// Continues when the stamps of frames have jumped; whether the map is still right is for slam to say. The step is
+/// known to the jitter of delays only, and time must not go back.
 void SemanticMapperComponent::follow_clock(time::Duration step) {
+  const time::Time first = tracked_.front().first;
+  for (auto* images : {&depth_, &labels_, &confidence_}) images->expect_restart(first);
+  info_.expect_restart(first);
+  step = std::min(step, first - stamp_);
   clock_steps_ = {clock_steps_.nanoseconds + step.nanoseconds};
   stamp_ = stamp_ + step;
   for (auto* stamp : {&tiles_stamp_, &views_stamp_, &obstacles_stamp_, &provisional_stamp_}) {

@@ -56,7 +56,7 @@ SensorReplayComponent::SensorReplayComponent(const Config& config, runtime::Cont
     : config_(config), context_(context), dataset_(dataset_config(config), read_camera_file),
       range_(selected(dataset_, config)),
       frames_([this](std::size_t index) { return dataset_.load_frame(index); }, range_),
-      camera_(context, {dataset_.has_labels(), dataset_.has_ground_truth()}) {
+      camera_(context, {dataset_.has_labels(), dataset_.has_ground_truth()}, config.rate > 0.0) {
   const auto labels = dataset_.has_labels() ? to_label_list(dataset_.classes()) : mapping::LabelList();
   camera_.publish_latched(dataset_.camera().mount, labels, dataset_.stamp(range_.begin));
   spdlog::info("{}: {} frames, {:.1f} s", config_.dataset, range_.size(),

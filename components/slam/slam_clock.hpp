@@ -7,8 +7,8 @@
 
 namespace lapis::slam {
 
-/// The time in which a map lives in free run: that of the camera's clock when the map began, whatever this clock is set
-/// to later. Odometry has to have the same clock.
+/// The time in which a map lives: that of the camera's clock when the map began, whatever this clock is set to later in
+/// free run. Odometry has to have the same clock.
 class SlamClock {
  public:
   /// The clock that stamps the camera's frames was set by `step`.
@@ -19,20 +19,22 @@ class SlamClock {
 
   /// Proceeds to a camera frame with this stamp; returns its time in the map.
   time::Time advance(time::Time stamp, time::Arrival arrival) {
-    const bool would_go_back = was_set_ && newest_ && stamp + shift_ <= newest_->stamp;
+    const bool would_go_back = was_set_ && newest_ && of(stamp) <= newest_->stamp;
     if (would_go_back)
       shift_ = newest_->stamp + kLeastPeriod - stamp;  // the step is known to the jitter of delays only
     was_set_ = false;
-    newest_ = time::Stamped{stamp + shift_, arrival};
+    newest_ = time::Stamped{of(stamp), arrival};
     return newest_->stamp;
   }
   /// Time of the newest camera frame in the map; there must have been one.
   time::Time now() const { return newest_->stamp; }
 
+  /// Time in the map of a stamp that is believed.
+  time::Time of(time::Time stamp) const { return stamp + shift_; }
   /// Time of a reading of the odometry in the map; nothing when its stamp is not of the camera's time: a stray, or one
   /// of two streams has noticed already that the clock was set.
   std::optional<time::Time> of_odometry(time::Time stamp, time::Arrival arrival) const {
-    const time::Stamped reading{stamp + shift_, arrival};
+    const time::Stamped reading{of(stamp), arrival};
     if (newest_ && !time::follows(*newest_, reading)) return std::nullopt;
     return reading.stamp;
   }

@@ -181,7 +181,7 @@ void SlamComponent::add_odometry(const nav_msgs::msg::Odometry& message) {
 
 /// Keeps readings from before the first frame for it. Returns why the reading cannot be used, or an empty text.
 std::string SlamComponent::use_odometry(time::Time stamp, const geometry::Pose& T_odom_base) {
-  const auto time = context_.is_free() ? clock_.of_odometry(stamp, time::Arrival::clock::now()) : stamp;
+  const auto time = context_.is_free() ? clock_.of_odometry(stamp, time::Arrival::clock::now()) : clock_.of(stamp);
   if (!time) return "its stamp is far from those of the camera";
   if (slam_ != nullptr)
     return slam_->add_odometry(*time, T_odom_base) ? "" : "its stamp is not later than the one before";

@@ -12,7 +12,6 @@
 #include <sstream>
 
 #include "common/config/schema.hpp"
-#include "common/dds/shared_memory.hpp"
 #include "common/files/atomic_file.hpp"
 #include "common/topics/heartbeat.hpp"
 
@@ -213,7 +212,6 @@ int Supervisor::run() {
   if (start_all()) wait_until_over();
   progress_.end();
   end_all();
-  dds::SharedMemory().reap();
   const int status = conclude();  // before the files, so that it is printed even when the disk is full
   write_manifest();
   add_facts_to_metrics();

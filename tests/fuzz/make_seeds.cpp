@@ -2,6 +2,7 @@
 
 #include <iostream>
 
+#include "message_seeds.hpp"
 #include "seeds.hpp"
 #include "unit/simulator/assets/asset_files.hpp"
 
@@ -10,7 +11,9 @@ int main(int argc, char** argv) {
     std::cerr << "usage: lapis_fuzz_seeds FOLDER\n";
     return 2;
   }
-  for (const auto& [name, inputs] : lapis::simulator::fuzz::seeds()) {
+  auto seeds = lapis::simulator::fuzz::seeds();
+  seeds["message"] = lapis::fuzz::message_seeds();
+  for (const auto& [name, inputs] : seeds) {
     const auto folder = std::filesystem::path(argv[1]) / name;
     for (std::size_t i = 0; i < inputs.size(); ++i)
       lapis::simulator::test::write_file(folder / std::to_string(i), inputs[i]);

@@ -109,7 +109,8 @@ class KillEachTest(chain.ChainTest):
         self.stop_all()
 
     def test_sensor_replay(self):
-        # The recording begins anew: stamps go back, slam and the mapper begin a new map.
+        # The recording begins anew: stamps go back, as from a clock that was set. slam and the mapper answer with these
+        # stamps, in the same map where slam recognises the place.
         begin, before = self.kill_and_restart("sensor_replay")
         self.wait_for_answer("sensor_replay", "camera", begin, lambda sample: sample.stamp < before)
         self.wait_for_answer("sensor_replay", "slam", begin, lambda sample: sample.stamp < before)

@@ -21,6 +21,8 @@ namespace {
 namespace compat = dds::compat;
 namespace fdds = compat::fdds;
 
+constexpr std::size_t kImageBytes = 640 * 360 * 3;  // sent in datagrams of 64 kB
+
 volatile std::sig_atomic_t is_asked_to_stop = 0;
 
 compat::rtps::Locator_t peer(const char* address) {
@@ -65,7 +67,7 @@ void run(fdds::DomainParticipant& participant) {
   auto* answers = subscriber->create_datareader(topic<nav_msgs::msg::Odometry>(participant, "rt/slam/odometry"),
                                                 fdds::DATAREADER_QOS_DEFAULT);
   sensor_msgs::msg::Image image;
-  image.data().resize(1000);
+  image.data().resize(kImageBytes);
   nav_msgs::msg::Odometry odometry;
   fdds::SampleInfo info;
   for (int count = 0; is_asked_to_stop == 0;) {

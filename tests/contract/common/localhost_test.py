@@ -20,6 +20,7 @@ ECHO = os.environ.get("LAPIS_TEST_ECHO", BIN / "lapis_test_echo")
 HERE, THERE = "10.99.0.1", "10.99.0.2"
 ANSWER_S = 12.0
 SILENCE_S = 4.0  # discovery takes a fraction of a second; announcements come once per second
+IMAGE_BYTES, PERIOD_S = 691_200, 0.1
 SKIPPED = 77
 RANGES = ("LOCALHOST", "SUBNET")
 KILL = bytes.fromhex("52545053 0203 010f") + bytes(range(12)) + 2 * (bytes.fromhex("8001 3800") + bytes(56))
@@ -128,6 +129,16 @@ class LocalhostTest(unittest.TestCase):
                 self.assertTrue(jazzy.says("answer 30\n", ANSWER_S))  # with three of the echo's reports
                 self.assertNotIn("dropped", echo.text())
                 jazzy.close()
+                echo.close()
+
+    def test_large_images_pass_between_ranges_on_one_host(self):
+        for own, of_partner in itertools.product(RANGES, RANGES):
+            with self.subTest(echo=own, partner=of_partner):
+                echo = self.echo(ROS_AUTOMATIC_DISCOVERY_RANGE=own)
+                partner = self.start([BIN / "lapis_test_packet_partner", str(IMAGE_BYTES), str(PERIOD_S)],
+                                     ROS_AUTOMATIC_DISCOVERY_RANGE=of_partner)
+                self.assertTrue(partner.says("answer 10\n", ANSWER_S), echo.text())
+                partner.close()
                 echo.close()
 
     def test_hosts_meet_on_the_subnet(self):

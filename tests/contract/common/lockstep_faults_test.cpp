@@ -2,11 +2,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <csignal>
 
+#include "common/topics/diagnostics.hpp"
 #include "common/topics/slam.hpp"
 #include "tests/contract/common/driven.hpp"
 #include "tests/support/hand_made_participant.hpp"
+#include "tests/support/in_run.hpp"
 
 namespace lapis::test {
 namespace {
@@ -197,6 +200,44 @@ TEST_F(LockstepAnswers, CountedSamplesOfOneThatHadBeenForgottenAreWaitedFor) {
   its_odometry.publish({});
   ASSERT_TRUE(run->wait_for(State::kIdle));
   EXPECT_EQ(run->odometry.size(), 1u);
+}
+
+struct OfRunA {
+  const InRun scope{"a"};
+};
+class LockstepAnswersInARun : private OfRunA, public LockstepAnswers {};
+
+// What the older one of two processes publishes on a topic is refused, and it goes on counting it.
+TEST_F(LockstepAnswersInARun, CountedSamplesOfAWriterThatHasASuccessorAreNotWaitedFor) {
+  begin("abort", 20.0);
+  odometry.publish({});
+  ASSERT_TRUE(run->wait_until([&] { return run->odometry.size() == 1; }));
+  TopicProbe other;
+  auto& successor = other.advertise(topics::kSlamOdometry);
+  ASSERT_TRUE(run->wait_until([&] {
+    successor.publish({});
+    return run->odometry.size() > 1;
+  }));
+  odometry.publish({});
+  ASSERT_TRUE(give(hand.answer_to(tick(), odometry, odometry.written()), hand));
+  EXPECT_TRUE(run->wait_for(State::kIdle));
+}
+
+TEST_F(LockstepAnswersInARun, AnswersOfAnotherRunAreRefusedAndNamed) {
+  const auto& diagnostics = probe.collect(topics::kDiagnostics);
+  begin("abort", 20.0);
+  const InRun of_run_b("b");
+  TopicProbe other;
+  auto& acks = other.advertise(topics::kAck);
+  const auto is_named = [](const diagnostic_msgs::msg::DiagnosticArray& message) {
+    const auto& values = message.status().at(0).values();
+    return std::any_of(values.begin(), values.end(),
+                       [](const auto& pair) { return pair.key() == "refused samples rt/sim/ack"; });
+  };
+  EXPECT_TRUE(run->wait_until([&] {
+    acks.publish({});
+    return std::any_of(diagnostics.begin(), diagnostics.end(), is_named);
+  }));
 }
 
 // Policy wait with the default time-outs: the restarted process must work again within 3 s of its ready line, and does

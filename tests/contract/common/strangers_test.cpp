@@ -3,15 +3,18 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
+#include <chrono>
 #include <map>
+#include <thread>
 
 #include "common/messages/time.hpp"
 #include "common/topics/camera.hpp"
 #include "common/topics/diagnostics.hpp"
+#include "common/topics/lockstep.hpp"
 #include "common/topics/services.hpp"
 #include "common/topics/slam.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/in_run.hpp"
 #include "tests/support/topic_probe.hpp"
 
 namespace lapis::test {
@@ -21,15 +24,6 @@ using ::testing::HasSubstr;
 
 constexpr const char* kProgram = "lapis_test_echo";
 constexpr const char* kNode = "test_echo";
-
-/// Processes and probes that start meanwhile belong to a run.
-class InRun {
- public:
-  explicit InRun(const char* run) { setenv("LAPIS_RUN", run, 1); }
-  ~InRun() { unsetenv("LAPIS_RUN"); }
-  InRun(const InRun&) = delete;
-  InRun& operator=(const InRun&) = delete;
-};
 
 template <class Thing, class... Arguments>
 std::unique_ptr<Thing> in_run(const char* run, const Arguments&... arguments) {
@@ -76,6 +70,17 @@ class Strangers : public ::testing::Test {
           return std::any_of(odometry.begin(), odometry.end(), is_new);
         },
         deadline);
+  }
+  /// As is_answered(), but waits for the answer to each image, so that none replaces another one.
+  bool is_answered_in_turn(dds::Publisher<sensor_msgs::msg::Image>& camera) {
+    for (int i = 0; i < 50; ++i) {
+      const time::Time stamp{stamp_ns_ += 1'000'000};
+      camera.publish(image(stamp.nanoseconds));
+      const auto is_answer = [&](const auto& odom) { return messages::from_message(odom.header().stamp()) == stamp; };
+      const auto has_come = [&] { return std::any_of(odometry.begin(), odometry.end(), is_answer); };
+      if (listener->wait_until(has_come, Seconds(0.2))) return true;
+    }
+    return false;
   }
   bool wait_for_value(const std::string& key) {
     return listener->wait_until([&] { return values_of(diagnostics).contains(key); }, Seconds(3));
@@ -138,6 +143,33 @@ TEST_F(Strangers, SuccessorIsAcceptedAtOnce) {
   EXPECT_TRUE(is_answered(camera)) << echo->log();
 }
 
+// The stranger's images are refused while the run has a camera; that they are not there afterwards is no loss.
+TEST_F(Strangers, RefusedImagesAreNotMissed) {
+  TopicProbe stranger("stranger");
+  auto& strange_camera = camera_of(stranger);
+  ASSERT_TRUE(is_answered_in_turn(strange_camera)) << echo->log();
+  auto own = in_run<TopicProbe>("a", std::string("own"));
+  ASSERT_TRUE(is_answered_in_turn(camera_of(*own))) << echo->log();
+  for (int i = 0; i < 3; ++i) strange_camera.publish(image(stamp_ns_ += 1'000'000));
+  ASSERT_TRUE(wait_for_value(kRefusedImages)) << echo->log();
+  own.reset();
+  ASSERT_TRUE(is_answered_in_turn(strange_camera)) << "the run's camera has left: " << echo->log();
+  const std::size_t before = diagnostics.size();
+  ASSERT_TRUE(listener->wait_until([&] { return diagnostics.size() > before + 1; }));
+  EXPECT_FALSE(values_of(diagnostics).contains("missed samples rt/camera/color/image_raw")) << echo->log();
+}
+
+TEST_F(Strangers, TicksOfAnotherRunAreRefusedAndNamed) {
+  const auto other = in_run<TopicProbe>("b", std::string("other"));
+  auto& ticks = other->advertise(topics::kTick);
+  ASSERT_TRUE(echo->wait_for_line("run b is in DDS domain", Seconds(3))) << echo->log();
+  ASSERT_TRUE(listener->wait_until([&] {
+    ticks.publish({});
+    return values_of(diagnostics).contains("refused samples rt/sim/tick");
+  })) << echo->log();
+  EXPECT_TRUE(echo->wait_for_line("rt/sim/tick: ", Seconds(2))) << echo->log();
+}
+
 TEST_F(Strangers, CallsOfAnotherRunAreNotServed) {
   const auto other = in_run<TopicProbe>("b", std::string("other"));
   auto& foreign = other->client(topics::kSaveMap);
@@ -180,6 +212,33 @@ TEST(Flood, OfRequestsDoesNotStarveAProcess) {
   ASSERT_TRUE(probe.wait_until([&] { return values_of(diagnostics).contains("answers"); }));
   EXPECT_LT(std::stoull(values_of(diagnostics).at("answers")), calls / 5) << "calls that wait together are one";
   EXPECT_EQ(echo.stop(SIGTERM), 0) << echo.log();
+}
+
+// Each call counts, so that a hundred of them wait: those that come then must not keep the executor busy while the
+// service rests.
+TEST(Flood, OfDifferentRequestsDoesNotMakeTheExecutorSpin) {
+  constexpr int kAnswers = 10;
+  constexpr auto kWork = std::chrono::milliseconds(20);
+  dds::Participant participant(participant_options("server"));
+  int answers = 0;
+  dds::ServiceServer<std_srvs::srv::Trigger> server(participant, topics::kStep, [&](const auto&) {
+    std::this_thread::sleep_for(kWork);  // work, as that of the echo
+    ++answers;
+    return std_srvs::srv::Trigger_Response();
+  });
+  dds::Executor executor;
+  executor.add(server);
+  TopicProbe probe;
+  auto& client = probe.client(topics::kStep);
+  ASSERT_TRUE(probe.wait_until([&] { return client.is_ready() && server.matched() > 0; }));
+  for (int i = 0; i < 100; ++i) client.call({});
+  int turns = 0;
+  for (; answers < kAnswers && turns < 10'000; ++turns) {
+    client.call({});
+    executor.spin_once(std::chrono::seconds(1));
+  }
+  EXPECT_EQ(answers, kAnswers);
+  EXPECT_LE(turns, 20 * kAnswers);
 }
 
 }  // namespace

@@ -53,7 +53,7 @@ class Surroundings {
 
   /// The next frame.
   void publish(const Speaking& who) {
-    stamp = time::Time{1'000'000'000} + time::Duration::from_seconds(++frames_ / kRate_hz);
+    stamp = time::Time{1'000'000'000} + time::Duration::from_seconds(++frames_ / kRate_hz) + clock;
     if (who.camera) publish_view();
     if (who.pose) publish_pose();
     if (who.map) publish_map();
@@ -91,6 +91,7 @@ class Surroundings {
   }
 
   std::vector<Box> boxes{{{-9, -9, -0.3}, {9, 9, 0}, 2}, {{8, -9, 0}, {8.3, 9, 2.6}, 1}};  ///< the first is the floor
+  time::Duration clock;  ///< by which the clock of all stamps was set
   time::Time stamp{1'000'000'000};
   Eigen::Vector2d position{0.0, 0.0};
   double yaw_rad = 0.0;
@@ -179,7 +180,7 @@ class ControllerContract : public ::testing::Test {
     }
     return true;
   }
-  /// Diagnostics counters whose name contains `text`, summed.
+  /// Diagnostics counters of what was dropped, and of clocks that were set, whose name contains `text`, summed.
   std::uint64_t count_of(const std::string& text) const {
     std::uint64_t sum = 0;
     for (const auto& [key, value] : counters) {
@@ -208,7 +209,9 @@ class ControllerContract : public ::testing::Test {
     for (const auto& status : message.status()) {
       if (status.hardware_id() != "controller") continue;
       for (const auto& pair : status.values()) {
-        if (pair.key().find("dropped") != std::string::npos) counters[pair.key()] = pair.value();
+        const bool is_wanted = pair.key().find("dropped") != std::string::npos ||
+                               pair.key().find("clock of its source") != std::string::npos;
+        if (is_wanted) counters[pair.key()] = pair.value();
       }
     }
   }

@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <cstddef>
 #include <limits>
 #include <string>
 #include <utility>
@@ -257,6 +259,42 @@ class FreeController : public ControllerContract {
     ADD_FAILURE() << "commands come less than " << 1.0 / kLongestGap_s << " times a second: the machine is too busy";
     return 0.0;
   }
+  /// Sets the clock of all stamps by `step`; true when it drives on without a stop. A stop counts only if frames and
+  /// commands came all the time: else the machine was busy.
+  bool drives_on_after(time::Duration step) {
+    for (int attempt = 0; attempt < kMostSilences; ++attempt) {
+      world.clock = {world.clock.nanoseconds + step.nanoseconds};
+      const std::size_t before = commands.size();
+      const double longest_delay_s = drive_for_ten_frames();
+      const auto from = commands.begin() + static_cast<std::ptrdiff_t>(before);
+      const bool has_stopped = from == commands.end() || std::any_of(from, commands.end(), is_zero);
+      if (!has_stopped || longest_delay_s <= kLongestDelay_s) return !has_stopped;
+      EXPECT_TRUE(frames_until([&] { return !is_zero(commands.back()); }, {})) << controller.log();
+    }
+    ADD_FAILURE() << "the machine is too busy";
+    return false;
+  }
+  /// Returns by how much a frame or a command came late at most [s].
+  double drive_for_ten_frames() {
+    double longest_s = 0.0;
+    auto heard = Clock::now();
+    for (int frame = 0; frame < 10; ++frame) {
+      const auto sent = Clock::now();
+      world.position.x() += 0.01;
+      world.publish({});
+      std::size_t count = commands.size();
+      wait_until(
+          [&] {
+            if (std::exchange(count, commands.size()) != commands.size()) heard = Clock::now();
+            longest_s = std::max(longest_s, std::chrono::duration<double>(Clock::now() - heard).count() - 0.05);
+            return false;
+          },
+          Seconds(kPeriod_s));
+      longest_s = std::max(longest_s, std::chrono::duration<double>(Clock::now() - sent).count() - kPeriod_s);
+    }
+    return longest_s;
+  }
+  static constexpr double kLongestDelay_s = 0.03;  // a frame less, and two that are so late, are no reason to stop
   static constexpr int kMostSilences = 10;
   static constexpr double kLongestGap_s = 0.1;
 };
@@ -313,6 +351,56 @@ TEST_F(FreeController, StandsStillWhenTheStampsStandStill) {
     };
   };
   EXPECT_LT(seconds_until_still({}, stand_still), kStopWithin_s);
+}
+
+TEST_F(FreeController, DrivesOnWhenTheClockIsSetAndStillStopsWhenNothingComes) {
+  for (const double step_s : {36'000.0, -5.0, -1800.0, 5.0}) {
+    SCOPED_TRACE(step_s);
+    EXPECT_TRUE(drives_on_after(time::Duration::from_seconds(step_s))) << statuses.back().reason() << controller.log();
+  }
+  EXPECT_TRUE(wait_until([&] { return count_of("depth: the clock of its source was set") >= 4; })) << controller.log();
+  EXPECT_TRUE(frames_until([&] { return !is_zero(commands.back()); }, {})) << controller.log();
+  EXPECT_LT(seconds_until_still({.camera = false, .pose = false, .map = false, .planner = false}), kStopWithin_s);
+  EXPECT_LT(seconds_until_still({.pose = false}), kStopWithin_s);
+}
+
+TEST_F(FreeController, StandsStillWhileThePoseHasAnotherClock) {
+  const auto other_clock = [&] {
+    world.spoil_pose = [](auto& m) {
+      const auto stamp = messages::from_message(m.header().stamp());
+      m.header().stamp(messages::to_message(stamp + time::Duration::from_seconds(3600.0)));
+    };
+  };
+  EXPECT_LT(seconds_until_still({}, other_clock), kStopWithin_s);
+}
+
+TEST_F(FreeController, WhatWasInDoubtIsForgottenInLockStep) {
+  constexpr time::Duration kOtherClock{3'600'000'000'000};
+  world.clock = kOtherClock;
+  world.publish({});
+  const std::size_t later = commands.size() + 3;
+  ASSERT_TRUE(wait_until([&] { return commands.size() >= later; })) << controller.log();
+  {
+    runtime::Context ticking({"test_ticks", participant_options("test_ticks")});
+    runtime::LockstepDriver driver(ticking, {{"controller"}, 5.0, 30.0, "abort"}, [] {});
+    const auto is_idle = [&] {
+      ticking.executor().spin_once(std::chrono::milliseconds(2));
+      return driver.state() == runtime::LockstepDriver::State::kIdle;
+    };
+    ASSERT_TRUE(wait_until(is_idle)) << controller.log();
+    world.clock = {};
+    world.publish({});
+    driver.begin(world.stamp, false);
+    ASSERT_TRUE(wait_until(is_idle)) << controller.log();
+    ASSERT_TRUE(wait_until([&] { return count_of("depth dropped: waited when stamps went back") > 0; }));
+  }
+  world.clock = kOtherClock;
+  const std::size_t before = commands.size();
+  ASSERT_TRUE(frames_until([&] { return commands.size() > before && !is_zero(commands.back()); }, {}))
+      << controller.log();
+  world.spoil_pose = [](auto& m) { m.header().frame_id("odom"); };
+  ASSERT_TRUE(frames_until([&] { return count_of("pose dropped: it is not of base_link in map") > 0; }, {}));
+  EXPECT_EQ(count_of("the clock of its source was set"), 0U) << controller.log();
 }
 
 TEST(ControllerSetUp, KeysThatContradictEachOtherAreNamed) {

@@ -2,11 +2,13 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "common/mapping/file/map_file.hpp"
 #include "common/messages/geometry.hpp"
@@ -40,6 +42,14 @@ std::string read(const std::filesystem::path& file) {
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// Number with that key in metrics.json; NaN for null.
+double number_of(const std::string& metrics, const std::string& key) {
+  const std::string quoted = "\"" + key + "\": ";
+  const auto at = metrics.find(quoted);
+  const std::string value = at == std::string::npos ? "null" : metrics.substr(at + quoted.size(), 32);
+  return value.starts_with("null") ? std::numeric_limits<double>::quiet_NaN() : std::stod(value);
+}
+
 class EvaluatorContract : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -51,7 +61,7 @@ class EvaluatorContract : public ::testing::Test {
   }
   nav_msgs::msg::Odometry true_pose(int index) const {
     nav_msgs::msg::Odometry message;
-    message.header().stamp(messages::to_message(CameraFeed::stamp(index)));
+    message.header().stamp(messages::to_message(CameraFeed::stamp(index) + clock));
     message.header().frame_id("world");
     message.child_frame_id("base_link");
     message.pose().pose(messages::to_message(T_base_camera() * slow_motion(index) * T_base_camera().inverse()));
@@ -59,7 +69,7 @@ class EvaluatorContract : public ::testing::Test {
   }
   lapis_msgs::msg::TrackedFrame tracked(int index) const {
     lapis_msgs::msg::TrackedFrame message;
-    message.header().stamp(messages::to_message(CameraFeed::stamp(index)));
+    message.header().stamp(messages::to_message(CameraFeed::stamp(index) + clock));
     message.header().frame_id(SyntheticCamera::kOpticalFrame);
     message.map_frame_id("map");
     message.session(1);
@@ -92,7 +102,14 @@ class EvaluatorContract : public ::testing::Test {
     return std::move(*file);
   }
 
+  /// Waits until the evaluator has recorded so many frames.
+  bool has_recorded(int frames) {
+    return probe.wait_until(
+        [&] { return newest_values(diagnostics, "evaluator")["frames"] == std::to_string(frames); });
+  }
+
   const std::string folder = fresh_folder();
+  time::Duration clock;  ///< by which the clock of all stamps was set
   TopicProbe probe;
   CameraFeed feed{probe};
   dds::Publisher<nav_msgs::msg::Odometry>& truth = probe.advertise(topics::kGroundTruth);
@@ -233,6 +250,53 @@ TEST_F(EvaluatorContract, WhatHoldsThePoseIsKeptByFrameWithItsSigmaAndWhateverIt
   for (const char* share : {"tier_surfaces_share", "tier_odometry_share", "lost_share"}) {
     EXPECT_THAT(metrics, HasSubstr("\"" + std::string(share) + "\": 0.333")) << "frames are evenly spaced";
   }
+}
+
+// The key-frames of the pose graph have the time of slam's map.
+TEST_F(EvaluatorContract, AClockThatIsSetMakesNoFigureWrong) {
+  auto& graphs = probe.advertise(topics::kPoseGraph);
+  ASSERT_TRUE(probe.wait_until([&] { return graphs.matched() > 0; })) << evaluator.log();
+  int index = 0;
+  lapis_msgs::msg::PoseGraph graph;
+  graph.session(1);
+  const auto send_next = [&] {
+    auto message = tracked(index);
+    if (index % 2 == 0) {  // a new key-frame
+      message.is_keyframe(true);
+      message.keyframe_id(graph.nodes().size());
+      lapis_msgs::msg::PoseGraphNode node;
+      node.id(message.keyframe_id());
+      node.stamp(messages::to_message(CameraFeed::stamp(index)));
+      node.pose(messages::to_message(T_base_camera() * slow_motion(index)));
+      graph.nodes().push_back(node);
+      message.keyframe_pose(node.pose());
+      message.pose_in_keyframe(messages::to_message(geometry::Pose::Identity()));
+    }
+    truth.publish(true_pose(index));
+    feed.send(feed.frame(CameraFeed::stamp(index) + clock, slow_motion(index)));
+    slam.publish(message);
+    ++index;
+  };
+  for (const std::int64_t set_to_ns : {0LL, 3'600'000'000'000LL, 3'595'000'000'000LL, 0LL}) {
+    clock = {set_to_ns};
+    for (int i = 0; i < 3; ++i) send_next();
+    ASSERT_TRUE(has_recorded(index)) << index << evaluator.log();
+  }
+  graphs.publish(graph);
+  graphs.wait_until_acknowledged(5.0);
+  send_next();
+  ASSERT_TRUE(has_recorded(index)) << evaluator.log();
+  EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
+  const std::string metrics = read(std::filesystem::path(folder) / "metrics.json");
+  EXPECT_THAT(metrics, HasSubstr("\"frames_total\": 13"));
+  EXPECT_THAT(metrics, HasSubstr("\"frames_tracked\": 13"));
+  EXPECT_LT(number_of(metrics, "duration_s"), 100.0) << "the time that the test took";
+  EXPECT_LT(number_of(metrics, "ate_raw_rmse_m"), 1e-6);
+  EXPECT_LT(number_of(metrics, "keyframe_ate_raw_rmse_m"), 1e-6);
+  EXPECT_LT(number_of(metrics, "correction_rmse_m"), 1e-6);
+  EXPECT_LT(number_of(metrics, "lost_time_s"), 1.0) << "known to the jitter of arrivals";
+  const std::string frames = read(std::filesystem::path(folder) / "frames.csv");
+  EXPECT_EQ(std::count(frames.begin(), frames.end(), '\n'), 1 + 13) << frames;
 }
 
 TEST_F(EvaluatorContract, GarbageIsSurvived) {

@@ -139,7 +139,7 @@ class Peers {
 
   /// Stamp, frame and, while slam tracks, pose of the next tick; the robot drives on.
   void publish_frame(std::uint8_t tracking = lapis_msgs::msg::TrackedFrame_Constants::STATE_TRACKING) {
-    stamp = time::Time{1'000'000'000} + time::Duration::from_seconds(++frames_so_far / kRate_hz);
+    stamp = time::Time{1'000'000'000} + time::Duration::from_seconds(++frames_so_far / kRate_hz) + clock;
     Tracked frame;
     frame.header(messages::header(stamp, "camera_color_optical_frame"));
     frame.map_frame_id("map");
@@ -203,6 +203,7 @@ class Peers {
   std::int64_t session = 1;
   std::int64_t epoch = 5;
   int frames_so_far = 0;
+  time::Duration clock;  ///< by which the clock of all stamps was set
   time::Time stamp{1'000'000'000};
   Eigen::Vector2d position{2.0, 2.0};
   double yaw_rad = 0.0;

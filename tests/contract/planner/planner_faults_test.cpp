@@ -150,6 +150,39 @@ TEST_F(PlannerContract, NewSessionOfSlamIsAnotherMapEvenWhenTimeBeginsAgain) {
   EXPECT_NEAR(statuses.back().explored_volume_m3(), 0.75 * volume_m3, 0.01);
 }
 
+// F6: the clock of the camera is set, ahead and back, and slam's stamps with it, while the robot has a goal.
+TEST_F(PlannerContract, ClockThatIsSetNeitherEndsAGoalNorTheDecisions) {
+  start_free({"progress_timeout_s=600"});
+  peers.draw(kRoomWithDoor);
+  ASSERT_TRUE(frames_until([this] { return has_path(); })) << reason() << planner->log();
+  for (const double step_s : {3600.0, -3600.0, -5.0}) {
+    SCOPED_TRACE(step_s);
+    peers.clock = {peers.clock.nanoseconds + time::Duration::from_seconds(step_s).nanoseconds};
+    const std::size_t decisions = candidates.size();
+    ASSERT_TRUE(frames_until([&] { return candidates.size() >= decisions + 3; })) << reason() << planner->log();
+    EXPECT_EQ(state(), STATE_EXPLORING) << reason();
+    EXPECT_TRUE(has_path()) << reason();
+    EXPECT_EQ(statuses.back().failures(), 0U) << reason();
+    const auto by_new_clock = [&] { return messages::from_message(statuses.back().header().stamp()) == peers.stamp; };
+    EXPECT_TRUE(frames_until(by_new_clock)) << "its answers have the stamps of the source";
+  }
+  EXPECT_TRUE(wait_until([this] { return count_of("slam frame: the clock of its source was set") == 3.0; }))
+      << planner->log();
+}
+
+TEST_F(PlannerContract, BlockedAfterTheClockWasSetBackIsNews) {
+  peers.clock = time::Duration::from_seconds(3600.0);
+  start_free({"replan_period_s=0", "progress_timeout_s=600"});
+  peers.draw(kRoomWithTwoDoors);
+  ASSERT_TRUE(frames_until([this] { return has_path(); })) << reason() << planner->log();
+  peers.clock = {};
+  const auto follows_clock = [this] { return messages::from_message(statuses.back().header().stamp()) == peers.stamp; };
+  ASSERT_TRUE(frames_until(follows_clock)) << planner->log();
+  EXPECT_EQ(statuses.back().failures(), 0U) << reason();
+  peers.say_blocked();
+  EXPECT_TRUE(frames_until([this] { return statuses.back().failures() > 0; })) << reason() << planner->log();
+}
+
 // The pose graph -----------------------------------------------------------------------------------------------------
 
 class PlannerGraphFaults : public PlannerContract {

@@ -137,6 +137,67 @@ TEST_F(MapperFaults, DepthWithoutMeasurementsAddsNothingAndHurtsNobody) {
   EXPECT_NE(client.states.back().checksum(), state.checksum()) << "a frame with depth does change the map";
 }
 
+/// Views of the slow motion, by a clock that a test sets.
+class MapperClock : public MapperFaults {
+ protected:
+  void SetUp() override {
+    MapperFaults::SetUp();
+    ASSERT_TRUE(probe.wait_until([&] {
+      return !client.descriptions.empty() && client.descriptions.back().labels.size() > 0;
+    })) << mapper.log();
+  }
+  void send_view(int view, std::int64_t session) {
+    stamp_ = CameraFeed::stamp(sent_++) + clock_;
+    auto pose = tracked(view, session);
+    pose.header().stamp(messages::to_message(stamp_));
+    feed.send(feed.frame(stamp_, slow_motion(view)));
+    slam.publish(pose);
+  }
+  /// Waits until the map has all frames that were sent.
+  bool has_all() {
+    const auto sent = static_cast<std::uint64_t>(sent_);
+    return probe.wait_until(
+        [&] { return !client.states.empty() && client.states.back().frames_integrated() == sent && client.has_map(); });
+  }
+  bool has_grid_of_now() {
+    return probe.wait_until([&] {
+      const auto since = [&] { return stamp_ - messages::from_message(grids_.back().header().stamp()); };
+      return !grids_.empty() && abs(since()) < time::Duration{70'000'000};  // two frames
+    });
+  }
+
+  const std::vector<nav_msgs::msg::OccupancyGrid>& grids_ = probe.collect(topics::kObstacles);
+  time::Duration clock_;
+  time::Time stamp_;  // sent last
+  int sent_ = 0;
+};
+
+TEST_F(MapperClock, ThatIsSetKeepsTheMap) {
+  int view = 0;
+  for (const std::int64_t set_to_ns : {0L, 3'600'000'000'000L, 3'595'000'000'000L, 0L}) {
+    SCOPED_TRACE(set_to_ns);
+    clock_ = {set_to_ns};
+    const std::uint64_t version = client.states.empty() ? 0 : client.states.back().version();
+    for (int i = 0; i < 2; ++i) send_view(view++, 1);
+    ASSERT_TRUE(has_all()) << mapper.log();
+    send_view(view++, 1);
+    ASSERT_TRUE(has_all()) << mapper.log();
+    EXPECT_GT(client.states.back().version(), version);
+    EXPECT_EQ(client.states.back().session(), 1);
+    EXPECT_EQ(client.states.back().epoch(), client.states.front().epoch());
+    EXPECT_TRUE(has_grid_of_now()) << mapper.log();
+  }
+  EXPECT_TRUE(wait_for_count("slam frame: the clock of its source was set", 3)) << mapper.log();
+  EXPECT_EQ(client.states.back().frames_dropped(), 0U);
+  const mapping::VoxelMap map = *client.mirror.map();
+  for (int i = 0; i < view; ++i) {  // the same views in another map, by a clock that nobody sets
+    send_view(i, 2);
+    ASSERT_TRUE(has_all()) << mapper.log();
+  }
+  EXPECT_EQ(client.states.back().session(), 2);
+  EXPECT_EQ(*client.mirror.map(), map) << "nothing at the wrong place";
+}
+
 /// Saves into a folder that can be broken.
 class MapperOnABadDisk : protected TemporaryFolder, public MapperFaults {
  protected:

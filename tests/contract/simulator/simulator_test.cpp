@@ -16,6 +16,7 @@
 #include "common/messages/time.hpp"
 #include "common/topics/camera.hpp"
 #include "common/topics/controller.hpp"
+#include "common/topics/diagnostics.hpp"
 #include "common/topics/ground_truth.hpp"
 #include "common/topics/map.hpp"
 #include "common/topics/planner.hpp"
@@ -516,6 +517,38 @@ TEST_F(SimulatorContract, StopsWhenAskedHoweverBusyItIs) {
     ASSERT_TRUE(simulator.wait_for_line("real-time factor")) << simulator.log();
     EXPECT_EQ(simulator.stop(SIGTERM, Seconds(5)), 0) << simulator.log();
   }
+}
+
+/// Processes and participants that start meanwhile use the network, too.
+class OnTheSubnet {
+ public:
+  OnTheSubnet() { setenv(kRange, "SUBNET", 1); }
+  ~OnTheSubnet() { setenv(kRange, "LOCALHOST", 1); }
+  OnTheSubnet(const OnTheSubnet&) = delete;
+  OnTheSubnet& operator=(const OnTheSubnet&) = delete;
+
+ private:
+  static constexpr const char* kRange = "ROS_AUTOMATIC_DISCOVERY_RANGE";
+};
+
+// The pace of a network is for slow links; 150 frames are ten seconds of the default camera.
+TEST_F(SimulatorContract, OnTheSubnetOfOneHostNoFrameIsLeftOut) {
+  const OnTheSubnet subnet;
+  TopicProbe probe;
+  int frames = 0;
+  std::set<std::string> reported;
+  probe.listen<sensor_msgs::msg::Image>(topics::kColor, [](auto&) {});
+  probe.listen<sensor_msgs::msg::Image>(topics::kLabels, [](auto&) {});
+  probe.listen<sensor_msgs::msg::Image>(topics::kDepth, [&](auto&) { ++frames; });
+  probe.listen<diagnostic_msgs::msg::DiagnosticArray>(topics::kDiagnostics, [&](auto& array) {
+    for (const auto& status : array.status()) {
+      for (const auto& pair : status.values()) reported.insert(pair.key());
+    }
+  });
+  ChildProcess simulator(kSimulator, arguments({"--mode", "freerun", "--set", "simulator.wait_for_readers=1"}));
+  ASSERT_TRUE(probe.wait_until([&] { return frames >= 150; }, Seconds(60))) << simulator.log();
+  EXPECT_TRUE(reported.contains("frames")) << simulator.log();
+  for (const auto& key : reported) EXPECT_THAT(key, Not(HasSubstr("left out")));
 }
 
 TEST_F(SimulatorContract, ToolsWriteWhatTheyName) {

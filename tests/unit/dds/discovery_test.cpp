@@ -69,6 +69,9 @@ TEST(Discovery, AllMaySendOnTheSubnetUnlessPeersAreNamed) {
   EXPECT_TRUE(allowed_senders(settings({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}}))->empty());
   EXPECT_EQ(allowed_senders(settings({{"LAPIS_ALLOWED_PEERS", "10.0.0.7"}, {"ROS_STATIC_PEERS", "10.0.0.8"}}))->size(),
             2U);
+  EXPECT_FALSE(allowed_senders(
+      settings({{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}, {"ROS_DISCOVERY_SERVER", "10.0.0.1:11811"}})))
+      << "the server introduces hosts that nobody has named";
 }
 
 TEST(Discovery, RunIsAnIdThatFitsIntoUserData) {

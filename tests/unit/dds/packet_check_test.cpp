@@ -53,10 +53,13 @@ Bytes& add(Bytes& message, std::uint8_t id, std::uint8_t flags, const Body& body
   return message;
 }
 
-/// Believes everything.
+struct BelievesEverything : SequenceJudge {
+  bool believes(const Gid&, std::int64_t) override { return true; }
+};
+
 std::optional<PacketFault> find_fault(std::span<const std::uint8_t> message) {
-  WriterProgress progress;
-  return dds::find_fault(message, progress);
+  BelievesEverything judge;
+  return dds::find_fault(message, judge);
 }
 
 std::optional<PacketFault> fault_of(std::uint8_t id, const Body& body, std::uint8_t flags = 0) {
@@ -257,6 +260,19 @@ TEST(WriterProgress, SilenceIsTimeToWrite) {
   EXPECT_FALSE(progress.believes(writer, 400'000'001 + 2 * WriterProgress::kLongestJump, start));
   EXPECT_TRUE(
       progress.believes(writer, 400'000'001 + 2 * WriterProgress::kLongestJump, start + std::chrono::seconds(1)));
+}
+
+TEST(WriterProgress, AWriterOf1KhzIsHeardAfterWeeks) {
+  constexpr std::int64_t kDay = 86'400'000;  // samples
+  WriterProgress progress;
+  const Gid followed{1}, old{2}, impossible{3};
+  const WriterProgress::Clock::time_point start{};
+  for (int day = 0; day < 60; ++day) {
+    EXPECT_TRUE(progress.believes(followed, 1 + day * kDay, start + std::chrono::hours(24 * day))) << day;
+  }
+  EXPECT_TRUE(progress.believes(old, 40 * kDay, start)) << "by a reader that joins";
+  EXPECT_FALSE(progress.believes(impossible, WriterProgress::kLargestFirst + 1, start));
+  EXPECT_TRUE(progress.believes(impossible, 1, start)) << "what is not believed is not remembered";
 }
 
 compat::rtps::Locator_t from(const std::string& address) {

@@ -99,6 +99,38 @@ TEST_F(StreamOwnerTest, FirstStrangerKeepsTheStreamWhileItSpeaks) {
   EXPECT_TRUE(takes(11, 2001));
 }
 
+TEST_F(StreamOwnerTest, NobodyWaitsForAWriterThatIsRefused) {
+  match({1, 11, 21});
+  EXPECT_TRUE(owner_.refuses(writer(21)));
+  EXPECT_FALSE(owner_.refuses(writer(11)));
+  EXPECT_TRUE(takes(1));
+  EXPECT_FALSE(owner_.refuses(writer(1)));
+  EXPECT_TRUE(owner_.refuses(writer(11)));
+  match({2});
+  EXPECT_FALSE(owner_.refuses(writer(1))) << "until its successor speaks";
+  EXPECT_FALSE(owner_.refuses(writer(2)));
+  EXPECT_TRUE(takes(2));
+  EXPECT_TRUE(owner_.refuses(writer(1)));
+  EXPECT_FALSE(owner_.refuses(writer(3))) << "it would be the next successor";
+  owner_.unmatch(writer(2));
+  EXPECT_TRUE(owner_.refuses(writer(1)));
+  EXPECT_FALSE(owner_.refuses(writer(11)));
+}
+
+TEST_F(StreamOwnerTest, OnlyStrangersAreInterrupted) {
+  match({1, 11});
+  EXPECT_TRUE(takes(11));
+  EXPECT_FALSE(owner_.was_interrupted(writer(11)));
+  EXPECT_TRUE(takes(1));
+  EXPECT_FALSE(takes(11));
+  EXPECT_FALSE(owner_.was_interrupted(writer(1))) << "none of its samples was refused";
+  owner_.unmatch(writer(1));
+  EXPECT_TRUE(takes(11));
+  EXPECT_TRUE(owner_.was_interrupted(writer(11)));
+  EXPECT_TRUE(takes(11));
+  EXPECT_FALSE(owner_.was_interrupted(writer(11))) << "asked once";
+}
+
 TEST_F(StreamOwnerTest, MatchesOfAParticipantAreFoundByAnyOfItsEndpoints) {
   match({1});
   Gid endpoint = writer(1);

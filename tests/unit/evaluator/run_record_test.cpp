@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace lapis::evaluator {
 namespace {
 
@@ -161,6 +163,84 @@ TEST(RunRecord, EveryFrameHasARowAndARepeatedOneHasNone) {
             "0.500000,odometry,1.000000,0.040000,0.250000\n"
             "1.000000,none,1.500000,,\n"
             "1.500000,none,1.500000,,\n");
+}
+
+// The clock of the stamps is set ----------------------------------------------------------------------------------
+
+constexpr time::Duration kAnHour{3'600'000'000'000};
+constexpr time::Duration kBackBy5s{-5'000'000'000};
+
+time::Time tenth(int frame) { return {100'000'000'000 + frame * 100'000'000}; }
+
+/// A drive at 10 Hz, in which every fifth frame becomes a key-frame, by a clock that is set by `step` before frame 10
+/// and found to have been set by `found`.
+RunRecord drive(time::Duration step, time::Duration found) {
+  RunRecord record;
+  for (int i = 0; i < 20; ++i) {
+    const time::Time stamp = i < 10 ? tenth(i) : tenth(i) + step;
+    record.count_camera_frame(stamp);
+    if (i == 10) {
+      record.follow_camera_clock(found);
+      record.follow_clock(found, stamp);
+    }
+    FrameRecord frame{stamp, kSession, PoseTier::kVision, pose_at(0.11 * i), pose_at(0.1 * i), 0.01};
+    if (i % 5 == 0) frame.keyframe_id = static_cast<std::uint64_t>(i / 5);
+    record.add(frame);
+  }
+  return record;
+}
+
+RunMetrics metrics_of_drive(const RunRecord& record, const KeyframePoses& keyframes) {
+  RunMetrics metrics;
+  record.write_to(metrics, keyframes, 0, true);
+  return metrics;
+}
+
+const KeyframePoses kKeyframes{{0, pose_at(0.0)}, {1, pose_at(0.52)}, {2, pose_at(1.04)}, {3, pose_at(1.56)}};
+
+TEST(RunRecord, AClockThatIsSetChangesNoFigure) {
+  const RunRecord expected = drive({}, {});
+  const RunMetrics figures = metrics_of_drive(expected, kKeyframes);
+  EXPECT_NEAR(figures.duration_s.value(), 1.9, 1e-9);
+  EXPECT_NEAR(figures.path_length_m.value(), 1.9, 1e-9);
+  EXPECT_NEAR(figures.keyframes.ate_raw_rmse_m.value(), 0.02 * std::sqrt((1.0 + 4.0 + 9.0) / 4.0), 1e-9);
+  for (const time::Duration step : {kAnHour, -kAnHour, kBackBy5s}) {
+    const RunRecord record = drive(step, step);
+    EXPECT_EQ(to_csv(record.frames()), to_csv(expected.frames()));
+    EXPECT_EQ(to_json(metrics_of_drive(record, kKeyframes)), to_json(figures));
+  }
+}
+
+TEST(RunRecord, AClockWhoseStepIsKnownToTheJitterLosesNoFrame) {
+  for (const time::Duration step : {kAnHour, kBackBy5s}) {
+    for (const std::int64_t error_ns : {-300'000'000, 300'000'000}) {
+      const RunRecord record = drive(step, {step.nanoseconds + error_ns});
+      EXPECT_EQ(record.frames().size(), 20U);
+      const RunMetrics metrics = metrics_of_drive(record, kKeyframes);
+      EXPECT_NEAR(metrics.duration_s.value(), 1.9, 0.31);
+      EXPECT_NEAR(metrics.path_length_m.value(), 1.9, 1e-9);
+      EXPECT_EQ(metrics.exit_reason, "completed");
+    }
+  }
+}
+
+TEST(RunRecord, AClockThatIsSetBeforeSlamsFirstFrameIsNoTime) {
+  RunRecord record;
+  for (const int i : {0, 1}) record.count_camera_frame(tenth(i));
+  for (const int i : {2, 3}) record.count_camera_frame(tenth(i) + kAnHour);
+  record.follow_camera_clock(kAnHour);
+  record.follow_clock(kAnHour, tenth(3) + kAnHour);  // frames wait that were not recorded yet
+  record.add({tenth(3) + kAnHour, kSession, PoseTier::kVision, pose_at(0.0), pose_at(0.0), {}});
+  EXPECT_NEAR(metrics_of(record).duration_s.value(), 0.3, 1e-9);
+  EXPECT_NEAR(metrics_of(record).lost_time_s.value(), 0.3, 1e-9);
+}
+
+TEST(RunRecord, KeyframesWhoseFramesDidNotComeAreNotJudged) {
+  KeyframePoses keyframes = kKeyframes;
+  keyframes.emplace(4, pose_at(100.0));  // of an earlier run, or missed
+  const RunRecord record = drive({}, {});
+  EXPECT_EQ(to_json(metrics_of_drive(record, keyframes)), to_json(metrics_of_drive(record, kKeyframes)));
+  EXPECT_FALSE(metrics_of_drive(record, {{4, pose_at(100.0)}}).keyframes.ate_raw_rmse_m);
 }
 
 TEST(RunRecord, ACollisionIsTheBeginningOfAContact) {

@@ -36,9 +36,9 @@ Bytes serialize(const T& message) {
 }
 
 /// Reads T from the bytes of the wire; false when they are no T.
-template <typename T>
+template <typename T, typename PubSubType = typename TypeSupport<T>::PubSubType>
 bool deserialize(const Bytes& bytes, T& message) {
-  typename TypeSupport<T>::PubSubType type;
+  PubSubType type;
 #if __has_include(<fastdds/config.hpp>)
   eprosima::fastdds::rtps::SerializedPayload_t payload(static_cast<std::uint32_t>(bytes.size()));
 #else

@@ -7,7 +7,8 @@
 namespace lapis::evaluator {
 namespace {
 
-constexpr double kLostAtEnd_s = 5.0;  // longer than this without a pose at the end: the run is lost
+constexpr double kLostAtEnd_s = 5.0;               // longer than this without a pose at the end: the run is lost
+constexpr time::Duration kLeastPeriod{1'000'000};  // of frames between which the clock was set
 
 }  // namespace
 
@@ -17,6 +18,17 @@ void RunRecord::count_camera_frame(time::Time stamp) {
   if (!first_stamp_) first_stamp_ = last_stamp_ = stamp;
   camera_stamp_ = stamp;
   ++frames_total_;
+}
+
+void RunRecord::follow_camera_clock(time::Duration step) {
+  camera_clock_steps_ = {camera_clock_steps_.nanoseconds + step.nanoseconds};
+  if (!session_) clock_steps_ = camera_clock_steps_;
+}
+
+void RunRecord::follow_clock(time::Duration step, time::Time first) {
+  if (!session_) return;  // before slam's first frame the camera tells
+  const time::Duration steps{clock_steps_.nanoseconds + step.nanoseconds};
+  clock_steps_ = std::min(steps, first - (last_stamp_ + kLeastPeriod));  // so that time does not go back
 }
 
 void RunRecord::count_contact(bool is_in_contact) {
@@ -30,13 +42,15 @@ bool RunRecord::add(const FrameRecord& frame) {
   if (!session_) session_ = frame.session;
   const bool is_judged = *session_ == frame.session;
   const PoseTier tier = is_judged && frame.T_map_camera ? frame.tier : PoseTier::kNone;
-  const bool is_new = frames_.empty() || last_stamp_ < frame.stamp;
-  count_time(frame.stamp, tier);
+  const time::Time stamp = frame.stamp - clock_steps_;
+  const bool is_new = frames_.empty() || last_stamp_ < stamp;
+  count_time(stamp, tier);
   ++frames_of_tier_[static_cast<std::size_t>(tier)];
-  if (frame.T_world_camera) add_truth(frame.stamp, *frame.T_world_camera);
+  if (frame.T_world_camera) add_truth(stamp, *frame.T_world_camera);
+  if (is_judged && frame.keyframe_id) keyframe_stamps_[*frame.keyframe_id] = stamp;
   if (tier != PoseTier::kNone) {
-    if (estimate_.empty() || estimate_.back().stamp < frame.stamp) {
-      estimate_.push_back({frame.stamp, *frame.T_map_camera});
+    if (estimate_.empty() || estimate_.back().stamp < stamp) {
+      estimate_.push_back({stamp, *frame.T_map_camera});
     }
     if (frame.T_world_camera && !T_map_world_) T_map_world_ = *frame.T_map_camera * frame.T_world_camera->inverse();
   }
@@ -79,7 +93,9 @@ std::optional<double> RunRecord::position_error_m() const {
   return (estimate_.back().T_world_body.translation() - truth.translation()).norm();
 }
 
-void RunRecord::write_to(RunMetrics& m, const Trajectory& keyframes, std::int64_t frames_missed, bool has_ended) const {
+void RunRecord::write_to(RunMetrics& m, const KeyframePoses& keyframe_poses, std::int64_t frames_missed,
+                         bool has_ended) const {
+  const Trajectory keyframes = trajectory_of(keyframe_poses);
   m.frames_total = std::max(frames_total_ + frames_missed, frames_judged_);
   m.frames_tracked = frames_of(PoseTier::kVision) + frames_of(PoseTier::kSurfaces);
   m.exit_reason = is_lost() ? "lost" : has_ended ? "completed" : "stopped";
@@ -95,7 +111,19 @@ void RunRecord::write_to(RunMetrics& m, const Trajectory& keyframes, std::int64_
   if (*m.path_length_m > 0.0 && m.online.ate_raw_rmse_m) m.ate_per_metre = *m.online.ate_raw_rmse_m / *m.path_length_m;
 }
 
-time::Time RunRecord::end() const { return camera_stamp_ ? std::max(*camera_stamp_, last_stamp_) : last_stamp_; }
+Trajectory RunRecord::trajectory_of(const KeyframePoses& keyframes) const {
+  Trajectory trajectory;
+  for (const auto& [id, stamp] : keyframe_stamps_) {
+    const auto keyframe = keyframes.find(id);
+    const bool is_later = trajectory.empty() || trajectory.back().stamp < stamp;
+    if (keyframe != keyframes.end() && is_later) trajectory.push_back({stamp, keyframe->second});
+  }
+  return trajectory;
+}
+
+time::Time RunRecord::end() const {
+  return camera_stamp_ ? std::max(*camera_stamp_ - camera_clock_steps_, last_stamp_) : last_stamp_;
+}
 
 bool RunRecord::is_lost() const {
   return estimate_.empty() || (end() - estimate_.back().stamp).seconds() > kLostAtEnd_s;

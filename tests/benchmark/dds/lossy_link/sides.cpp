@@ -81,7 +81,7 @@ class Sender {
     if (sent_ == load_.tiles_after) send_tiles();
     if (sent_ == load_.images) return executor_.stop();
     image_.header().stamp(messages::to_message(time::Time{now_ns()}));
-    timed([this] { images_.publish(image_); });
+    if (participant_.pace().has_room(Clock::now())) timed([this] { images_.publish(image_); });
     ++sent_;
     next_ += std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 / load_.images_hz));
     executor_.at(next_, [this] { send(); });

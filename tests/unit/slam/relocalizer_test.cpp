@@ -113,6 +113,15 @@ TEST_F(RelocalizerTest, OdometryThatLeadsElsewhereMakesAPlaceAwaitConfirmation) 
   EXPECT_TRUE(believes(1.6, found(0.1, 46)));
 }
 
+// As when camera and wheels were cut off from slam for 10 s.
+TEST_F(RelocalizerTest, OdometryThatBeganAnewContradictsNothing) {
+  for (int i = 0; i <= 10; ++i) ASSERT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose::Identity()));
+  for (int i = 110; i <= 140; ++i) ASSERT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose::Identity()));
+  const int needed = config_.relocalization.confirmations;
+  for (int i = 0; i < needed; ++i) ASSERT_FALSE(believes(12.0 + 0.1 * i, found(0.3)));
+  EXPECT_TRUE(believes(12.0 + 0.1 * needed, found(0.3)));
+}
+
 // The robot drives 8 m in 8 s by odometry alone; vision finds it 5 m beside, again and again.
 class ContradictedPlaceTest : public RelocalizerTest {
  protected:

@@ -45,9 +45,12 @@ bool Relocalizer::believes(const Situation& now, const TrackOutcome& outcome) {
   bool is_believed = motion_leads_to(now, outcome.reference, T_map_camera);
   if (!is_believed) {
     if (!is_distinct(outcome)) return false;
-    const bool has_odometry = now.motion.odometry_at(now.stamp()).has_value();
+    const auto last = now.motion.last_stamp();
+    // After a gap, odometry does not tell how the robot has moved since its last pose.
+    const bool has_odometry = last ? now.motion.odometry_between(*last, now.stamp()).has_value()
+                                   : now.motion.odometry_at(now.stamp()).has_value();
     if (!has_odometry && sees_through_walls(now, outcome)) return false;
-    const bool is_contradicted = now.motion.last_stamp() && has_odometry;
+    const bool is_contradicted = last && has_odometry;
     if (!is_contradicted || may_be_slip(now, T_map_camera)) {
       is_believed = is_found_again(now, T_map_camera) || is_within_reach(now, T_map_camera);
     } else {

@@ -12,8 +12,8 @@ namespace lapis::slam {
 
 /// Decides whether a pose is believed. A pose near the one that motion predicts is. Any other pose, found by
 /// recognising a place, has to be distinct; what else it needs depends on odometry:
-/// - without odometry, it must not see through walls and furniture that should be in view, and it has to be within
-///   reach of the last pose, or to be found again by the next frames;
+/// - without odometry since the last pose, it must not see through walls and furniture that should be in view, and it
+///   has to be within reach of the last pose, or to be found again by the next frames;
 /// - with odometry that may have erred by that much (slip), it has to be found again;
 /// - with odometry that contradicts it, it needs evidence, because buildings repeat themselves, and the next frames
 ///   show the same furniture again. Views that share no landmarks have to agree along metres of path; where the camera

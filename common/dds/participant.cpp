@@ -18,6 +18,12 @@ namespace {
 using compat::IPLocator;
 using compat::rtps::Locator_t;
 
+// How long a silent participant counts as there. Safety goes by the age of data, never by this.
+constexpr std::int64_t kLeaseNs = 3'000'000'000;
+// That of ROS 2. Only the server drops who is silent, and tells those that it reaches: a process that is cut off keeps
+// its readers when they have dropped it. It takes for received what they then ask for anew (Fast DDS 2.9), so that a
+// map that was sent before the cut would stay incomplete.
+constexpr std::int64_t kLeaseByServerNs = 20'000'000'000;
 constexpr std::uint32_t kSharedMemorySegmentBytes = 16u << 20;  // ten times the largest image
 
 Locator_t peer_locator(const std::string& address) {
@@ -60,7 +66,7 @@ void apply_discovery(const DiscoverySettings& discovery, compat::fdds::DomainPar
   auto& builtin = qos.wire_protocol().builtin;
   builtin.readerHistoryMemoryPolicy = compat::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   builtin.writerHistoryMemoryPolicy = compat::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
-  builtin.discovery_config.leaseDuration = compat::duration(3'000'000'000);
+  builtin.discovery_config.leaseDuration = compat::duration(discovery.has_server ? kLeaseByServerNs : kLeaseNs);
   builtin.discovery_config.leaseDuration_announcementperiod = compat::duration(1'000'000'000);
   if (discovery.range != DiscoveryRange::kSubnet) {
     // A unicast locator keeps Fast DDS from adding the default multicast one.

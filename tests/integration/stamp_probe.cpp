@@ -1,7 +1,7 @@
 // Prints a line per sample of the chain's topics, so that a test written in a script can see what is published:
 //   TOPIC stamp_s DETAIL
-// with the number of the session (/slam/frame), of the integrated frames (map_state), or the process and its number of
-// frames (/diagnostics); and with the time of its arrival [s, steady clock] in the stamp's place
+// with the number of the session (/slam/frame), of the integrated frames (map_state), the process and its number of
+// frames (/diagnostics), or x and y (truth: /ground_truth/odom) [m]; and with the time of its arrival [s, steady clock] in the stamp's place
 //   arrived arrival_s pose|map|path|command [FORWARD TURN]
 // for what the robot must not move without, and for /cmd_vel [m/s, rad/s]. It saves the map when SIGUSR1 comes and
 // prints the answer. It ends on SIGTERM.
@@ -16,6 +16,7 @@
 #include "common/topics/camera.hpp"
 #include "common/topics/controller.hpp"
 #include "common/topics/diagnostics.hpp"
+#include "common/topics/ground_truth.hpp"
 #include "common/topics/map.hpp"
 #include "common/topics/planner.hpp"
 #include "common/topics/services.hpp"
@@ -65,6 +66,10 @@ void listen(TopicProbe& probe) {
       topics::kTrackedFrame, [](auto& m) { print("slam", m.header().stamp(), std::to_string(m.session())); });
   probe.listen<lapis_msgs::msg::MapState>(topics::kMapState, [](auto& m) {
     print("semantic_mapper", m.header().stamp(), std::to_string(m.frames_integrated()));
+  });
+  probe.listen<nav_msgs::msg::Odometry>(topics::kGroundTruth, [](auto& m) {
+    const auto& position = m.pose().pose().position();
+    print("truth", m.header().stamp(), std::to_string(position.x()) + ' ' + std::to_string(position.y()));
   });
   probe.listen<diagnostic_msgs::msg::DiagnosticArray>(topics::kDiagnostics, [](auto& m) { print_diagnostics(m); });
 }

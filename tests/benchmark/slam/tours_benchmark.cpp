@@ -37,6 +37,7 @@ struct Options {
   bool no_odometry = false;
   bool with_loops = false;
   int wrong_loop_seeds = 0;
+  double odometry_offset_s = 0.0;
 };
 
 // Points that a key-frame sees, for what it shares with others.
@@ -174,14 +175,14 @@ std::string source_of(const TrackingResult& result) {
 // What slam says of a tour. The truth is brought into its map by the first frame with a pose, as the evaluator does: a
 // robot that begins in front of a bare wall has moved before there is a map.
 Run play(const simulator::SimulatorConfig& scene, const SlamConfig& config, const std::string& folder,
-         bool with_odometry) {
+         bool with_odometry, time::Duration odometry_offset) {
   Run run;
   const geometry::Pose T_base_camera = geometry::T_base_camera(camera_mount(scene.robot.camera));
   RgbdSlam slam(config, T_base_camera, T_base_camera);
   std::optional<geometry::Pose> T_map_start;
   play_tour(scene, folder, [&](const TourFrame& tour_frame) {
     for (const auto& reading : tour_frame.odometry) {
-      if (with_odometry) slam.add_odometry(reading.stamp, pose_of(reading));
+      if (with_odometry) slam.add_odometry(reading.stamp + odometry_offset, pose_of(reading));
     }
     const double before_ms = cpu_ms();
     const TrackingResult result = slam.process(tour_frame.frame);
@@ -332,7 +333,8 @@ int run(const Options& options) {
       simulated.seed = seed;
       try {
         const bool with_odometry = !options.no_odometry && simulated.wheels.odometry;
-        const Run tour = play(simulated, slam.method, options.folder, with_odometry);
+        const auto offset = time::Duration::from_seconds(options.odometry_offset_s);
+        const Run tour = play(simulated, slam.method, options.folder, with_odometry, offset);
         print_row(scene, seed, tour);
         const auto mount = camera_mount(simulated.robot.camera);
         print_honesty(tour, honesty_of(tour, mount, slam.method.pose_graph), pool);
@@ -384,6 +386,8 @@ int main(int argc, char** argv) {
   app.add_option("--graphs", options.graphs,
                  "folder for SCENE_SEED.g2o, the final graph, and SCENE_SEED_truth.txt, true poses of its key-frames");
   app.add_flag("--no-odometry", options.no_odometry, "slam gets no wheel odometry");
+  app.add_option("--odometry-offset", options.odometry_offset_s,
+                 "by which the clock that stamps wheel odometry is ahead of the camera's [s]");
   app.add_flag("--loops", options.with_loops, "also a row for each loop");
   app.add_option("--wrong-loops", options.wrong_loop_seeds,
                  "also rows for 10, 20 and 30 % wrong loops in the final graph, so many seeds each")

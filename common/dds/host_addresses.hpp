@@ -9,6 +9,10 @@
 
 namespace lapis::dds {
 
+/// Whether an interface besides the loopback one is up and has an IPv4 address. Fast DDS uses those that are up when a
+/// process starts: on one that comes up later, no other host reaches the process.
+bool has_network_interface();
+
 /// The IPv4 addresses of this host, the first byte highest, also those that it gets while the process runs (Fast DDS
 /// reads them once). What is known is never older than a second.
 class HostAddresses {

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "common/config/yaml.hpp"
+#include "common/dds/host_addresses.hpp"
 #include "common/dds/participant.hpp"
 #include "common/runtime/version.hpp"
 
@@ -78,6 +79,9 @@ void log_setup(const config::Schema& schema, const ContextOptions& options) {
     spdlog::warn(
         "socket buffers below 1 MiB make images late: install /etc/sysctl.d/60-lapis.conf "
         "(launch_scripts/setup.sh --sysctl)");
+  }
+  if (!dds::stays_on_host(options.participant.discovery) && !dds::has_network_interface()) {
+    spdlog::warn("no network interface is up: other hosts will not find this process until it is started again");
   }
   if (options.participant.transport == dds::Transport::kSharedMemory) {
     spdlog::warn("shared memory: no ROS 2 process may run on this host (docs/decisions)");

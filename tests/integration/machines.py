@@ -70,7 +70,11 @@ class Network:
         machine.ip("link set air up")
         machine.ip(f"route add default via {subnet}.1")
         # Fast DDS uses the interfaces that are up when a process starts, and no others.
-        while " state UP " not in machine.output("ip", "-o", "link", "show", "air"):
+        self.wait_until_it_sees(machine.name, True)
+
+    def wait_until_it_sees(self, name, is_up):
+        """Waits until a machine sees that its link is up, or that it is not."""
+        while (" state UP " in self.machines[name].output("ip", "-o", "link", "show", "air")) != is_up:
             time.sleep(0.01)
 
     def __getitem__(self, name):
@@ -133,10 +137,12 @@ def server_or_skip():
 class Exploration:
     """A free-running exploration, its processes spread over the machines."""
 
-    def __init__(self, network, folder, scene, settings, options=()):
+    def __init__(self, network, folder, scene, settings, options=(), mapping="mapping"):
+        """`mapping`: where slam and the mapper run."""
         self.network = network
         self.folder = Path(folder)
         self.scene = scene
+        self.mapping = mapping
         self.options = [str(option) for option in options]
         self.settings = {**settings, "LAPIS_RUN": f"machines-{os.getpid()}"}
         self.processes = {}
@@ -159,8 +165,8 @@ class Exploration:
     def start_all(self):
         robot = ["--config", chain.REPOSITORY / "config/robot.yaml", *self.options]
         run = self.folder / "run"
-        self.start("mapping", "slam", "--set", f"slam.output_dir={run}")
-        self.start("mapping", "semantic_mapper", *robot, "--set", f"semantic_mapper.output_dir={run}",
+        self.start(self.mapping, "slam", "--set", f"slam.output_dir={run}")
+        self.start(self.mapping, "semantic_mapper", *robot, "--set", f"semantic_mapper.output_dir={run}",
                    "--set", f"semantic_mapper.stored_frames.spill_dir={self.folder}")
         self.start("planning", "planner", *robot, "--set", f"planner.output_dir={run}",
                    "--set", "planner.method=nearest")

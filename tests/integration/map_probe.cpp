@@ -1,7 +1,7 @@
 // Keeps a mirror of the mapper's map, as the planner does, and prints a line for each version that it has completed:
 //   map EPOCH VERSION TILES
-// When SIGUSR1 comes, it prints whether the mirror is equal to a saved map, the file of its argument: "saved map: same",
-// or what is not so. It ends on SIGTERM.
+// When SIGUSR1 comes, it prints whether the mirror is equal to a saved map, the file of its argument: "saved map:
+// same", or what is not so. It ends on SIGTERM.
 
 #include <csignal>
 #include <cstdint>

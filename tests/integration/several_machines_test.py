@@ -189,6 +189,17 @@ class StaticPeersTest(SeveralMachinesTest):
     def test_links_are_cut_and_healed(self):
         self.check(self.network.static_peers())
 
+    def test_who_starts_without_a_network_says_that_nobody_will_find_it(self):
+        exploration = machines.Exploration(self.network, self.folder, None, self.network.static_peers())
+        self.addCleanup(exploration.kill_all)
+        for is_cut in (True, False):
+            (self.network.cut if is_cut else self.network.heal)("planning")
+            self.network.wait_until_it_sees("planning", not is_cut)
+            planner = exploration.start("planning", "planner")
+            self.assertEqual("no network interface is up" in planner.output(), is_cut, planner.output())
+            self.assertEqual(planner.stop(), 0, planner.output())
+            planner.kill()  # closes its output
+
 
 class DiscoveryServerTest(SeveralMachinesTest):
     @classmethod

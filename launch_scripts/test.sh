@@ -6,10 +6,11 @@ tiers=(unit contract integration interop)
 
 usage() {
   cat <<TEXT
-usage: launch_scripts/test.sh [--tier unit|contract|integration|interop|long]
-  --tier NAME  only this tier; default: all of them but long
+usage: launch_scripts/test.sh [--tier unit|contract|integration|interop|long|faults]
+  --tier NAME  only this tier; default: all of them but long and faults
   long: tests that take over a minute, the benchmarks' build, 25 generated buildings, contract tests and unit tests with DDS with
   AddressSanitizer and UndefinedBehaviorSanitizer, and clang-tidy on what has changed since it passed last; docs/long_tests.md gets the results
+  faults: what Lapis promises when something fails, by cases of the other tiers (tests/faults); docs/reliability.md gets the results
 Environment: LAPIS_TEST_DATA, the folder of recorded test data (default ../shared/data beside the repository, when it
 exists); tests that need it are skipped without it.
 TEXT
@@ -17,7 +18,7 @@ TEXT
 while [[ $# -gt 0 ]]; do
   case "$1" in
     --tier)
-      [[ " ${tiers[*]} long " == *" ${2:-} "* && -n "${2:-}" ]] || { usage >&2; exit 2; }
+      [[ " ${tiers[*]} long faults " == *" ${2:-} "* && -n "${2:-}" ]] || { usage >&2; exit 2; }
       tiers=("$2")
       shift 2 ;;
     --help | -h) usage; exit 0 ;;
@@ -49,7 +50,8 @@ reasons_of_skips() {
 run_tier() {
   local log="$build/Testing/$1.log"
   echo "== $1"
-  ctest --test-dir "$build" --output-on-failure --no-tests=error -L "^$1\$" --parallel "$(nproc)" -O "$log" || failed+=("$1")
+  ctest --test-dir "$build" --output-on-failure --no-tests=error -L "^$1\$" --parallel "$(nproc)" -O "$log" \
+    --output-junit "$root/$log.xml" --test-output-size-passed 1000000 || failed+=("$1")
   summaries+=("$1: $(grep 'tests passed' "$log" || echo 'no tests')")
   reasons+="$(reasons_of_skips)"$'\n'
   if [[ "$1" == long ]]; then
@@ -112,6 +114,11 @@ if [[ "${tiers[*]}" == long ]]; then
   tidied="$(sed -n 's/^clang-tidy has passed up to commit \([0-9a-f]*\)\.$/\1/p' docs/long_tests.md)"
   check "clang-tidy on files that have changed since ${tidied:-the last commit}" check_changed_files
   write_results
+fi
+if [[ "${tiers[*]}" == faults ]]; then
+  launch_scripts/reliability_table.py tests/faults/faults.json "$build/Testing/faults.log.xml" "$(git rev-parse --short HEAD)" \
+    >"$build/Testing/reliability.md"
+  cp "$build/Testing/reliability.md" docs/reliability.md
 fi
 echo
 printf '%s\n' "${summaries[@]}"

@@ -24,7 +24,7 @@ class DeterminismTest(chain.ChainTest):
             self.assert_same_run(first, other, chain.FILES + chain.FILES_OF_LABELS)
         self.assertGreater(chain.metrics_of(first)["loop_closures"], 0, "poses that change after the fact are compared, too")
         self.assertIn("socket buffers 212992 bytes", (small / "logs/slam.log").read_text())
-        print("longest tick [s]:", *(f"{run.parent.name} {self.longest_tick_s(run)}" for run in (first, second, small)))
+        print("figure: longest tick [s]:", *(f"{run.parent.name} {self.longest_tick_s(run)}" for run in (first, second, small)))
         self.assertLessEqual(self.longest_tick_s(small), LONGEST_TICK_S)
 
 

@@ -6,6 +6,7 @@ import time
 import chain
 
 ANSWER_S = 3.0  # from the ready line to the first output of new input
+ENDED_WITHIN_S = 60.0  # the evaluator draws figures
 WARM_UP_FRAMES = 40  # before the kill
 
 
@@ -79,14 +80,14 @@ class KillEachTest(chain.ChainTest):
 
     def wait_for_answer(self, name, topic, begin, fits):
         began = time.monotonic()
-        sample = self.wait_for_samples(topic, 1, begin, ANSWER_S, fits)[0]
-        print(f"{name}: {topic} of {sample.stamp:.3f} s after {time.monotonic() - began:.2f} s")
+        self.wait_for_samples(topic, 1, begin, ANSWER_S, fits)
+        print(f"figure: {topic} again {time.monotonic() - began:.2f} s after {name} was ready")
         self.assert_alive(chain.COMPONENTS)
 
     def stop_all(self):
         """The run ends as any other: everybody exits with 0, and the files are whole."""
         for name in ("sensor_replay", "slam", "semantic_mapper", "evaluator"):
-            self.assertEqual(self.processes[name].stop(), 0, self.processes[name].output())
+            self.assertEqual(self.processes[name].stop(seconds=ENDED_WITHIN_S), 0, self.processes[name].output())
         self.assertTrue(chain.is_map_whole(self.folder / "run/map.lapis"))
         self.assertGreater(chain.metrics_of(self.folder / "run")["frames_tracked"], 0)
 

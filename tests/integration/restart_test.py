@@ -138,7 +138,7 @@ class LongRestartTest(RestartCase):
             for _ in range(TRIES):
                 self.wait_for_commands(lambda command: command.moves, besides=[what])
                 stopped_after_s, longest_gap_s = self.kill_and_watch(run, victim, what)
-                print(f"{victim}: zero {stopped_after_s:.3f} s after the last {what}; commands up to "
+                print(f"figure: {victim}: zero {stopped_after_s:.3f} s after the last {what}; commands up to "
                       f"{longest_gap_s:.3f} s apart")
                 if longest_gap_s <= LONGEST_GAP_S:
                     break

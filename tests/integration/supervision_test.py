@@ -77,7 +77,7 @@ class SupervisionTest(SupervisionCase):
             self.assertTrue(run.wait_for_text(f"{name} was silent for ", 20), run.output())
             self.assertTrue(run.wait_for_text(f"{name} runs again", 20), run.output())
             took_s = time.monotonic() - began
-            print(f"{name}: replaced after {took_s:.2f} s")
+            print(f"figure: {name} replaced after {took_s:.2f} s")
             self.assertLess(took_s, REPLACED_WITHIN_S, run.output())
             self.assertNotIn(hung, chain.processes_of(run.run))
         self.assertEqual(run.press_ctrl_c(CTRL_C_WITHIN_S), 130, run.output())
@@ -94,7 +94,7 @@ class SupervisionTest(SupervisionCase):
         self.hang(run, "simulator")
         self.assertEqual(run.wait(20), 1, run.output())
         took_s = time.monotonic() - began
-        print(f"ended after {took_s:.2f} s")
+        print(f"figure: ended after {took_s:.2f} s")
         self.assertLess(took_s, ENDED_WITHIN_S, run.output())
         self.assertIn("simulator: was silent for ", run.output())
         self.assert_no_orphan(run)

@@ -295,7 +295,7 @@ TEST_F(MapperWithHugeMap, HundredMillionVoxelsReachAClientAndTheMemoryIsBounded)
   EXPECT_EQ(client.mirror.map()->read({800, 0, 0}), saved.map.read({800, 0, 0}));
   EXPECT_LE(client.states.back().tiles(), 2000u);
   const long mb = peak_memory_mb(mapper.pid());
-  std::cout << "peak memory of the mapper: " << mb << " MB\n";
+  std::cout << "figure: peak memory of the mapper: " << mb << " MB\n";
   EXPECT_LT(mb, 300);
   EXPECT_TRUE(map_frame(1)) << mapper.log();
 }

@@ -45,7 +45,8 @@ TEST_F(StuckReader, CostsOthersNoDataAndTheMapperNoMemory) {
   reader.signal(SIGSTOP);
   for (int i = kWarm; i < kFrames; ++i) ASSERT_TRUE(map_again(i, i % kWarm)) << i << mapper.log();
   const long grown_mb = peak_memory_mb(mapper.pid()) - before_mb;
-  std::cout << bytes / 1'000'000 << " MB of tiles while a reader hung; the mapper grew by " << grown_mb << " MB\n";
+  std::cout << "figure: " << bytes / 1'000'000 << " MB of tiles while a reader hung; the mapper grew by " << grown_mb
+            << " MB\n";
   EXPECT_GT(bytes, 20'000'000u) << "too little to show a leak";
   EXPECT_LE(grown_mb, 5);
   reader.signal(SIGCONT);

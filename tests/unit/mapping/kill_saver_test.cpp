@@ -52,7 +52,7 @@ TEST(KillSaver, TheMapIsAlwaysWhole) {
     const auto loaded = load_map(path, error);
     ASSERT_TRUE(loaded) << error;
   }
-  std::cout << kills << " kills, " << in_the_middle << " while a file was being written; a save takes "
+  std::cout << "figure: " << kills << " kills, " << in_the_middle << " while a file was being written; a save takes "
             << 1e3 * one_save.count() << " ms, " << late_bytes.size() << " bytes\n";
   EXPECT_GT(in_the_middle, 0);
 }

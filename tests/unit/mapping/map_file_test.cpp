@@ -218,7 +218,7 @@ TEST_F(MapFileTest, HundredMillionVoxelsAreSavedAndLoaded) {
   const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - begin;
   ASSERT_TRUE(loaded) << error;
   EXPECT_EQ(loaded->map, file.map);
-  std::cout << "file " << fs::file_size(path("map.lapis")) << " bytes, memory " << loaded->map.bytes()
+  std::cout << "figure: file " << fs::file_size(path("map.lapis")) << " bytes, memory " << loaded->map.bytes()
             << " bytes, loaded in " << taken.count() << " s\n";
   EXPECT_LT(loaded->map.bytes(), 40'000'000u);
 }

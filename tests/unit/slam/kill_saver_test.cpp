@@ -74,8 +74,9 @@ TEST(KillSaver, TheFileIsAlwaysWholeAndCanBeResumed) {
     for (int k = 0; k <= SlamConfig{}.relocalization.confirmations; ++k) result = slam.process(kill_frame(last + k));
     ASSERT_EQ(result.state, TrackingState::kTracking) << "kill " << i << ": " << result.reason;
   }
-  std::cout << i << " kills, " << in_the_middle << " while a file was being written; the later map was left "
-            << with_late << " times; a save takes " << 1e3 * one_save.count() << " ms, " << late.size() << " bytes\n";
+  std::cout << "figure: " << i << " kills, " << in_the_middle
+            << " while a file was being written; the later map was left " << with_late << " times; a save takes "
+            << 1e3 * one_save.count() << " ms, " << late.size() << " bytes\n";
   EXPECT_GT(in_the_middle, 0);
 }
 

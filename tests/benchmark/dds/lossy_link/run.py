@@ -14,11 +14,14 @@ import sys
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[4]
+BIN = Path(os.environ.get("LAPIS_BIN", ROOT / "build/release/bin"))
 KERNEL_DEFAULT = 212_992  # net.core.rmem_max of Linux [B]
 # As Lapis 1.0 sent, on every link.
 BEFORE = ["--message-bytes", "65500", "--pace-bytes", "0", "--depth", "0", "--heartbeat-ns", "0",
           "--heartbeat-response-ns", "0", "--nack-suppression-ns", "0", "--heartbeat-with-data", "true"]
 REAL_TIME = ["chrt", "--rr", "5"]
+LEAST_IMAGES_PERCENT, LONGEST_WRITE_MS = 95, 10  # --check; of tiles none may be missing
+SKIPPED = 77  # SKIP_RETURN_CODE of ctest
 LOADS = {"raw": [], "no_tiles": ["--tiles", "0"], "compressed": ["--image-bytes", "90000"]}
 COLUMNS = ("library", "settings", "load", "loss_percent", "delay_ms", "images_percent", "images_hz", "age_p50_ms",
            "age_p95_ms", "tiles_percent", "tiles_s", "sent_per_payload", "write_p50_ms", "write_p99_ms",
@@ -106,7 +109,7 @@ def row(arguments, settings, load, loss, delay, sent, received, carried):
 
 def parse():
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--program", default=ROOT / "build/release/bin/lapis_lossy_link")
+    parser.add_argument("--program", default=BIN / "lapis_lossy_link")
     parser.add_argument("--library", default="installed", help="name of the Fast DDS that the program has, for the table")
     parser.add_argument("--settings", nargs="+", choices=("before", "after"), default=["before", "after"])
     parser.add_argument("--load", nargs="+", choices=sorted(LOADS), default=["raw"])
@@ -122,18 +125,38 @@ def parse():
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--domain", type=int, default=151)
     parser.add_argument("--csv", type=Path)
+    parser.add_argument("--check", action="store_true", help="1 and 5 %% loss with 50 ms, settings of now, 6 s, --real-time: "
+                        f"status 1 unless all tiles and {LEAST_IMAGES_PERCENT} %% of the images arrive and writing takes "
+                        f"{LONGEST_WRITE_MS} ms at most (p99); status {SKIPPED} where a link cannot be made")
     parser.add_argument("--verbose", action="store_true")
     own = sys.argv[1:]
     options = []
     if "--" in own:
         own, options = own[:own.index("--")], own[own.index("--") + 1:]
+    if "--check" in own:
+        parser.set_defaults(settings=["after"], loss=[1, 5], delay=[50], seconds=6, real_time=True)
     arguments = parser.parse_args(own)
     arguments.options = options
     return arguments
 
 
+def is_good(result):
+    """What --check demands; it says the figures."""
+    if result["images_percent"] == "-":
+        print("a side of the link has ended early")
+        return False
+    print(f"figure: {result['loss_percent']:g} % lost, {result['delay_ms']:g} ms: {result['images_percent']} % of the images, "
+          f"age p95 {result['age_p95_ms']} ms; {result['tiles_percent']} % of the tiles; write p99 "
+          f"{result['write_p99_ms']} ms", flush=True)
+    return (result["tiles_percent"] == 100 and result["images_percent"] >= LEAST_IMAGES_PERCENT and
+            result["write_p99_ms"] <= LONGEST_WRITE_MS)
+
+
 def main():
     arguments = parse()
+    if arguments.check and (os.geteuid() != 0 or not Path("/dev/net/tun").exists()):
+        print("SKIPPED: a link needs root and TUN devices")
+        return SKIPPED
     print("| " + " | ".join(COLUMNS) + " |\n|" + " --- |" * len(COLUMNS), flush=True)
     rows = []
     for settings in arguments.settings:
@@ -148,7 +171,8 @@ def main():
             writer = csv.DictWriter(file, COLUMNS)
             writer.writeheader()
             writer.writerows(rows)
+    return 0 if not arguments.check or all([is_good(result) for result in rows]) else 1
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -21,7 +21,7 @@ namespace lapis::planner::benchmark {
 namespace {
 
 struct Options {
-  std::string errors_file, rows_file;
+  std::string errors_file, rows_file, gains_file;
   std::vector<std::string> scenes, methods{"mi_only:nearest", "expected:expected"}, overrides;
   std::vector<int> seeds{1};
   double longest_s = 300.0;
@@ -32,12 +32,16 @@ constexpr const char* kHeader =
     "revisits,"
     "decision_ms,cpu_s";
 
+constexpr const char* kGainsHeader =
+    "scene,seed,method,time_s,kind,path_m,loops,map_nats,promised_nats,by_graph_nats,true_nats";
+
 constexpr const char* kExpected = "expected";
 
 /// `method`: METHOD or METHOD:THEN, names of the planner's methods or `expected`.
 TrialSetting setting_of(const Options& options, const std::string& scene, int seed, const std::string& method) {
   TrialSetting setting;
   setting.longest_s = options.longest_s;
+  setting.with_gains = !options.gains_file.empty();
   robot::RobotDescription robot;
   robot.camera.width = 320;
   robot.camera.height = 180;
@@ -58,6 +62,19 @@ TrialSetting setting_of(const Options& options, const std::string& scene, int se
   if (first == kExpected) setting.planner.decision.method = std::make_shared<Expected>();
   if (then == kExpected) setting.planner.consolidation = std::make_shared<ExpectedAmongOldPlaces>();
   return setting;
+}
+
+void append_gains(const std::string& file, const std::string& key, const std::vector<Gain>& gains) {
+  std::ofstream out(file, std::ios::app);
+  if (out.tellp() == 0) out << kGainsHeader << '\n';
+  for (const Gain& gain : gains) {
+    char text[256];
+    std::snprintf(text, sizeof text, "%s,%.2f,%s,%.2f,%d,%.1f,%.2f,%.2f,%.2f", key.c_str(), gain.time_s,
+                  gain.is_revisit ? "revisit" : "other", gain.path_m, gain.loops, gain.map_nats, gain.promised_nats,
+                  gain.by_graph_nats, gain.true_nats);
+    out << text << '\n';
+  }
+  if (!out.flush()) throw std::runtime_error(file + " cannot be written");
 }
 
 int run(const Options& options) {
@@ -88,6 +105,7 @@ int run(const Options& options) {
                         key.c_str(), r.explored_share, r.time_to_90_s, r.done_s, r.path_m, r.ate_se3_m, r.ate_raw_m,
                         r.surviving_share, r.predicted_share, r.keyframes, r.loops, r.decisions, r.revisits,
                         1e3 * r.decision_cpu_s / std::max(r.decisions, 1), r.cpu_s);
+          if (setting.with_gains) append_gains(options.gains_file, key, r.gains);
           if (!(rows << text << std::endl)) throw std::runtime_error(options.rows_file + " cannot be written");
           std::printf("%s\n", text);
         } catch (const std::exception& error) {
@@ -115,6 +133,8 @@ int main(int argc, char** argv) {
   Options options;
   app.add_option("--errors", options.errors_file, "CSV file of recorded edges")->required();
   app.add_option("--rows", options.rows_file, "CSV file to add the rows to")->required();
+  app.add_option("--gains", options.gains_file,
+                 "CSV file to add a line for each decision to: what it promised to secure of the map, and what came");
   app.add_option("--scenes", options.scenes, "bundled names, generated buildings, or files")
       ->delimiter(',')
       ->required();

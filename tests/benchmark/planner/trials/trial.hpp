@@ -14,7 +14,7 @@ struct TrialSetting {
   simulator::SimulatorConfig simulated;
   PlannerComponentConfig planner;
   double longest_s = 300.0;  ///< of simulated time
-  bool with_gains = false;
+  bool with_gains = false;   ///< notes TrialResult::gains
 };
 
 /// What a decision promised to secure of the map, and what came of it until the next decision: by how much the worth of

@@ -64,9 +64,7 @@ TrialSetting setting_of(const Options& options, const std::string& scene, int se
   return setting;
 }
 
-void append_gains(const std::string& file, const std::string& key, const std::vector<Gain>& gains) {
-  std::ofstream out(file, std::ios::app);
-  if (out.tellp() == 0) out << kGainsHeader << '\n';
+void write_gains(std::ostream& out, const std::string& key, const std::vector<Gain>& gains) {
   for (const Gain& gain : gains) {
     char text[256];
     std::snprintf(text, sizeof text, "%s,%.2f,%s,%.2f,%d,%.1f,%.2f,%.2f,%.2f", key.c_str(), gain.time_s,
@@ -74,7 +72,17 @@ void append_gains(const std::string& file, const std::string& key, const std::ve
                   gain.by_graph_nats, gain.true_nats);
     out << text << '\n';
   }
-  if (!out.flush()) throw std::runtime_error(file + " cannot be written");
+  out.flush();
+}
+
+/// Opened before the first mission, so that a file that cannot be written is known before an hour of missions.
+std::ofstream open_gains(const std::string& file) {
+  std::ofstream out;
+  if (file.empty()) return out;
+  out.open(file, std::ios::app);
+  if (out.tellp() == 0) out << kGainsHeader << std::endl;
+  if (!out) throw std::runtime_error(file + " cannot be written");
+  return out;
 }
 
 int run(const Options& options) {
@@ -89,6 +97,7 @@ int run(const Options& options) {
   std::ofstream rows(options.rows_file, std::ios::app);
   if (done.empty()) rows << kHeader << std::endl;
   if (!rows) throw std::runtime_error(options.rows_file + " cannot be written");
+  std::ofstream gains = open_gains(options.gains_file);
   std::printf("%s\n", kHeader);
   bool are_complete = true;
   for (const std::string& scene : options.scenes) {
@@ -105,7 +114,8 @@ int run(const Options& options) {
                         key.c_str(), r.explored_share, r.time_to_90_s, r.done_s, r.path_m, r.ate_se3_m, r.ate_raw_m,
                         r.surviving_share, r.predicted_share, r.keyframes, r.loops, r.decisions, r.revisits,
                         1e3 * r.decision_cpu_s / std::max(r.decisions, 1), r.cpu_s);
-          if (setting.with_gains) append_gains(options.gains_file, key, r.gains);
+          if (setting.with_gains) write_gains(gains, key, r.gains);
+          if (!gains) throw std::runtime_error(options.gains_file + " cannot be written");
           if (!(rows << text << std::endl)) throw std::runtime_error(options.rows_file + " cannot be written");
           std::printf("%s\n", text);
         } catch (const std::exception& error) {

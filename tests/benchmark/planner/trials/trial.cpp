@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <numeric>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -167,13 +168,73 @@ class Mission {
     surroundings_.update_map(mapper_.map(), changed);
     surroundings_.update_obstacles(to_obstacles(obstacles_.grid()), now());
     if (!explorer_.step(report, &surroundings_)) return;
+    if (promise_) settle(*promise_);
     const double before_s = cpu_s();
     decide_at(here);
     result_.decision_cpu_s += cpu_s() - before_s;
+    if (setting_.with_gains) note_promise();
     ++result_.decisions;
     if (decision_.chosen && decision_.candidates[*decision_.chosen].kind == CandidateKind::kRevisit) ++result_.revisits;
     if (explorer_.state() == State::kConsolidating && result_.done_s == 0.0) result_.done_s = now().seconds();
     due_ = tick_ + setting_.planner.decision_latency_frames;
+  }
+
+  /// What the newest decision promises, and what the map is worth when it is taken.
+  struct Promise {
+    Gain gain;
+    SurfaceStakes stakes;
+  };
+
+  void note_promise() {
+    promise_.reset();
+    if (!decision_.chosen || poses_.graph().nodes.size() < 2) return;
+    const Candidate& chosen = decision_.candidates[*decision_.chosen];
+    Promise promise{{}, stakes()};
+    promise.gain.time_s = now().seconds();
+    promise.gain.path_m = -result_.path_m;
+    promise.gain.loops = -poses_.loops();
+    promise.gain.is_revisit = chosen.kind == CandidateKind::kRevisit;
+    promise.gain.promised_nats = chosen.value.secured_nats;
+    promise.gain.map_nats = worth_config().voxel_nats * voxels_of(promise.stakes);
+    promise.gain.by_graph_nats = -nats_by_graph(promise.stakes);
+    promise.gain.true_nats = -worth_config().voxel_nats * surviving_voxels(promise.stakes);
+    promise_ = std::move(promise);
+  }
+
+  void settle(const Promise& promise) {
+    Gain& gain = result_.gains.emplace_back(promise.gain);
+    gain.path_m += result_.path_m;
+    gain.loops += poses_.loops();
+    gain.by_graph_nats += nats_by_graph(promise.stakes);
+    gain.true_nats += worth_config().voxel_nats * surviving_voxels(promise.stakes);
+  }
+
+  double nats_by_graph(const SurfaceStakes& stakes) const {
+    const auto worth = MapWorth::make(keyframes_of(poses_.graph()), edges_of(poses_.graph()), stakes, worth_config());
+    return std::get<MapWorth>(worth).nats();
+  }
+
+  static double voxels_of(const SurfaceStakes& stakes) {
+    double voxels = 0.0;
+    for (const auto& [keyframe, stake] : stakes.voxels) voxels += std::reduce(stake.begin(), stake.end());
+    return voxels;
+  }
+
+  /// Voxels that keep their evidence, by the true errors of the key-frames.
+  double surviving_voxels(const SurfaceStakes& stakes) const {
+    double voxels = 0.0;
+    for (const auto& [keyframe, stake] : stakes.voxels) {
+      const Pose& T = poses_.graph().nodes[keyframe].T_map_camera;
+      const Pose& T_true = poses_.truth()[keyframe];
+      for (std::size_t bin = 0; bin < stake.size(); ++bin) {
+        const double range_m = (static_cast<double>(bin) + 0.5) * stakes.bin_m;
+        const auto surface = [range_m](const Pose& at) -> Eigen::Vector2d {
+          return at.translation().head<2>() + range_m * at.linear().col(2).head<2>().normalized();
+        };
+        voxels += stake[bin] * surviving_share_of(surface(T) - surface(T_true), mapping::kDefaultResolution_m);
+      }
+    }
+    return voxels;
   }
 
   static std::vector<Keyframe> keyframes_of(const slam::PoseGraphSnapshot& graph) {
@@ -284,21 +345,9 @@ class Mission {
     std::tie(result_.ate_se3_m, result_.ate_raw_m) = poses_.ate_m();
     result_.keyframes = static_cast<int>(poses_.truth().size());
     result_.loops = poses_.loops();
-    double voxels = 0.0, kept = 0.0;
     const SurfaceStakes all = stakes();
-    for (const auto& [keyframe, stake] : all.voxels) {
-      const Pose& T = poses_.graph().nodes[keyframe].T_map_camera;
-      const Pose& T_true = poses_.truth()[keyframe];
-      for (std::size_t bin = 0; bin < stake.size(); ++bin) {
-        const double range_m = (static_cast<double>(bin) + 0.5) * all.bin_m;
-        const auto surface = [range_m](const Pose& at) -> Eigen::Vector2d {
-          return at.translation().head<2>() + range_m * at.linear().col(2).head<2>().normalized();
-        };
-        voxels += stake[bin];
-        kept += stake[bin] * surviving_share_of(surface(T) - surface(T_true), mapping::kDefaultResolution_m);
-      }
-    }
-    result_.surviving_share = voxels > 0.0 ? kept / voxels : 0.0;
+    const double voxels = voxels_of(all);
+    result_.surviving_share = voxels > 0.0 ? surviving_voxels(all) / voxels : 0.0;
     MapWorthConfig unit;  // a voxel counts 1
     const auto made = MapWorth::make(keyframes_of(poses_.graph()), edges_of(poses_.graph()), all, unit);
     if (const auto* worth = std::get_if<MapWorth>(&made); worth != nullptr && voxels > 0.0)
@@ -324,6 +373,7 @@ class Mission {
   const Explorable explorable_;
   std::int64_t tick_ = 0;
   Decision decision_;
+  std::optional<Promise> promise_;
   std::optional<std::int64_t> due_;  // tick at which the decision takes effect
   std::optional<std::uint64_t> followed_;
   std::size_t next_ = 0;

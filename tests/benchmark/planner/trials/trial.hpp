@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "planner/planner_config.hpp"
 #include "simulator/core/world.hpp"
@@ -13,6 +14,19 @@ struct TrialSetting {
   simulator::SimulatorConfig simulated;
   PlannerComponentConfig planner;
   double longest_s = 300.0;  ///< of simulated time
+  bool with_gains = false;   ///< notes TrialResult::gains
+};
+
+/// What a decision promised to secure of the map, and what came of it until the next decision: by how much the worth of
+/// the voxels that were known when it was taken grew.
+struct Gain {
+  double time_s = 0.0, path_m = 0.0;
+  bool is_revisit = false;
+  int loops = 0;
+  double map_nats = 0.0;       ///< if no pose had an error
+  double promised_nats = 0.0;  ///< by the candidate's loops
+  double by_graph_nats = 0.0;  ///< as the pose graph has it
+  double true_nats = 0.0;      ///< by the true errors of the key-frames
 };
 
 struct TrialResult {
@@ -23,6 +37,7 @@ struct TrialResult {
   double predicted_share = 0.0;  ///< the same, by the pose graph
   int keyframes = 0, loops = 0, decisions = 0, revisits = 0;
   double decision_cpu_s = 0.0, cpu_s = 0.0;
+  std::vector<Gain> gains;  ///< of each decision but the last one, with TrialSetting::with_gains
 };
 
 /// A mission without images, controller and DDS: real planner and map, depth by rays, a robot that follows its path,

@@ -21,7 +21,7 @@ namespace lapis::planner::benchmark {
 namespace {
 
 struct Options {
-  std::string errors_file, rows_file;
+  std::string errors_file, rows_file, gains_file;
   std::vector<std::string> scenes, methods{"mi_only:nearest", "expected:expected"}, overrides;
   std::vector<int> seeds{1};
   double longest_s = 300.0;
@@ -32,12 +32,16 @@ constexpr const char* kHeader =
     "revisits,"
     "decision_ms,cpu_s";
 
+constexpr const char* kGainsHeader =
+    "scene,seed,method,time_s,kind,path_m,loops,map_nats,promised_nats,by_graph_nats,true_nats";
+
 constexpr const char* kExpected = "expected";
 
 /// `method`: METHOD or METHOD:THEN, names of the planner's methods or `expected`.
 TrialSetting setting_of(const Options& options, const std::string& scene, int seed, const std::string& method) {
   TrialSetting setting;
   setting.longest_s = options.longest_s;
+  setting.with_gains = !options.gains_file.empty();
   robot::RobotDescription robot;
   robot.camera.width = 320;
   robot.camera.height = 180;
@@ -60,6 +64,27 @@ TrialSetting setting_of(const Options& options, const std::string& scene, int se
   return setting;
 }
 
+void write_gains(std::ostream& out, const std::string& key, const std::vector<Gain>& gains) {
+  for (const Gain& gain : gains) {
+    char text[256];
+    std::snprintf(text, sizeof text, "%s,%.2f,%s,%.2f,%d,%.1f,%.2f,%.2f,%.2f", key.c_str(), gain.time_s,
+                  gain.is_revisit ? "revisit" : "other", gain.path_m, gain.loops, gain.map_nats, gain.promised_nats,
+                  gain.by_graph_nats, gain.true_nats);
+    out << text << '\n';
+  }
+  out.flush();
+}
+
+/// Opened before the first mission, so that a file that cannot be written is known before an hour of missions.
+std::ofstream open_gains(const std::string& file) {
+  std::ofstream out;
+  if (file.empty()) return out;
+  out.open(file, std::ios::app);
+  if (out.tellp() == 0) out << kGainsHeader << std::endl;
+  if (!out) throw std::runtime_error(file + " cannot be written");
+  return out;
+}
+
 int run(const Options& options) {
   const ErrorModel errors = ErrorModel::read(options.errors_file);
   std::set<std::string> done;
@@ -72,6 +97,7 @@ int run(const Options& options) {
   std::ofstream rows(options.rows_file, std::ios::app);
   if (done.empty()) rows << kHeader << std::endl;
   if (!rows) throw std::runtime_error(options.rows_file + " cannot be written");
+  std::ofstream gains = open_gains(options.gains_file);
   std::printf("%s\n", kHeader);
   bool are_complete = true;
   for (const std::string& scene : options.scenes) {
@@ -88,6 +114,8 @@ int run(const Options& options) {
                         key.c_str(), r.explored_share, r.time_to_90_s, r.done_s, r.path_m, r.ate_se3_m, r.ate_raw_m,
                         r.surviving_share, r.predicted_share, r.keyframes, r.loops, r.decisions, r.revisits,
                         1e3 * r.decision_cpu_s / std::max(r.decisions, 1), r.cpu_s);
+          if (setting.with_gains) write_gains(gains, key, r.gains);
+          if (!gains) throw std::runtime_error(options.gains_file + " cannot be written");
           if (!(rows << text << std::endl)) throw std::runtime_error(options.rows_file + " cannot be written");
           std::printf("%s\n", text);
         } catch (const std::exception& error) {
@@ -115,6 +143,8 @@ int main(int argc, char** argv) {
   Options options;
   app.add_option("--errors", options.errors_file, "CSV file of recorded edges")->required();
   app.add_option("--rows", options.rows_file, "CSV file to add the rows to")->required();
+  app.add_option("--gains", options.gains_file,
+                 "CSV file to add a line for each decision to: what it promised to secure of the map, and what came");
   app.add_option("--scenes", options.scenes, "bundled names, generated buildings, or files")
       ->delimiter(',')
       ->required();

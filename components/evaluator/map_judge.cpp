@@ -131,12 +131,13 @@ void MapJudge::write_to(RunMetrics& m, bool has_reference) const {
   m.explored_share = coverage(truth_->mesh, estimate).explored_share;
   if (truth_->with_margin) m.explored_share_with_margin = coverage(*truth_->with_margin, estimate).explored_share;
   m.mesh_map = map_figures(truth_->mesh.occupied, estimate.occupied, names, classes);
-  const auto figures_by = [&](const std::string& file) {
-    const auto exact = load_exact(file);
-    return exact ? map_figures(*exact, estimate.occupied, names, classes) : MapFigures{};
-  };
-  m.ideal_map = figures_by("ideal.lapis");
-  m.full_map = figures_by("full.lapis");
+  if (const auto ideal = load_exact("ideal.lapis")) {
+    m.ideal_map = map_figures(*ideal, estimate.occupied, names, classes);
+  }
+  if (const auto full = load_exact("full.lapis")) {
+    m.full_map = map_figures(*full, estimate.occupied, names, classes);
+    m.floor_map = map_figures(*full, reference.occupied, names, classes);
+  }
 }
 
 /// Occupied voxels of a map without noise that the simulator has written. None, with a warning, when it was not built

@@ -19,6 +19,8 @@ NAMES = {  # heading, factor, digits
     "keyframe_ate_origin_rmse_m": ("key-frame ATE, first pose, cm", 100, 2),
     "full_map_error_mean_m": ("map error, cm", 100, 2),
     "full_iou_top8_mean": ("IoU of 8 classes, %", 100, 1),
+    "floor_map_error_mean_m": ("map error at true poses, cm", 100, 2),
+    "floor_iou_top8_mean": ("IoU of 8 classes at true poses, %", 100, 1),
     "ideal_map_error_mean_m": ("map error (ideal), cm", 100, 2),
     "ideal_iou_top8_mean": ("IoU of 8 classes (ideal), %", 100, 1),
     "mesh_map_error_mean_m": ("map error (mesh), cm", 100, 2),

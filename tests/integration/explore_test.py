@@ -3,6 +3,7 @@
 furniture package, so that it is the same everywhere."""
 import collections
 import csv
+import json
 import math
 import re
 import struct
@@ -124,13 +125,24 @@ class ExploreTest(ExploreCase):
                 self.assertEqual(replayed[column], chosen[number][column], f"{column} of decision {number}")
 
     def test_done_when_nothing_is_left(self):
-        folder = self.explore("run", "--scene", self.write_flat(), "--method", "nearest", "--duration", "120")
+        folder = self.explore("run", "--scene", self.write_flat(), "--method", "nearest", "--duration", "120",
+                              "--set", "simulator.full_map=true")
         manifest = (folder / "manifest.yaml").read_text()
         self.assertIn("  planner_state: DONE\n  planner_reason: \"nothing is left that can be reached", manifest)
         metrics = chain.metrics_of(folder)
         self.assertEqual((metrics["exit_reason"], metrics["planner_state"]), ("completed", "DONE"))
         self.assertGreater(metrics["explored_share"], 0.75)
         self.assertLess(metrics["duration_s"], 119.0)
+        self.assert_figures(folder, "map.lapis", metrics, "full_")
+        self.assert_figures(folder, "reference_map.lapis", metrics, "floor_")
+
+    def assert_figures(self, folder, estimate, metrics, prefix):
+        """Those by the map of the whole building are what the tool prints for the files."""
+        files = "--reference", folder / "ground_truth/full.lapis", "--estimate", folder / estimate, "--json"
+        judged = json.loads(subprocess.check_output([chain.BIN / "lapis_evaluator", "map", *files]))
+        for key in ("map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m"):
+            self.assertEqual(metrics[prefix + key], judged[key], key)
+        self.assertGreater(metrics[prefix + "iou_top8_mean"], 0.3)
 
     def test_an_interrupted_run_has_all_that_a_whole_one_has(self):
         run = explore(self.folder / "run", "--scene", self.write_flat(), "--method", "mi_only")

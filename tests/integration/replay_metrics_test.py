@@ -21,7 +21,8 @@ OF_GROUND_TRUTH = ("explored_share", "explored_share_with_margin", "stalled_shar
                      for key in ("map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m", *OF_LABELS)))
 NOT_MEASURED = ("ate_at_80_m", "time_to_80_s", "time_to_90_s", "failures", "collisions", "planner_state",
                 "planner_reason", "decisions", "decision_time_p50_s", "decision_time_p95_s",
-                *(f"full_{key}" for key in ("map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m", *OF_LABELS)))
+                *(f"{prefix}_{key}" for prefix in ("full", "floor")
+                  for key in ("map_error_mean_m", "map_error_p95_m", "map_completeness_mean_m", *OF_LABELS)))
 SHORT_S = 12  # more than a metre
 
 

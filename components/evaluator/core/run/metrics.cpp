@@ -86,6 +86,7 @@ ordered_json to_document(const RunMetrics& m) {
   add_map(document, "", m.map);
   add_map(document, "ideal_", m.ideal_map);
   add_map(document, "full_", m.full_map);
+  add_map(document, "floor_", m.floor_map);
   add_map(document, "mesh_", m.mesh_map);
   document["reference_fusion_share"] = value_or_null(m.reference_fusion_share);
   document["explored_volume_m3"] = value_or_null(m.explored_volume_m3);

@@ -57,6 +57,7 @@ struct RunMetrics {
   MapFigures map;                                ///< reference: the run's own frames at true poses
   MapFigures ideal_map;                          ///< reference: its frames rendered again without noise, at true poses
   MapFigures full_map;                           ///< reference: the whole building, without noise, at true poses
+  MapFigures floor_map;                          ///< of the run's own frames at true poses, by the same reference
   MapFigures mesh_map;                           ///< reference: the scene's labelled voxels in line of sight
   std::optional<double> reference_fusion_share;  ///< share of the plain fusion's voxels that the reference map contains
   std::optional<double> explored_volume_m3;

@@ -74,8 +74,8 @@ def play(options):
         for scene in options.scenes:
             folders = [options.out / f"{scene}_{number}_{name}" for name in ("base", "changed")]
             base = cost_of(options.base, folders[0], scene, options, [])
-            changed = cost_of(options.changed, folders[1], scene, options, options.settings)
-            if base is None or changed is None:
+            changed = base and cost_of(options.changed, folders[1], scene, options, options.settings)
+            if not changed:
                 return None
             costs[scene][0].append(base)
             costs[scene][1].append(changed)

@@ -26,16 +26,16 @@ Converted<LandmarkTile> from_message(const lapis_msgs::msg::LandmarkTile& messag
 }
 
 mapping::LandmarkState from_message(const lapis_msgs::msg::LandmarkState& message) {
-  return {message.session(),  message.graph_version(), message.tiles(),
-          message.checksum(), message.tile_edge_m(),   message.tolerance_m()};
+  return {message.session(),  message.epoch(),       message.graph_version(), message.tiles(),
+          message.checksum(), message.tile_edge_m(), message.tolerance_m()};
 }
 
-lapis_msgs::msg::LandmarkTile to_message(const LandmarkTile& tile, std::int64_t session) {
+lapis_msgs::msg::LandmarkTile to_message(const LandmarkTile& tile, std::int64_t epoch) {
   lapis_msgs::msg::LandmarkTile message;
   message.x(tile.index.x);
   message.y(tile.index.y);
   message.z(tile.index.z);
-  message.session(session);
+  message.epoch(epoch);
   message.graph_version(tile.graph_version);
   message.omitted(tile.omitted);
   message.ids(tile.ids);
@@ -51,6 +51,7 @@ lapis_msgs::msg::LandmarkTile to_message(const LandmarkTile& tile, std::int64_t 
 lapis_msgs::msg::LandmarkState to_message(const mapping::LandmarkState& state) {
   lapis_msgs::msg::LandmarkState message;
   message.session(state.session);
+  message.epoch(state.epoch);
   message.graph_version(state.graph_version);
   message.tile_edge_m(state.tile_edge_m);
   message.tolerance_m(state.tolerance_m);

@@ -11,7 +11,7 @@ namespace lapis::messages {
 Converted<mapping::LandmarkTile> from_message(const lapis_msgs::msg::LandmarkTile& message);
 mapping::LandmarkState from_message(const lapis_msgs::msg::LandmarkState& message);
 
-lapis_msgs::msg::LandmarkTile to_message(const mapping::LandmarkTile& tile, std::int64_t session);
+lapis_msgs::msg::LandmarkTile to_message(const mapping::LandmarkTile& tile, std::int64_t epoch);
 /// The caller sets the header.
 lapis_msgs::msg::LandmarkState to_message(const mapping::LandmarkState& state);
 

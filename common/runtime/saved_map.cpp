@@ -1,5 +1,6 @@
 #include "common/runtime/saved_map.hpp"
 
+#include <algorithm>
 #include <system_error>
 #include <utility>
 
@@ -18,8 +19,11 @@ void SavedMap::begin(time::Time stamp, bool is_resumed) {
 }
 
 void SavedMap::set_aside(bool is_resumed) const {
-  std::error_code error;
-  if (is_resumed && std::filesystem::equivalent(path(config_.files.front()), config_.resume_from, error)) return;
+  const auto is_resumed_file = [this](const std::string& name) {
+    std::error_code error;
+    return std::filesystem::equivalent(path(name), config_.resume_from, error);
+  };
+  if (is_resumed && std::any_of(config_.files.begin(), config_.files.end(), is_resumed_file)) return;
   for (const std::string& name : config_.files) {
     if (const auto problem = files::set_aside(path(name))) spdlog::error(*problem);
   }

@@ -14,9 +14,8 @@ struct SavedMapConfig {
   std::string component;    ///< name of the component, whose keys are COMPONENT.output_dir and COMPONENT.resume_from
   std::string folder;       ///< empty: the map is not kept
   std::string resume_from;  ///< file of an earlier session; empty: none
-  /// File names in the folder; the first one is the map itself, from which the others are derived.
-  std::vector<std::string> files;
-  double period_s = 0.0;  ///< time between saves [s]; 0: at the end only
+  std::vector<std::string> files;  ///< names in the folder, of one map; resume_from may be any of them
+  double period_s = 0.0;           ///< time between saves [s]; 0: at the end only
 };
 
 /// Manages a component's map on disk: resumes the map of an earlier session or begins a new one, renames the files of
@@ -44,8 +43,8 @@ class SavedMap {
   /// Error text "slam.resume_from: FILE: WHAT" for a file that does not fit.
   std::string misfit(const std::string& what) const { return key() + ": " + config_.resume_from + ": " + what; }
 
-  /// Begins a map at `stamp`. Files of the previous map are kept under another name, except those of a resumed map,
-  /// whose content the new files include.
+  /// Begins a map at `stamp`. Files of the previous map are kept under another name, except when one of them was
+  /// resumed: the new files include their content.
   void begin(time::Time stamp, bool is_resumed);
   /// True when a period has passed since the map was begun or last saved.
   bool is_due(time::Time now) const;

@@ -146,7 +146,7 @@ void PlannerComponent::set_map_state(const lapis_msgs::msg::MapState& message) {
 void PlannerComponent::add_landmarks(const lapis_msgs::msg::LandmarkTile& message) {
   auto tile = messages::from_message(message);
   if (!tile) return drop("landmarks", tile.reason);
-  landmarks_.apply_tile(message.session(), std::move(*tile));
+  landmarks_.apply_tile(message.epoch(), std::move(*tile));
 }
 
 void PlannerComponent::set_graph(const lapis_msgs::msg::PoseGraph& message) {
@@ -357,7 +357,7 @@ std::string PlannerComponent::method_of_state() const {
 
 PlannerComponent::GraphVersions PlannerComponent::versions_of_graph() const {
   const auto landmarks = landmarks_.state().value_or(mapping::LandmarkState{});
-  return {graph_->session, graph_->version, landmarks.session, landmarks.graph_version};
+  return {graph_->session, graph_->version, landmarks.epoch, landmarks.graph_version};
 }
 
 void PlannerComponent::begin_decision() {

@@ -8,6 +8,7 @@
 
 #include "common/files/atomic_file.hpp"
 #include "common/mapping/file/map_file.hpp"
+#include "common/mapping/wire/frame_codec.hpp"
 #include "common/mapping/wire/tile_codec.hpp"
 #include "common/messages/labels.hpp"
 #include "common/messages/map_description.hpp"
@@ -25,6 +26,8 @@ namespace {
 constexpr const char* kMapFile = "map.lapis";
 constexpr const char* kOctreeFile = "map.ot";
 constexpr const char* kPointsFile = "map.ply";
+constexpr const char* kFramesFile = "frames.lapis";
+constexpr std::size_t kFramesPerBeat = 1000;  // seconds of work while a map is rebuilt
 constexpr double kFarewell_s = 1.0;
 constexpr double kLongestSave_s = 300.0;
 constexpr double kLongestFlush_s = 600.0;
@@ -61,7 +64,9 @@ config::Rules SemanticMapperComponent::rules(const Config& config) {
                        mapping::kMaxRangeInVoxels)},
           {map.tile_edge_m <= kMaxVoxelsPerTileEdge * map.resolution_m,
            fmt::format("semantic_mapper.tile_edge_m has to be at most {} times semantic_mapper.resolution_m",
-                       kMaxVoxelsPerTileEdge)}};
+                       kMaxVoxelsPerTileEdge)},
+          {!config.keep_frames || !config.output_dir.empty(),
+           "semantic_mapper.keep_frames needs semantic_mapper.output_dir"}};
 }
 
 SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::Context& context)
@@ -74,12 +79,13 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       confidence_(context, topics::kLabelConfidence, "label confidence", kWaitingFrames),
-      info_(context, topics::kColorInfo, "camera info", kWaitingInfos), disk_({SemanticMapperComponent::kName,
-                                                                               config.output_dir,
-                                                                               config.resume_from,
-                                                                               {kMapFile, kOctreeFile, kPointsFile},
-                                                                               config.save_period_s},
-                                                                              context) {
+      info_(context, topics::kColorInfo, "camera info", kWaitingInfos),
+      disk_({SemanticMapperComponent::kName,
+             config.output_dir,
+             config.resume_from,
+             {kMapFile, kOctreeFile, kPointsFile, kFramesFile},
+             config.save_period_s},
+            context) {
   config_.map.integration.max_range_m = config_.robot.sensing_range_m;
   config_.map.band = {config_.robot.obstacle_min_height_m, config_.robot.obstacle_max_height_m};
   if (config_.sensor_model.fusion == "bki") {
@@ -99,6 +105,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
 
 /// Loads the map to resume, if there is one; throws with the file and the remedy.
 void SemanticMapperComponent::load_map() {
+  if (is_frame_journal(config_.resume_from)) return rebuild_map();
   resumed_ = disk_.resume(mapping::load_map);
   if (!resumed_) return;
   const double resolution_m = resumed_->map.resolution_m();
@@ -118,6 +125,21 @@ void SemanticMapperComponent::load_map() {
     spdlog::warn("{}: its frames entered it otherwise than new ones: {}", config_.resume_from, unlike);
   is_mixed_ = !resumed_->frames || !unlike.empty();
   spdlog::info("{}: {} frames, {} blocks", config_.resume_from, resumed_frames_, resumed_->map.block_count());
+}
+
+/// Integrates the frames of a mapper of this session once more; throws with the file and the remedy.
+void SemanticMapperComponent::rebuild_map() {
+  rebuilt_ = std::make_unique<SemanticMapper>(config_.map);
+  const auto restore = [this](const FrameRecord& record, mapping::CompactFrame samples) {
+    is_mixed_ |= samples.stride() != config_.frame.stride;
+    if (rebuilt_->frames_integrated() % kFramesPerBeat == 0) context_.heart().beat();
+    return rebuilt_->restore(record, std::move(samples));
+  };
+  rebuilt_from_ = disk_.resume(
+      [&](const std::string& path, std::string& error) { return read_frame_journal(path, restore, error); });
+  spdlog::info("rebuilt {} frames from {}", rebuilt_from_->frames, config_.resume_from);
+  if (rebuilt_from_->dropped == 0) return;
+  spdlog::warn("{}: {} bytes after the last whole frame are not used", config_.resume_from, rebuilt_from_->dropped);
 }
 
 void SemanticMapperComponent::set_labels(const vision_msgs::msg::LabelInfo& message) {
@@ -225,6 +247,12 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
   auto anchored = to_core(tracked, std::move(*frame));
   if (!anchored) return drop(anchored.reason);
   if (is_first) start_new_map(tracked.session(), stamp);
+  const auto& before = mapper_->newest_record();
+  if (is_first && before && before->stamp == stamp) {
+    stamp_ = stamp;  // a rebuilt map has the frame: in lock-step, the tick in which its process died comes again
+    return;
+  }
+  const auto packed = journal_ && !config_.map.re_anchor ? mapping::pack(anchored->frame) : std::vector<std::uint8_t>{};
   const auto report = mapper_->integrate(std::move(*anchored));
   switch (report.status) {
     case IntegrationStatus::kIntegrated: break;
@@ -232,12 +260,26 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
     case IntegrationStatus::kTooFarAway: return drop("pose is more than 10 km from the map's origin");
     case IntegrationStatus::kMapIsFull: return drop("map is full");
   }
+  if (journal_)
+    keep_newest_frame(config_.map.re_anchor ? mapper_->store().packed_frame(mapper_->store().size() - 1) : packed);
   stamp_ = stamp;
   obstacle_layer_->add(stamp - clock_steps_, report.votes);
   ++frames_integrated_;
   context_.status().value("frames", frames_integrated_);
   context_.status().value("stored_frames_mb", std::to_string(mapper_->frame_bytes() >> 20));
   report_store(mapper_->store());
+}
+
+/// Appends the newest frame to the journal; the status reports a failure until a later frame is kept.
+void SemanticMapperComponent::keep_newest_frame(const std::optional<std::vector<std::uint8_t>>& packed) {
+  auto problem = packed ? journal_->append(*mapper_->newest_record(), *packed)
+                        : std::optional("semantic_mapper.stored_frames: " + mapper_->store().problem());
+  if (!problem && !keep_problem_) return;
+  keep_problem_ = std::move(problem);
+  report_disk();
+  if (!keep_problem_) return;
+  context_.status().count("frames not kept: disk");
+  if (context_.rate_limit().pass("journal")) spdlog::error("frame not kept: {}; mapping continues", *keep_problem_);
 }
 
 /// Reports frames that are not whole in the map, because odometry alone gave their poses.
@@ -284,6 +326,7 @@ void SemanticMapperComponent::end_map() {
     if (const auto problem = save()) spdlog::error("map not saved: {}; mapping continues", *problem);
   }
   mapper_.reset();
+  journal_.reset();
   forget_resumed();
 }
 
@@ -302,12 +345,17 @@ void SemanticMapperComponent::follow_clock(time::Duration step) {
   disk_.note_save(stamp_);
 }
 
-/// The first map of the process resumes the saved one, if there is one.
+/// The first map of the process resumes the saved one, if there is one that fits.
 std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t session) {
-  if (resumed_ && !config_.resume_any_session && session != static_cast<std::int64_t>(note(*resumed_, "session"))) {
+  if (rebuilt_from_ && session != rebuilt_from_->session) {
     spdlog::warn("{} is of another session of slam; a new map begins", config_.resume_from);
-    resumed_.reset();
+    rebuilt_from_.reset();
+    rebuilt_.reset();
     forget_resumed();
+  }
+  if (rebuilt_from_) {
+    frames_integrated_ += rebuilt_from_->frames;
+    return std::move(rebuilt_);
   }
   if (!resumed_) return std::make_unique<SemanticMapper>(config_.map);
   if (session < static_cast<std::int64_t>(note(*resumed_, "session"))) {
@@ -317,14 +365,33 @@ std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t 
   return std::make_unique<SemanticMapper>(config_.map, std::move(resumed_->map));
 }
 
+/// Keeps the frames of the map that begins, in the file that it was rebuilt from if that is the one of this process.
+void SemanticMapperComponent::begin_journal(std::int64_t session) {
+  if (!config_.keep_frames) return;
+  const std::string file = disk_.path(kFramesFile);
+  std::error_code error;
+  if (rebuilt_from_ && std::filesystem::equivalent(file, config_.resume_from, error)) {
+    journal_.emplace(file, session, rebuilt_from_->end);
+    return;
+  }
+  if (const auto problem = files::set_aside(file)) spdlog::error(*problem);
+  journal_.emplace(file, session);
+  if (!resumed_ && !rebuilt_from_) return;
+  spdlog::warn("{} will hold new frames only: a map that is rebuilt from it lacks what {} holds", file,
+               config_.resume_from);
+}
+
 void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time stamp) {
   end_map();
   mapper_ = begin_map(session);
-  disk_.begin(stamp, resumed_.has_value());
+  disk_.begin(stamp, resumed_ || rebuilt_from_);
+  begin_journal(session);
+  session_ = session;
+  if (rebuilt_from_ && graph_) follow_graph(*graph_);  // as the earlier process had done
   resumed_.reset();
+  rebuilt_from_.reset();
   floor_plan_.emplace(config_.map.band);
   obstacle_layer_.emplace(config_.obstacles, config_.map.band, config_.map.resolution_m);
-  session_ = session;
   begin_epoch(stamp);
   tiles_stamp_.reset();
   views_stamp_.reset();
@@ -462,10 +529,16 @@ void SemanticMapperComponent::flush() {
 /// Saves the map as it is, without moving frames to corrected poses first, which may take long. Returns nothing, or why
 /// it could not be saved; the status reports this until a later save succeeds.
 std::optional<std::string> SemanticMapperComponent::save() {
-  auto problem = write_files();
+  save_problem_ = write_files();
+  report_disk();
+  return save_problem_;
+}
+
+void SemanticMapperComponent::report_disk() {
   using Level = runtime::Status::Level;
-  context_.status().set(problem ? Level::kError : Level::kOk, problem ? "map not saved: " + *problem : "mapping");
-  return problem;
+  if (save_problem_) return context_.status().set(Level::kError, "map not saved: " + *save_problem_);
+  if (keep_problem_) return context_.status().set(Level::kError, "frame not kept: " + *keep_problem_);
+  context_.status().set(Level::kOk, "mapping");
 }
 
 std::optional<std::string> SemanticMapperComponent::write_files() {

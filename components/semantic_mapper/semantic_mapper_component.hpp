@@ -11,6 +11,7 @@
 #include "idl/std_srvs.hpp"
 #include "semantic_mapper/conversions.hpp"
 #include "semantic_mapper/core/floor_plan.hpp"
+#include "semantic_mapper/core/frame_journal.hpp"
 #include "semantic_mapper/core/obstacle_layer.hpp"
 #include "semantic_mapper/semantic_mapper_config.hpp"
 
@@ -35,6 +36,7 @@ class SemanticMapperComponent {
   using Graph = lapis_msgs::msg::PoseGraph;
 
   void load_map();
+  void rebuild_map();
   mapping::FrameSettings frame_settings() const;
   void describe_map();
   void set_labels(const vision_msgs::msg::LabelInfo& message);
@@ -42,6 +44,7 @@ class SemanticMapperComponent {
   bool next_frame(const runtime::Cycle& cycle);
   void integrate(const Tracked& tracked, const Image& depth, const Image* labels, const Image* confidence,
                  const Info& info);
+  void keep_newest_frame(const std::optional<std::vector<std::uint8_t>>& packed);
   void follow_graph(const Graph& graph);
   void report_store(const FrameStore& store);
   void report_drift();
@@ -53,6 +56,7 @@ class SemanticMapperComponent {
   void follow_clock(time::Duration step);
   void forget_resumed();
   std::unique_ptr<SemanticMapper> begin_map(std::int64_t session);
+  void begin_journal(std::int64_t session);
   void publish(bool is_final);
   void publish_tiles();
   void publish_obstacles();
@@ -64,6 +68,7 @@ class SemanticMapperComponent {
   /// Nothing on success; otherwise what failed, naming the file.
   std::optional<std::string> save();
   std::optional<std::string> write_files();
+  void report_disk();
   mapping::BeliefReader belief_reader() const;
   std_msgs::msg::Header header(time::Time stamp) const;
 
@@ -88,10 +93,15 @@ class SemanticMapperComponent {
   std::optional<mapping::MapDescription> described_;  // published last
 
   runtime::SavedMap disk_;
-  std::optional<mapping::MapFile> resumed_;  // until the first map begins with it
+  std::optional<mapping::MapFile> resumed_;     // until the first map begins with it
+  std::optional<JournalSummary> rebuilt_from_;  // the same for a map that was rebuilt from frames
+  std::unique_ptr<SemanticMapper> rebuilt_;
   mapping::LabelList resumed_labels_;
   std::uint64_t resumed_frames_ = 0;
   bool is_mixed_ = false;  // the resumed map has counts of frames with other settings, or with unknown ones
+  std::optional<FrameJournal> journal_;      // of mapper_, if frames are kept
+  std::optional<std::string> save_problem_;  // why the newest save failed
+  std::optional<std::string> keep_problem_;  // why the newest frame is not in the journal
 
   std::unique_ptr<SemanticMapper> mapper_;  // exists once slam tracks
   std::optional<FloorPlan> floor_plan_;     // of mapper_

@@ -23,9 +23,9 @@ struct SemanticMapperComponentConfig {
   double obstacle_period_s = 0.06;  // each frame at 15 Hz; the controller stops when none come
   int re_anchor_work_per_cycle = 1'000'000;
   std::string resume_from;
-  bool resume_any_session = true;
   std::string output_dir;
   double save_period_s = 30.0;
+  bool keep_frames = false;
   robot::RobotDescription robot;
 };
 
@@ -58,15 +58,15 @@ void describe_output(Field& field, SemanticMapperComponentConfig& c) {
   field("obstacle_period_s", c.obstacle_period_s, config::in_range(0.0, 60.0),
         "shortest time between publications of the obstacle grid, by the frames' time stamps [s]");
   field("resume_from", c.resume_from, config::anything(),
-        "map.lapis of an earlier run, whose map the mapper resumes; set slam.resume_from, too; empty: the mapper "
-        "begins a new map");
-  field("resume_any_session", c.resume_any_session, config::anything(),
-        "whether the map of resume_from continues in a later session of slam, too; false: only in the session that "
-        "made it, else a new map begins");
+        "map.lapis of an earlier run, whose map the mapper resumes (set slam.resume_from, too), or frames.lapis of "
+        "this session of slam, from which it rebuilds the map; empty: the mapper begins a new map");
   field("output_dir", c.output_dir, config::anything(),
         "folder for map.lapis, map.ot and map.ply; empty: the mapper saves no map");
   field("save_period_s", c.save_period_s, config::in_range(1.0, 86400.0),
         "time between saves of the map in output_dir, by the frames' time stamps [s]");
+  field("keep_frames", c.keep_frames, config::anything(),
+        "whether the mapper appends every integrated frame to frames.lapis in output_dir, so that a restarted mapper "
+        "can rebuild the map (resume_from: frames.lapis), and its frames follow the pose graph again");
 }
 
 template <class Field>

@@ -20,14 +20,18 @@ LandmarkPublisher::LandmarkPublisher(runtime::Context& context, double period_s)
     : context_(context), tiles_(context.advertise(topics::kLandmarks)),
       state_(context.advertise(topics::kLandmarkState)), period_s_(period_s) {}
 
-void LandmarkPublisher::begin_session(std::int64_t session) {
+void LandmarkPublisher::begin_session(std::int64_t session, std::int64_t epoch, const PublishedIds& keyframe_ids,
+                                      const PublishedIds& landmark_ids) {
   for (const mapping::TileIndex& index : published_) {
     mapping::LandmarkTile tile;
     tile.index = index;
-    tiles_.end_key(messages::to_message(tile, session_));
+    tiles_.end_key(messages::to_message(tile, epoch_));
   }
   published_.clear();
   session_ = session;
+  epoch_ = epoch;
+  keyframe_ids_ = keyframe_ids;
+  landmark_ids_ = landmark_ids;
   landmarks_ = LandmarkTiles(LandmarkTileConfig{});
   forget_stamps();
   graph_version_ = 0;
@@ -51,6 +55,8 @@ void LandmarkPublisher::begin_version(const Map& map, std::uint64_t graph_versio
   std::size_t omitted = 0;
   for (auto& tile : tiles) {
     omitted += tile.omitted;
+    for (auto& id : tile.ids) id = static_cast<std::uint32_t>(landmark_ids_.of(id));
+    for (auto& id : tile.observers) id = static_cast<std::uint32_t>(keyframe_ids_.of(id));
     left_.push_back(std::move(tile));
   }
   if (omitted > 0) context_.status().count("landmarks left out: their tile is full (1 MiB)", omitted);
@@ -77,7 +83,7 @@ void LandmarkPublisher::publish_rest() {
 
 void LandmarkPublisher::publish_next_tile() {
   published_.insert(left_.front().index);
-  tiles_.publish(messages::to_message(left_.front(), session_));
+  tiles_.publish(messages::to_message(left_.front(), epoch_));
   left_.pop_front();
 }
 
@@ -85,6 +91,7 @@ void LandmarkPublisher::publish_state() {
   auto message = messages::to_message(landmarks_.state());
   message.header(header_);
   message.session(session_);
+  message.epoch(epoch_);
   state_.publish(message);
   is_announced_ = true;
 }

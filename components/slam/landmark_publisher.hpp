@@ -8,6 +8,7 @@
 #include "common/runtime/context.hpp"
 #include "idl/lapis_msgs.hpp"
 #include "slam/core/map/landmark_tiles.hpp"
+#include "slam/core/map/published_ids.hpp"
 
 namespace lapis::slam {
 
@@ -18,8 +19,9 @@ class LandmarkPublisher {
   /// `period_s`: least time between two versions, by the frames' stamps.
   LandmarkPublisher(runtime::Context& context, double period_s);
 
-  /// Begins a new map; the tiles of the previous one end.
-  void begin_session(std::int64_t session);
+  /// Begins a new map, whose landmarks are published under these ids; the tiles of the previous one end.
+  void begin_session(std::int64_t session, std::int64_t epoch, const PublishedIds& keyframe_ids,
+                     const PublishedIds& landmark_ids);
   /// True when `graph_version` is new, the previous version is out, and the period is over or no frames follow.
   bool wants(std::uint64_t graph_version, time::Time stamp, bool is_final) const;
   /// The clock of the frames was set, so no time since the last version is known.
@@ -42,6 +44,8 @@ class LandmarkPublisher {
   double period_s_;
 
   std::int64_t session_ = 0;
+  std::int64_t epoch_ = 0;
+  PublishedIds keyframe_ids_, landmark_ids_;
   LandmarkTiles landmarks_{LandmarkTileConfig{}};
   std::set<mapping::TileIndex> published_;  // in this session
   std::optional<time::Time> version_stamp_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <filesystem>
 #include <future>
 #include <optional>
@@ -15,8 +16,11 @@ class MapSaver {
  public:
   struct Save {
     std::optional<std::string> problem;  ///< why the old file was not replaced; names the file
+    std::chrono::steady_clock::time_point ended = {};
   };
 
+  /// True when a save may begin: none is under way, and together they take at most a twentieth of the time.
+  bool is_free() const;
   /// Begins to write; not allowed while busy.
   void begin(const std::filesystem::path& path, SlamFile file);
   /// True from begin() until the result has been taken.
@@ -27,7 +31,13 @@ class MapSaver {
   std::optional<Save> wait();
 
  private:
+  using Clock = std::chrono::steady_clock;
+
+  Save note(Save save);
+
   std::future<Save> writing_;
+  Clock::time_point began_;
+  Clock::time_point next_;  // earliest begin of the next save
 };
 
 }  // namespace lapis::slam

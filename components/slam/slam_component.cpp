@@ -72,6 +72,7 @@ void SlamComponent::load_map() {
         disk_.misfit("slam.features.scale_factor was " + std::to_string(scale) + " when it was made: set it so again"));
   }
   session_ = resumed_->session;
+  epoch_ = resumed_->epoch;
   spdlog::info("{}: {} key-frames, {} landmarks", config_.resume_from, resumed_->state.keyframes.size(),
                resumed_->state.landmarks.size());
 }
@@ -115,15 +116,34 @@ bool SlamComponent::prepare(const JoinedFrame& first) {
     return false;
   }
   frame_.T_base_camera = *T_base_camera;
-  session_ = std::max(first.stamp.nanoseconds, session_ + 1);
   disk_.begin(first.stamp, resumed_.has_value());
-  frame_.session = session_;
+  name_map(first.stamp);
   slam_ = begin_map();
   for (const auto& [stamp, T_odom_base] : early_odometry_) slam_->add_odometry(stamp, T_odom_base);
   early_odometry_.clear();
   graph_version_ = 0;
-  landmarks_.begin_session(session_);
+  landmarks_.begin_session(session_, epoch_, keyframe_ids_, landmark_ids_);
   return true;
+}
+
+/// Names the map that begins: its session, the epoch of its landmarks, and the ids of its key-frames and landmarks. A
+/// map that continues in its session skips what can have been published since it was saved.
+void SlamComponent::name_map(time::Time first_stamp) {
+  const bool continues = resumed_ && config_.resume_session;
+  if (!continues) session_ = std::max({first_stamp.nanoseconds, session_ + 1, epoch_ + 1});
+  epoch_ = continues ? std::max(first_stamp.nanoseconds, epoch_ + 1) : session_;
+  frame_.session = session_;
+  keyframe_ids_ = resumed_ ? resumed_->keyframe_ids : PublishedIds{};
+  landmark_ids_ = resumed_ ? resumed_->landmark_ids : PublishedIds{};
+  if (!resumed_) return;
+  if (!continues) {
+    resumed_->state.motion.reset();
+    return;
+  }
+  keyframe_ids_.skip(resumed_->state.keyframes.size());
+  landmark_ids_.skip(resumed_->state.landmarks.size());
+  resumed_->state.graph_version += PublishedIds::kSkipped;
+  spdlog::info("session {} continues", session_);
 }
 
 std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
@@ -240,7 +260,8 @@ void SlamComponent::end_map() {
   waits_for_.clear();
 }
 
-void SlamComponent::publish(const TrackingResult& result) {
+void SlamComponent::publish(TrackingResult result) {
+  result.keyframe_id = keyframe_ids_.of(result.keyframe_id);
   tracked_frame_.publish(to_tracked_frame(result, frame_, ids_));
   if (has_pose(result)) publish_odometry(result);
   publish_status(result);
@@ -270,7 +291,7 @@ void SlamComponent::publish_graph(bool is_final) {
   if (slam_->graph_version() == graph_version_) return;
   const bool is_due = !graph_stamp_ || (frame_.stamp - *graph_stamp_).seconds() >= config_.graph_period_s;
   if (!is_due && !is_final) return;
-  const auto graph = slam_->pose_graph();
+  const auto graph = published_graph();
   pose_graph_.publish(to_message(graph, frame_, ids_));
   path_.publish(to_path(graph, frame_, ids_));
   graph_version_ = graph.version;
@@ -345,7 +366,7 @@ void SlamComponent::report_waiting() {
 /// after the next period, and the old file stays as it was.
 void SlamComponent::autosave() {
   if (const auto save = saver_.take_finished()) note_save(save->problem);
-  if (!disk_.is_due(frame_.stamp) || saver_.is_busy() || slam_->graph_version() == saved_version_) return;
+  if (!disk_.is_due(frame_.stamp) || !saver_.is_free() || slam_->graph_version() == saved_version_) return;
   disk_.note_save(frame_.stamp);
   saved_version_ = slam_->graph_version();
   saver_.begin(disk_.path(kMapFile), saved_map());
@@ -359,7 +380,18 @@ void SlamComponent::note_save(const std::optional<std::string>& problem) {
   spdlog::error("map not saved: {}; tracking continues", *problem);
 }
 
-SlamFile SlamComponent::saved_map() const { return {session_, slam_->state()}; }
+/// The pose graph with the ids that are published.
+PoseGraphSnapshot SlamComponent::published_graph() const {
+  PoseGraphSnapshot graph = slam_->pose_graph();
+  for (auto& node : graph.nodes) node.id = keyframe_ids_.of(node.id);
+  for (auto& edge : graph.edges) {
+    edge.from = keyframe_ids_.of(edge.from);
+    edge.to = keyframe_ids_.of(edge.to);
+  }
+  return graph;
+}
+
+SlamFile SlamComponent::saved_map() const { return {session_, epoch_, keyframe_ids_, landmark_ids_, slam_->state()}; }
 
 void SlamComponent::finish() {
   spdlog::info("{} of {} frames tracked, {} dropped", frames_tracked_, frames_total_, frames_dropped_);
@@ -391,7 +423,7 @@ std::optional<std::string> SlamComponent::write_files() {
 }
 
 void SlamComponent::write_graph() const {
-  const auto graph = slam_->pose_graph();
+  const auto graph = published_graph();
   std::ostringstream g2o;
   write_g2o(g2o, graph);
   files::replace_text(disk_.path(kGraphFile), g2o.str());

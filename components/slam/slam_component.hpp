@@ -34,6 +34,7 @@ class SlamComponent {
   void load_map();
   bool prepare(const JoinedFrame& first);
   std::unique_ptr<RgbdSlam> begin_map();
+  void name_map(time::Time first_stamp);
   void track(const JoinedFrame& joined);
   void add_mount(const tf2_msgs::msg::TFMessage& message);
   void add_odometry(const nav_msgs::msg::Odometry& message);
@@ -42,7 +43,7 @@ class SlamComponent {
   void end_map();
   void follow_clock(time::Duration step);
   void judge_clock(const TrackingResult& result);
-  void publish(const TrackingResult& result);
+  void publish(TrackingResult result);
   void publish_odometry(const TrackingResult& result);
   void publish_transforms(const nav_msgs::msg::Odometry& odometry);
   void publish_graph(bool is_final);
@@ -51,6 +52,7 @@ class SlamComponent {
   void report_waiting();
   void autosave();
   void note_save(const std::optional<std::string>& problem);
+  PoseGraphSnapshot published_graph() const;
   SlamFile saved_map() const;
   std::optional<std::string> write_files();
   void write_graph() const;
@@ -77,6 +79,9 @@ class SlamComponent {
   SlamClock clock_;
   std::optional<int> doubtful_frames_;  // since the camera's clock was set, until the map is known to be still right
   std::int64_t session_ = -1;
+  std::int64_t epoch_ = -1;    // of the landmarks; grows with each map, and with each process that publishes one
+  PublishedIds keyframe_ids_;  // of the map
+  PublishedIds landmark_ids_;
   bool has_odometry_ = false;                                       // somebody else publishes odom -> base_link
   std::optional<std::pair<time::Time, geometry::Pose>> last_pose_;  // T_map_base
   std::optional<time::Time> graph_stamp_;

@@ -17,6 +17,7 @@ struct SlamComponentConfig {
   std::string publish_odom_frame = "auto";
   std::string output_dir;
   std::string resume_from;
+  bool resume_session = false;
   double autosave_period_s = 60.0;
 };
 
@@ -305,6 +306,9 @@ void describe(Field& field, SlamComponentConfig& c) {
         "folder for slam.lapis, pose_graph.g2o and keyframes.txt; empty: slam writes no files");
   field("resume_from", c.resume_from, config::anything(),
         "slam.lapis of an earlier run, whose map slam resumes; empty: slam begins a new map");
+  field("resume_session", c.resume_session, config::anything(),
+        "whether the map of resume_from continues in its own session, because slam died in this run: odometry leads on "
+        "from the saved pose, and no id is used twice; false: a new session begins");
   field("autosave_period_s", c.autosave_period_s, config::in_range(0.0, 86400.0),
         "time between saves of slam.lapis during the run, by the frames' time stamps; 0: only at the end [s]");
 }

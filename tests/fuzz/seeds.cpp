@@ -4,9 +4,11 @@
 #include <opencv2/imgcodecs.hpp>
 
 #include "common/mapping/file/map_file.hpp"
+#include "common/mapping/wire/frame_codec.hpp"
 #include "common/mapping/wire/zstd_codec.hpp"
 #include "fuzz_files.hpp"
 #include "semantic_mapper/core/export.hpp"
+#include "semantic_mapper/core/frame_journal.hpp"
 #include "unit/mapping/random_votes.hpp"
 #include "unit/planner/replay/sample_situation.hpp"
 #include "unit/simulator/loaders/sample_scenes.hpp"
@@ -139,6 +141,30 @@ void add_maps(Seeds& seeds) {
                      semantic_mapper::encode_binary_octree(map.map, reader)};
 }
 
+void add_frames(Inputs& inputs) {
+  const geometry::PinholeCamera camera{6, 4, 5, 5, 2.5, 1.5};
+  const geometry::DepthImage depth(camera.width, camera.height, 1.5f);
+  const geometry::LabelImage labels(camera.width, camera.height, 3);
+  const geometry::ConfidenceImage confidence(camera.width, camera.height, 200);
+  const test::TemporaryFolder folder;
+  const auto file = folder.path() / "frames.lapis";
+  std::string error;
+  for (const std::uint64_t frames : {1U, 3U}) {
+    semantic_mapper::FrameJournal journal(file.string(), 1);
+    for (std::uint64_t i = 0; i < frames; ++i) {
+      const auto samples = mapping::CompactFrame::make(camera, depth, i % 2 == 0 ? &labels : nullptr, {1, 40}, error,
+                                                       i % 3 == 0 ? &confidence : nullptr);
+      semantic_mapper::FrameRecord record;
+      record.keyframe_id = i;
+      record.drift = {0.1, 0.01};
+      record.is_held = i == 1;
+      if (const auto problem = journal.append(record, mapping::pack(samples.value())))
+        throw std::runtime_error(*problem);
+    }
+    inputs.push_back(test::read_file(file));
+  }
+}
+
 }  // namespace
 
 Seeds seeds() {
@@ -155,6 +181,7 @@ Seeds seeds() {
   seeds["situation"] = {planner::encode_situation(planner::test::sample_situation())};
   add_poses(seeds);
   add_maps(seeds);
+  add_frames(seeds["frames"]);
   return seeds;
 }
 

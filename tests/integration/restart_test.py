@@ -7,7 +7,8 @@ import signal
 
 import chain
 
-VICTIMS = ("slam", "semantic_mapper", "planner", "controller", "evaluator")  # slam first: with it the map begins anew
+VICTIMS = ("slam", "semantic_mapper", "planner", "controller", "evaluator")
+SKIPPED_IDS = 1_000_000  # PublishedIds::kSkipped
 STOPS_WITHIN_S = 0.3
 SPEAKS_FOR = {"slam": "pose", "semantic_mapper": "map", "planner": "path"}
 LONGEST_GAP_S = 0.1  # between commands, of which 20 come in a second; in a longer one the machine had no time for us
@@ -48,10 +49,9 @@ class RestartCase(chain.ChainTest):
                                                          for line in all_lines[begin:]) >= lines, 60)
         self.assertTrue(continues, run.output())
 
-    def wait_for_saved_maps(self, run):
-        """Waits until the map that began with slam's restart is saved beside the one of before."""
-        maps = [self.folder / "run" / name for name in ("map.lapis", "map.1.lapis")]
-        self.assertTrue(run.wait_for(lambda _: all(file.is_file() for file in maps), 60), run.output())
+    def wait_for_file(self, run, name):
+        file = self.folder / "run" / name
+        self.assertTrue(run.wait_for(lambda _: file.is_file(), 60), run.output())
 
     def log_of(self, name):
         return (self.folder / "run/logs" / f"{name}.log").read_text(encoding="utf-8")
@@ -64,6 +64,13 @@ class RestartCase(chain.ChainTest):
             self.assertGreater((folder / file).stat().st_size, 0, file)
         self.assertEqual(list(folder.rglob("*.part*")), [])
         self.assertGreater(chain.metrics_of(folder)["frames_tracked"], 0)
+
+    def assert_no_id_is_used_twice(self):
+        lines = (self.folder / "run/pose_graph.g2o").read_text(encoding="utf-8").splitlines()
+        ids = [int(line.split()[1]) for line in lines if line.startswith("VERTEX")]
+        self.assertEqual(len(ids), len(set(ids)))
+        self.assertGreaterEqual(max(ids), SKIPPED_IDS, "slam has added no key-frame after its restart")
+        self.assertLess(min(ids), SKIPPED_IDS, "slam has resumed no key-frame")
 
     def arrivals(self, begin):
         return [Arrival(line) for line in self.probe.lines()[begin:] if line.startswith("arrived ")]
@@ -110,12 +117,11 @@ class LongRestartTest(RestartCase):
     def test_exploration_completes_although_each_process_is_killed_in_turn(self):
         scene = self.folder / "flat.yaml"
         scene.write_text(chain.FLAT.replace("[4.12, 0, 5.6, 3]", "[4.12, 0, 10, 3]"), encoding="utf-8")
-        run = self.explore("--scene", scene, "--method", "nearest", "--duration", "200",
-                           "--set", "semantic_mapper.save_period_s=1")
+        run = self.explore("--scene", scene, "--method", "nearest", "--duration", "200")
         for victim in VICTIMS:  # soon one after the other: who dies when all is explored has nothing to resume
             self.wait_for_progress(run, lines=2 if victim == "slam" else 1)
-            if victim == "semantic_mapper":
-                self.wait_for_saved_maps(run)
+            if victim == "slam":
+                self.wait_for_file(run, "slam.lapis")
             self.assertNotIn("DONE", run.output())
             self.kill(run, victim)
             self.assertTrue(run.wait_for_text(f"{victim} ended with status 137 and is started again (1 of 3)"))
@@ -127,9 +133,12 @@ class LongRestartTest(RestartCase):
         for victim in VICTIMS:
             self.assertIn("is started again", self.log_of(victim))
             self.assertIn(f"  {victim}: 1\n", manifest.split("restarts:\n")[1])
-        # The mapper resumes its map, slam begins another one.
-        self.assertRegex(self.log_of("semantic_mapper"), r"map\.lapis: [1-9]\d* frames, [1-9]\d* blocks")
-        self.assertTrue((self.folder / "run/map.1.lapis").is_file())
+        # It is one map: slam goes on in its session, the mapper with its frames.
+        self.assertRegex(self.log_of("slam"), r"session \d+ continues")
+        self.assertRegex(self.log_of("semantic_mapper"), r"rebuilt [1-9]\d* frames")
+        self.assertFalse((self.folder / "run/map.1.lapis").exists())
+        self.assertFalse((self.folder / "run/slam.1.lapis").exists())
+        self.assert_no_id_is_used_twice()
 
     def test_by_the_wall_clock_the_robot_is_stopped_within_300_ms_and_continues(self):
         self.start_probe()

@@ -1,6 +1,6 @@
 // Prints a line per sample of the chain's topics, so that a test written in a script can see what is published:
 //   TOPIC stamp_s DETAIL
-// with the number of the session (/slam/frame), of the integrated frames (map_state), the process, its number of frames
+// with the number of the session (/slam/frame), the id of a new key-frame (keyframe), the number of the integrated frames (map_state), the process, its number of frames
 // and its name with the namespace (/diagnostics), or x and y (truth: /ground_truth/odom) [m]; and with the time of its
 // arrival [s, steady clock] in the stamp's place
 //   arrived arrival_s pose|map|path|command [FORWARD TURN]
@@ -63,8 +63,10 @@ void listen_to_arrivals(TopicProbe& probe) {
 void listen(TopicProbe& probe) {
   probe.listen<sensor_msgs::msg::CameraInfo>(topics::kColorInfo,
                                              [](auto& m) { print("camera", m.header().stamp(), ""); });
-  probe.listen<lapis_msgs::msg::TrackedFrame>(
-      topics::kTrackedFrame, [](auto& m) { print("slam", m.header().stamp(), std::to_string(m.session())); });
+  probe.listen<lapis_msgs::msg::TrackedFrame>(topics::kTrackedFrame, [](auto& m) {
+    print("slam", m.header().stamp(), std::to_string(m.session()));
+    if (m.is_keyframe()) print("keyframe", m.header().stamp(), std::to_string(m.keyframe_id()));
+  });
   probe.listen<lapis_msgs::msg::MapState>(topics::kMapState, [](auto& m) {
     print("semantic_mapper", m.header().stamp(), std::to_string(m.frames_integrated()));
   });

@@ -9,6 +9,8 @@ namespace lapis::mapping {
 namespace {
 
 constexpr int kFrameCompressionLevel = 1;
+constexpr int kLargestSide = 16384;  // [px]; products of sizes cannot overflow
+constexpr int kLargestStride = 16;
 
 /// Header of a packed frame.
 struct FrameHeader {
@@ -20,7 +22,8 @@ struct FrameHeader {
 
   std::size_t bytes_per_sample() const { return 2u + (has_labels ? 2u : 0u) + (has_confidence ? 1u : 0u); }
   bool is_valid() const {
-    return camera.width > 0 && camera.height > 0 && stride > 0 && (has_labels || !has_confidence);
+    return geometry::is_valid(camera) && camera.width <= kLargestSide && camera.height <= kLargestSide && stride > 0 &&
+           stride <= kLargestStride && (has_labels || !has_confidence);
   }
 };
 

@@ -4,18 +4,18 @@
 
 namespace lapis::mapping {
 
-bool LandmarkMirror::enter_session(std::int64_t session) {
-  if (session_ && session < *session_) return false;
-  if (!session_ || session > *session_) {
-    session_ = session;
+bool LandmarkMirror::enter_epoch(std::int64_t epoch) {
+  if (epoch_ && epoch < *epoch_) return false;
+  if (!epoch_ || epoch > *epoch_) {
+    epoch_ = epoch;
     versions_.clear();
     pending_.clear();
   }
   return true;
 }
 
-bool LandmarkMirror::apply_tile(std::int64_t session, LandmarkTile tile) {
-  if (!enter_session(session) || !versions_.set(tile.index, tile.graph_version)) return false;
+bool LandmarkMirror::apply_tile(std::int64_t epoch, LandmarkTile tile) {
+  if (!enter_epoch(epoch) || !versions_.set(tile.index, tile.graph_version)) return false;
   const TileIndex index = tile.index;
   pending_.insert_or_assign(index, std::move(tile));
   serve_if_complete();
@@ -23,16 +23,16 @@ bool LandmarkMirror::apply_tile(std::int64_t session, LandmarkTile tile) {
 }
 
 void LandmarkMirror::apply_state(const LandmarkState& state) {
-  if (!enter_session(state.session)) return;
-  if (newest_ && newest_->session == state.session && newest_->graph_version >= state.graph_version) return;
+  if (!enter_epoch(state.epoch)) return;
+  if (newest_ && newest_->epoch == state.epoch && newest_->graph_version >= state.graph_version) return;
   newest_ = state;
   serve_if_complete();
 }
 
 void LandmarkMirror::serve_if_complete() {
-  if (!newest_ || newest_->session != *session_ || is_consistent()) return;
+  if (!newest_ || newest_->epoch != *epoch_ || is_consistent()) return;
   if (newest_->tiles != versions_.size() || newest_->checksum != versions_.checksum()) return;
-  if (!served_ || served_->session != newest_->session) tiles_.clear();
+  if (!served_ || served_->epoch != newest_->epoch) tiles_.clear();
   for (auto& [index, tile] : pending_) tiles_.insert_or_assign(index, std::move(tile));
   pending_.clear();
   served_ = newest_;

@@ -14,9 +14,9 @@ namespace lapis::mapping {
 /// the same time.
 class LandmarkMirror {
  public:
-  /// Returns false, and changes nothing, when the session is over or this version of the tile or a newer one is known
+  /// Returns false, and changes nothing, when the epoch is over or this version of the tile or a newer one is known
   /// already.
-  bool apply_tile(std::int64_t session, LandmarkTile tile);
+  bool apply_tile(std::int64_t epoch, LandmarkTile tile);
   void apply_state(const LandmarkState& state);
 
   /// True when tiles() are the newest announced version.
@@ -28,14 +28,14 @@ class LandmarkMirror {
 
  private:
   static bool is_same(const LandmarkState& a, const LandmarkState& b) {
-    return a.session == b.session && a.graph_version == b.graph_version;
+    return a.epoch == b.epoch && a.graph_version == b.graph_version;
   }
-  /// Returns false when `session` is over; a newer session starts without tiles.
-  bool enter_session(std::int64_t session);
+  /// Returns false when `epoch` is over; a newer epoch starts without tiles.
+  bool enter_epoch(std::int64_t epoch);
   void serve_if_complete();
 
-  std::optional<std::int64_t> session_;
-  TileVersions versions_;                      // newest received, of session_
+  std::optional<std::int64_t> epoch_;
+  TileVersions versions_;                      // newest received, of epoch_
   std::map<TileIndex, LandmarkTile> pending_;  // received, not yet in tiles_
   std::optional<LandmarkState> newest_;
   std::optional<LandmarkState> served_;

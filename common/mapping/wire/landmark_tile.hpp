@@ -38,6 +38,7 @@ std::string fault_of(const LandmarkTile& tile);
 /// State of a version of slam's landmarks; slam publishes it after the tiles of that version.
 struct LandmarkState {
   std::int64_t session = 0;         ///< grows when slam starts a new map
+  std::int64_t epoch = 0;           ///< grows then, too, and when a restarted slam publishes all tiles again
   std::uint64_t graph_version = 0;  ///< of the pose graph to whose poses the positions belong
   std::uint32_t tiles = 0;          ///< tiles that exist in this version, empty ones included
   std::uint64_t checksum = 0;       ///< sum of tile_hash(index, graph version), modulo 2^64

@@ -38,6 +38,10 @@ std::optional<mapping::FrameVotes> FrameStore::votes(std::size_t index) {
   return votes;
 }
 
+std::optional<std::vector<std::uint8_t>> FrameStore::packed_frame(std::size_t index) const {
+  return has(index) ? read(records_[index].frame) : std::nullopt;
+}
+
 bool FrameStore::replace_votes(std::size_t index, const mapping::FrameVotes& votes) {
   Record& record = records_[index];
   drop(record.votes);

@@ -30,6 +30,8 @@ class FrameStore {
   /// Nothing, and the frame is let go, when it cannot be read back from disk.
   std::optional<mapping::CompactFrame> frame(std::size_t index);
   std::optional<mapping::FrameVotes> votes(std::size_t index);
+  /// The samples as mapping::pack has packed them; nothing when the frame was let go or cannot be read back.
+  std::optional<std::vector<std::uint8_t>> packed_frame(std::size_t index) const;
   /// False, and the frame is let go, when the votes have to go to disk and the disk does not take them.
   [[nodiscard]] bool replace_votes(std::size_t index, const mapping::FrameVotes& votes);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <iterator>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -80,6 +81,7 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   if (frames_before_ + frames_integrated_ >= kMaxFrames) return {IntegrationStatus::kMapIsFull, {}};
   const bool is_newer = input.graph_version >= graph_version_, is_known = keyframe_poses_.contains(input.keyframe_id);
   if (is_newer || !is_known) move_keyframe(input.keyframe_id, input.T_map_keyframe);
+  known_since_.try_emplace(input.keyframe_id, input.graph_version);
   // The graph reports this, too, but later.
   if (!is_known && input.is_keyframe) is_drifting_[input.keyframe_id] = !input.drift.is_none();
 
@@ -94,11 +96,22 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   if (stakes_) stakes_->add(stored.keyframe_id, position_of_keyframe(stored), votes);
   p_map_robot_ = T_map_camera.translation();
   ++frames_integrated_;
+  newest_ = {input.stamp,    input.keyframe_id, input.T_keyframe_camera, keyframe_poses_.at(input.keyframe_id),
+             graph_version_, input.drift,       input.is_keyframe,       is_held(input.keyframe_id)};
   if (config_.re_anchor) store(std::move(stored), input.frame, votes);
   if (input.drift.is_none()) return {IntegrationStatus::kIntegrated, std::move(votes)};
   mapping::FrameVotes whole = votes_of(input.frame, T_map_camera);
   if (votes != whole) keep_rest(input.keyframe_id, whole);
   return {IntegrationStatus::kIntegrated, std::move(whole)};
+}
+
+bool SemanticMapper::restore(const FrameRecord& record, mapping::CompactFrame samples) {
+  graph_version_ = std::max(graph_version_, record.graph_version);
+  apply({record.keyframe_id, record.T_map_keyframe, !record.is_held});
+  const IntegrationReport report =
+      integrate({record.stamp, record.keyframe_id, record.T_map_keyframe, record.T_keyframe_camera, graph_version_,
+                 std::move(samples), record.drift, record.is_keyframe});
+  return report.status == IntegrationStatus::kIntegrated;
 }
 
 mapping::FrameVotes SemanticMapper::votes_of(const mapping::CompactFrame& samples, const Pose& T_map_camera,
@@ -109,9 +122,7 @@ mapping::FrameVotes SemanticMapper::votes_of(const mapping::CompactFrame& sample
 /// Keeps what is missing of the newest frame, which is in the map in part.
 void SemanticMapper::keep_rest(std::uint64_t keyframe_id, const mapping::FrameVotes& whole) {
   const std::size_t index = frames_.size() - 1;
-  const auto known = is_drifting_.find(keyframe_id);  // if it is not known yet, the graph will report it
-  const bool is_held = known != is_drifting_.end() && !known->second;
-  if (!config_.re_anchor || !store_.has(index) || is_held) {
+  if (!config_.re_anchor || !store_.has(index) || is_held(keyframe_id)) {
     ++frames_in_part_;
     return;
   }
@@ -130,11 +141,49 @@ void SemanticMapper::store(StoredFrame frame, const mapping::CompactFrame& sampl
 void SemanticMapper::update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses) {
   if (graph_version < graph_version_) return;
   graph_version_ = graph_version;
-  for (const KeyframePose& pose : poses) {
-    if (!geometry::is_valid(pose.T_map_keyframe) || !is_near(pose.T_map_keyframe)) continue;
-    move_keyframe(pose.id, pose.T_map_keyframe);
-    set_drifting(pose.id, pose.is_drifting);
+  find_orphans(poses);
+  for (const KeyframePose& pose : poses) apply(pose);
+  move_orphans();
+}
+
+void SemanticMapper::apply(const KeyframePose& pose) {
+  if (!geometry::is_valid(pose.T_map_keyframe) || !is_near(pose.T_map_keyframe)) return;
+  move_keyframe(pose.id, pose.T_map_keyframe);
+  known_since_.try_emplace(pose.id, graph_version_);
+  set_drifting(pose.id, pose.is_drifting);
+}
+
+/// Compares the known key-frames with those of a graph that is not applied yet.
+void SemanticMapper::find_orphans(std::span<const KeyframePose> poses) {
+  std::vector<std::uint64_t> listed;
+  listed.reserve(poses.size());
+  for (const KeyframePose& pose : poses) listed.push_back(pose.id);
+  if (!std::is_sorted(listed.begin(), listed.end())) std::sort(listed.begin(), listed.end());
+  const auto is_listed = [&](const auto& orphan) {
+    return std::binary_search(listed.begin(), listed.end(), orphan.first);
+  };
+  std::erase_if(orphans_, is_listed);
+  for (const auto& [id, T_map_keyframe] : keyframe_poses_) {
+    const auto next = std::lower_bound(listed.begin(), listed.end(), id);
+    const bool is_listed_too = next != listed.end() && *next == id;
+    if (is_listed_too || known_since_.at(id) > graph_version_ || orphans_.contains(id)) continue;
+    const auto anchor = std::find_if(std::make_reverse_iterator(next), listed.rend(),
+                                     [&](std::uint64_t older) { return keyframe_poses_.contains(older); });
+    if (anchor == listed.rend()) continue;
+    orphans_[id] = {*anchor, keyframe_poses_.at(*anchor).inverse() * T_map_keyframe};
   }
+}
+
+void SemanticMapper::move_orphans() {
+  for (const auto& [id, orphan] : orphans_) {
+    const Pose T_map_orphan = keyframe_poses_.at(orphan.anchor) * orphan.T_anchor_orphan;
+    if (is_near(T_map_orphan)) move_keyframe(id, T_map_orphan);
+  }
+}
+
+bool SemanticMapper::is_held(std::uint64_t keyframe_id) const {
+  const auto known = is_drifting_.find(keyframe_id);
+  return known != is_drifting_.end() && !known->second;
 }
 
 void SemanticMapper::set_drifting(std::uint64_t keyframe_id, bool is_drifting) {

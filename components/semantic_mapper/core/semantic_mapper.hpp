@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <optional>
 #include <set>
 #include <span>
@@ -58,6 +59,18 @@ struct KeyframePose {
   bool is_drifting = false;  ///< odometry alone connects it, and nothing has corrected it since
 };
 
+/// How a frame entered a map. With its samples, it can enter another one in the same way (SemanticMapper::restore).
+struct FrameRecord {
+  time::Time stamp;
+  std::uint64_t keyframe_id = 0;
+  geometry::Pose T_keyframe_camera = geometry::Pose::Identity();
+  geometry::Pose T_map_keyframe = geometry::Pose::Identity();  ///< as the map had it
+  std::uint64_t graph_version = 0;                             ///< newest one that the map had followed
+  mapping::Drift drift = {};
+  bool is_keyframe = false;  ///< it is its own reference
+  bool is_held = false;      ///< the key-frame was known not to drift
+};
+
 /// A frame in the map; FrameStore has its samples and votes.
 struct StoredFrame {
   time::Time stamp;
@@ -105,9 +118,20 @@ class SemanticMapper {
 
   /// Puts a frame into the map at its key-frame's newest known pose.
   IntegrationReport integrate(AnchoredFrame input);
-  /// Newest poses of the graph, and which of them drift. Key-frames that are not listed keep theirs; older versions are
-  /// ignored. Does not move frames yet.
+  /// How the newest frame entered the map; nothing before the first.
+  const std::optional<FrameRecord>& newest_record() const { return newest_; }
+  /// Puts a frame into the map as it entered the map of another mapper with the same configuration; the records of that
+  /// mapper have to come in order. After the same pose graph and flush() the two maps are equal, as long as the graph
+  /// lists the key-frames and takes no correction back. False when integrate refuses the frame.
+  bool restore(const FrameRecord& record, mapping::CompactFrame samples);
+  /// Newest poses of the graph, and which of them drift; older versions are ignored. Does not move frames yet.
+  ///
+  /// Key-frames of later versions keep their poses. Others that are not listed were lost when slam resumed an older
+  /// save of its map: each of them follows, as if it were fixed to it, the newest older key-frame that is listed and
+  /// was known before. It stays when there is none, and has its own pose again once it is listed.
   void update_keyframe_poses(std::uint64_t graph_version, std::span<const KeyframePose> poses);
+  /// True when the key-frame is known not to drift; until the graph reports it, only its own frame can tell.
+  bool is_held(std::uint64_t keyframe_id) const;
   /// Moves frames that are off by more than the threshold or were corrected while they waited, nearest to the newest
   /// frame first, until their StoredFrame::work reaches `max_work` (at least one); returns how many. Frames that are
   /// off by less than a voxel wait when, over time, moving such frames would cost more than 3/4 of the work of
@@ -166,10 +190,19 @@ class SemanticMapper {
   std::size_t tiles_too_large() const { return tiles_too_large_; }
 
  private:
+  /// A key-frame that the graph has lost, and the older one that it follows.
+  struct Orphan {
+    std::uint64_t anchor = 0;
+    geometry::Pose T_anchor_orphan = geometry::Pose::Identity();
+  };
+
   mapping::FrameVotes votes_of(const mapping::CompactFrame& samples, const geometry::Pose& T_map_camera,
                                const mapping::Drift& drift = {}) const;
   void store(StoredFrame frame, const mapping::CompactFrame& samples, const mapping::FrameVotes& votes);
   void keep_rest(std::uint64_t keyframe_id, const mapping::FrameVotes& whole);
+  void apply(const KeyframePose& pose);
+  void find_orphans(std::span<const KeyframePose> poses);
+  void move_orphans();
   void set_drifting(std::uint64_t keyframe_id, bool is_drifting);
   bool move_frame(std::size_t index);
   void move_keyframe(std::uint64_t id, const geometry::Pose& T_map_keyframe);
@@ -184,6 +217,7 @@ class SemanticMapper {
   mapping::VoxelMap map_;
   std::size_t frames_before_ = 0;  ///< least number of frames that can have given the initial map its counts
   std::size_t frames_integrated_ = 0;
+  std::optional<FrameRecord> newest_;
   std::vector<StoredFrame> frames_;  ///< in order of integration
   FrameStore store_;
   std::int64_t credit_ = 0;  ///< work for moves of less than a voxel: 3/4 of what was integrated, less what they took
@@ -191,6 +225,8 @@ class SemanticMapper {
 
   std::uint64_t graph_version_ = 0;
   std::unordered_map<std::uint64_t, geometry::Pose> keyframe_poses_;
+  std::unordered_map<std::uint64_t, std::uint64_t> known_since_;  ///< of the same key-frames: a version that has it
+  std::map<std::uint64_t, Orphan> orphans_;  ///< by id: an anchor that is lost as well moves before what follows it
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> frames_of_keyframe_;
   std::set<std::size_t> off_;  ///< frames beyond the threshold, and corrected ones
 

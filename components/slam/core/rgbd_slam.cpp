@@ -56,9 +56,15 @@ class RgbdSlam::Implementation {
     graph_ = SlamGraph(std::move(state.edges), std::move(state.links), std::move(state.covariances));
     loops_.restore(map_);
     version_ = state.graph_version;
-    builder_ = MapBuilder(config, map_.keyframes().size());
     if (state.wheels.motions > 0.0) motion_.resume_wheels(state.wheels);
-    front_end_.resume(map_, state.reference);
+    if (const auto& last = state.motion) {
+      motion_.resume(last->stamp, last->camera, last->odometry);
+      has_odometry_ = !last->odometry.empty();
+      front_end_.resume(map_, state.reference, last->held_stamp);
+    } else {
+      builder_ = MapBuilder(config, map_.keyframes().size());
+      front_end_.resume(map_, state.reference, std::nullopt);
+    }
     must_optimize_ = graph_.count(EdgeType::kLoopClosure) > 0;  // an optimisation may have been under way
     optimize();
   }
@@ -72,7 +78,8 @@ class RgbdSlam::Implementation {
                     graph_.edges(),
                     graph_.links(),
                     graph_.covariances(),
-                    motion_.wheels()};
+                    motion_.wheels(),
+                    saved_motion()};
     state.landmarks.reserve(map_.landmarks().size());
     for (const Landmark& landmark : map_.landmarks()) {
       state.landmarks.push_back({landmark.p_map, landmark.finest_distance_m});
@@ -137,6 +144,13 @@ class RgbdSlam::Implementation {
   std::size_t places_doubted() const { return front_end_.places_doubted(); }
 
  private:
+  std::optional<SavedMotion> saved_motion() const {
+    const auto stamp = motion_.last_stamp(), held_stamp = front_end_.held_stamp();
+    const auto camera = motion_.last_camera();
+    if (!stamp || !camera || !held_stamp) return std::nullopt;
+    return SavedMotion{*stamp, *camera, *held_stamp, motion_.odometry_readings()};
+  }
+
   Known known() const { return {map_, graph_, loops_, motion_}; }
   Model model() { return {map_, graph_, motion_}; }
 

@@ -35,8 +35,9 @@ class RgbdSlam {
   /// wheel odometry.
   RgbdSlam(const SlamConfig& config, const geometry::Pose& T_map_first_camera,
            const geometry::Pose& T_base_camera = geometry::Pose::Identity());
-  /// Resumes a saved map; `state` is sound (find_fault) and has the configuration's scale factor. Tracking is lost
-  /// until the camera has been located in that map. Ids and graph version continue.
+  /// Resumes a saved map; `state` is sound (find_fault) and has the configuration's scale factor. With
+  /// SlamState::motion, which has to be of this run, odometry leads on from the saved pose; else tracking is lost until
+  /// the camera has been located in that map. Ids and graph version continue.
   RgbdSlam(const SlamConfig& config, const geometry::Pose& T_base_camera, SlamState state);
   ~RgbdSlam();
 

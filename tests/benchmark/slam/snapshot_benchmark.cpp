@@ -137,7 +137,7 @@ class Snapshots {
   explicit Snapshots(runtime::Context& context)
       : frames_(context.advertise(topics::kTrackedFrame)), graph_(context.advertise(topics::kPoseGraph)),
         path_(context.advertise(topics::kKeyframePath)), landmarks_(context, kLandmarkPeriod_s) {
-    landmarks_.begin_session(1);
+    landmarks_.begin_session(1, 1, {}, {});
     frame_.optical_frame = "camera_color_optical_frame";
     frame_.session = 1;
   }
@@ -208,7 +208,7 @@ class ReaderComponent {
     context.subscribe(topics::kPoseGraph, [](const auto&) {});
     context.subscribe(topics::kKeyframePath, [](const auto&) {});
     context.subscribe(topics::kLandmarks, [this](const auto& message) {
-      if (auto tile = messages::from_message(message)) mirror_.apply_tile(message.session(), std::move(*tile));
+      if (auto tile = messages::from_message(message)) mirror_.apply_tile(message.epoch(), std::move(*tile));
       report();
     });
     context.subscribe(topics::kLandmarkState, [this](const auto& message) {

@@ -248,7 +248,7 @@ TEST_F(PlannerGraphFaults, LostPieceOfTheGraphIsLeftOut) {
 TEST_F(PlannerGraphFaults, LandmarksThatMakeNoSense) {
   peers.draw(kRoomWithDoor);
   lapis_msgs::msg::LandmarkTile tile;
-  tile.session(1);
+  tile.epoch(1);
   tile.graph_version(1);
   tile.ids({1, 2});
   tile.positions({1.0f, std::numeric_limits<float>::quiet_NaN(), 1.0f});

@@ -31,8 +31,8 @@ struct LandmarkClient {
     probe.listen<LandmarkTile>(topics::kLandmarks, [this](auto& message) {
       auto tile = messages::from_message(message);
       ASSERT_TRUE(tile) << tile.reason;
-      mirror.apply_tile(message.session(), std::move(*tile));
-      sessions.insert(message.session());
+      mirror.apply_tile(message.epoch(), std::move(*tile));
+      epochs.insert(message.epoch());
     });
     probe.listen<LandmarkState>(topics::kLandmarkState, [this](auto& message) {
       stamps.push_back(messages::from_message(message.header().stamp()));
@@ -55,8 +55,8 @@ struct LandmarkClient {
 
   const std::vector<PoseGraph>& graphs;
   mapping::LandmarkMirror mirror;
-  std::set<std::int64_t> sessions;  // of all tiles that came
-  std::vector<time::Time> stamps;   // of the announced versions
+  std::set<std::int64_t> epochs;   // of all tiles that came
+  std::vector<time::Time> stamps;  // of the announced versions
 };
 
 /// slam, a camera, and a reader that was there before the first landmark.
@@ -103,7 +103,8 @@ void expect_same_for_a_late_joiner(const LandmarkClient& early, const TrackedFra
   const LandmarkClient client(late);
   ASSERT_TRUE(late.wait_until([&] { return client.is_up_to_date(newest) && client.graph() != nullptr; }));
   EXPECT_EQ(client.mirror.tiles(), early.mirror.tiles());
-  EXPECT_EQ(client.sessions, std::set<std::int64_t>{newest.session()}) << "ended keys leave no samples behind";
+  EXPECT_EQ(client.epochs, std::set<std::int64_t>{client.mirror.state()->epoch})
+      << "ended keys leave no samples behind";
 }
 
 /// The mirror's landmarks are on the walls of the synthetic box, each in one tile, and every key-frame of the pose

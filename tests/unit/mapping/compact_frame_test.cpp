@@ -156,13 +156,16 @@ TEST(FrameCodec, DamagedBytesGiveNothing) {
 TEST(FrameCodec, AHeaderThatNoFrameHasGivesNothing) {
   std::string error;
   const auto frame = CompactFrame::make(kCamera, {kCamera.width, kCamera.height, 1.0f}, nullptr, {}, error);
-  auto plain = zstd_decompress(pack(*frame), 10000).value();
+  const auto plain = zstd_decompress(pack(*frame), 10000).value();
   const std::size_t samples = static_cast<std::size_t>(frame->columns()) * static_cast<std::size_t>(frame->rows());
   const std::size_t stride_at = plain.size() - 2 * samples - 8;  // two flags of 2 bytes follow the stride, then depth
   ASSERT_EQ(plain[stride_at], frame->stride());
-  for (const std::uint8_t byte : {std::uint8_t{0x00}, std::uint8_t{0xff}}) {  // a stride of 0 and of -1
-    std::fill_n(plain.begin() + static_cast<std::ptrdiff_t>(stride_at), 4, byte);
-    EXPECT_FALSE(unpack_frame(zstd_compress(plain, 1))) << int{byte};
+  for (const std::uint8_t byte : {std::uint8_t{0x00}, std::uint8_t{0xff}, std::uint8_t{0x7f}}) {  // 0, -1, huge
+    for (const std::size_t at : {stride_at, std::size_t{0}}) {  // the stride, the width of the camera
+      auto spoilt = plain;
+      std::fill_n(spoilt.begin() + static_cast<std::ptrdiff_t>(at), 4, byte);
+      EXPECT_FALSE(unpack_frame(zstd_compress(spoilt, 1))) << int{byte} << " at " << at;
+    }
   }
 }
 

@@ -12,7 +12,7 @@ namespace {
 /// The publishing side, reduced to its promise: versions of tiles and a state after them.
 class LandmarkPublisher {
  public:
-  LandmarkPublisher(std::int64_t session, unsigned seed) : session_(session), random_(seed) {}
+  LandmarkPublisher(std::int64_t epoch, unsigned seed) : epoch_(epoch), random_(seed) {}
 
   std::vector<LandmarkTile> publish() {
     version_ += 1 + random_() % 3;
@@ -34,14 +34,14 @@ class LandmarkPublisher {
     return changed;
   }
   LandmarkState state() const {
-    LandmarkState state{session_, version_, static_cast<std::uint32_t>(tiles_.size()), 0, 1.6, 0.01};
+    LandmarkState state{1, epoch_, version_, static_cast<std::uint32_t>(tiles_.size()), 0, 1.6, 0.01};
     for (const auto& [index, tile] : tiles_) state.checksum += tile_hash(index, tile.graph_version);
     return state;
   }
   const std::map<TileIndex, LandmarkTile>& tiles() const { return tiles_; }
 
  private:
-  std::int64_t session_;
+  std::int64_t epoch_;
   std::mt19937 random_;
   std::uint64_t version_ = 0;
   std::map<TileIndex, LandmarkTile> tiles_;
@@ -94,7 +94,7 @@ TEST(LandmarkMirror, AnyOrderRepeatsAndLossEndInTheNewestVersion) {
   }
 }
 
-TEST(LandmarkMirror, ANewSessionReplacesEverythingAndOldSamplesAreDropped) {
+TEST(LandmarkMirror, ANewEpochReplacesEverythingAndOldSamplesAreDropped) {
   LandmarkPublisher before(10, 3), after(11, 4);
   LandmarkMirror mirror;
   const auto old_tiles = before.publish();
@@ -113,7 +113,7 @@ TEST(LandmarkMirror, ANewSessionReplacesEverythingAndOldSamplesAreDropped) {
   mirror.apply_state(before.state());
   mirror.apply_state(after.state());
   ASSERT_TRUE(mirror.is_consistent());
-  EXPECT_EQ(mirror.state()->session, 11);
+  EXPECT_EQ(mirror.state()->epoch, 11);
   EXPECT_EQ(mirror.tiles(), after.tiles());
 }
 

@@ -25,14 +25,15 @@ mapping::LandmarkTile tile() {
 
 TEST(Landmarks, TileAndStateComeBackAsTheyWere) {
   const auto message = to_message(tile(), 12);
-  EXPECT_EQ(message.session(), 12);
+  EXPECT_EQ(message.epoch(), 12);
   const auto back = from_message(message);
   ASSERT_TRUE(back) << back.reason;
   EXPECT_EQ(*back, tile());
   EXPECT_TRUE(from_message(to_message(mapping::LandmarkTile{}, 1))) << "an empty tile";
 
-  const auto state = from_message(to_message(mapping::LandmarkState{5, 6, 7, 8, 1.6, 0.01}));
+  const auto state = from_message(to_message(mapping::LandmarkState{5, 9, 6, 7, 8, 1.6, 0.01}));
   EXPECT_EQ(state.session, 5);
+  EXPECT_EQ(state.epoch, 9);
   EXPECT_EQ(state.graph_version, 6U);
   EXPECT_EQ(state.tiles, 7U);
   EXPECT_EQ(state.checksum, 8U);

@@ -2,16 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <csignal>
 #include <limits>
 #include <random>
 #include <set>
 
-#include <sys/resource.h>
-
 #include <gtest/gtest.h>
 
 #include "common/mapping/file/map_file.hpp"
+#include "tests/support/full_disk.hpp"
 #include "tests/support/synthetic_room.hpp"
 
 namespace lapis::semantic_mapper {
@@ -159,27 +157,10 @@ TEST(SemanticMapper, FramesThatTheDiskDoesNotTakeStayWhereTheyAreAndMappingConti
   EXPECT_EQ(mapper.map(), before);
 }
 
-/// Files may not grow beyond some size while this lives: as a disk that is full.
-class FullDisk {
- public:
-  explicit FullDisk(std::uint64_t bytes) {
-    std::signal(SIGXFSZ, SIG_IGN);
-    getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FullDisk(const FullDisk&) = delete;
-  FullDisk& operator=(const FullDisk&) = delete;
-  ~FullDisk() { setrlimit(RLIMIT_FSIZE, &before_); }
-
- private:
-  rlimit before_{};
-};
-
 TEST(SemanticMapper, DiskThatFillsUpLetsFramesGoAndMapsOn) {
   MapperConfig config;
   config.stored_frames = {0, testing::TempDir()};
-  const FullDisk disk(150'000);
+  const lapis::test::FullDisk disk(150'000);
   SemanticMapper mapper = mapper_with_tour(config);
   const std::size_t lost = mapper.store().let_go();
   EXPECT_GT(lost, 0u);
@@ -309,6 +290,86 @@ TEST(SemanticMapper, OlderGraphVersionsAreIgnored) {
   late.T_map_keyframe.translation().x() += 1.0;
   mapper.integrate(late);
   EXPECT_TRUE(mapper.frames().back().T_map_camera.isApprox(mapper.frames().front().T_map_camera, 1e-12));
+}
+
+/// The tour's key-frames from `begin` to before `end`, moved, and a newer one.
+std::vector<KeyframePose> part_of_graph(std::size_t begin, std::size_t end, const Pose& moved) {
+  std::vector<KeyframePose> poses(tour().keyframes.begin() + static_cast<std::ptrdiff_t>(begin),
+                                  tour().keyframes.begin() + static_cast<std::ptrdiff_t>(end));
+  for (KeyframePose& pose : poses) pose.T_map_keyframe = moved * pose.T_map_keyframe;
+  poses.push_back({1'000'100, Pose::Identity()});
+  return poses;
+}
+
+/// After flush(), the frames of the tour's key-frames from `begin` to before `end` are off their first places by that.
+void expect_moved(SemanticMapper& mapper, std::size_t begin, std::size_t end, const Pose& moved) {
+  mapper.flush();
+  EXPECT_EQ(mapper.map(), built_from_records(mapper));
+  for (std::size_t i = 5 * begin; i < 5 * end; ++i) {
+    const Pose first = tour().frames[i].T_map_keyframe * tour().frames[i].T_keyframe_camera;
+    EXPECT_TRUE(mapper.frames()[i].T_map_camera.isApprox(moved * first, 1e-12)) << "frame " << i;
+  }
+}
+
+const Pose kStep(Eigen::Translation3d(0.4, -0.3, 0.1) * Eigen::AngleAxisd(0.3, Eigen::Vector3d::UnitZ()));
+
+TEST(SemanticMapper, KeyframesThatTheGraphHasLostFollowTheNewestOlderOne) {
+  SemanticMapper mapper = mapper_with_tour();
+  mapper.update_keyframe_poses(2, part_of_graph(0, 4, kStep));
+  expect_moved(mapper, 0, 8, kStep);
+  std::vector<KeyframePose> poses = part_of_graph(0, 4, kStep);
+  poses[3].T_map_keyframe = kStep * poses[3].T_map_keyframe;
+  mapper.update_keyframe_poses(3, poses);
+  expect_moved(mapper, 0, 3, kStep);
+  expect_moved(mapper, 3, 8, kStep * kStep);
+  mapper.update_keyframe_poses(2, part_of_graph(0, 2, Pose::Identity()));
+  expect_moved(mapper, 3, 8, kStep * kStep);
+}
+
+TEST(SemanticMapper, KeyframesThatTheGraphDoesNotListYetOrHasNothingBeforeStayWhereTheyAre) {
+  SemanticMapper mapper({});
+  for (AnchoredFrame frame : tour().frames) {
+    frame.graph_version = frame.keyframe_id < tour().keyframes[4].id ? 1 : 3;
+    ASSERT_EQ(mapper.integrate(std::move(frame)).status, IntegrationStatus::kIntegrated);
+  }
+  mapper.update_keyframe_poses(2, part_of_graph(0, 4, kStep));
+  expect_moved(mapper, 0, 4, kStep);
+  expect_moved(mapper, 4, 8, Pose::Identity());
+  SemanticMapper without_older = mapper_with_tour();
+  without_older.update_keyframe_poses(2, part_of_graph(6, 8, kStep));
+  expect_moved(without_older, 0, 6, Pose::Identity());
+  expect_moved(without_older, 6, 8, kStep);
+}
+
+// slam has resumed an older save: its graph corrects the anchor before slam has added a key-frame.
+TEST(SemanticMapper, KeyframesThatTheGraphHasLostAreFoundBeforeThereIsANewerOne) {
+  SemanticMapper mapper = mapper_with_tour();
+  std::vector<KeyframePose> resumed = part_of_graph(0, 4, kStep);
+  resumed.pop_back();
+  mapper.update_keyframe_poses(1'000'002, resumed);
+  expect_moved(mapper, 0, 8, kStep);
+}
+
+TEST(SemanticMapper, KeyframesThatAreListedAgainHaveTheirOwnPoses) {
+  SemanticMapper mapper = mapper_with_tour();
+  mapper.update_keyframe_poses(2, part_of_graph(0, 4, kStep));
+  std::vector<KeyframePose> poses = part_of_graph(0, 5, Pose::Identity());
+  mapper.update_keyframe_poses(3, poses);
+  expect_moved(mapper, 0, 8, Pose::Identity());
+  poses[3].T_map_keyframe = kStep * poses[3].T_map_keyframe;
+  mapper.update_keyframe_poses(4, poses);
+  expect_moved(mapper, 3, 4, kStep);
+  expect_moved(mapper, 4, 5, Pose::Identity());
+  expect_moved(mapper, 5, 8, kStep);
+}
+
+TEST(SemanticMapper, KeyframesFollowOneThatIsLostAsWell) {
+  SemanticMapper mapper = mapper_with_tour();
+  mapper.update_keyframe_poses(2, part_of_graph(0, 4, Pose::Identity()));
+  mapper.update_keyframe_poses(3, part_of_graph(0, 2, Pose::Identity()));
+  expect_moved(mapper, 0, 8, Pose::Identity());
+  mapper.update_keyframe_poses(4, part_of_graph(0, 2, kStep));
+  expect_moved(mapper, 0, 8, kStep);
 }
 
 TEST(SemanticMapper, FrozenMapNeverMovesAndStoresNoFrames) {

@@ -1,4 +1,7 @@
 // A map that is saved and resumed.
+#include <algorithm>
+#include <set>
+
 #include <gtest/gtest.h>
 
 #include "slam/core/files/slam_file.hpp"
@@ -34,27 +37,36 @@ double resume_distance_m(const TrackingResult& result, int index) {
   return (T_map_camera.translation() - test::room_path(index).translation()).norm();
 }
 
+SlamFile file_of(SlamState state) { return {7, 7, {}, {}, std::move(state)}; }
+
 // The bytes of a run through the room.
 const std::vector<std::uint8_t>& saved_run() {
   static const std::vector<std::uint8_t> bytes = [] {
     RgbdSlam slam({}, test::room_path(0));
     for (int i = 0; i < kSavedFrames; ++i)
       EXPECT_EQ(slam.process(resume_frame(i)).state, TrackingState::kTracking) << i;
-    return encode_slam_file({7, slam.state()});
+    return encode_slam_file(file_of(slam.state()));
   }();
   return bytes;
 }
 
-SlamState saved_state() {
+SlamState whole_saved_state() {
   std::string error;
   auto file = decode_slam_file(saved_run(), error);
   EXPECT_TRUE(file) << error;
   return file->state;
 }
 
+// The same in a later run, in which nobody knows how the robot has moved since.
+SlamState saved_state() {
+  SlamState state = whole_saved_state();
+  state.motion.reset();
+  return state;
+}
+
 TEST(Resume, AMapThatWasOnlyLoadedIsSavedAsItWas) {
-  const RgbdSlam slam({}, Pose::Identity(), saved_state());
-  EXPECT_EQ(encode_slam_file({7, slam.state()}), saved_run());
+  const RgbdSlam slam({}, Pose::Identity(), whole_saved_state());
+  EXPECT_EQ(encode_slam_file(file_of(slam.state())), saved_run());
   EXPECT_EQ(slam.graph_version(), saved_state().graph_version);
   EXPECT_EQ(slam.pose_graph().nodes.size(), saved_state().keyframes.size());
   EXPECT_EQ(slam.pose_graph().edges.size(), saved_state().edges.size());
@@ -114,14 +126,94 @@ TEST(Resume, NoOdometryLeadsFromASavedKeyframe) {
   EXPECT_GE(first->from, saved.keyframes.size());
 }
 
+// A run with odometry, saved at a frame that is no key-frame.
+SlamState state_with_odometry(int frames) {
+  RgbdSlam slam({}, test::room_path(0));
+  slam.add_odometry(resume_stamp(-1), test::room_path(-1));
+  for (int i = 0; i < frames; ++i) {
+    slam.add_odometry(resume_stamp(i), test::room_path(i));
+    EXPECT_EQ(slam.process(resume_frame(i)).state, TrackingState::kTracking) << i;
+  }
+  std::string error;
+  const auto file = decode_slam_file(encode_slam_file(file_of(slam.state())), error);
+  EXPECT_TRUE(file) << error;
+  return file->state;
+}
+
+// Dies at frame 50 and is back at frame 110: the two seconds between are bridged by odometry, so the first frame has a
+// pose, also one that shows nothing, and no place has to be recognised.
+TEST(Resume, WithinTheRunOdometryLeadsOnFromTheSavedPose) {
+  constexpr int kBack = kSavedFrames + 60;
+  const SlamState saved = state_with_odometry(kSavedFrames);
+  ASSERT_TRUE(saved.motion);
+  EXPECT_EQ(saved.motion->stamp, resume_stamp(kSavedFrames - 1));
+  RgbdSlam slam({}, Pose::Identity(), saved);
+  slam.add_odometry(resume_stamp(kBack), test::room_path(kBack));
+  RgbdFrame dark = resume_frame(kBack);
+  dark.gray = geometry::GrayImage(dark.camera.width, dark.camera.height);
+  dark.depth = geometry::DepthImage(dark.camera.width, dark.camera.height);
+  const TrackingResult reckoned = slam.process(dark);
+  EXPECT_EQ(reckoned.state, TrackingState::kDeadReckoning) << reckoned.reason;
+  EXPECT_LT(resume_distance_m(reckoned, kBack), 0.02);
+  EXPECT_GT(reckoned.drift_m, 0.0);
+  for (int i = kBack + 1; i < kBack + 20; ++i) {
+    slam.add_odometry(resume_stamp(i), test::room_path(i));
+    const TrackingResult result = slam.process(resume_frame(i));
+    EXPECT_EQ(result.state, TrackingState::kTracking) << i << ": " << result.reason;
+    EXPECT_LT(resume_distance_m(result, i), 0.02) << i;
+  }
+  const auto edges = slam.pose_graph().edges;
+  const bool is_joined = std::any_of(edges.begin(), edges.end(), [&](const PoseGraphEdge& edge) {
+    return edge.type == EdgeType::kWheelOdometry && edge.from == saved.keyframes.size() - 1 &&
+           edge.to == saved.keyframes.size();
+  });
+  EXPECT_TRUE(is_joined) << "odometry joins the last saved key-frame and the first new one";
+}
+
+TEST(Resume, AfterALongOutageOrAResetOfOdometryThePlaceHasToBeFound) {
+  const SlamState saved = state_with_odometry(kSavedFrames);
+  const auto first_result = [&](time::Time stamp, const Pose& T_odom_base) {
+    RgbdSlam slam({}, Pose::Identity(), saved);
+    slam.add_odometry(stamp, T_odom_base);
+    return slam.skip(stamp, "dark");
+  };
+  const time::Time soon = resume_stamp(kSavedFrames + 60);
+  EXPECT_EQ(first_result(soon, test::room_path(kSavedFrames + 60)).state, TrackingState::kDeadReckoning);
+  const time::Time late = resume_stamp(kSavedFrames) + time::Duration::from_seconds(OdometryTrack::kLongestOutage_s);
+  EXPECT_EQ(first_result(late, test::room_path(kSavedFrames)).state, TrackingState::kLost);
+  Pose far_away = test::room_path(kSavedFrames);
+  far_away.translation().x() += 100.0;
+  EXPECT_EQ(first_result(soon, far_away).state, TrackingState::kLost);
+}
+
+TEST(PublishedIds, AreIndicesUntilAMapIsResumedAndNeverTheSameAgain) {
+  PublishedIds ids;
+  EXPECT_EQ(ids.of(0), 0U);
+  EXPECT_EQ(ids.of(123), 123U);
+  std::set<std::uint64_t> published;
+  std::uint64_t saved = 0;
+  for (int restart = 0; restart < 5; ++restart) {
+    for (std::uint64_t i = 0; i < 10; ++i) {
+      EXPECT_TRUE(published.insert(ids.of(saved + i)).second) << restart << " " << i;
+    }
+    saved += static_cast<std::uint64_t>(restart % 3 == 0 ? 0 : 6);  // of ten new ones so many were saved
+    ids.skip(saved);
+    EXPECT_TRUE(ids.are_sound());
+    for (std::uint64_t i = 1; i < saved + 3; ++i) EXPECT_GT(ids.of(i), ids.of(i - 1));
+  }
+  EXPECT_FALSE((PublishedIds{{{5, 10}, {4, 20}}}.are_sound()));
+  EXPECT_FALSE((PublishedIds{{{5, 10}, {20, 12}}}.are_sound()));
+  EXPECT_FALSE((PublishedIds{{{5, PublishedIds::kEnd}}}.are_sound()));
+}
+
 TEST(Resume, AStateDoesNotChangeWhileTheMapContinues) {
   RgbdSlam slam({}, Pose::Identity(), saved_state());
   for (int i = kSavedFrames; i < kSavedFrames + 5; ++i) slam.process(resume_frame(i));
   const SlamState state = slam.state();
-  const auto before = encode_slam_file({7, state});
+  const auto before = encode_slam_file(file_of(state));
   for (int i = kSavedFrames + 5; i < kSavedFrames + 25; ++i) slam.process(resume_frame(i));
-  EXPECT_EQ(encode_slam_file({7, state}), before);
-  EXPECT_NE(encode_slam_file({7, slam.state()}), before);
+  EXPECT_EQ(encode_slam_file(file_of(state)), before);
+  EXPECT_NE(encode_slam_file(file_of(slam.state())), before);
 }
 
 }  // namespace

@@ -61,6 +61,9 @@ SlamFile sample_file(unsigned seed, std::size_t keyframes, int features) {
   Sampler sampler(seed);
   SlamFile file;
   file.session = 123'456'789;
+  file.epoch = 123'456'790;
+  file.keyframe_ids.skip(keyframes / 2);
+  file.landmark_ids.skip(keyframes);
   SlamState& state = file.state;
   state.scale_factor = 1.3;
   state.graph_version = keyframes + 2;
@@ -80,6 +83,9 @@ SlamFile sample_file(unsigned seed, std::size_t keyframes, int features) {
   for (std::size_t i = 0; i < landmarks; ++i) {
     state.landmarks.push_back({{sampler.number(-9.0, 9.0), sampler.number(-9.0, 9.0), 0.1}, sampler.number(0.5, 20.0)});
   }
+  const auto second = [](int s) { return time::Time::from_seconds(s); };
+  state.motion = {second(4), {keyframes - 1, sampler.pose(), sampler.information()}, second(3), {}};
+  for (int s = 2; s < 6; ++s) state.motion->odometry.push_back({second(s), sampler.pose()});
   return file;
 }
 

@@ -85,15 +85,43 @@ TEST(SlamFile, ReadEqualsWritten) {
   ASSERT_EQ(a.links.size(), b.links.size());
   EXPECT_EQ(a.links[0].T_from_to.matrix(), b.links[0].T_from_to.matrix());
   EXPECT_EQ(a.wheels, b.wheels);
+  EXPECT_EQ(read->epoch, file.epoch);
+  EXPECT_EQ(read->keyframe_ids.stretches, file.keyframe_ids.stretches);
+  EXPECT_EQ(read->landmark_ids.stretches, file.landmark_ids.stretches);
+  ASSERT_TRUE(a.motion);
+  EXPECT_EQ(a.motion->stamp, b.motion->stamp);
+  EXPECT_EQ(a.motion->held_stamp, b.motion->held_stamp);
+  EXPECT_EQ(a.motion->camera.reference, b.motion->camera.reference);
+  EXPECT_EQ(a.motion->camera.T_reference_camera.matrix(), b.motion->camera.T_reference_camera.matrix());
+  ASSERT_EQ(a.motion->odometry.size(), b.motion->odometry.size());
+  EXPECT_EQ(a.motion->odometry.back().stamp, b.motion->odometry.back().stamp);
+  EXPECT_EQ(a.motion->odometry.back().T_odom_base.matrix(), b.motion->odometry.back().T_odom_base.matrix());
+}
+
+// Bytes of the file as an older version wrote it: without the sections from `first_missing` on.
+Bytes older_version(std::uint8_t version, std::string_view first_missing) {
+  constexpr std::size_t kVersionAt = 8;
+  Bytes bytes = encode_slam_file(test::sample_file(1, 3));
+  const auto at = std::search(bytes.begin(), bytes.end(), first_missing.begin(), first_missing.end());
+  EXPECT_NE(at, bytes.end());
+  bytes.erase(at, bytes.end());
+  bytes[kVersionAt] = version;
+  return bytes;
+}
+
+TEST(SlamFile, AMapOfTheSecondVersionHasTheIdsOfItsElementsAndNoMotion) {
+  std::string error;
+  const auto read = decode_slam_file(older_version(2, "NAME"), error);
+  ASSERT_TRUE(read) << error;
+  EXPECT_EQ(read->keyframe_ids.of(2), 2U);
+  EXPECT_EQ(read->landmark_ids.of(5), 5U);
+  EXPECT_FALSE(read->state.motion);
+  EXPECT_NE(read->state.wheels, WheelCalibration{});
 }
 
 TEST(SlamFile, AMapOfTheFirstVersionHasWheelsThatNobodyKnows) {
-  constexpr std::size_t kVersionAt = 8, kWheelSection = 16 + 6 * 8;
-  Bytes bytes = encode_slam_file(test::sample_file(1, 3));
-  bytes.resize(bytes.size() - kWheelSection);
-  bytes[kVersionAt] = 1;
   std::string error;
-  const auto read = decode_slam_file(bytes, error);
+  const auto read = decode_slam_file(older_version(1, "WHEE"), error);
   ASSERT_TRUE(read) << error;
   EXPECT_EQ(read->state.wheels, WheelCalibration{});
   EXPECT_EQ(read->state.keyframes.size(), 3U);
@@ -199,6 +227,11 @@ TEST(SlamFile, AStateThatCannotBeIsRefusedByName) {
       {"calibration of the wheels: scale", [](State& s) { s.wheels.turn_variance = kNaN; }},
       {"calibration of the wheels: noise", [](State& s) { s.wheels.noise = 0.0; }},
       {"calibration of the wheels: number", [](State& s) { s.wheels.motions = -1.0; }},
+      {"motion: stamp", [](State& s) { s.motion->held_stamp.nanoseconds = -1; }},
+      {"motion: its key-frame", [](State& s) { s.motion->camera.reference = 3; }},
+      {"motion: pose", [](State& s) { s.motion->camera.T_reference_camera.linear().setZero(); }},
+      {"motion: covariance", [](State& s) { s.motion->camera.covariance(1, 1) = kNaN; }},
+      {"motion: odometry", [](State& s) { s.motion->odometry[2].T_odom_base.translation().x() = kNaN; }},
       {"link 1: joins", [](State& s) { s.links[1].from = 8; }},
   };
   for (const auto& [name, change] : faults) {
@@ -221,12 +254,15 @@ TEST(SlamFile, ErrorsNameFileVersionAndSection) {
 
   Bytes bytes = encode_slam_file(test::sample_file(1, 2));
   bytes.back() ^= 1U;
-  EXPECT_EQ(refusal(bytes), "is damaged: its section WHEE has another checksum than when it was written");
+  EXPECT_EQ(refusal(bytes), "is damaged: its section ODOM has another checksum than when it was written");
   SlamFile timeless = test::sample_file(1, 1);
   timeless.session = -1;
   EXPECT_EQ(refusal(encode_slam_file(timeless)), "has a session out of range");
+  SlamFile nameless = test::sample_file(1, 1);
+  nameless.landmark_ids.stretches = {{5, 10}, {4, 20}};
+  EXPECT_EQ(refusal(encode_slam_file(nameless)), "has published ids or an epoch out of range");
   bytes[8] = 9;
-  EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1 and 2");
+  EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1 to 3");
 }
 
 TEST(SlamFile, OldFileStaysWholeWhenThereIsNoSpace) {

@@ -17,8 +17,9 @@ using geometry::Matrix6d;
 using geometry::Pose;
 
 constexpr std::string_view kMagic = "LAPISLAM";
-constexpr std::uint32_t kFormatVersion = 2;
-constexpr std::uint32_t kWithoutWheels = 1;  // the previous version, which can still be read
+constexpr std::uint32_t kFormatVersion = 3;
+constexpr std::uint32_t kFirstWithWheels = 2;  // older versions can still be read
+constexpr std::uint32_t kFirstWithIds = 3;
 constexpr std::size_t kTagSize = 4;
 constexpr double kUnit16 = 32767.0;  // stands for a component of 1
 
@@ -66,6 +67,15 @@ void fields(auto& data, Is<WheelCalibration> auto& wheels) {
        wheels.motions);
 }
 
+void fields(auto& data, Is<PublishedIds::Stretch> auto& stretch) { data(stretch.index, stretch.id); }
+
+void fields(auto& data, Is<OdometryReading> auto& reading) { data(reading.stamp.nanoseconds, reading.T_odom_base); }
+
+void fields(auto& data, Is<SavedMotion> auto& motion) {
+  data(motion.stamp.nanoseconds, motion.camera.reference, motion.camera.T_reference_camera, motion.camera.covariance,
+       motion.held_stamp.nanoseconds, motion.odometry);
+}
+
 void sections(auto& section, Is<SlamFile> auto& file, std::uint32_t version) {
   auto& state = file.state;
   section("INFO", file.session, state.graph_version, state.reference, state.scale_factor);
@@ -74,7 +84,10 @@ void sections(auto& section, Is<SlamFile> auto& file, std::uint32_t version) {
   section("LAND", state.landmarks);
   section("EDGE", state.edges);
   section("LINK", state.links);
-  if (version > kWithoutWheels) section("WHEE", state.wheels);
+  if (version >= kFirstWithWheels) section("WHEE", state.wheels);
+  if (version < kFirstWithIds) return;
+  section("NAME", file.epoch, file.keyframe_ids.stretches, file.landmark_ids.stretches);
+  section("ODOM", state.motion);
 }
 
 class Encoder {
@@ -109,6 +122,11 @@ class Encoder {
     for (const T& value : values) put(value);
   }
   template <class T>
+  void put(const std::optional<T>& value) {
+    put(std::uint32_t{value.has_value()});
+    if (value) put(*value);
+  }
+  template <class T>
   void put(const SharedArray<T>& values) {
     put(static_cast<const std::vector<T>&>(values));
   }
@@ -120,12 +138,18 @@ class Encoder {
   files::ByteWriter& out_;
 };
 
+template <class T>
+T empty_element() {
+  if constexpr (std::same_as<T, Matrix6d>) return Matrix6d::Zero();  // else its numbers would not be initialised
+  return T{};
+}
+
 // Least number of bytes of an element: all numbers have fixed sizes, and lists may be empty.
 template <class T>
 std::size_t least_size() {
   static const std::size_t size = [] {
     files::ByteWriter out;
-    Encoder{out}(T{});
+    Encoder{out}(empty_element<T>());
     return out.bytes().size();
   }();
   return size;
@@ -168,6 +192,12 @@ class Decoder {
     if (count > in_.remaining() / least_size<T>()) return in_.fail();
     values.resize(count);
     for (std::size_t i = 0; i < count && in_.is_good(); ++i) get(values[i]);
+  }
+  template <class T>
+  void get(std::optional<T>& value) {
+    const std::uint32_t count = in_.u32();
+    if (count > 1) return in_.fail();
+    if (count == 1) get(value.emplace());
   }
   template <class T>
   void get(SharedArray<T>& values) {
@@ -252,10 +282,9 @@ std::optional<Content> check_header(std::span<const std::uint8_t> bytes, std::st
     return std::nullopt;
   }
   const std::uint32_t version = in.u32();
-  if (in.is_good() && (version == kFormatVersion || version == kWithoutWheels))
-    return Content{version, bytes.last(in.remaining())};
-  error = in.is_good() ? "has format version " + std::to_string(version) + ", this program reads " +
-                             std::to_string(kWithoutWheels) + " and " + std::to_string(kFormatVersion)
+  if (in.is_good() && version >= 1 && version <= kFormatVersion) return Content{version, bytes.last(in.remaining())};
+  error = in.is_good() ? "has format version " + std::to_string(version) + ", this program reads 1 to " +
+                             std::to_string(kFormatVersion)
                        : "is cut off";
   return std::nullopt;
 }
@@ -281,6 +310,14 @@ std::optional<SlamFile> decode_slam_file(std::span<const std::uint8_t> bytes, st
   if (!error.empty()) return std::nullopt;
   if (file.session < 0 || file.session > kLastStamp_ns) {
     error = "has a session out of range";
+    return std::nullopt;
+  }
+  const auto ids_are_sound = [](const PublishedIds& ids, std::size_t elements) {
+    return ids.are_sound() && ids.of(elements) < PublishedIds::kEnd;
+  };
+  if (file.epoch < 0 || file.epoch > kLastStamp_ns || !ids_are_sound(file.keyframe_ids, file.state.keyframes.size()) ||
+      !ids_are_sound(file.landmark_ids, file.state.landmarks.size())) {
+    error = "has published ids or an epoch out of range";
     return std::nullopt;
   }
   if (const auto fault = find_fault(file.state)) {

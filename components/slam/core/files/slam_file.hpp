@@ -7,12 +7,16 @@
 #include <vector>
 
 #include "slam/core/files/slam_state.hpp"
+#include "slam/core/map/published_ids.hpp"
 
 namespace lapis::slam {
 
 /// Everything in a slam.lapis file; docs/slam_file.md describes its layout.
 struct SlamFile {
   std::int64_t session = 0;  ///< session that wrote it
+  std::int64_t epoch = 0;    ///< of its landmarks
+  PublishedIds keyframe_ids;
+  PublishedIds landmark_ids;
   SlamState state;
 };
 

@@ -23,6 +23,7 @@ Fault first_fault(const std::vector<Part>& parts, const std::string& name, Check
   return std::nullopt;
 }
 
+bool is_stamp(time::Time stamp) { return stamp.nanoseconds >= 0 && stamp.nanoseconds <= kLastStamp_ns; }
 bool is_covariance(const Matrix6d& m) { return m.allFinite() && m.diagonal().minCoeff() >= 0.0; }
 
 Fault find_feature_fault(const Keyframe& keyframe, const Feature& feature) {
@@ -54,8 +55,7 @@ Fault find_link_fault(const Keyframe& keyframe, std::size_t landmarks) {
 }
 
 Fault find_keyframe_fault(const Keyframe& keyframe, std::size_t landmarks) {
-  const std::int64_t stamp_ns = keyframe.stamp.nanoseconds;
-  if (stamp_ns < 0 || stamp_ns > kLastStamp_ns) return "stamp out of range";
+  if (!is_stamp(keyframe.stamp)) return "stamp out of range";
   if (!geometry::is_valid(keyframe.camera)) return "invalid camera";
   if (!geometry::is_valid(keyframe.T_map_camera)) return "pose is no rigid transform";
   if (auto fault = find_link_fault(keyframe, landmarks)) return fault;
@@ -98,6 +98,18 @@ Fault find_wheel_fault(const WheelCalibration& wheels) {
   return std::nullopt;
 }
 
+Fault find_motion_fault(const SavedMotion& motion, std::size_t keyframes) {
+  if (!is_stamp(motion.stamp) || !is_stamp(motion.held_stamp)) return "stamp out of range";
+  if (motion.camera.reference >= keyframes) return "its key-frame does not exist";
+  if (!geometry::is_valid(motion.camera.T_reference_camera)) return "pose is no rigid transform";
+  if (!is_covariance(motion.camera.covariance)) return "covariance is not finite and positive";
+  const auto is_usable = [](const OdometryReading& reading) {
+    return is_stamp(reading.stamp) && geometry::is_valid(reading.T_odom_base);
+  };
+  if (!std::all_of(motion.odometry.begin(), motion.odometry.end(), is_usable)) return "odometry that is not valid";
+  return std::nullopt;
+}
+
 }  // namespace
 
 Fault find_fault(const SlamState& state) {
@@ -112,6 +124,7 @@ Fault find_fault(const SlamState& state) {
     if (state.keyframes[i].id != i) return "key-frame " + std::to_string(i) + ": wrong id";
   }
   if (auto fault = find_wheel_fault(state.wheels)) return "calibration of the wheels: " + *fault;
+  if (auto fault = state.motion ? find_motion_fault(*state.motion, keyframes) : Fault{}) return "motion: " + *fault;
   const auto check_keyframe = [&](const Keyframe& k) { return find_keyframe_fault(k, landmarks); };
   if (auto fault = first_fault(state.keyframes, "key-frame", check_keyframe)) return fault;
   if (auto fault = first_fault(state.landmarks, "landmark", find_landmark_fault)) return fault;

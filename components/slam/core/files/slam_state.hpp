@@ -9,6 +9,7 @@
 #include "slam/core/graph/pose_graph.hpp"
 #include "slam/core/map/keyframe_link.hpp"
 #include "slam/core/map/map.hpp"
+#include "slam/core/motion/motion_model.hpp"
 #include "slam/core/motion/wheel_calibration.hpp"
 
 namespace lapis::slam {
@@ -22,6 +23,14 @@ struct LandmarkState {
   double finest_distance_m = 0.0;                   ///< as in Landmark [m]
 };
 
+/// Where the camera was and how it got there: what leads on from a saved map within the same run.
+struct SavedMotion {
+  time::Time stamp;                       ///< of the pose that was found last
+  RelativeCamera camera;                  ///< that pose
+  time::Time held_stamp;                  ///< of the newest pose by vision or surfaces
+  std::vector<OdometryReading> odometry;  ///< since the newest key-frame, or longer
+};
+
 /// What RgbdSlam needs to resume a map, without what it can compute again.
 struct SlamState {
   double scale_factor = 0.0;  ///< FeatureConfig::scale_factor to which the features' octaves refer
@@ -33,6 +42,7 @@ struct SlamState {
   std::vector<KeyframeLink> links;
   std::vector<geometry::Matrix6d> covariances;  ///< of each key-frame's pose, as TrackingResult::map_covariance
   WheelCalibration wheels;                      ///< motions = 0: nothing was learnt
+  std::optional<SavedMotion> motion;            ///< of the same run; nothing in a later one, or before the first pose
 };
 
 /// Returns what is wrong with a state that did not come from RgbdSlam itself: ids that point nowhere, numbers that are

@@ -106,8 +106,9 @@ void FrontEnd::enter_keyframe(const Map& map, KeyframeId id) {
   renew(map);
 }
 
-void FrontEnd::resume(const Map& map, KeyframeId reference) {
-  is_placed_ = false;
+void FrontEnd::resume(const Map& map, KeyframeId reference, std::optional<time::Time> held_stamp) {
+  is_placed_ = held_stamp.has_value();
+  held_stamp_ = held_stamp;
   reference_ = reference;
   renew(map);
 }

@@ -52,10 +52,13 @@ class FrontEnd {
   void enter_keyframe(const Map& map, KeyframeId id);
   /// The map has changed.
   void renew(const Map& map) { tracker_.set_reference(map, reference_); }
-  /// The map is a saved one: there is no pose until the camera has been located in it.
-  void resume(const Map& map, KeyframeId reference);
+  /// The map is a saved one: there is no pose until the camera has been located in it, unless it is of this run and
+  /// odometry leads on from the newest pose by vision or surfaces, at `held_stamp`.
+  void resume(const Map& map, KeyframeId reference, std::optional<time::Time> held_stamp);
 
   KeyframeId reference() const { return reference_; }
+  /// Stamp of the newest pose by vision or surfaces.
+  std::optional<time::Time> held_stamp() const { return held_stamp_; }
   /// Compares frames with any key-frame.
   const Tracker& tracker() const { return tracker_; }
   /// Number of recognised places that were not believed because odometry contradicted them.

@@ -105,6 +105,7 @@ LandmarkTile LandmarkTiles::make_tile(const Map& map, const TileIndex& index,
 
 mapping::LandmarkState LandmarkTiles::state() const {
   return {0,
+          0,
           graph_version_,
           static_cast<std::uint32_t>(versions_.size()),
           versions_.checksum(),

@@ -29,7 +29,7 @@ class LandmarkTiles {
   /// observations is in exactly one tile: that of the position that was sent for it, which is at most `tolerance_m`
   /// from its present one. Positions that are not finite or beyond mapping::kMaxLandmarkCoordinate_m are left out.
   std::vector<mapping::LandmarkTile> update(const Map& map, std::uint64_t graph_version);
-  /// State after the last update; the caller sets its session.
+  /// State after the last update; the caller sets its session and epoch.
   mapping::LandmarkState state() const;
 
  private:

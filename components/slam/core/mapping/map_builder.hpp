@@ -22,8 +22,7 @@ struct Model {
 /// adjustment.
 class MapBuilder {
  public:
-  /// @param saved_keyframes number of those of a resumed map: their stamps are of an earlier run, so no odometry leads
-  ///   from them
+  /// @param saved_keyframes number of those whose stamps are of an earlier run, so that no odometry leads from them
   explicit MapBuilder(const SlamConfig& config, std::size_t saved_keyframes = 0)
       : config_(config), saved_keyframes_(saved_keyframes) {}
 

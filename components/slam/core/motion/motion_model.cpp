@@ -7,6 +7,11 @@ namespace lapis::slam {
 using geometry::Matrix6d;
 using geometry::Pose;
 
+void MotionModel::resume(time::Time stamp, const RelativeCamera& camera, std::span<const OdometryReading> odometry) {
+  last_ = Last{stamp, camera, geometry::Vector6d::Zero()};
+  odometry_.resume(odometry);
+}
+
 void MotionModel::update(const Map& map, time::Time stamp, const RelativeCamera& camera) {
   Last next{stamp, camera, geometry::Vector6d::Zero()};
   const double elapsed_s = last_ ? (stamp - last_->stamp).seconds() : 0.0;

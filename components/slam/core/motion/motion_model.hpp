@@ -1,7 +1,9 @@
 #pragma once
 
 #include <optional>
+#include <span>
 #include <utility>
+#include <vector>
 
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
@@ -28,6 +30,8 @@ class MotionModel {
 
   /// See OdometryTrack::add.
   bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base) { return odometry_.add(stamp, T_odom_base); }
+  /// Continues from a pose and odometry that were saved in the same run.
+  void resume(time::Time stamp, const RelativeCamera& camera, std::span<const OdometryReading> odometry);
   /// Call it when the pose of a frame was found.
   void update(const Map& map, time::Time stamp, const RelativeCamera& camera);
   /// T_map_camera that was found last, and its stamp; nothing before the first update.
@@ -55,6 +59,10 @@ class MotionModel {
   const WheelCalibration& wheels() const { return wheels_.belief(); }
   /// Stamp of the pose that was found last.
   std::optional<time::Time> last_stamp() const { return last_ ? std::optional(last_->stamp) : std::nullopt; }
+  /// The pose that was found last, relative to its key-frame.
+  std::optional<RelativeCamera> last_camera() const { return last_ ? std::optional(last_->camera) : std::nullopt; }
+  /// See OdometryTrack::readings.
+  std::vector<OdometryReading> odometry_readings() const { return odometry_.readings(); }
   /// Odometry before `stamp` will not be needed any more.
   void forget_before(time::Time stamp) { odometry_.forget_before(stamp); }
 

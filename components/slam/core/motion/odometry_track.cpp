@@ -55,15 +55,28 @@ bool OdometryTrack::add(time::Time stamp, const Pose& T_odom_base) {
     reading.turned_rad = readings_.back().turned_rad + geometry::rotation_angle(step.linear());
   }
   readings_.push_back(reading);
+  awaits_next_ = false;
   if (readings_.size() > kMostReadings) readings_.pop_front();
   return true;
+}
+
+void OdometryTrack::resume(std::span<const OdometryReading> saved) {
+  for (const OdometryReading& reading : saved) add(reading.stamp, reading.T_odom_base);
+  awaits_next_ = !readings_.empty();
+}
+
+std::vector<OdometryReading> OdometryTrack::readings() const {
+  std::vector<OdometryReading> result;
+  for (const Reading& reading : readings_) result.push_back({reading.stamp, reading.T_odom_base});
+  return result;
 }
 
 // Whether a robot can have moved there from the newest reading.
 bool OdometryTrack::continues(time::Time stamp, const Pose& T_odom_base) const {
   const double elapsed_s = (stamp - readings_.back().stamp).seconds();
   const Pose step = readings_.back().T_odom_base.inverse() * T_odom_base;
-  return elapsed_s <= config_.max_gap_s && step.translation().norm() <= config_.max_speed_m_s * elapsed_s &&
+  return elapsed_s <= (awaits_next_ ? kLongestOutage_s : config_.max_gap_s) &&
+         step.translation().norm() <= config_.max_speed_m_s * elapsed_s &&
          geometry::rotation_angle(step.linear()) <= config_.max_turn_rate_rad_s * elapsed_s;
 }
 

@@ -3,6 +3,8 @@
 #include <cstddef>
 #include <deque>
 #include <optional>
+#include <span>
+#include <vector>
 
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
@@ -19,6 +21,12 @@ struct OdometryMotion {
   double turned_rad = 0.0;                                     ///< sum of the turns, in both directions alike
 };
 
+/// What the robot reports at a stamp.
+struct OdometryReading {
+  time::Time stamp;
+  geometry::Pose T_odom_base = geometry::Pose::Identity();
+};
+
 /// By how many sigmas two independent measurements of the same motion disagree: the Mahalanobis length of
 /// log(T_odometry^-1 * T_from_to). Its root mean square is sqrt(6) when the covariances are honest.
 double disagreement(const OdometryMotion& odometry, const geometry::Pose& T_from_to,
@@ -32,6 +40,9 @@ class OdometryTrack {
 
   explicit OdometryTrack(const OdometryConfig& config) : config_(config), wheels_(WheelCalibrator(config).belief()) {}
 
+  /// Longest time without readings after which a saved track continues [s]: that of a restart.
+  static constexpr double kLongestOutage_s = 60.0;
+
   /// Readings that follow are corrected by this calibration, and covariances include its uncertainty and noise.
   void calibrate(const WheelCalibration& wheels) { wheels_ = wheels; }
 
@@ -40,6 +51,11 @@ class OdometryTrack {
   /// than OdometryConfig::max_gap_s, after a step faster than a robot can move (the odometry was reset), and when
   /// stamps go back by more than a second (the source was restarted). At most kMostReadings are kept.
   bool add(time::Time stamp, const geometry::Pose& T_odom_base);
+  /// Continues a track that was saved, if it is not empty. The next reading may come up to kLongestOutage_s after it:
+  /// between the two the robot is taken to have moved straight.
+  void resume(std::span<const OdometryReading> saved);
+  /// All readings that are kept, as received.
+  std::vector<OdometryReading> readings() const;
   /// Drops readings before `stamp`, except the one that interpolation at `stamp` may need.
   void forget_before(time::Time stamp);
 
@@ -65,6 +81,7 @@ class OdometryTrack {
   OdometryConfig config_;
   WheelCalibration wheels_;
   std::deque<Reading> readings_;
+  bool awaits_next_ = false;  // the newest reading is of before a restart
 };
 
 }  // namespace lapis::slam

@@ -41,7 +41,7 @@ class PlannerComponent {
 
  private:
   using Tracked = lapis_msgs::msg::TrackedFrame;
-  /// Session and version of the graph, then those of the landmarks.
+  /// Session and version of the graph, then epoch and version of the landmarks.
   using GraphVersions = std::tuple<std::int64_t, std::uint64_t, std::int64_t, std::uint64_t>;
 
   void serve();

@@ -347,8 +347,11 @@ void SemanticMapperComponent::follow_clock(time::Duration step) {
 
 /// The first map of the process resumes the saved one, if there is one that fits.
 std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t session) {
-  if (rebuilt_from_ && session != rebuilt_from_->session) {
+  const bool is_other_map =
+      resumed_ && !config_.resume_any_session && session != static_cast<std::int64_t>(note(*resumed_, "session"));
+  if (is_other_map || (rebuilt_from_ && session != rebuilt_from_->session)) {
     spdlog::warn("{} is of another session of slam; a new map begins", config_.resume_from);
+    resumed_.reset();
     rebuilt_from_.reset();
     rebuilt_.reset();
     forget_resumed();
@@ -365,20 +368,20 @@ std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t 
   return std::make_unique<SemanticMapper>(config_.map, std::move(resumed_->map));
 }
 
-/// Keeps the frames of the map that begins, in the file that it was rebuilt from if that is the one of this process.
+/// Keeps the frames of the map that begins, in the file that it was rebuilt from if that is the one of this process. A
+/// map with the counts of an earlier run cannot be rebuilt from its new frames, so none are kept: it is resumed from
+/// map.lapis.
 void SemanticMapperComponent::begin_journal(std::int64_t session) {
   if (!config_.keep_frames) return;
   const std::string file = disk_.path(kFramesFile);
-  std::error_code error;
-  if (rebuilt_from_ && std::filesystem::equivalent(file, config_.resume_from, error)) {
-    journal_.emplace(file, session, rebuilt_from_->end);
+  if (resumed_) {
+    spdlog::warn("{} holds counts without frames, so no frames are kept", config_.resume_from);
+    if (const auto problem = files::set_aside(file)) spdlog::error(*problem);
     return;
   }
-  if (const auto problem = files::set_aside(file)) spdlog::error(*problem);
-  journal_.emplace(file, session);
-  if (!resumed_ && !rebuilt_from_) return;
-  spdlog::warn("{} will hold new frames only: a map that is rebuilt from it lacks what {} holds", file,
-               config_.resume_from);
+  std::error_code error;
+  const bool continues = rebuilt_from_ && std::filesystem::equivalent(file, config_.resume_from, error);
+  journal_.emplace(file, session, continues ? rebuilt_from_->end : 0);
 }
 
 void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time stamp) {
@@ -572,6 +575,7 @@ void SemanticMapperComponent::finish() {
   }
   if (!disk_.is_kept()) return;
   if (const auto problem = save()) throw std::runtime_error(*problem);
+  if (journal_) journal_->remove();  // nobody has to rebuild a map that is whole
 }
 
 mapping::BeliefReader SemanticMapperComponent::belief_reader() const {

@@ -23,6 +23,7 @@ struct SemanticMapperComponentConfig {
   double obstacle_period_s = 0.06;  // each frame at 15 Hz; the controller stops when none come
   int re_anchor_work_per_cycle = 1'000'000;
   std::string resume_from;
+  bool resume_any_session = true;
   std::string output_dir;
   double save_period_s = 30.0;
   bool keep_frames = false;
@@ -60,6 +61,9 @@ void describe_output(Field& field, SemanticMapperComponentConfig& c) {
   field("resume_from", c.resume_from, config::anything(),
         "map.lapis of an earlier run, whose map the mapper resumes (set slam.resume_from, too), or frames.lapis of "
         "this session of slam, from which it rebuilds the map; empty: the mapper begins a new map");
+  field("resume_any_session", c.resume_any_session, config::anything(),
+        "whether the map of a map.lapis continues in a later session of slam, too; false: only in the session that "
+        "made it, else a new map begins");
   field("output_dir", c.output_dir, config::anything(),
         "folder for map.lapis, map.ot and map.ply; empty: the mapper saves no map");
   field("save_period_s", c.save_period_s, config::in_range(1.0, 86400.0),

@@ -20,8 +20,7 @@ LandmarkPublisher::LandmarkPublisher(runtime::Context& context, double period_s)
     : context_(context), tiles_(context.advertise(topics::kLandmarks)),
       state_(context.advertise(topics::kLandmarkState)), period_s_(period_s) {}
 
-void LandmarkPublisher::begin_session(std::int64_t session, std::int64_t epoch, const PublishedIds& keyframe_ids,
-                                      const PublishedIds& landmark_ids) {
+void LandmarkPublisher::begin_epoch(std::int64_t session, std::int64_t epoch, const PublishedIds& ids) {
   for (const mapping::TileIndex& index : published_) {
     mapping::LandmarkTile tile;
     tile.index = index;
@@ -30,8 +29,7 @@ void LandmarkPublisher::begin_session(std::int64_t session, std::int64_t epoch, 
   published_.clear();
   session_ = session;
   epoch_ = epoch;
-  keyframe_ids_ = keyframe_ids;
-  landmark_ids_ = landmark_ids;
+  ids_ = ids;
   landmarks_ = LandmarkTiles(LandmarkTileConfig{});
   forget_stamps();
   graph_version_ = 0;
@@ -55,8 +53,7 @@ void LandmarkPublisher::begin_version(const Map& map, std::uint64_t graph_versio
   std::size_t omitted = 0;
   for (auto& tile : tiles) {
     omitted += tile.omitted;
-    for (auto& id : tile.ids) id = static_cast<std::uint32_t>(landmark_ids_.of(id));
-    for (auto& id : tile.observers) id = static_cast<std::uint32_t>(keyframe_ids_.of(id));
+    for (auto& id : tile.observers) id = static_cast<std::uint32_t>(ids_.of(id));
     left_.push_back(std::move(tile));
   }
   if (omitted > 0) context_.status().count("landmarks left out: their tile is full (1 MiB)", omitted);

@@ -19,9 +19,9 @@ class LandmarkPublisher {
   /// `period_s`: least time between two versions, by the frames' stamps.
   LandmarkPublisher(runtime::Context& context, double period_s);
 
-  /// Begins a new map, whose landmarks are published under these ids; the tiles of the previous one end.
-  void begin_session(std::int64_t session, std::int64_t epoch, const PublishedIds& keyframe_ids,
-                     const PublishedIds& landmark_ids);
+  /// Begins with the landmarks of a map, all of which are published in a new epoch; `ids` are those of its key-frames.
+  /// The tiles that were published before end.
+  void begin_epoch(std::int64_t session, std::int64_t epoch, const PublishedIds& ids);
   /// True when `graph_version` is new, the previous version is out, and the period is over or no frames follow.
   bool wants(std::uint64_t graph_version, time::Time stamp, bool is_final) const;
   /// The clock of the frames was set, so no time since the last version is known.
@@ -45,9 +45,9 @@ class LandmarkPublisher {
 
   std::int64_t session_ = 0;
   std::int64_t epoch_ = 0;
-  PublishedIds keyframe_ids_, landmark_ids_;
+  PublishedIds ids_;
   LandmarkTiles landmarks_{LandmarkTileConfig{}};
-  std::set<mapping::TileIndex> published_;  // in this session
+  std::set<mapping::TileIndex> published_;  // in this epoch
   std::optional<time::Time> version_stamp_;
   std::uint64_t graph_version_ = 0;         // of the version begun last
   std_msgs::msg::Header header_;            // of that version

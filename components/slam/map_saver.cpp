@@ -7,7 +7,7 @@ namespace lapis::slam {
 
 namespace {
 
-constexpr int kLongestShare = 20;  // the time from one save to the next is at least so many times what a save takes
+constexpr int kPeriodPerSave = 20;  // shortest time from one save to the next, in times of what a save takes
 
 }  // namespace
 
@@ -35,7 +35,7 @@ std::optional<MapSaver::Save> MapSaver::wait() {
 }
 
 MapSaver::Save MapSaver::note(Save save) {
-  next_ = began_ + kLongestShare * (save.ended - began_);
+  next_ = began_ + kPeriodPerSave * (save.ended - began_);
   return save;
 }
 

@@ -21,6 +21,7 @@ constexpr std::size_t kEarlyReadings = 1000;
 constexpr int kMostDoubtfulFrames = 15;  // about as many as a recognised place needs to be confirmed, several times
 constexpr double kFarewell_s = 1.0;
 constexpr double kLongestSave_s = 600.0;
+constexpr double kOldestMotion_s = 10.0;
 constexpr const char* kGraphFile = "pose_graph.g2o";
 constexpr const char* kKeyframesFile = "keyframes.txt";
 constexpr const char* kMapFile = "slam.lapis";
@@ -122,7 +123,7 @@ bool SlamComponent::prepare(const JoinedFrame& first) {
   for (const auto& [stamp, T_odom_base] : early_odometry_) slam_->add_odometry(stamp, T_odom_base);
   early_odometry_.clear();
   graph_version_ = 0;
-  landmarks_.begin_session(session_, epoch_, keyframe_ids_, landmark_ids_);
+  landmarks_.begin_epoch(session_, epoch_, keyframe_ids_);
   return true;
 }
 
@@ -134,14 +135,11 @@ void SlamComponent::name_map(time::Time first_stamp) {
   epoch_ = continues ? std::max(first_stamp.nanoseconds, epoch_ + 1) : session_;
   frame_.session = session_;
   keyframe_ids_ = resumed_ ? resumed_->keyframe_ids : PublishedIds{};
-  landmark_ids_ = resumed_ ? resumed_->landmark_ids : PublishedIds{};
   if (!resumed_) return;
-  if (!continues) {
-    resumed_->state.motion.reset();
-    return;
-  }
+  auto& motion = resumed_->state.motion;
+  if (motion && (!continues || first_stamp <= motion->stamp)) motion.reset();  // of another run, or another clock
+  if (!continues) return;
   keyframe_ids_.skip(resumed_->state.keyframes.size());
-  landmark_ids_.skip(resumed_->state.landmarks.size());
   resumed_->state.graph_version += PublishedIds::kSkipped;
   spdlog::info("session {} continues", session_);
 }
@@ -155,14 +153,23 @@ std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
   return slam;
 }
 
-void SlamComponent::track(const JoinedFrame& joined) {
-  auto frame = input_.convert(joined);
-  if (!frame) return drop(joined.stamp, frame.reason);
-  if (saved_camera_ && !is_same_camera(*saved_camera_, frame->camera)) {
+/// Refuses the resumed map of another camera. Else its new names are saved before anything is published under them: if
+/// this process dies, too, the next one must not use them again.
+void SlamComponent::accept_saved_map(const geometry::PinholeCamera& camera) {
+  if (!is_same_camera(*saved_camera_, camera)) {
     throw runtime::BadSetup(disk_.misfit("was made with another camera, of " + std::to_string(saved_camera_->width) +
                                          " x " + std::to_string(saved_camera_->height) + " px"));
   }
   saved_camera_.reset();
+  if (!disk_.is_kept()) return;
+  const runtime::LongWork work(context_.heart(), "saves the resumed map", kLongestSave_s);
+  note_save(write_slam_file(disk_.path(kMapFile), saved_map()));
+}
+
+void SlamComponent::track(const JoinedFrame& joined) {
+  auto frame = input_.convert(joined);
+  if (!frame) return drop(joined.stamp, frame.reason);
+  if (saved_camera_) accept_saved_map(frame->camera);
   ++frames_total_;
   frame_.stamp = joined.stamp;
   frame->stamp = clock_.advance(joined.stamp, time::Arrival::clock::now());
@@ -363,11 +370,16 @@ void SlamComponent::report_waiting() {
 }
 
 /// Saves the map periodically in a separate thread, so that no frame waits for the disk. A failed save is tried again
-/// after the next period, and the old file stays as it was.
+/// after the next period, and the old file stays as it was. A map that does not change is saved, too, where there is
+/// odometry, because a restarted slam can only lead on from a recent pose.
 void SlamComponent::autosave() {
   if (const auto save = saver_.take_finished()) note_save(save->problem);
-  if (!disk_.is_due(frame_.stamp) || !saver_.is_free() || slam_->graph_version() == saved_version_) return;
+  if (!disk_.is_due(frame_.stamp) || !saver_.is_free()) return;
+  const bool has_changed = slam_->graph_version() != saved_version_;
+  const bool is_old = slam_->wheels() && (frame_.stamp - saved_stamp_).seconds() >= kOldestMotion_s;
+  if (!has_changed && !is_old) return;
   disk_.note_save(frame_.stamp);
+  saved_stamp_ = frame_.stamp;
   saved_version_ = slam_->graph_version();
   saver_.begin(disk_.path(kMapFile), saved_map());
 }
@@ -391,7 +403,7 @@ PoseGraphSnapshot SlamComponent::published_graph() const {
   return graph;
 }
 
-SlamFile SlamComponent::saved_map() const { return {session_, epoch_, keyframe_ids_, landmark_ids_, slam_->state()}; }
+SlamFile SlamComponent::saved_map() const { return {session_, epoch_, keyframe_ids_, slam_->state()}; }
 
 void SlamComponent::finish() {
   spdlog::info("{} of {} frames tracked, {} dropped", frames_tracked_, frames_total_, frames_dropped_);

@@ -35,6 +35,7 @@ class SlamComponent {
   bool prepare(const JoinedFrame& first);
   std::unique_ptr<RgbdSlam> begin_map();
   void name_map(time::Time first_stamp);
+  void accept_saved_map(const geometry::PinholeCamera& camera);
   void track(const JoinedFrame& joined);
   void add_mount(const tf2_msgs::msg::TFMessage& message);
   void add_odometry(const nav_msgs::msg::Odometry& message);
@@ -79,9 +80,8 @@ class SlamComponent {
   SlamClock clock_;
   std::optional<int> doubtful_frames_;  // since the camera's clock was set, until the map is known to be still right
   std::int64_t session_ = -1;
-  std::int64_t epoch_ = -1;    // of the landmarks; grows with each map, and with each process that publishes one
-  PublishedIds keyframe_ids_;  // of the map
-  PublishedIds landmark_ids_;
+  std::int64_t epoch_ = -1;  // of the landmarks; grows with each map, and with each process that publishes one
+  PublishedIds keyframe_ids_;
   bool has_odometry_ = false;                                       // somebody else publishes odom -> base_link
   std::optional<std::pair<time::Time, geometry::Pose>> last_pose_;  // T_map_base
   std::optional<time::Time> graph_stamp_;
@@ -92,6 +92,7 @@ class SlamComponent {
   runtime::SavedMap disk_;
   MapSaver saver_;
   std::uint64_t saved_version_ = 0;  // of the graph, handed to the saver last
+  time::Time saved_stamp_;           // of the frame then
   std::string save_problem_;         // of the newest save, if any
   std::uint64_t frames_total_ = 0;
   std::uint64_t frames_tracked_ = 0;

@@ -329,10 +329,18 @@ bool Supervisor::restart(Process& process, int status, const std::string& why) {
                            std::to_string(process.restarts) + " of " + std::to_string(times) + ")\n";
   std::cerr << line << std::flush;
   std::ofstream(folder_.log(process.name), std::ios::app) << line;
-  const auto resume = system_.restart.resume.find(process.name);
-  const bool resumes = resume != system_.restart.resume.end() && exists(folder_.path() / resume->second.file);
-  start(process, resumes ? with_run_folder(resume->second.settings, folder_.path()) : Settings{});
+  start(process, settings_to_resume(process.name));
   return true;
+}
+
+/// Settings with which a restarted process resumes; none when there is nothing to resume.
+Settings Supervisor::settings_to_resume(const std::string& process) const {
+  const auto ways = system_.restart.resume.find(process);
+  if (ways == system_.restart.resume.end()) return {};
+  for (const Resume& way : ways->second) {
+    if (exists(folder_.path() / way.file)) return with_run_folder(way.settings, folder_.path());
+  }
+  return {};
 }
 
 /// Ends the source first, then the others in the order of their start: a process that collects what others publish at

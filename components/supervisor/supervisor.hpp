@@ -71,6 +71,7 @@ class Supervisor {
 
   // The run
   void start(Process& process, const Settings& more = {});
+  Settings settings_to_resume(const std::string& process) const;
   bool start_all();
   void wait_until_over();
   void look_after(Process& process);

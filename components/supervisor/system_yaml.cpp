@@ -78,7 +78,10 @@ RestartPolicy restart_policy(const YAML::Node& node) {
   read_section(node, {{"times", [&](const auto& n) { out.times = n.template as<int>(); }},
                       {"settings", [&](const auto& n) { out.settings = settings(n); }},
                       {"resume", [&](const auto& n) {
-                         for_each(n, [&](const auto& name, const auto& value) { out.resume[name] = resume(value); });
+                         for_each(n, [&](const auto& name, const auto& ways) {
+                           if (!ways.IsSequence()) reject(ways, "give a list of files with settings");
+                           for (const auto& way : ways) out.resume[name].push_back(resume(way));
+                         });
                        }}});
   return out;
 }

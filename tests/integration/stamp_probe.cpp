@@ -1,8 +1,8 @@
 // Prints a line per sample of the chain's topics, so that a test written in a script can see what is published:
 //   TOPIC stamp_s DETAIL
-// with the number of the session (/slam/frame), the id of a new key-frame (keyframe), the number of the integrated frames (map_state), the process, its number of frames
-// and its name with the namespace (/diagnostics), or x and y (truth: /ground_truth/odom) [m]; and with the time of its
-// arrival [s, steady clock] in the stamp's place
+// with the number of the session (/slam/frame), the id of a new key-frame (keyframe), the number of the integrated
+// frames (map_state), the process, its number of frames and its name with the namespace (/diagnostics), or x and y
+// (truth: /ground_truth/odom) [m]; and with the time of its arrival [s, steady clock] in the stamp's place
 //   arrived arrival_s pose|map|path|command [FORWARD TURN]
 // for what the robot must not move without, and for /cmd_vel [m/s, rad/s]. It saves the map when SIGUSR1 comes and
 // prints the answer. It ends on SIGTERM.

@@ -22,7 +22,7 @@ struct LandmarkTile {
   TileIndex index;
   std::uint64_t graph_version = 0;           ///< version of the pose graph at which the tile last changed
   std::uint32_t omitted = 0;                 ///< number of landmarks that did not fit into kMaxLandmarkTileBytes
-  std::vector<std::uint32_t> ids;            ///< ascending, unique in a session
+  std::vector<std::uint32_t> ids;            ///< ascending, unique in an epoch
   std::vector<Eigen::Vector3f> positions_m;  ///< in the map frame, one per id; rounding error |coordinate| * 2^-24
   /// Key-frames that observe landmark i are observers[observer_ends[i - 1]] to observers[observer_ends[i] - 1],
   /// starting at 0 for i = 0: at least one, in ascending order.

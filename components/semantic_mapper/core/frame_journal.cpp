@@ -37,8 +37,8 @@ std::string find_fault(const FrameRecord& record, std::span<const std::uint8_t> 
   const auto is_sigma = [](double value) { return std::isfinite(value) && value >= 0.0; };
   const std::int64_t stamp_ns = record.stamp.nanoseconds;
   if (stamp_ns < 0 || stamp_ns > kLastStampNs) return "its stamp is out of range";
-  if (!geometry::is_valid(record.T_keyframe_camera) || !geometry::is_valid(record.T_map_keyframe))
-    return "its pose is not valid";
+  for (const geometry::Pose& T : {record.T_keyframe_camera, record.T_map_keyframe, record.T_map_previous})
+    if (!geometry::is_valid(T)) return "its pose is not valid";
   if (!is_sigma(record.drift.position_m) || !is_sigma(record.drift.rotation_rad)) return "its drift is no sigma";
   const auto size = mapping::zstd_content_size(packed);
   if (!size) return "its samples are not packed";
@@ -64,6 +64,9 @@ std::vector<std::uint8_t> encode_payload(const FrameRecord& record, std::span<co
   out.u64(record.keyframe_id);
   write_pose(record.T_keyframe_camera, out);
   write_pose(record.T_map_keyframe, out);
+  out.u64(record.known_since);
+  out.u64(record.previous_id);
+  write_pose(record.T_map_previous, out);
   out.u64(record.graph_version);
   out.f64(record.drift.position_m);
   out.f64(record.drift.rotation_rad);
@@ -80,6 +83,9 @@ bool visit_payload(std::span<const std::uint8_t> payload, const JournalVisitor& 
   record.keyframe_id = in.u64();
   record.T_keyframe_camera = read_pose(in);
   record.T_map_keyframe = read_pose(in);
+  record.known_since = in.u64();
+  record.previous_id = in.u64();
+  record.T_map_previous = read_pose(in);
   record.graph_version = in.u64();
   record.drift.position_m = in.f64();
   record.drift.rotation_rad = in.f64();
@@ -192,6 +198,13 @@ FrameJournal::~FrameJournal() { close(); }
 void FrameJournal::close() {
   if (file_ >= 0) ::close(file_);
   file_ = -1;
+}
+
+void FrameJournal::remove() {
+  close();
+  std::error_code error;
+  std::filesystem::remove(path_, error);
+  end_ = 0;
 }
 
 std::string FrameJournal::reason(const char* what) const {

@@ -47,6 +47,9 @@ class FrameJournal {
   /// the file; the file then ends with the frame before, and the next frame is appended there.
   [[nodiscard]] std::optional<std::string> append(const FrameRecord& record, std::span<const std::uint8_t> packed);
 
+  /// Removes the file.
+  void remove();
+
  private:
   std::optional<std::string> open();
   std::optional<std::string> write(std::span<const std::uint8_t> bytes);

@@ -96,8 +96,7 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   if (stakes_) stakes_->add(stored.keyframe_id, position_of_keyframe(stored), votes);
   p_map_robot_ = T_map_camera.translation();
   ++frames_integrated_;
-  newest_ = {input.stamp,    input.keyframe_id, input.T_keyframe_camera, keyframe_poses_.at(input.keyframe_id),
-             graph_version_, input.drift,       input.is_keyframe,       is_held(input.keyframe_id)};
+  newest_ = record_of(input);
   if (config_.re_anchor) store(std::move(stored), input.frame, votes);
   if (input.drift.is_none()) return {IntegrationStatus::kIntegrated, std::move(votes)};
   mapping::FrameVotes whole = votes_of(input.frame, T_map_camera);
@@ -105,8 +104,28 @@ IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
   return {IntegrationStatus::kIntegrated, std::move(whole)};
 }
 
+FrameRecord SemanticMapper::record_of(const AnchoredFrame& frame) const {
+  const auto keyframe = keyframe_poses_.find(frame.keyframe_id);
+  const auto previous = keyframe == keyframe_poses_.begin() ? keyframe : std::prev(keyframe);
+  return {frame.stamp,
+          keyframe->first,
+          frame.T_keyframe_camera,
+          keyframe->second,
+          known_since_.at(keyframe->first),
+          previous->first,
+          previous->second,
+          graph_version_,
+          frame.drift,
+          frame.is_keyframe,
+          is_held(keyframe->first)};
+}
+
 bool SemanticMapper::restore(const FrameRecord& record, mapping::CompactFrame samples) {
   graph_version_ = std::max(graph_version_, record.graph_version);
+  // Both are poses of one instant, so that what lies between them is known should the graph have lost the key-frame.
+  if (record.previous_id != record.keyframe_id) move_keyframe(record.previous_id, record.T_map_previous);
+  known_since_.try_emplace(record.previous_id, record.known_since);
+  known_since_.try_emplace(record.keyframe_id, record.known_since);
   apply({record.keyframe_id, record.T_map_keyframe, !record.is_held});
   const IntegrationReport report =
       integrate({record.stamp, record.keyframe_id, record.T_map_keyframe, record.T_keyframe_camera, graph_version_,

@@ -65,6 +65,9 @@ struct FrameRecord {
   std::uint64_t keyframe_id = 0;
   geometry::Pose T_keyframe_camera = geometry::Pose::Identity();
   geometry::Pose T_map_keyframe = geometry::Pose::Identity();  ///< as the map had it
+  std::uint64_t known_since = 0;                               ///< version of the graph that has the key-frame
+  std::uint64_t previous_id = 0;  ///< newest older key-frame that the map had; the key-frame itself if it had none
+  geometry::Pose T_map_previous = geometry::Pose::Identity();  ///< as the map had it then
   std::uint64_t graph_version = 0;                             ///< newest one that the map had followed
   mapping::Drift drift = {};
   bool is_keyframe = false;  ///< it is its own reference
@@ -199,6 +202,7 @@ class SemanticMapper {
   mapping::FrameVotes votes_of(const mapping::CompactFrame& samples, const geometry::Pose& T_map_camera,
                                const mapping::Drift& drift = {}) const;
   void store(StoredFrame frame, const mapping::CompactFrame& samples, const mapping::FrameVotes& votes);
+  FrameRecord record_of(const AnchoredFrame& frame) const;
   void keep_rest(std::uint64_t keyframe_id, const mapping::FrameVotes& whole);
   void apply(const KeyframePose& pose);
   void find_orphans(std::span<const KeyframePose> poses);
@@ -224,7 +228,7 @@ class SemanticMapper {
   Eigen::Vector3d p_map_robot_ = Eigen::Vector3d::Zero();  ///< camera of the newest frame
 
   std::uint64_t graph_version_ = 0;
-  std::unordered_map<std::uint64_t, geometry::Pose> keyframe_poses_;
+  std::map<std::uint64_t, geometry::Pose> keyframe_poses_;
   std::unordered_map<std::uint64_t, std::uint64_t> known_since_;  ///< of the same key-frames: a version that has it
   std::map<std::uint64_t, Orphan> orphans_;  ///< by id: an anchor that is lost as well moves before what follows it
   std::unordered_map<std::uint64_t, std::vector<std::size_t>> frames_of_keyframe_;

@@ -60,10 +60,10 @@ class RgbdSlam::Implementation {
     if (const auto& last = state.motion) {
       motion_.resume(last->stamp, last->camera, last->odometry);
       has_odometry_ = !last->odometry.empty();
-      front_end_.resume(map_, state.reference, last->held_stamp);
+      front_end_.resume(map_, state.reference, last->held_stamp, has_odometry_);
     } else {
       builder_ = MapBuilder(config, map_.keyframes().size());
-      front_end_.resume(map_, state.reference, std::nullopt);
+      front_end_.resume(map_, state.reference, std::nullopt, false);
     }
     must_optimize_ = graph_.count(EdgeType::kLoopClosure) > 0;  // an optimisation may have been under way
     optimize();

@@ -16,7 +16,7 @@ struct Setting {
 };
 using Settings = std::vector<Setting>;
 
-/// Settings with which a restarted process resumes, when the file exists in the run folder.
+/// Settings with which a restarted process resumes when the file exists in the run folder.
 struct Resume {
   std::string file;
   Settings settings;
@@ -24,9 +24,9 @@ struct Resume {
 
 /// How processes that die or hang are restarted; only with --restart.
 struct RestartPolicy {
-  int times = 0;      ///< largest number of restarts of each process
-  Settings settings;  ///< additional settings of a run that may restart processes
-  std::map<std::string, Resume> resume;
+  int times = 0;                                      ///< largest number of restarts of each process
+  Settings settings;                                  ///< additional settings of a run that may restart processes
+  std::map<std::string, std::vector<Resume>> resume;  ///< the first whose file exists counts
 };
 
 /// A variant of the run, selected with --variant.

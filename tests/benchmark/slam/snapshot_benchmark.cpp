@@ -137,7 +137,7 @@ class Snapshots {
   explicit Snapshots(runtime::Context& context)
       : frames_(context.advertise(topics::kTrackedFrame)), graph_(context.advertise(topics::kPoseGraph)),
         path_(context.advertise(topics::kKeyframePath)), landmarks_(context, kLandmarkPeriod_s) {
-    landmarks_.begin_session(1, 1, {}, {});
+    landmarks_.begin_epoch(1, 1, {});
     frame_.optical_frame = "camera_color_optical_frame";
     frame_.session = 1;
   }

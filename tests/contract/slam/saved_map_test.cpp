@@ -5,6 +5,8 @@
 #include <csignal>
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <utility>
 
 #include "common/files/atomic_file.hpp"
 #include "common/messages/geometry.hpp"
@@ -78,6 +80,7 @@ class Slam {
   const std::vector<lapis_msgs::msg::TrackedFrame>& frames = probe_.collect(topics::kTrackedFrame);
   const std::vector<lapis_msgs::msg::PoseGraph>& graphs = probe_.collect(topics::kPoseGraph);
   const std::vector<nav_msgs::msg::Odometry>& odometry = probe_.collect(topics::kSlamOdometry);
+  const std::vector<lapis_msgs::msg::LandmarkState>& landmark_states = probe_.collect(topics::kLandmarkState);
 
  private:
   const std::vector<diagnostic_msgs::msg::DiagnosticArray>& diagnostics_ = probe_.collect(topics::kDiagnostics);
@@ -176,6 +179,39 @@ TEST_F(SavedMap, OfAKilledProcessIsTheOneThatItSavedByItself) {
   Slam run(folder_.path(), {resume()});
   ASSERT_TRUE(run.is_ready()) << run.log();
   ASSERT_TRUE(run.finds_its_place(index)) << run.frames.back().reason() << run.log();
+}
+
+// It dies three times; the second time before it has saved anything by itself.
+TEST_F(SavedMap, ContinuesInItsSessionAndNoIdMeansTwoThings) {
+  std::set<std::int64_t> sessions, epochs;
+  std::set<std::uint64_t> ids;
+  std::uint64_t last_version = 0;
+  int index = 0;
+  const std::string continues = "slam.resume_session=true", never = "slam.autosave_period_s=0";
+  for (const auto& settings : std::vector<std::vector<std::string>>{
+           {"slam.autosave_period_s=0.3"}, {resume(), continues, never}, {resume(), continues, never}}) {
+    Slam run(folder_.path(), settings);
+    ASSERT_TRUE(run.is_ready()) << run.log();
+    const std::size_t known = ids.size();
+    ASSERT_TRUE(run.wait_until([&] {
+      if (!run.answers(run.frame(index), index)) return false;
+      ++index;
+      const auto& frame = run.frames.back();
+      sessions.insert(frame.session());
+      const bool is_new = !frame.is_keyframe() || ids.insert(frame.keyframe_id()).second;
+      EXPECT_TRUE(is_new) << frame.keyframe_id();
+      EXPECT_GE(frame.graph_version(), last_version);
+      return ids.size() >= known + 2 && !run.landmark_states.empty() && fs::exists(file());
+    })) << run.log();
+    ASSERT_TRUE(run.wait_until([&] { return !run.graphs.empty(); }));
+    EXPECT_GT(run.graphs.back().version(), std::exchange(last_version, run.frames.back().graph_version()));
+    EXPECT_TRUE(epochs.insert(run.landmark_states.back().epoch()).second);
+    EXPECT_EQ(run.landmark_states.back().epoch(), *epochs.rbegin()) << "epochs grow";
+    run.slam().signal(SIGKILL);
+    EXPECT_EQ(run.slam().wait(), -SIGKILL);
+  }
+  EXPECT_EQ(sessions.size(), 1U);
+  EXPECT_GT(*ids.rbegin(), 2'000'000U) << "each restart skips a million";
 }
 
 TEST_F(SavedMap, ThatCannotBeWrittenIsCountedAndTrackingContinues) {

@@ -33,7 +33,8 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::int64_t kSession = 1'700'000'000'000'000'001;
 constexpr std::size_t kHeaderSize = 24, kRecordHeaderSize = 8;
 // Of fields in the payload of a record.
-constexpr std::size_t kStampAt = 0, kRotationAt = 16, kPoseAt = 112, kDriftAt = 216, kFlagsAt = 232, kSamplesAt = 233;
+constexpr std::size_t kStampAt = 0, kRotationAt = 16, kPoseAt = 112, kPreviousAt = 224, kDriftAt = 328, kFlagsAt = 344;
+constexpr std::size_t kSamplesAt = 345;
 
 struct KeptFrame {
   FrameRecord record;
@@ -57,6 +58,9 @@ KeptFrame tiny_frame(std::mt19937& random) {
   record.keyframe_id = random();
   record.T_keyframe_camera = random_pose(random, 2.0);
   record.T_map_keyframe = random_pose(random, 2.0);
+  record.known_since = random();
+  record.previous_id = random();
+  record.T_map_previous = random_pose(random, 2.0);
   record.graph_version = random();
   record.drift = {static_cast<double>(random() % 3) * 0.1, static_cast<double>(random() % 3) * 0.01};
   record.is_keyframe = random() % 2 == 0;
@@ -70,6 +74,9 @@ void expect_same(const KeptFrame& a, const KeptFrame& b) {
   EXPECT_EQ(a.record.keyframe_id, b.record.keyframe_id);
   EXPECT_EQ(a.record.T_keyframe_camera.matrix(), b.record.T_keyframe_camera.matrix());
   EXPECT_EQ(a.record.T_map_keyframe.matrix(), b.record.T_map_keyframe.matrix());
+  EXPECT_EQ(a.record.known_since, b.record.known_since);
+  EXPECT_EQ(a.record.previous_id, b.record.previous_id);
+  EXPECT_EQ(a.record.T_map_previous.matrix(), b.record.T_map_previous.matrix());
   EXPECT_EQ(a.record.graph_version, b.record.graph_version);
   EXPECT_EQ(a.record.drift, b.record.drift);
   EXPECT_EQ(a.record.is_keyframe, b.record.is_keyframe);
@@ -255,6 +262,7 @@ TEST_F(FrameJournalFile, ImpossibleContentWithARightChecksumEndsIt) {
   expect_end_before("negative stamp", with_number(kStampAt, -1.0));
   expect_end_before("stretched pose", with_number(kRotationAt, 2.0));
   expect_end_before("pose without a number", with_number(kPoseAt, std::nan("")));
+  expect_end_before("previous pose without a number", with_number(kPreviousAt, std::nan("")));
   expect_end_before("negative drift", with_number(kDriftAt, -0.1));
   expect_end_before("endless drift", with_number(kDriftAt + 8, std::numeric_limits<double>::infinity()));
   Bytes flags = sound;

@@ -372,6 +372,32 @@ TEST(SemanticMapper, KeyframesFollowOneThatIsLostAsWell) {
   expect_moved(mapper, 0, 8, kStep);
 }
 
+// Slam and the mapper die together. Before, a loop closure had moved all key-frames; the older ones had no frame since.
+TEST(SemanticMapper, KeyframesThatTheGraphHasLostFollowInARestoredMapperAsInTheOneBefore) {
+  SemanticMapper before({}), restored({});
+  std::vector<KeyframePose> closed = tour().keyframes;
+  for (KeyframePose& pose : closed) pose.T_map_keyframe = kStep * pose.T_map_keyframe;
+  for (std::size_t i = 0; i < tour().frames.size(); ++i) {
+    AnchoredFrame frame = tour().frames[i];
+    const bool is_late = i >= 35;  // those of the last key-frame
+    frame.graph_version = is_late ? 9 : 1;
+    if (is_late) frame.T_map_keyframe = kStep * frame.T_map_keyframe;
+    if (i == 35) before.update_keyframe_poses(8, std::span(closed).first(7));
+    const mapping::CompactFrame samples = frame.frame;
+    ASSERT_EQ(before.integrate(std::move(frame)).status, IntegrationStatus::kIntegrated);
+    ASSERT_TRUE(restored.restore(*before.newest_record(), samples));
+  }
+  restored.update_keyframe_poses(8, std::span(closed).first(7));  // does not have the newest key-frame yet
+  restored.flush();
+  before.flush();
+  EXPECT_EQ(restored.map(), before.map());
+  for (SemanticMapper* mapper : {&before, &restored})
+    mapper->update_keyframe_poses(1'000'008, std::span(closed).first(7));
+  restored.flush();
+  EXPECT_EQ(restored.map(), before.map()) << "what lies between the lost key-frame and the one before is as it was";
+  expect_moved(restored, 0, 8, kStep);
+}
+
 TEST(SemanticMapper, FrozenMapNeverMovesAndStoresNoFrames) {
   MapperConfig config;
   config.re_anchor = false;

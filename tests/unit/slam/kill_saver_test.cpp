@@ -34,9 +34,9 @@ struct SavedRun {
     RgbdSlam slam({}, test::room_path(0));
     for (int i = 0; i < kKillFrames; ++i) {
       slam.process(kill_frame(i));
-      if (i == kKillFrames / 2) early = {1, 1, {}, {}, slam.state()};
+      if (i == kKillFrames / 2) early = {1, 1, {}, slam.state()};
     }
-    late = {1, 1, {}, {}, slam.state()};
+    late = {1, 1, {}, slam.state()};
   }
   SlamFile early, late;
 };

@@ -63,7 +63,6 @@ SlamFile sample_file(unsigned seed, std::size_t keyframes, int features) {
   file.session = 123'456'789;
   file.epoch = 123'456'790;
   file.keyframe_ids.skip(keyframes / 2);
-  file.landmark_ids.skip(keyframes);
   SlamState& state = file.state;
   state.scale_factor = 1.3;
   state.graph_version = keyframes + 2;

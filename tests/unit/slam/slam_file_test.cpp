@@ -87,7 +87,6 @@ TEST(SlamFile, ReadEqualsWritten) {
   EXPECT_EQ(a.wheels, b.wheels);
   EXPECT_EQ(read->epoch, file.epoch);
   EXPECT_EQ(read->keyframe_ids.stretches, file.keyframe_ids.stretches);
-  EXPECT_EQ(read->landmark_ids.stretches, file.landmark_ids.stretches);
   ASSERT_TRUE(a.motion);
   EXPECT_EQ(a.motion->stamp, b.motion->stamp);
   EXPECT_EQ(a.motion->held_stamp, b.motion->held_stamp);
@@ -114,7 +113,6 @@ TEST(SlamFile, AMapOfTheSecondVersionHasTheIdsOfItsElementsAndNoMotion) {
   const auto read = decode_slam_file(older_version(2, "NAME"), error);
   ASSERT_TRUE(read) << error;
   EXPECT_EQ(read->keyframe_ids.of(2), 2U);
-  EXPECT_EQ(read->landmark_ids.of(5), 5U);
   EXPECT_FALSE(read->state.motion);
   EXPECT_NE(read->state.wheels, WheelCalibration{});
 }
@@ -259,7 +257,7 @@ TEST(SlamFile, ErrorsNameFileVersionAndSection) {
   timeless.session = -1;
   EXPECT_EQ(refusal(encode_slam_file(timeless)), "has a session out of range");
   SlamFile nameless = test::sample_file(1, 1);
-  nameless.landmark_ids.stretches = {{5, 10}, {4, 20}};
+  nameless.keyframe_ids.stretches = {{5, 10}, {4, 20}};
   EXPECT_EQ(refusal(encode_slam_file(nameless)), "has published ids or an epoch out of range");
   bytes[8] = 9;
   EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1 to 3");

@@ -54,12 +54,15 @@ TEST_F(SystemFile, EverythingIsRead) {
       "processes: [mind, eye]\nsource: eye\nstages: [mind]\nsilence_s: 3\nshows: mind\n"
       "settings: {eye.names: [a, b], mind.on: true}\n"
       "variants: {fast: {silence_s: 1, settings: {eye.rate_hz: 30}}}\n"
-      "restart: {times: 2, resume: {mind: {file: x.map, settings: {mind.from: \"{run_folder}/x.map\"}}}}\n");
+      "restart: {times: 2, resume: {mind: [{file: x.map, settings: {mind.from: \"{run_folder}/x.map\"}}, {file: "
+      "y}]}}\n");
   EXPECT_EQ(system.name, "small");
   EXPECT_THAT(system.settings, ElementsAre(Setting{"eye.names", "[a, b]"}, Setting{"mind.on", "true"}));
   EXPECT_EQ(system.variants.at("fast").silence, "1");
   EXPECT_EQ(system.restart.times, 2);
-  EXPECT_EQ(system.restart.resume.at("mind").file, "x.map");
+  ASSERT_EQ(system.restart.resume.at("mind").size(), 2U);
+  EXPECT_EQ(system.restart.resume.at("mind")[0].file, "x.map");
+  EXPECT_EQ(system.restart.resume.at("mind")[1].file, "y");
 }
 
 TEST_F(SystemFile, WhatItSaysWinsOverItsBase) {
@@ -80,6 +83,7 @@ TEST_F(SystemFile, WhatIsWrongIsNamedWithFileLineAndRemedy) {
   EXPECT_THAT(problem("processes: [a, a]\nsource: a\nsilence_s: 1\n"), HasSubstr("a is there twice"));
   EXPECT_THAT(problem("processes: [a]\nsource: a\n"), HasSubstr("silence_s: give seconds"));
   EXPECT_THAT(problem("processes: [a]\nsource: a\nsilence_s: 1\nstages: [b]\n"), HasSubstr("stages: b is not"));
+  EXPECT_THAT(problem("restart: {resume: {a: {file: x}}}\n"), HasSubstr("line 1: give a list of files"));
   EXPECT_THAT(problem("processes: [\n"), HasSubstr("small.yaml: "));
   EXPECT_THROW(read_system(folder_.path() / "none.yaml"), BadSetup);
 }

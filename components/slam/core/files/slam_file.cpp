@@ -86,7 +86,7 @@ void sections(auto& section, Is<SlamFile> auto& file, std::uint32_t version) {
   section("LINK", state.links);
   if (version >= kFirstWithWheels) section("WHEE", state.wheels);
   if (version < kFirstWithIds) return;
-  section("NAME", file.epoch, file.keyframe_ids.stretches, file.landmark_ids.stretches);
+  section("NAME", file.epoch, file.keyframe_ids.stretches);
   section("ODOM", state.motion);
 }
 
@@ -312,11 +312,9 @@ std::optional<SlamFile> decode_slam_file(std::span<const std::uint8_t> bytes, st
     error = "has a session out of range";
     return std::nullopt;
   }
-  const auto ids_are_sound = [](const PublishedIds& ids, std::size_t elements) {
-    return ids.are_sound() && ids.of(elements) < PublishedIds::kEnd;
-  };
-  if (file.epoch < 0 || file.epoch > kLastStamp_ns || !ids_are_sound(file.keyframe_ids, file.state.keyframes.size()) ||
-      !ids_are_sound(file.landmark_ids, file.state.landmarks.size())) {
+  const bool ids_are_sound =
+      file.keyframe_ids.are_sound() && file.keyframe_ids.of(file.state.keyframes.size()) < PublishedIds::kEnd;
+  if (!ids_are_sound || file.epoch < 0 || file.epoch > kLastStamp_ns) {
     error = "has published ids or an epoch out of range";
     return std::nullopt;
   }

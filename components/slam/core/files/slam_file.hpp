@@ -16,7 +16,6 @@ struct SlamFile {
   std::int64_t session = 0;  ///< session that wrote it
   std::int64_t epoch = 0;    ///< of its landmarks
   PublishedIds keyframe_ids;
-  PublishedIds landmark_ids;
   SlamState state;
 };
 

@@ -106,8 +106,8 @@ void FrontEnd::enter_keyframe(const Map& map, KeyframeId id) {
   renew(map);
 }
 
-void FrontEnd::resume(const Map& map, KeyframeId reference, std::optional<time::Time> held_stamp) {
-  is_placed_ = held_stamp.has_value();
+void FrontEnd::resume(const Map& map, KeyframeId reference, std::optional<time::Time> held_stamp, bool leads_on) {
+  is_placed_ = leads_on;
   held_stamp_ = held_stamp;
   reference_ = reference;
   renew(map);

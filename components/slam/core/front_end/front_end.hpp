@@ -52,9 +52,9 @@ class FrontEnd {
   void enter_keyframe(const Map& map, KeyframeId id);
   /// The map has changed.
   void renew(const Map& map) { tracker_.set_reference(map, reference_); }
-  /// The map is a saved one: there is no pose until the camera has been located in it, unless it is of this run and
-  /// odometry leads on from the newest pose by vision or surfaces, at `held_stamp`.
-  void resume(const Map& map, KeyframeId reference, std::optional<time::Time> held_stamp);
+  /// The map is a saved one. Unless it is of this run and odometry `leads_on` from the newest pose by vision or
+  /// surfaces, at `held_stamp`, there is no pose until the camera has been located in it.
+  void resume(const Map& map, KeyframeId reference, std::optional<time::Time> held_stamp, bool leads_on);
 
   KeyframeId reference() const { return reference_; }
   /// Stamp of the newest pose by vision or surfaces.

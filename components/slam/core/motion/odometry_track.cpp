@@ -74,10 +74,22 @@ std::vector<OdometryReading> OdometryTrack::readings() const {
 // Whether a robot can have moved there from the newest reading.
 bool OdometryTrack::continues(time::Time stamp, const Pose& T_odom_base) const {
   const double elapsed_s = (stamp - readings_.back().stamp).seconds();
+  if (awaits_next_) return continues_after_outage(elapsed_s, T_odom_base);
   const Pose step = readings_.back().T_odom_base.inverse() * T_odom_base;
-  return elapsed_s <= (awaits_next_ ? kLongestOutage_s : config_.max_gap_s) &&
-         step.translation().norm() <= config_.max_speed_m_s * elapsed_s &&
+  return elapsed_s <= config_.max_gap_s && step.translation().norm() <= config_.max_speed_m_s * elapsed_s &&
          geometry::rotation_angle(step.linear()) <= config_.max_turn_rate_rad_s * elapsed_s;
+}
+
+bool OdometryTrack::continues_after_outage(double elapsed_s, const Pose& T_odom_base) const {
+  const auto is_within = [](const Pose& T, double path_m, double turn_rad) {
+    return T.translation().norm() <= path_m && geometry::rotation_angle(T.linear()) <= turn_rad;
+  };
+  constexpr double kOrigin_m = 0.02, kOrigin_rad = 0.02;
+  const Pose& last = readings_.back().T_odom_base;
+  const bool is_reset =
+      is_within(T_odom_base, kOrigin_m, kOrigin_rad) && !is_within(last, 2 * kOrigin_m, 2 * kOrigin_rad);
+  return elapsed_s <= kLongestOutage_s && !is_reset &&
+         is_within(last.inverse() * T_odom_base, kLongestStep_m, kLargestTurn_rad);
 }
 
 void OdometryTrack::forget_before(time::Time stamp) {

@@ -42,6 +42,8 @@ class OdometryTrack {
 
   /// Longest time without readings after which a saved track continues [s]: that of a restart.
   static constexpr double kLongestOutage_s = 60.0;
+  /// Largest motion within it that is no reset of odometry [m, rad]: Lapis stops a robot that has no pose at once.
+  static constexpr double kLongestStep_m = 2.0, kLargestTurn_rad = 2.0;
 
   /// Readings that follow are corrected by this calibration, and covariances include its uncertainty and noise.
   void calibrate(const WheelCalibration& wheels) { wheels_ = wheels; }
@@ -51,8 +53,9 @@ class OdometryTrack {
   /// than OdometryConfig::max_gap_s, after a step faster than a robot can move (the odometry was reset), and when
   /// stamps go back by more than a second (the source was restarted). At most kMostReadings are kept.
   bool add(time::Time stamp, const geometry::Pose& T_odom_base);
-  /// Continues a track that was saved, if it is not empty. The next reading may come up to kLongestOutage_s after it:
-  /// between the two the robot is taken to have moved straight.
+  /// Continues a track that was saved, if it is not empty. The next reading may come up to kLongestOutage_s after it,
+  /// and no further away than kLongestStep_m and kLargestTurn_rad: between the two the robot is taken to have moved
+  /// straight. A reading at the origin, when the track has left it, is a reset.
   void resume(std::span<const OdometryReading> saved);
   /// All readings that are kept, as received.
   std::vector<OdometryReading> readings() const;
@@ -75,6 +78,7 @@ class OdometryTrack {
     double path_m = 0.0;         // since the track began, forwards and backwards alike
     double turned_rad = 0.0;     // sum of the turns since then, in both directions alike
   };
+  bool continues_after_outage(double elapsed_s, const geometry::Pose& T_odom_base) const;
   bool continues(time::Time stamp, const geometry::Pose& T_odom_base) const;
   std::optional<Reading> at(time::Time stamp) const;
 

@@ -52,8 +52,13 @@ int run(int argc, char** argv) {
   options.link = dds::link_of(options.discovery);
   Load load;
   add_load(*publisher, load);
-  for (auto* side : {publisher, subscriber}) add_settings(*side, options);
+  bool uses_shared_memory = false;
+  for (auto* side : {publisher, subscriber}) {
+    add_settings(*side, options);
+    side->add_flag("--shm", uses_shared_memory, "shared memory beside UDP");
+  }
   CLI11_PARSE(app, argc, argv);
+  if (uses_shared_memory) options.transport = dds::Transport::kSharedMemory;
   if (*link) return run_link(link_options);
   return *publisher ? publish(options, load) : subscribe(options);
 }

@@ -143,7 +143,7 @@ class Receiver {
     executor_.spin();
     waiting.join();
     std::printf(
-        "{\"images\": %zu, \"age_p50_s\": %.3f, \"age_p95_s\": %.3f, \"age_max_s\": %.3f, \"tiles\": %zu, "
+        "{\"images\": %zu, \"age_p50_s\": %.6f, \"age_p95_s\": %.6f, \"age_max_s\": %.6f, \"tiles\": %zu, "
         "\"tiles_s\": %.3f, \"cpu_s\": %.3f}\n",
         ages_s_.size(), quantile(ages_s_, 0.5), quantile(ages_s_, 0.95), quantile(ages_s_, 1.0), known_.size(),
         tiles_s_, cpu_s());

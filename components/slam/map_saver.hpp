@@ -15,8 +15,8 @@ namespace lapis::slam {
 class MapSaver {
  public:
   struct Save {
-    std::optional<std::string> problem;  ///< why the old file was not replaced; names the file
-    std::chrono::steady_clock::time_point ended = {};
+    std::optional<std::string> problem;           ///< why the old file was not replaced; names the file
+    std::chrono::steady_clock::time_point ended;  ///< when it was written, or had failed
   };
 
   /// True when a save may begin: none is under way, and together they take at most a twentieth of the time.

@@ -21,7 +21,7 @@ constexpr std::size_t kEarlyReadings = 1000;
 constexpr int kMostDoubtfulFrames = 15;  // about as many as a recognised place needs to be confirmed, several times
 constexpr double kFarewell_s = 1.0;
 constexpr double kLongestSave_s = 600.0;
-constexpr double kOldestMotion_s = 10.0;
+constexpr double kOldestMotion_s = 10.0;  // a saved pose is renewed at this age, see autosave()
 constexpr const char* kGraphFile = "pose_graph.g2o";
 constexpr const char* kKeyframesFile = "keyframes.txt";
 constexpr const char* kMapFile = "slam.lapis";
@@ -127,8 +127,8 @@ bool SlamComponent::prepare(const JoinedFrame& first) {
   return true;
 }
 
-/// Names the map that begins: its session, the epoch of its landmarks, and the ids of its key-frames and landmarks. A
-/// map that continues in its session skips what can have been published since it was saved.
+/// Names the map that begins: its session, the epoch of its landmarks, and the ids of its key-frames. A map that
+/// continues in its session skips what can have been published since it was saved.
 void SlamComponent::name_map(time::Time first_stamp) {
   const bool continues = resumed_ && config_.resume_session;
   if (!continues) session_ = std::max({first_stamp.nanoseconds, session_ + 1, epoch_ + 1});
@@ -239,6 +239,7 @@ void SlamComponent::follow_clock(time::Duration step) {
   graph_stamp_.reset();
   landmarks_.forget_stamps();
   disk_.note_save(frame_.stamp + step);
+  saved_stamp_ = saved_stamp_ + step;
 }
 
 /// Where stamps jump, the source may have restarted elsewhere. The map is right if vision or odometry continues in it;

@@ -8,7 +8,7 @@ usage() {
   cat <<TEXT
 usage: launch_scripts/test.sh [--tier unit|contract|integration|interop|long|faults]
   --tier NAME  only this tier; default: all of them but long and faults
-  long: tests that take over a minute, the benchmarks' build, 25 generated buildings, contract tests and unit tests with DDS with
+  long: tests that take over a minute, the benchmarks' build, 25 generated buildings, unit and contract tests with
   AddressSanitizer and UndefinedBehaviorSanitizer, and clang-tidy on what has changed since it passed last; docs/long_tests.md gets the results
   faults: what Lapis promises when something fails, by cases of the other tiers (tests/faults); docs/reliability.md gets the results
 Environment: LAPIS_TEST_DATA, the folder of recorded test data (default ../shared/data beside the repository, when it
@@ -72,10 +72,12 @@ check() {
   rows+=$'\n'"| $name | $((SECONDS - began)) | $result |"
 }
 
-test_shells_sanitized() {
+test_sanitized() {
+  export UBSAN_OPTIONS=print_stacktrace=1
   cmake --preset asan
   cmake --build --preset asan
-  UBSAN_OPTIONS=print_stacktrace=1 ctest --preset asan-shell --no-tests=error
+  ctest --preset asan --label-regex '^unit$' --no-tests=error --parallel "$(nproc)"
+  ctest --preset asan --label-regex '^contract$' --no-tests=error
 }
 
 # Five of each kind that the unit test does not draw, with the check of features, which takes most of the time.
@@ -110,7 +112,7 @@ for tier in "${tiers[@]}"; do run_tier "$tier"; done
 if [[ "${tiers[*]}" == long ]]; then
   check "benchmarks build" cmake --build --preset release --target benchmarks
   check "generated buildings" check_buildings
-  check "tests with DDS, with ASan and UBSan" test_shells_sanitized
+  check "unit and contract tests with ASan and UBSan" test_sanitized
   tidied="$(sed -n 's/^clang-tidy has passed up to commit \([0-9a-f]*\)\.$/\1/p' docs/long_tests.md)"
   check "clang-tidy on files that have changed since ${tidied:-the last commit}" check_changed_files
   write_results

@@ -42,17 +42,13 @@ function(lapis_executable name)
   target_link_libraries(${name} PRIVATE ${A_LINK} lapis_warnings)
 endfunction()
 
-add_custom_target(core_tests)
-
-# lapis_unit_test(<name> [SHELL] [HEAVY] SOURCES <file>... [LINK <target>...])
+# lapis_unit_test(<name> [HEAVY] SOURCES <file>... [LINK <target>...])
 # A GoogleTest executable of the unit tier: no DDS, no shared data needed to pass. One for a folder, not one for a file: the
 # sources are compiled together (CONTRIBUTING.md, "The compiler's work"), and every executable links OpenCV and the like.
-# SHELL: it needs Fast DDS with the generated types, a fifth of all that is compiled: not of target core_tests, which
-# .ci/run builds and runs with sanitizers (the long tier has the others).
 # HEAVY: its own sources work hard (render rooms, drive through worlds) and are compiled with -O1 wherever tests' sources
 # have an option of their own.
 function(lapis_unit_test name)
-  cmake_parse_arguments(A "SHELL;HEAVY" "" "SOURCES;LINK" ${ARGN})
+  cmake_parse_arguments(A "HEAVY" "" "SOURCES;LINK" ${ARGN})
   add_executable(${name} ${A_SOURCES})
   target_link_libraries(${name} PRIVATE ${A_LINK} GTest::gtest GTest::gmock GTest::gtest_main lapis_warnings)
   if(A_HEAVY AND LAPIS_TEST_OPTIMISATION)
@@ -62,9 +58,4 @@ function(lapis_unit_test name)
   endif()
   add_test(NAME unit.${name} COMMAND ${name})
   set_tests_properties(unit.${name} PROPERTIES LABELS unit TIMEOUT 600) # against hanging: sanitizers on a slow day take 300
-  if(A_SHELL)
-    set_property(TEST unit.${name} APPEND PROPERTY LABELS shell)
-  else()
-    add_dependencies(core_tests ${name})
-  endif()
 endfunction()

@@ -23,7 +23,8 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
   --duration S     simulated seconds after which the run ends; default: 300 (large_building needs 600)
   --seed N         of the simulator: start, noise, jitter of furniture; default: 1
   --out DIR        run folder; default: out/<name of scene>_<method>_<seed>
-  --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml)
+  --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml); or a folder of such files
+                   (config/robot_without_odometry)
   --world FILE     what wheels and camera are like (config/worlds, docs/buildings.md)
   --freerun        by the wall clock, frames may be lost; default: lock-step
   --restart        a process that dies or hangs is started again, at most three times each, but for the simulator; what
@@ -52,7 +53,7 @@ while [ $# -gt 0 ]; do
     --duration) duration=$2 && shift ;;
     --seed) seed=$2 && shift ;;
     --out) out=$2 && shift ;;
-    --robot | --world) options+=(--config "$2") && shift ;;
+    --robot | --world) add_config "$2" && shift ;;
     --then) afterwards=$2 && options+=(--set "planner.then=$2" --set simulator.ends_when_explored=false) && shift ;;
     --no-preset) has_preset=0 ;;
     --freerun) options+=(--variant freerun) ;;

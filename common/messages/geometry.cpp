@@ -47,6 +47,15 @@ geometry_msgs::msg::Transform to_transform(const geometry::Pose& T) {
   return message;
 }
 
+geometry_msgs::msg::TransformStamped stamped_transform(const std_msgs::msg::Header& header, const std::string& child,
+                                                       const geometry::Pose& T_header_child) {
+  geometry_msgs::msg::TransformStamped message;
+  message.header(header);
+  message.child_frame_id(child);
+  message.transform(to_transform(T_header_child));
+  return message;
+}
+
 Converted<geometry::Pose> from_message(const geometry_msgs::msg::Pose& message) {
   return checked_pose(message.position(), message.orientation());
 }

@@ -14,6 +14,9 @@ namespace lapis::messages {
 
 geometry_msgs::msg::Pose to_message(const geometry::Pose& T);
 geometry_msgs::msg::Transform to_transform(const geometry::Pose& T);
+/// A transform as on /tf: of the frame `child` in that of the header.
+geometry_msgs::msg::TransformStamped stamped_transform(const std_msgs::msg::Header& header, const std::string& child,
+                                                       const geometry::Pose& T_header_child);
 
 /// Refuses non-finite numbers and quaternions whose norm differs from 1 by more than 1e-3 (all zero means "unknown").
 Converted<geometry::Pose> from_message(const geometry_msgs::msg::Pose& message);

@@ -12,6 +12,7 @@
 #include "common/topics/controller.hpp"
 #include "common/topics/map.hpp"
 #include "common/topics/planner.hpp"
+#include "common/topics/robot.hpp"
 #include "common/topics/slam.hpp"
 #include "common/topics/transforms.hpp"
 
@@ -50,13 +51,21 @@ config::Rules ControllerComponent::rules(const Config& config) {
 
 ControllerComponent::ControllerComponent(const Config& config, runtime::Context& context)
     : config_(completed(config)), context_(context), map_frame_(context.frame("map")),
-      base_frame_(context.frame("base_link")), controller_(config_.method, limits_of(config_.robot)),
+      odom_frame_(context.frame("odom")), base_frame_(context.frame("base_link")),
+      controller_(config_.method, limits_of(config_.robot)), motion_(drive_model(config_.robot)),
       command_(context.advertise(topics::kCommand)), local_path_(context.advertise(topics::kLocalPath)),
       status_(context.advertise(topics::kControllerStatus)),
       pose_(context, topics::kSlamOdometry, "pose", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       info_(context, topics::kDepthInfo, "camera info", kWaitingInfos) {
-  depth_.on_arrival([this](time::Time stamp) { camera_stamp_ = stamp; });
+  if (config_.publish_odometry) {
+    odometry_ = &context.advertise(topics::kWheelOdometry);
+    transforms_ = &context.advertise(topics::kTransforms);
+  }
+  depth_.on_arrival([this](time::Time stamp) {
+    camera_stamp_ = stamp;
+    arrived_at_ = steady_now();
+  });
   depth_.on_clock_set([this](time::Duration step) { follow_clock(step); });
   pose_.on_clock_set([this](time::Duration) {
     depth_.expect_restart(pose_.front().first);
@@ -210,8 +219,21 @@ void ControllerComponent::publish(Decision decision, time::Time now) {
     decision = {State::kStopped, "the command was not finite", {}, 0.0, {}};
   }
   command_.publish(to_message(decision.command));
+  if (odometry_ != nullptr && camera_stamp_.nanoseconds != 0) publish_odometry(decision.command, now);
   local_path_.publish(to_message(decision.local_path, messages::header(camera_stamp_, map_frame_)));
   publish_status(decision, now);
+}
+
+/// Its stamps are of the camera's clock: in lock-step that of the frames, which is `now`.
+void ControllerComponent::publish_odometry(const Velocity& command, time::Time now) {
+  motion_.add(command, context_.is_free() ? camera_stamp_ + (now - arrived_at_) : now);
+  const auto message = to_message(motion_, odom_frame_, base_frame_);
+  const auto T_odom_base = messages::from_message(message.pose().pose());
+  if (!T_odom_base) return drop("odometry", T_odom_base.reason);
+  odometry_->publish(message);
+  tf2_msgs::msg::TFMessage transforms;
+  transforms.transforms().push_back(messages::stamped_transform(message.header(), base_frame_, *T_odom_base));
+  transforms_->publish(transforms);
 }
 
 void ControllerComponent::publish_status(const Decision& decision, time::Time now) {

@@ -45,16 +45,21 @@ class ControllerComponent {
   void add_mount(const tf2_msgs::msg::TFMessage& message);
   void drop(const std::string& what, const std::string& reason);
   void publish(Decision decision, time::Time now);
+  void publish_odometry(const Velocity& command, time::Time now);
   void publish_status(const Decision& decision, time::Time now);
 
   const Config config_;
   runtime::Context& context_;
   const std::string map_frame_;
+  const std::string odom_frame_;
   const std::string base_frame_;
   Controller controller_;
+  CommandOdometry motion_;
   dds::Publisher<geometry_msgs::msg::Twist>& command_;
   dds::Publisher<Path>& local_path_;
   dds::Publisher<lapis_msgs::msg::ControllerStatus>& status_;
+  dds::Publisher<Odometry>* odometry_ = nullptr;  // with publish_odometry
+  dds::Publisher<tf2_msgs::msg::TFMessage>* transforms_ = nullptr;
   runtime::StampedInput<Odometry> pose_;
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Info> info_;
@@ -67,7 +72,8 @@ class ControllerComponent {
 
   messages::StaticTransforms static_transforms_;
   std::uint64_t frames_ = 0;
-  time::Time camera_stamp_;     // stamp of the depth image that arrived last
+  time::Time camera_stamp_;     // stamp of the depth image that arrived last,
+  time::Time arrived_at_;       // and when it did, by the steady clock
   time::Time seen_at_;          // time of the newest one that was noted, by the clock as it was set first
   time::Duration clock_steps_;  // sum of the steps by which the camera's clock was set
   bool is_due_ = false;         // a command is due by the wall clock

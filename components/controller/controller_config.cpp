@@ -3,7 +3,8 @@
 namespace lapis::controller {
 namespace {
 
-constexpr double kTickLatencies = 2.0;  // frames: one until an obstacle is seen, and one until the command takes effect
+constexpr double kSightLatency = 1.0;    // frames until an obstacle is seen
+constexpr double kCommandLatency = 1.0;  // frames until a command takes effect
 
 }  // namespace
 
@@ -13,7 +14,13 @@ RobotLimits limits_of(const robot::RobotDescription& robot) {
           robot.max_turn_rate_rad_s,
           robot.max_acceleration_m_s2,
           robot.max_turn_acceleration_rad_s2,
-          robot.drive_lag_s + kTickLatencies / robot.camera.rate_hz};
+          robot.drive_lag_s + (kSightLatency + kCommandLatency) / robot.camera.rate_hz};
+}
+
+DriveModel drive_model(const robot::RobotDescription& robot) {
+  return {robot.drive_lag_s, robot.max_acceleration_m_s2, robot.max_turn_acceleration_rad_s2,
+          time::Duration::from_seconds(kCommandLatency / robot.camera.rate_hz),
+          time::Duration::from_seconds(robot.command_timeout_s)};
 }
 
 ControllerComponentConfig completed(ControllerComponentConfig config) {

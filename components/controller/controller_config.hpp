@@ -2,6 +2,7 @@
 
 #include "common/config/schema.hpp"
 #include "common/robot/robot_description.hpp"
+#include "controller/core/command_odometry.hpp"
 #include "controller/core/controller.hpp"
 
 namespace lapis::controller {
@@ -11,11 +12,14 @@ struct ControllerComponentConfig {
   ControllerConfig method;
   double rate_hz = 20.0;
   double max_stamp_difference_s = 0.016;
+  bool publish_odometry = false;
   robot::RobotDescription robot;
 };
 
 /// The limits of the robot. Its reaction time is the lag of the drives plus the latency of lock-step.
 RobotLimits limits_of(const robot::RobotDescription& robot);
+/// Its drives; a command takes effect one frame of the camera later.
+DriveModel drive_model(const robot::RobotDescription& robot);
 /// The configuration, completed with the properties of the robot that the core needs.
 ControllerComponentConfig completed(ControllerComponentConfig config);
 
@@ -56,6 +60,9 @@ void describe(Field& field, ControllerComponentConfig& c) {
         "rate of commands in wall-clock mode; in lock-step there is one command for each tick [Hz]");
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
         "largest difference between the time stamps of pose, depth image and camera info of one frame [s]");
+  field("publish_odometry", c.publish_odometry, config::anything(),
+        "whether /odom is the motion to which the controller's commands lead: for a robot that measures none "
+        "(config/robot_without_odometry)");
   field("fan", c.method.fan);
   field("local_map", c.method.local_map);
   field("watchdog", c.method.watchdog);

@@ -94,6 +94,16 @@ nav_msgs::msg::Path to_message(const std::vector<PlanarPose>& path, const std_ms
   return message;
 }
 
+nav_msgs::msg::Odometry to_message(const CommandOdometry& odometry, const std::string& odom_frame,
+                                   const std::string& base_frame) {
+  nav_msgs::msg::Odometry message;
+  message.header(messages::header(odometry.stamp(), odom_frame));
+  message.child_frame_id(base_frame);
+  message.pose().pose(to_message(odometry.T_odom_base()));
+  message.twist().twist(to_message(odometry.velocity()));
+  return message;
+}
+
 lapis_msgs::msg::ControllerStatus to_message(const Decision& decision, const std_msgs::msg::Header& header) {
   lapis_msgs::msg::ControllerStatus message;
   message.header(header);

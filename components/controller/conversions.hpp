@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "common/messages/converted.hpp"
+#include "controller/core/command_odometry.hpp"
 #include "controller/core/controller.hpp"
 #include "idl/geometry_msgs.hpp"
 #include "idl/lapis_msgs.hpp"
@@ -26,6 +27,9 @@ messages::Converted<DepthView> to_core(const sensor_msgs::msg::Image& depth, con
 bool is_finite(const Velocity& velocity);
 geometry_msgs::msg::Twist to_message(const Velocity& velocity);
 nav_msgs::msg::Path to_message(const std::vector<PlanarPose>& path, const std_msgs::msg::Header& header);
+/// The pose's covariance is not known, and stays zero.
+nav_msgs::msg::Odometry to_message(const CommandOdometry& odometry, const std::string& odom_frame,
+                                   const std::string& base_frame);
 lapis_msgs::msg::ControllerStatus to_message(const Decision& decision, const std_msgs::msg::Header& header);
 
 }  // namespace lapis::controller

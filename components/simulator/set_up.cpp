@@ -159,6 +159,7 @@ SimulationConfig simulation_config(const SimulatorConfig& config) {
   out.camera = pinhole_camera(robot.camera);
   out.mount = camera_mount(robot.camera);
   out.robot = robot_config(robot);
+  out.drive = {config.wheels.speed_error, config.wheels.turn_error, config.wheels.command_noise};
   out.sensors = sensor_config(config);
   return out;
 }

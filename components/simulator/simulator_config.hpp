@@ -26,6 +26,7 @@ struct WheelConfig {
   double least_noise = 1.0, most_noise = 1.0;
   double radius_error = 0.0, base_error = 0.0;
   double turn_slip = 0.0;
+  double speed_error = 0.0, turn_error = 0.0, command_noise = 0.0;
 };
 
 struct SceneConfig {
@@ -104,6 +105,12 @@ void describe(Field& field, WheelConfig& c) {
         "with 1 % standard deviation");
   field("turn_slip", c.turn_slip, config::in_range(0.0, 0.5),
         "largest share by which odometry overestimates a turn; the seed draws a share for each turn");
+  field("speed_error", c.speed_error, config::in_range(0.0, 0.5),
+        "largest relative error of the speed that the drives make of a command, drawn uniformly by the seed");
+  field("turn_error", c.turn_error, config::in_range(0.0, 0.5),
+        "largest relative error of the turn rate that the drives make of a command, drawn uniformly by the seed");
+  field("command_noise", c.command_noise, config::in_range(0.0, 0.5),
+        "relative standard deviation of speed and turn rate from one command to the next");
 }
 
 template <class Field>

@@ -4,18 +4,8 @@
 #include "common/messages/time.hpp"
 
 namespace lapis::slam {
-namespace {
 
-geometry_msgs::msg::TransformStamped stamped_transform(const std_msgs::msg::Header& h, const std::string& child,
-                                                       const geometry::Pose& T) {
-  geometry_msgs::msg::TransformStamped message;
-  message.header(h);
-  message.child_frame_id(child);
-  message.transform(messages::to_transform(T));
-  return message;
-}
-
-}  // namespace
+using messages::stamped_transform;
 
 lapis_msgs::msg::TrackedFrame to_tracked_frame(const TrackingResult& result, const FrameContext& context,
                                                const FrameIds& ids) {

@@ -13,12 +13,20 @@
 
 namespace lapis::simulator {
 
+/// How far the drives are from doing as they are told.
+struct DriveErrorConfig {
+  double speed_error = 0.0;  ///< largest relative error of the speed, drawn uniformly once per run, 0 to 0.5
+  double turn_error = 0.0;   ///< the same of the turn rate
+  double noise = 0.0;        ///< relative standard deviation of speed and turn rate under each command, 0 to 0.5
+};
+
 struct SimulationConfig {
   std::uint64_t seed = 1;
   double camera_rate_hz = 15.0;
   geometry::PinholeCamera camera;
   geometry::CameraMount mount;
   RobotConfig robot;
+  DriveErrorConfig drive;
   SensorConfig sensors;
 };
 
@@ -56,6 +64,7 @@ class Simulation {
   time::Time stamp_of(std::uint64_t tick) const;
   void drive_to(time::Time stamp, SensorFrame& frame);
   geometry::Pose T_world_base() const;
+  DriveCommand executed(const DriveCommand& command) const;
 
   const World& world_;
   SimulationConfig config_;

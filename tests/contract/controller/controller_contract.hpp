@@ -19,6 +19,7 @@
 #include "common/topics/diagnostics.hpp"
 #include "common/topics/map.hpp"
 #include "common/topics/planner.hpp"
+#include "common/topics/robot.hpp"
 #include "common/topics/slam.hpp"
 #include "common/topics/transforms.hpp"
 #include "tests/support/child_process.hpp"
@@ -165,7 +166,8 @@ class ControllerContract : public ::testing::Test {
   using Command = geometry_msgs::msg::Twist;
   using Status = lapis_msgs::msg::ControllerStatus;
 
-  ControllerContract() : context({"test_driver", participant_options("test_driver")}), world(context) {
+  explicit ControllerContract(const std::vector<std::string>& options = {})
+      : context({"test_driver", participant_options("test_driver")}), world(context), controller(kController, options) {
     context.subscribe(topics::kCommand, [this](const Command& m) { commands.push_back(m); });
     context.subscribe(topics::kControllerStatus, [this](const Status& m) { statuses.push_back(m); });
     context.subscribe(topics::kLocalPath, [this](const auto& m) { local_path = m; });
@@ -202,7 +204,7 @@ class ControllerContract : public ::testing::Test {
   std::vector<Status> statuses;
   nav_msgs::msg::Path local_path;
   std::map<std::string, std::string> counters;
-  ChildProcess controller{kController};
+  ChildProcess controller;
 
  private:
   void note(const diagnostic_msgs::msg::DiagnosticArray& message) {
@@ -220,7 +222,8 @@ class ControllerContract : public ::testing::Test {
 /// In lock-step: the test is the clock, and each tick brings one command.
 class LockstepController : public ControllerContract {
  protected:
-  LockstepController() : driver_(context, {{"controller"}, 5.0, 30.0, "abort"}, [] {}) {}
+  explicit LockstepController(const std::vector<std::string>& options = {})
+      : ControllerContract(options), driver_(context, {{"controller"}, 5.0, 30.0, "abort"}, [] {}) {}
   void SetUp() override {
     ASSERT_TRUE(wait_until([&] { return driver_.state() == State::kIdle; })) << controller.log();
   }

@@ -81,6 +81,38 @@ TEST_F(LockstepController, APathInBaseLinkThatLeadsAwayIsRefused) {
   EXPECT_EQ(statuses.back().reason(), "path refused: its frame is neither map nor base_link");
 }
 
+/// Of a robot that measures no motion.
+class ControllerWithOdometry : public LockstepController {
+ protected:
+  ControllerWithOdometry() : LockstepController({"--set", "controller.publish_odometry=true"}) {
+    context.subscribe(topics::kWheelOdometry, [this](const auto& m) { readings.push_back(m); });
+    context.subscribe(topics::kTransforms, [this](const auto& m) { transforms = m; });
+  }
+  std::vector<nav_msgs::msg::Odometry> readings;
+  tf2_msgs::msg::TFMessage transforms;
+};
+
+TEST_F(ControllerWithOdometry, TellsAFrameAheadWhereItsCommandsLead) {
+  get_going();
+  world.send_path({});
+  for (int i = 0; i < 20; ++i) ASSERT_TRUE(tick()) << controller.log();
+  ASSERT_TRUE(wait_until([&] { return readings.size() == commands.size(); }));
+  const auto& last = readings.back();
+  EXPECT_EQ(last.header().frame_id(), "odom");
+  EXPECT_EQ(last.child_frame_id(), "base_link");
+  EXPECT_NEAR((messages::from_message(last.header().stamp()) - world.stamp).seconds(), kPeriod_s, 1e-6);
+  // The robot of the test does at once what it is told; drives brake no harder than robot.max_acceleration_m_s2.
+  const double last_m_s = commands[commands.size() - 21].linear().x(), braking_m = last_m_s * last_m_s / (2.0 * 1.5);
+  EXPECT_GT(last_m_s, 0.4);
+  EXPECT_GT(last.pose().pose().position().x(), world.position.x() - 1e-6);
+  EXPECT_LT(last.pose().pose().position().x(), world.position.x() + braking_m);
+  EXPECT_NEAR(last.twist().twist().linear().x(), 0.0, 1e-2);
+  ASSERT_TRUE(wait_until([&] {
+    return !transforms.transforms().empty() && transforms.transforms()[0].header().stamp() == last.header().stamp();
+  }));
+  EXPECT_EQ(transforms.transforms()[0].transform().translation().x(), last.pose().pose().position().x());
+}
+
 // F16 and F2: within 300 ms of the last message ---------------------------------------------------------------------
 
 TEST_F(LockstepController, StandsStillWithoutAPose) {

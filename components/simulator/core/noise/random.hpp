@@ -23,7 +23,8 @@ enum class RandomStream : std::uint64_t {
   kImu,
   kTruth,
   kBuilding,
-  kWorld
+  kWorld,
+  kDrive
 };
 
 /// Counter-based random numbers: a pure function of (seed, stream, counter, index). The mixing function is that of

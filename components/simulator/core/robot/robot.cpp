@@ -8,27 +8,14 @@
 
 #include <Eigen/Geometry>
 
+#include "common/robot/drive_response.hpp"
+
 namespace lapis::simulator {
 namespace {
 
 constexpr std::int64_t kStep = 5'000'000;  // [ns]
 constexpr double kSkin_m = 1e-4;           // kept between disc and obstacle after a contact
 constexpr int kMaxPushes = 8;
-
-struct Response {
-  double value, integral;
-};
-
-/// Solution after time h of v' = clamp((target - v) / lag, -limit, limit), and its integral: a ramp while the limit
-/// holds, an exponential after it.
-Response respond(double v, double target, double h, double lag, double limit) {
-  const double gap = target - v;
-  const double ramp = std::clamp(std::abs(gap) / limit - lag, 0.0, h);
-  const double at_ramp = v + std::copysign(limit * ramp, gap);
-  const double rest = h - ramp, decay = std::exp(-rest / lag);
-  return {target + (at_ramp - target) * decay,
-          0.5 * (v + at_ramp) * ramp + target * rest + (at_ramp - target) * lag * (1.0 - decay)};
-}
 
 Eigen::Vector2d direction(double yaw_rad) { return {std::cos(yaw_rad), std::sin(yaw_rad)}; }
 
@@ -83,10 +70,10 @@ Motion Robot::advance(time::Time until) {
 }
 
 Robot::Roll Robot::drive_on(double step_s) {
-  const Response speed =
-      respond(state_.drive.speed_m_s, state_.target.speed_m_s, step_s, config_.lag_s, config_.max_acceleration_m_s2);
-  const Response turn = respond(state_.drive.turn_rate_rad_s, state_.target.turn_rate_rad_s, step_s, config_.lag_s,
-                                config_.max_turn_acceleration_rad_s2);
+  const auto speed = robot::drive_response(state_.drive.speed_m_s, state_.target.speed_m_s, step_s, config_.lag_s,
+                                           config_.max_acceleration_m_s2);
+  const auto turn = robot::drive_response(state_.drive.turn_rate_rad_s, state_.target.turn_rate_rad_s, step_s,
+                                          config_.lag_s, config_.max_turn_acceleration_rad_s2);
   state_.drive = {speed.value, turn.value};
   return {speed.integral, turn.integral};
 }

@@ -54,6 +54,30 @@ TEST_F(SimulationTest, StampsAreWholeNanosecondsOfTheRateAndSensorsHaveTheirOwn)
   for (std::size_t i = 0; i < imu.size(); ++i) EXPECT_EQ(imu[i], 5'000'000 * static_cast<std::int64_t>(i + 1));
 }
 
+TEST_F(SimulationTest, DrivesMakeTheErrorsOfTheirRunOfACommand) {
+  const auto turned_rad = [&](std::uint64_t seed, const DriveErrorConfig& drive) {
+    SimulationConfig config = config_of(seed);
+    config.drive = drive;
+    Simulation simulation(world_, config, start_);
+    double turn_rad = 0.0;
+    for (int tick = 0; tick < 30; ++tick) {
+      simulation.next(DriveCommand{0.0, 0.5});
+      turn_rad = simulation.next(DriveCommand{0.0, 0.5}).robot.yaw_rad;
+    }
+    return turn_rad;
+  };
+  const double exact_rad = turned_rad(1, {});
+  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
+    EXPECT_EQ(turned_rad(seed, {}), exact_rad);
+    const double systematic = turned_rad(seed, {.turn_error = 0.1}) / exact_rad - 1.0;
+    EXPECT_GT(std::abs(systematic), 1e-6);
+    EXPECT_LE(std::abs(systematic), 0.1);
+    const double noisy = turned_rad(seed, {.noise = 0.1}) / exact_rad - 1.0;
+    EXPECT_GT(std::abs(noisy), 1e-6);
+    EXPECT_LE(std::abs(noisy), 4.0 * 0.1 / std::sqrt(60.0));
+  }
+}
+
 TEST_F(SimulationTest, TheSameCommandsAndSeedGiveTheSameBytes) {
   const auto run = [&](std::uint64_t seed) {
     Simulation simulation(world_, config_of(seed), start_);

@@ -171,6 +171,8 @@ class ControllerContract : public ::testing::Test {
     context.subscribe(topics::kCommand, [this](const Command& m) { commands.push_back(m); });
     context.subscribe(topics::kControllerStatus, [this](const Status& m) { statuses.push_back(m); });
     context.subscribe(topics::kLocalPath, [this](const auto& m) { local_path = m; });
+    context.subscribe(topics::kWheelOdometry, [this](const auto& m) { readings.push_back(m); });
+    context.subscribe(topics::kTransforms, [this](const auto& m) { transforms = m; });
     context.subscribe(topics::kDiagnostics, [this](const auto& m) { note(m); });
   }
 
@@ -203,6 +205,8 @@ class ControllerContract : public ::testing::Test {
   std::vector<Command> commands;
   std::vector<Status> statuses;
   nav_msgs::msg::Path local_path;
+  std::vector<nav_msgs::msg::Odometry> readings;  // of a controller that publishes odometry
+  tf2_msgs::msg::TFMessage transforms;
   std::map<std::string, std::string> counters;
   ChildProcess controller;
 

@@ -84,12 +84,7 @@ TEST_F(LockstepController, APathInBaseLinkThatLeadsAwayIsRefused) {
 /// Of a robot that measures no motion.
 class ControllerWithOdometry : public LockstepController {
  protected:
-  ControllerWithOdometry() : LockstepController({"--set", "controller.publish_odometry=true"}) {
-    context.subscribe(topics::kWheelOdometry, [this](const auto& m) { readings.push_back(m); });
-    context.subscribe(topics::kTransforms, [this](const auto& m) { transforms = m; });
-  }
-  std::vector<nav_msgs::msg::Odometry> readings;
-  tf2_msgs::msg::TFMessage transforms;
+  ControllerWithOdometry() : LockstepController({"--set", "controller.publish_odometry=true"}) {}
 };
 
 TEST_F(ControllerWithOdometry, TellsAFrameAheadWhereItsCommandsLead) {

@@ -39,6 +39,13 @@ too, everything up to there is in DIR, but for the figures.
 TEXT
 }
 
+# add_config PATH: adds a file of configuration, or all of a folder, to `options`.
+add_config() {
+  local file
+  if [ ! -d "$1" ]; then options+=(--config "$1") && return; fi
+  for file in "$1"/*.yaml; do options+=(--config "$file"); done
+}
+
 [ -n "${ROS_DISCOVERY_SERVER:-}" ] || export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
 command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" afterwards="" has_preset=1 options=()
 while [ $# -gt 0 ]; do

@@ -69,13 +69,6 @@ play_once() {
   if [ $status -eq 0 ]; then echo "$identity" >"$folder/identity"; else tail -n 3 "$folder.log" >&2; fi
 }
 
-# add_config PATH: adds a file of configuration, or all of a folder, to `options`.
-add_config() {
-  local file
-  if [ ! -d "$1" ]; then options+=(--config "$1") && return; fi
-  for file in "$1"/*.yaml; do options+=(--config "$file"); done
-}
-
 # run_system NAME COMMAND ARGUMENT...: config/systems/NAME.yaml by the supervisor, which takes this shell's place. COMMAND
 # is what the user called.
 run_system() {

@@ -17,7 +17,7 @@ a simulated building, and leaves a run folder with trajectory, pose graph, seman
   --scene NAME     bundled scene, generated building (office_7: docs/buildings.md), scene file, or folder of a scanned
                    building (docs/scenes.md)
   --seed N         of the simulator: start, noise, jitter of furniture;  --tour FILE  waypoints; default: the scene's
-  --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml); or a folder of such files
+  --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml)
   --world FILE     of a scene: what wheels and camera are like (config/worlds, docs/buildings.md)
   --out DIR        run folder; default: out/<name of DATASET or scene>
   --rate X         of a data set: speed relative to the recording; of a scene: by the wall clock, X is 1.
@@ -49,7 +49,7 @@ while [ $# -gt 0 ]; do
     --rate) rate=$2 && shift ;;
     --scene) scene=$2 && shift ;;
     --duration) duration=$2 && shift ;;
-    --robot | --world) add_config "$2" && of_scene+=("$1") && shift ;;
+    --robot | --world) options+=(--config "$2") of_scene+=("$1") && shift ;;
     --start) options+=(--set "sensor_replay.start_s=$2") of_data_set+=("$1") && shift ;;
     --labels) options+=(--set "sensor_replay.class_list=$2") of_data_set+=("$1") && shift ;;
     --seed | --tour) options+=(--set "simulator.${1#--}=$2") of_scene+=("$1") && shift ;;

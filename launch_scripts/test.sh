@@ -73,11 +73,13 @@ check() {
 }
 
 test_sanitized() {
+  local status=0
   export UBSAN_OPTIONS=print_stacktrace=1
   cmake --preset asan
   cmake --build --preset asan
-  ctest --preset asan --label-regex '^unit$' --no-tests=error --parallel "$(nproc)"
-  ctest --preset asan --label-regex '^contract$' --no-tests=error
+  ctest --preset asan --label-regex '^unit$' --no-tests=error --parallel "$(nproc)" || status=1
+  ctest --preset asan --label-regex '^contract$' --no-tests=error || status=1
+  return "$status"
 }
 
 # Five of each kind that the unit test does not draw, with the check of features, which takes most of the time.

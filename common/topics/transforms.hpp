@@ -7,7 +7,8 @@ namespace lapis::topics {
 
 // Transforms.
 inline constexpr dds::Topic<tf2_msgs::msg::TFMessage> kTransforms{
-    "/tf", dds::kBurst, "slam, robot", "camera rate; 50 Hz from a robot", "map -> odom -> base_link", true, true};
+    "/tf", dds::kBurst, "slam, robot, controller", "camera rate; 50 Hz from a robot", "map -> odom -> base_link",
+    true,  true};
 inline constexpr dds::Topic<tf2_msgs::msg::TFMessage> kStaticTransforms{
     "/tf_static", dds::kLatchedByMany, "camera", "once", "base_link -> camera_link -> optical frame", true, true};
 

@@ -20,9 +20,12 @@ namespace lapis::controller {
 namespace {
 
 constexpr double kFarewell_s = 1.0;
+constexpr double kLeastOdometry_hz = 10.0;
 constexpr std::size_t kWaitingFrames = 10;
 constexpr std::size_t kWaitingInfos = 64;  // on a network they are ahead of their images by half a second
 constexpr time::Duration kStatusPeriod{1'000'000'000};
+constexpr time::Duration kDelayMemory{1'000'000};  // by which an image's delay may grow from one to the next, to count
+constexpr time::Duration kOdometrySilence{300'000'000};  // after a start: slam begins a new track after such a gap
 
 time::Time steady_now() {
   const auto since_boot = std::chrono::steady_clock::now().time_since_epoch();
@@ -37,16 +40,20 @@ config::Rules ControllerComponent::rules(const Config& config) {
   const FanConfig& fan = config.method.fan;
   const robot::RobotDescription& robot = config.robot;
   const double slowest_turn_rad_s = std::min(robot.max_turn_rate_rad_s, config.method.weak_turn_rad_s);
-  return {{fan.groups % 2 == 1, "controller.fan.groups has to be odd"},
-          {fan.branches % 2 == 1, "controller.fan.branches has to be odd"},
-          {map.min_height_m < robot.obstacle_max_height_m,
-           "controller.local_map.min_height_m has to be less than robot.obstacle_max_height_m"},
-          {map.range_m >= fan.length_m + robot.radius_m + fan.margin_m,
-           "controller.local_map.range_m has to be at least controller.fan.length_m, robot.radius_m and "
-           "controller.fan.margin_m together"},
-          {config.method.progress_timeout_s > std::numbers::pi / slowest_turn_rad_s,
-           "controller.progress_timeout_s has to be longer than half a turn at robot.max_turn_rate_rad_s and at "
-           "controller.weak_turn_rad_s takes"}};
+  return {
+      {fan.groups % 2 == 1, "controller.fan.groups has to be odd"},
+      {fan.branches % 2 == 1, "controller.fan.branches has to be odd"},
+      {map.min_height_m < robot.obstacle_max_height_m,
+       "controller.local_map.min_height_m has to be less than robot.obstacle_max_height_m"},
+      {map.range_m >= fan.length_m + robot.radius_m + fan.margin_m,
+       "controller.local_map.range_m has to be at least controller.fan.length_m, robot.radius_m and "
+       "controller.fan.margin_m together"},
+      {config.method.progress_timeout_s > std::numbers::pi / slowest_turn_rad_s,
+       "controller.progress_timeout_s has to be longer than half a turn at robot.max_turn_rate_rad_s and at "
+       "controller.weak_turn_rad_s takes"},
+      {!config.publish_odometry || robot.camera.rate_hz >= kLeastOdometry_hz,
+       "controller.publish_odometry needs a robot.camera.rate_hz of at least 10: with less, slam takes each reading "
+       "for the first of a new track"}};
 }
 
 ControllerComponent::ControllerComponent(const Config& config, runtime::Context& context)
@@ -62,10 +69,8 @@ ControllerComponent::ControllerComponent(const Config& config, runtime::Context&
     odometry_ = &context.advertise(topics::kWheelOdometry);
     transforms_ = &context.advertise(topics::kTransforms);
   }
-  depth_.on_arrival([this](time::Time stamp) {
-    camera_stamp_ = stamp;
-    arrived_at_ = steady_now();
-  });
+  depth_.on_arrival([this](time::Time stamp) { note_camera(stamp); });
+  depth_.on_restart([this] { motion_ = CommandOdometry(drive_model(config_.robot)); });
   depth_.on_clock_set([this](time::Duration step) { follow_clock(step); });
   pose_.on_clock_set([this](time::Duration) {
     depth_.expect_restart(pose_.front().first);
@@ -84,8 +89,17 @@ ControllerComponent::ControllerComponent(const Config& config, runtime::Context&
 /// The obstacles that the camera has seen and the ages of all inputs stay what they are. The step is known to the
 /// jitter of delays only, and time must not go back.
 void ControllerComponent::follow_clock(time::Duration step) {
+  camera_ahead_ = camera_stamp_ - steady_now();
   const time::Duration steps{clock_steps_.nanoseconds + step.nanoseconds};
   clock_steps_ = std::min(steps, depth_.front().first - seen_at_);
+}
+
+/// The camera's clock is taken to run like the steady one, and images to be late rather than early.
+void ControllerComponent::note_camera(time::Time stamp) {
+  camera_stamp_ = stamp;
+  const time::Duration ahead = stamp - steady_now();
+  camera_ahead_ =
+      camera_ahead_ ? std::max(ahead, time::Duration{camera_ahead_->nanoseconds - kDelayMemory.nanoseconds}) : ahead;
 }
 
 /// False while one of two streams has noticed that their clock was set, and the other one has not.
@@ -224,10 +238,17 @@ void ControllerComponent::publish(Decision decision, time::Time now) {
   publish_status(decision, now);
 }
 
-/// Its stamps are of the camera's clock: in lock-step that of the frames, which is `now`.
+/// Motion goes by the clock of `now`, stamps by that of the camera; both are the same in lock-step. A stamp that does
+/// not come after the one before is of a frame that came twice, or of a camera that has fallen behind: the next one has
+/// the motion in it.
 void ControllerComponent::publish_odometry(const Velocity& command, time::Time now) {
-  motion_.add(command, context_.is_free() ? camera_stamp_ + (now - arrived_at_) : now);
-  const auto message = to_message(motion_, odom_frame_, base_frame_);
+  motion_.add(command, now);
+  if (!odometry_since_) odometry_since_ = now;
+  if (now >= *odometry_since_ && now - *odometry_since_ < kOdometrySilence) return;
+  const time::Time stamp = context_.is_free() ? motion_.stamp() + *camera_ahead_ : motion_.stamp();
+  if (told_until_ && stamp <= *told_until_ && *told_until_ - stamp < time::kRestartGap) return;
+  told_until_ = stamp;
+  const auto message = to_message(motion_, messages::header(stamp, odom_frame_), base_frame_);
   const auto T_odom_base = messages::from_message(message.pose().pose());
   if (!T_odom_base) return drop("odometry", T_odom_base.reason);
   odometry_->publish(message);

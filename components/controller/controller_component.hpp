@@ -45,6 +45,7 @@ class ControllerComponent {
   void add_mount(const tf2_msgs::msg::TFMessage& message);
   void drop(const std::string& what, const std::string& reason);
   void publish(Decision decision, time::Time now);
+  void note_camera(time::Time stamp);
   void publish_odometry(const Velocity& command, time::Time now);
   void publish_status(const Decision& decision, time::Time now);
 
@@ -60,6 +61,8 @@ class ControllerComponent {
   dds::Publisher<lapis_msgs::msg::ControllerStatus>& status_;
   dds::Publisher<Odometry>* odometry_ = nullptr;  // with publish_odometry
   dds::Publisher<tf2_msgs::msg::TFMessage>* transforms_ = nullptr;
+  std::optional<time::Time> odometry_since_;  // when the first command was given
+  std::optional<time::Time> told_until_;      // stamp of the newest odometry
   runtime::StampedInput<Odometry> pose_;
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Info> info_;
@@ -72,8 +75,8 @@ class ControllerComponent {
 
   messages::StaticTransforms static_transforms_;
   std::uint64_t frames_ = 0;
-  time::Time camera_stamp_;     // stamp of the depth image that arrived last,
-  time::Time arrived_at_;       // and when it did, by the steady clock
+  time::Time camera_stamp_;                     // stamp of the depth image that arrived last
+  std::optional<time::Duration> camera_ahead_;  // of the steady clock; by its least delayed images
   time::Time seen_at_;          // time of the newest one that was noted, by the clock as it was set first
   time::Duration clock_steps_;  // sum of the steps by which the camera's clock was set
   bool is_due_ = false;         // a command is due by the wall clock

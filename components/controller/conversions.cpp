@@ -94,10 +94,10 @@ nav_msgs::msg::Path to_message(const std::vector<PlanarPose>& path, const std_ms
   return message;
 }
 
-nav_msgs::msg::Odometry to_message(const CommandOdometry& odometry, const std::string& odom_frame,
+nav_msgs::msg::Odometry to_message(const CommandOdometry& odometry, const std_msgs::msg::Header& header,
                                    const std::string& base_frame) {
   nav_msgs::msg::Odometry message;
-  message.header(messages::header(odometry.stamp(), odom_frame));
+  message.header(header);
   message.child_frame_id(base_frame);
   message.pose().pose(to_message(odometry.T_odom_base()));
   message.twist().twist(to_message(odometry.velocity()));

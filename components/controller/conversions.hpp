@@ -28,7 +28,7 @@ bool is_finite(const Velocity& velocity);
 geometry_msgs::msg::Twist to_message(const Velocity& velocity);
 nav_msgs::msg::Path to_message(const std::vector<PlanarPose>& path, const std_msgs::msg::Header& header);
 /// The pose's covariance is not known, and stays zero.
-nav_msgs::msg::Odometry to_message(const CommandOdometry& odometry, const std::string& odom_frame,
+nav_msgs::msg::Odometry to_message(const CommandOdometry& odometry, const std_msgs::msg::Header& header,
                                    const std::string& base_frame);
 lapis_msgs::msg::ControllerStatus to_message(const Decision& decision, const std_msgs::msg::Header& header);
 

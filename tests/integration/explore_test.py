@@ -108,6 +108,13 @@ class ExploreTest(ExploreCase):
     def test_the_same_seed_gives_the_same_bytes(self):
         self.explore_twice("--scene", self.write_flat(), "--duration", "10", "--seed", "3")
 
+    def test_commands_stand_for_the_odometry_of_a_robot_that_measures_no_motion(self):
+        first, metrics = self.explore_twice(
+            "--scene", self.write_flat(), "--duration", "10", "--seed", "3",
+            "--robot", chain.REPOSITORY / "config/robot_without_odometry", "--set", "simulator.wheels.turn_error=0.1")
+        self.assertNotRegex((first / "logs/slam.log").read_text(), "dropped|refused")
+        self.assertLess(metrics["lost_share"], 0.02)
+
     def test_a_recorded_decision_is_made_again_as_it_was(self):
         folder = self.explore("run", "--scene", self.write_flat(), "--duration", "8",
                               "--set", "planner.record_situations_every=3")

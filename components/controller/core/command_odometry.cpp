@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "common/robot/drive_response.hpp"
+#include "common/time/stamp_buffer.hpp"
 
 namespace lapis::controller {
 namespace {
@@ -14,14 +15,14 @@ constexpr double kLongestBraking_s = 5.0;  // after it the robot stands, however
 
 void CommandOdometry::add(const Velocity& command, time::Time now) {
   const time::Time until = now + model_.latency;
-  if (command_) {
-    const double elapsed_s = std::max(0.0, (until - stamp_).seconds());
+  if (command_ && until > stamp_) {
+    const double elapsed_s = (until - stamp_).seconds();
     const double driven_s = std::min(elapsed_s, model_.command_timeout.seconds());
     advance(driven_s, *command_);
     advance(std::min(elapsed_s - driven_s, kLongestBraking_s), {});
   }
   command_ = command;
-  stamp_ = until;
+  if (until > stamp_ || stamp_ - until > time::kRestartGap) stamp_ = until;
 }
 
 void CommandOdometry::advance(double elapsed_s, const Velocity& target) {

@@ -24,7 +24,7 @@ class CommandOdometry {
   explicit CommandOdometry(const DriveModel& model) : model_(model) {}
 
   /// Adds the next command, given at `now`. Until stamp(), which is `now` plus the latency, the motion is then known.
-  /// A clock that goes back counts as no time.
+  /// Where a clock goes back, by less than a second no time passes until it is there again; by more, time begins anew.
   void add(const Velocity& command, time::Time now);
 
   time::Time stamp() const { return stamp_; }

@@ -36,7 +36,7 @@ time::Time Simulation::stamp_of(std::uint64_t tick) const {
 }
 
 SensorFrame Simulation::next(const std::optional<DriveCommand>& command) {
-  if (command && !robot_.command(executed(*command))) ++commands_refused_;
+  if (command && !robot_.command(*command, drive_factors())) ++commands_refused_;
   SensorFrame frame;
   frame.tick = ++tick_;
   frame.stamp = stamp_of(tick_);
@@ -53,14 +53,14 @@ SensorFrame Simulation::next(const std::optional<DriveCommand>& command) {
   return frame;
 }
 
-/// What the drives do under a command.
-DriveCommand Simulation::executed(const DriveCommand& command) const {
+/// What the drives make of the command of this tick.
+DriveFactors Simulation::drive_factors() const {
   const DriveErrorConfig& drive = config_.drive;
   const Random of_run(config_.seed, RandomStream::kDrive), of_tick(config_.seed, RandomStream::kDrive, tick_ + 1);
   const auto factor = [&](std::uint64_t i, double error) {
     return (1.0 + of_run.uniform(i, -error, error)) * (1.0 + drive.noise * of_tick.normal(i));
   };
-  return {command.speed_m_s * factor(0, drive.speed_error), command.turn_rate_rad_s * factor(1, drive.turn_error)};
+  return {factor(0, drive.speed_error), factor(1, drive.turn_error)};
 }
 
 /// Drives in steps, from one sample of a sensor to the next.

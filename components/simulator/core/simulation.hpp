@@ -64,7 +64,7 @@ class Simulation {
   time::Time stamp_of(std::uint64_t tick) const;
   void drive_to(time::Time stamp, SensorFrame& frame);
   geometry::Pose T_world_base() const;
-  DriveCommand executed(const DriveCommand& command) const;
+  DriveFactors drive_factors() const;
 
   const World& world_;
   SimulationConfig config_;

@@ -10,7 +10,7 @@ namespace {
 
 constexpr time::Duration kPeriod{50'000'000};
 
-time::Time at(int cycle) { return {1'000'000'000 + cycle * kPeriod.nanoseconds}; }
+time::Time time_of(int cycle) { return {1'000'000'000 + cycle * kPeriod.nanoseconds}; }
 
 /// Brute force: the same drives by Euler's method in steps of 10 us. Commands are given every kPeriod.
 PlanarPose driven(const DriveModel& model, const Velocity& first, int first_cycles, const Velocity& then, int cycles) {
@@ -37,11 +37,11 @@ TEST(CommandOdometry, IsTheMotionOfDrivesThatLag) {
     CommandOdometry odometry(model);
     const Velocity then{0.1, 0.3};
     constexpr int kFirst = 20, kCycles = 35;
-    for (int i = 0; i <= kCycles; ++i) odometry.add(i < kFirst ? first : then, at(i));
+    for (int i = 0; i <= kCycles; ++i) odometry.add(i < kFirst ? first : then, time_of(i));
     const PlanarPose expected = driven(model, first, kFirst, then, kCycles);
     EXPECT_LT((odometry.T_odom_base().translation() - expected.translation()).norm(), 1e-3);
     EXPECT_NEAR(yaw_of(odometry.T_odom_base()), yaw_of(expected), 1e-3);
-    EXPECT_EQ(odometry.stamp(), at(kCycles) + model.latency);
+    EXPECT_EQ(odometry.stamp(), time_of(kCycles) + model.latency);
   }
 }
 
@@ -49,11 +49,11 @@ TEST(CommandOdometry, ARobotThatNobodyCommandsStops) {
   const DriveModel model;
   CommandOdometry odometry(model), stopped(model);
   for (int i = 0; i < 40; ++i) {
-    odometry.add({0.6, 0.0}, at(i));
-    stopped.add({0.6, 0.0}, at(i));
+    odometry.add({0.6, 0.0}, time_of(i));
+    stopped.add({0.6, 0.0}, time_of(i));
   }
   const double before_m = stopped.T_odom_base().translation().x();
-  stopped.add({0.0, 0.0}, at(39 + 20'000));
+  stopped.add({0.0, 0.0}, time_of(39 + 20'000));
   const double driven_m = stopped.T_odom_base().translation().x() - before_m;
   EXPECT_GT(driven_m, 0.6 * model.command_timeout.seconds());
   EXPECT_LT(driven_m, 0.6 * model.command_timeout.seconds() + 0.6 * 0.6 / model.max_acceleration_m_s2);
@@ -61,13 +61,17 @@ TEST(CommandOdometry, ARobotThatNobodyCommandsStops) {
 }
 
 TEST(CommandOdometry, AClockThatGoesBackIsNoMotion) {
-  CommandOdometry odometry{DriveModel{}};
-  for (int i = 0; i < 40; ++i) odometry.add({0.6, 0.4}, at(i));
-  const PlanarPose before = odometry.T_odom_base();
-  odometry.add({0.6, 0.4}, at(-10));
-  EXPECT_EQ(odometry.T_odom_base().matrix(), before.matrix());
-  odometry.add({0.6, 0.4}, at(-9));
-  EXPECT_NEAR((odometry.T_odom_base().translation() - before.translation()).norm(), 0.6 * kPeriod.seconds(), 1e-3);
+  for (const int back : {4, 1000}) {
+    CommandOdometry odometry{DriveModel{}};
+    for (int i = 0; i <= 40; ++i) odometry.add({0.6, 0.4}, time_of(i));
+    const PlanarPose before = odometry.T_odom_base();
+    odometry.add({0.6, 0.4}, time_of(40 - back));
+    EXPECT_EQ(odometry.T_odom_base().matrix(), before.matrix());
+    const int again =
+        back == 4 ? 41 : 40 - back + 1;  // the time in between has been driven already, or was another one
+    for (int i = 40 - back + 1; i <= again; ++i) odometry.add({0.6, 0.4}, time_of(i));
+    EXPECT_NEAR((odometry.T_odom_base().translation() - before.translation()).norm(), 0.6 * kPeriod.seconds(), 1e-3);
+  }
 }
 
 }  // namespace

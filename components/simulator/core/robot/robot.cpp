@@ -37,13 +37,14 @@ Robot::Robot(const NavMap& map, const RobotConfig& config, const RobotState& sta
   throw std::runtime_error(problem.str());
 }
 
-bool Robot::command(const DriveCommand& command) {
+bool Robot::command(const DriveCommand& command, const DriveFactors& factors) {
   const bool is_sound = std::isfinite(command.speed_m_s) && std::isfinite(command.turn_rate_rad_s);
   state_.target_stamp = state_.stamp;
   state_.target = {};
   if (!is_sound) return false;
   const double v = config_.max_speed_m_s, omega = config_.max_turn_rate_rad_s;
-  state_.target = {std::clamp(command.speed_m_s, -v, v), std::clamp(command.turn_rate_rad_s, -omega, omega)};
+  state_.target = {factors.speed * std::clamp(command.speed_m_s, -v, v),
+                   factors.turn_rate * std::clamp(command.turn_rate_rad_s, -omega, omega)};
   return true;
 }
 

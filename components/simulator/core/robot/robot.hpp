@@ -13,6 +13,12 @@ struct DriveCommand {
   double turn_rate_rad_s = 0.0;  ///< to the left
 };
 
+/// What the drives make of speed and turn rate, as factors.
+struct DriveFactors {
+  double speed = 1.0;
+  double turn_rate = 1.0;
+};
+
 struct RobotConfig {
   double radius_m = 0.20;
   double max_speed_m_s = 0.6;  ///< forwards and backwards
@@ -30,7 +36,7 @@ struct RobotState {
   double yaw_rad = 0.0;            ///< in [-pi, pi]
   DriveCommand drive;              ///< speed and turn rate of the drives, in contact or not
   Eigen::Vector2d velocity{0, 0};  ///< true velocity of the body, forwards and to the left [m/s]
-  DriveCommand target;             ///< last accepted command, within the limits
+  DriveCommand target;             ///< last accepted command, within the limits, as the drives take it
   time::Time target_stamp;         ///< when it was given
 };
 
@@ -56,9 +62,9 @@ class Robot {
   Robot(const NavMap& map, const RobotConfig& config, const RobotState& start);
 
   const RobotState& state() const { return state_; }
-  /// From now on the robot follows `command`, clamped to the limits. A command that is not finite is refused (false)
-  /// and stops the robot.
-  [[nodiscard]] bool command(const DriveCommand& command);
+  /// From now on the robot follows `command`, clamped to the limits, times what its drives make of it. A command that
+  /// is not finite is refused (false) and stops the robot.
+  [[nodiscard]] bool command(const DriveCommand& command, const DriveFactors& factors = {});
   /// Moves the robot until the time `until`; nothing happens when that is not later than the state.
   Motion advance(time::Time until);
 

@@ -55,27 +55,39 @@ TEST_F(SimulationTest, StampsAreWholeNanosecondsOfTheRateAndSensorsHaveTheirOwn)
 }
 
 TEST_F(SimulationTest, DrivesMakeTheErrorsOfTheirRunOfACommand) {
-  const auto turned_rad = [&](std::uint64_t seed, const DriveErrorConfig& drive) {
+  struct Driven {
+    double path_m, turn_rad;
+  };
+  const RobotConfig robot;
+  const auto driven = [&](std::uint64_t seed, const DriveErrorConfig& drive) {
     SimulationConfig config = config_of(seed);
     config.drive = drive;
-    Simulation simulation(world_, config, start_);
-    double turn_rad = 0.0;
-    for (int tick = 0; tick < 30; ++tick) {
-      simulation.next(DriveCommand{0.0, 0.5});
-      turn_rad = simulation.next(DriveCommand{0.0, 0.5}).robot.yaw_rad;
+    Simulation ahead(world_, config, start_), around(world_, config, start_);
+    Driven result{};
+    for (int tick = 0; tick < 30; ++tick) {  // at the limits, which commands of more do not move
+      result.path_m = ahead.next(DriveCommand{2.0 * robot.max_speed_m_s, 0.0}).robot.position.x() - start_.position.x();
+      result.turn_rad = around.next(DriveCommand{0.0, 2.0 * robot.max_turn_rate_rad_s}).robot.yaw_rad;
     }
-    return turn_rad;
+    return result;
   };
-  const double exact_rad = turned_rad(1, {});
-  for (std::uint64_t seed = 1; seed <= 8; ++seed) {
-    EXPECT_EQ(turned_rad(seed, {}), exact_rad);
-    const double systematic = turned_rad(seed, {.turn_error = 0.1}) / exact_rad - 1.0;
-    EXPECT_GT(std::abs(systematic), 1e-6);
-    EXPECT_LE(std::abs(systematic), 0.1);
-    const double noisy = turned_rad(seed, {.noise = 0.1}) / exact_rad - 1.0;
+  const Driven exact = driven(1, {});
+  int faster = 0;
+  for (std::uint64_t seed = 1; seed <= 12; ++seed) {
+    EXPECT_EQ(driven(seed, {}).path_m, exact.path_m);
+    const Driven off = driven(seed, {.speed_error = 0.05}), turned = driven(seed, {.turn_error = 0.1});
+    EXPECT_GT(std::abs(off.path_m / exact.path_m - 1.0), 1e-6);
+    EXPECT_LE(std::abs(off.path_m / exact.path_m - 1.0), 0.05);
+    EXPECT_EQ(off.turn_rad, exact.turn_rad);
+    EXPECT_GT(std::abs(turned.turn_rad / exact.turn_rad - 1.0), 1e-6);
+    EXPECT_LE(std::abs(turned.turn_rad / exact.turn_rad - 1.0), 0.1);
+    EXPECT_EQ(turned.path_m, exact.path_m);
+    const double noisy = driven(seed, {.noise = 0.1}).turn_rad / exact.turn_rad - 1.0;
     EXPECT_GT(std::abs(noisy), 1e-6);
-    EXPECT_LE(std::abs(noisy), 4.0 * 0.1 / std::sqrt(60.0));
+    EXPECT_LE(std::abs(noisy), 4.0 * 0.1 / std::sqrt(30.0));
+    faster += off.path_m > exact.path_m ? 1 : 0;
   }
+  EXPECT_GE(faster, 2);
+  EXPECT_LE(faster, 10);
 }
 
 TEST_F(SimulationTest, TheSameCommandsAndSeedGiveTheSameBytes) {

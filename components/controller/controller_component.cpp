@@ -98,8 +98,13 @@ void ControllerComponent::follow_clock(time::Duration step) {
 void ControllerComponent::note_camera(time::Time stamp) {
   camera_stamp_ = stamp;
   const time::Duration ahead = stamp - steady_now();
-  camera_ahead_ =
-      camera_ahead_ ? std::max(ahead, time::Duration{camera_ahead_->nanoseconds - kDelayMemory.nanoseconds}) : ahead;
+  if (!context_.is_free()) {
+    camera_ahead_.reset();
+  } else if (camera_ahead_) {
+    camera_ahead_ = std::max(ahead, time::Duration{camera_ahead_->nanoseconds - kDelayMemory.nanoseconds});
+  } else {
+    camera_ahead_ = ahead;
+  }
 }
 
 /// False while one of two streams has noticed that their clock was set, and the other one has not.
@@ -233,19 +238,20 @@ void ControllerComponent::publish(Decision decision, time::Time now) {
     decision = {State::kStopped, "the command was not finite", {}, 0.0, {}};
   }
   command_.publish(to_message(decision.command));
-  if (odometry_ != nullptr && camera_stamp_.nanoseconds != 0) publish_odometry(decision.command, now);
+  if (odometry_ != nullptr) publish_odometry(decision.command, now);
   local_path_.publish(to_message(decision.local_path, messages::header(camera_stamp_, map_frame_)));
   publish_status(decision, now);
 }
 
 /// Motion goes by the clock of `now`, stamps by that of the camera; both are the same in lock-step. A stamp that does
 /// not come after the one before is of a frame that came twice, or of a camera that has fallen behind: the next one has
-/// the motion in it.
+/// the motion in it. Nothing before the first image, and nothing between a run in lock-step and the next one.
 void ControllerComponent::publish_odometry(const Velocity& command, time::Time now) {
+  if (camera_stamp_.nanoseconds == 0 || camera_ahead_.has_value() != context_.is_free()) return;
   motion_.add(command, now);
   if (!odometry_since_) odometry_since_ = now;
   if (now >= *odometry_since_ && now - *odometry_since_ < kOdometrySilence) return;
-  const time::Time stamp = context_.is_free() ? motion_.stamp() + *camera_ahead_ : motion_.stamp();
+  const time::Time stamp = motion_.stamp() + camera_ahead_.value_or(time::Duration{});
   if (told_until_ && stamp <= *told_until_ && *told_until_ - stamp < time::kRestartGap) return;
   told_until_ = stamp;
   const auto message = to_message(motion_, messages::header(stamp, odom_frame_), base_frame_);

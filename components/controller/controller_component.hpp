@@ -76,7 +76,7 @@ class ControllerComponent {
   messages::StaticTransforms static_transforms_;
   std::uint64_t frames_ = 0;
   time::Time camera_stamp_;                     // stamp of the depth image that arrived last
-  std::optional<time::Duration> camera_ahead_;  // of the steady clock; by its least delayed images
+  std::optional<time::Duration> camera_ahead_;  // of the steady clock, by the least delayed images; none in lock-step
   time::Time seen_at_;          // time of the newest one that was noted, by the clock as it was set first
   time::Duration clock_steps_;  // sum of the steps by which the camera's clock was set
   bool is_due_ = false;         // a command is due by the wall clock

@@ -95,8 +95,7 @@ TEST_F(ControllerWithOdometry, TellsAFrameAheadWhereItsCommandsLead) {
     return std::abs((messages::from_message(header.stamp()) - world.stamp).seconds() - kPeriod_s) < 1e-6;
   };
   ASSERT_TRUE(wait_until([&] { return !readings.empty() && is_newest(readings.back().header()); }));
-  EXPECT_EQ(readings.size(), commands.size() - 5)
-      << "silent for 0.3 s, so that slam begins a new track after a restart";
+  EXPECT_EQ(readings.size(), 40U - 5U) << "silent for 0.3 s, so that slam begins a new track after a restart";
   const auto& last = readings.back();
   EXPECT_EQ(last.header().frame_id(), "odom");
   EXPECT_EQ(last.child_frame_id(), "base_link");

@@ -24,7 +24,7 @@ constexpr double kLeastOdometry_hz = 10.0;
 constexpr std::size_t kWaitingFrames = 10;
 constexpr std::size_t kWaitingInfos = 64;  // on a network they are ahead of their images by half a second
 constexpr time::Duration kStatusPeriod{1'000'000'000};
-constexpr time::Duration kDelayMemory{1'000'000};  // by which an image's delay may grow from one to the next, to count
+constexpr time::Duration kForgottenPerImage{1'000'000};  // of the least delay, when images come later than before
 constexpr time::Duration kOdometrySilence{300'000'000};  // after a start: slam begins a new track after such a gap
 
 time::Time steady_now() {
@@ -101,7 +101,7 @@ void ControllerComponent::note_camera(time::Time stamp) {
   if (!context_.is_free()) {
     camera_ahead_.reset();
   } else if (camera_ahead_) {
-    camera_ahead_ = std::max(ahead, time::Duration{camera_ahead_->nanoseconds - kDelayMemory.nanoseconds});
+    camera_ahead_ = std::max(ahead, time::Duration{camera_ahead_->nanoseconds - kForgottenPerImage.nanoseconds});
   } else {
     camera_ahead_ = ahead;
   }
@@ -252,8 +252,8 @@ void ControllerComponent::publish_odometry(const Velocity& command, time::Time n
   if (!odometry_since_) odometry_since_ = now;
   if (now >= *odometry_since_ && now - *odometry_since_ < kOdometrySilence) return;
   const time::Time stamp = motion_.stamp() + camera_ahead_.value_or(time::Duration{});
-  if (told_until_ && stamp <= *told_until_ && *told_until_ - stamp < time::kRestartGap) return;
-  told_until_ = stamp;
+  if (published_until_ && stamp <= *published_until_ && *published_until_ - stamp < time::kRestartGap) return;
+  published_until_ = stamp;
   const auto message = to_message(motion_, messages::header(stamp, odom_frame_), base_frame_);
   const auto T_odom_base = messages::from_message(message.pose().pose());
   if (!T_odom_base) return drop("odometry", T_odom_base.reason);

@@ -61,8 +61,8 @@ class ControllerComponent {
   dds::Publisher<lapis_msgs::msg::ControllerStatus>& status_;
   dds::Publisher<Odometry>* odometry_ = nullptr;  // with publish_odometry
   dds::Publisher<tf2_msgs::msg::TFMessage>* transforms_ = nullptr;
-  std::optional<time::Time> odometry_since_;  // when the first command was given
-  std::optional<time::Time> told_until_;      // stamp of the newest odometry
+  std::optional<time::Time> odometry_since_;   // when the first command was given
+  std::optional<time::Time> published_until_;  // stamp of the newest odometry
   runtime::StampedInput<Odometry> pose_;
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Info> info_;

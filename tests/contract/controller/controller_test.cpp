@@ -87,7 +87,7 @@ class ControllerWithOdometry : public LockstepController {
   ControllerWithOdometry() : LockstepController({"--set", "controller.publish_odometry=true"}) {}
 };
 
-TEST_F(ControllerWithOdometry, TellsAFrameAheadWhereItsCommandsLead) {
+TEST_F(ControllerWithOdometry, PublishesAFrameAheadWhereItsCommandsLead) {
   get_going();
   world.send_path({});
   for (int i = 0; i < 20; ++i) ASSERT_TRUE(tick()) << controller.log();

@@ -11,6 +11,7 @@
 #include <array>
 #include <cerrno>
 #include <cstring>
+#include <fstream>
 #include <stdexcept>
 
 namespace lapis::test {
@@ -163,5 +164,13 @@ std::string ChildProcess::log() const {
 }
 
 bool wait_until_ready(ChildProcess& process, Seconds deadline) { return process.wait_for_line(": ready", deadline); }
+
+long peak_memory_mb(pid_t pid) {
+  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
+  for (std::string line; std::getline(status, line);) {
+    if (line.rfind("VmHWM:", 0) == 0) return std::stol(line.substr(6)) / 1024;
+  }
+  throw std::runtime_error("no memory is known of process " + std::to_string(pid));
+}
 
 }  // namespace lapis::test

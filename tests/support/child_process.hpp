@@ -66,4 +66,7 @@ class ChildProcess {
 /// The line that every component prints when its endpoints exist.
 bool wait_until_ready(ChildProcess& process, Seconds deadline = Seconds(10));
 
+/// Most memory that a process has had so far [MB]. Throws std::runtime_error when there is none of that id.
+long peak_memory_mb(pid_t pid);
+
 }  // namespace lapis::test

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <fstream>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -47,15 +46,6 @@ class MapClient {
   std::vector<lapis_msgs::msg::MapState> states;
   int damaged = 0;
 };
-
-/// Most memory that a process has had so far [MB].
-inline long peak_memory_mb(pid_t pid) {
-  std::ifstream status("/proc/" + std::to_string(pid) + "/status");
-  for (std::string line; std::getline(status, line);) {
-    if (line.rfind("VmHWM:", 0) == 0) return std::stol(line.substr(6)) / 1024;
-  }
-  throw std::runtime_error("no memory is known of process " + std::to_string(pid));
-}
 
 /// The mapper with a camera and a slam that the test plays, and a client of its map. Every change is published at once.
 struct MapperRun {

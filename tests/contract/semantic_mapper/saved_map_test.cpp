@@ -5,6 +5,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 
 #include "common/files/atomic_file.hpp"
 #include "common/mapping/file/map_file.hpp"

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <fstream>
 #include <map>
+#include <optional>
 #include <set>
 
 #include "common/mapping/file/map_file.hpp"
@@ -23,8 +24,10 @@
 #include "common/topics/robot.hpp"
 #include "common/topics/services.hpp"
 #include "common/topics/transforms.hpp"
+#include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/hand_made_participant.hpp"
+#include "tests/support/in_run.hpp"
 #include "tests/support/small_scene.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/topic_probe.hpp"
@@ -184,6 +187,41 @@ TEST_F(SimulatorContract, ACountedCommandActsFromTheNextFrameButOneOnAndTheWatch
   EXPECT_LT(y.at(9), y.at(4) - 0.03);
   EXPECT_NEAR(speed, 0.0, 1e-3) << "no command for more than half a second";
   EXPECT_GT(y.at(31), 0.2) << "and never in a wall";
+}
+
+// Two who command would drive the robot together, and neither where it wants.
+TEST_F(SimulatorContract, CommandsOfAStrangerAreRefusedWhileTheRunCommands) {
+  std::optional<InRun> run("a");
+  TopicProbe probe;
+  HandMadeParticipant slam(probe, "slam");
+  auto& command = probe.advertise(topics::kCommand);
+  const auto& truth = probe.collect(topics::kGroundTruth);
+  const auto& diagnostics = probe.collect(topics::kDiagnostics);
+  ChildProcess simulator(kSimulator, with_stages("[slam]"));
+  run.reset();
+  TopicProbe stranger("stranger");
+  auto& foreign = stranger.advertise(topics::kCommand);
+  ASSERT_TRUE(probe.wait_until_matched()) << simulator.log();
+  ASSERT_TRUE(stranger.wait_until([&] { return foreign.matched() > 0; })) << simulator.log();
+  geometry_msgs::msg::Twist own, strange;
+  own.linear().x(-0.05);  // the wall is in front
+  strange.angular().z(1.0);
+  std::uint64_t tick = 1;
+  const auto is_refused = [&] {
+    return newest_values(diagnostics, "simulator").contains("refused samples rt/cmd_vel");
+  };
+  const auto step = [&] {
+    if (!slam.wait_for_tick(tick)) return true;
+    foreign.publish(strange);
+    command.publish(own);
+    slam.publish(slam.answer_to(slam.ticks.back(), command, tick++));
+    return tick > 10 && is_refused();
+  };
+  ASSERT_TRUE(probe.wait_until(step)) << simulator.log();
+  EXPECT_TRUE(simulator.wait_for_line("another process publishes this topic", Seconds(2))) << simulator.log();
+  ASSERT_FALSE(truth.empty());
+  for (const auto& at : truth) EXPECT_NEAR(at.twist().twist().angular().z(), 0.0, 0.01);
+  EXPECT_LT(truth.back().twist().twist().linear().x(), -0.01) << "the run's own commands count";
 }
 
 /// The run ends with the frame to which the planner says that it has ended, however late its word comes, because it is

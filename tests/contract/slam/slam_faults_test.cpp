@@ -7,11 +7,13 @@
 #include <csignal>
 #include <cstring>
 #include <functional>
+#include <iostream>
 #include <iterator>
 #include <limits>
 #include <map>
 #include <random>
 
+#include "common/runtime/status.hpp"
 #include "common/topics/robot.hpp"
 #include "common/topics/slam.hpp"
 #include "common/topics/transforms.hpp"
@@ -131,6 +133,37 @@ TEST_F(SlamFaults, PosesThatAreNoneAreCountedAndNotBelieved) {
   std::fill(blind.color->data().begin(), blind.color->data().end(), std::uint8_t{0});
   ASSERT_TRUE(answers(blind, kFirstFrames + 3)) << slam.log();
   EXPECT_EQ(frames.back().state(), kLost) << "no odometry was believed, so there is no dead reckoning";
+}
+
+// Each name would be a counter of its own.
+TEST_F(SlamFaults, InventedFrameNamesCostNoMemory) {
+  constexpr int kWarm = 1'000, kNames = 11'000;
+  auto& wheel_odometry = probe.advertise(topics::kWheelOdometry);
+  ASSERT_TRUE(probe.wait_until([&] { return wheel_odometry.matched() > 0; }));
+  ASSERT_TRUE(probe.wait_until_known_by("slam"));
+  int sent = 0;
+  const auto counted = [&] { return count_of("odometry dropped") + count_of(runtime::Status::kOtherCounters); };
+  const auto send_until = [&](int names) {
+    return probe.wait_until(
+        [&] {
+          for (int i = 0; i < 100 && sent < names + kWarm; ++i) {  // some may be lost: a reader keeps so many
+            nav_msgs::msg::Odometry reading;
+            reading.header().frame_id("invented_" + std::to_string(sent++) + std::string(150, 'x'));
+            wheel_odometry.publish(reading);
+          }
+          return counted() >= names;
+        },
+        Seconds(30));
+  };
+  ASSERT_TRUE(send_until(kWarm)) << counted() << slam.log();
+  const long before_mb = peak_memory_mb(slam.pid());
+  ASSERT_TRUE(send_until(kNames)) << counted() << slam.log();
+  const long grown_mb = peak_memory_mb(slam.pid()) - before_mb;
+  std::cout << "figure: " << sent << " names sent; slam grew by " << grown_mb << " MB\n";
+  EXPECT_LE(grown_mb, 2);
+  EXPECT_LE(newest_values(diagnostics, "slam").size(), 200U);
+  ASSERT_TRUE(track(kFirstFrames)) << slam.log();
+  expect_pose(CameraFeed::stamp(kFirstFrames), slow_motion(0), slow_motion(kFirstFrames));
 }
 
 // F6 ------------------------------------------------------------------------------------------------------------------

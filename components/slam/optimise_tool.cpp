@@ -78,7 +78,7 @@ void add_file_tools(CLI::App& app, std::ostream& out) {
       ->required();
   tool->add_option("--out", arguments->out, "g2o file for the optimised graph; default: none is written");
   tool->add_flag("--robust", arguments->is_robust,
-                 "remove the weight of wrong loop closures (edges between ids that do not follow one another)");
+                 "remove the weight of wrong loop closures (edges between key-frames that do not follow one another)");
   tool->callback([arguments, &out] { optimise(*arguments, out); });
 }
 

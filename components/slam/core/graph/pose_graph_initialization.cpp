@@ -117,8 +117,12 @@ std::size_t add_missing_nodes(PoseGraphSnapshot& graph) {
 }
 
 void mark_loop_closures(PoseGraphSnapshot& graph) {
+  std::set<std::uint64_t> ids;
+  for (const PoseGraphNode& node : graph.nodes) ids.insert(node.id);
+  for (const PoseGraphEdge& edge : graph.edges) ids.insert({edge.from, edge.to});
   for (PoseGraphEdge& edge : graph.edges) {
-    const bool is_step = edge.from + 1 == edge.to || edge.to + 1 == edge.from;
+    const auto [first, last] = std::minmax(edge.from, edge.to);
+    const bool is_step = ids.upper_bound(first) == ids.find(last);
     edge.type = is_step ? EdgeType::kOdometry : EdgeType::kLoopClosure;
   }
 }

@@ -7,7 +7,8 @@ namespace lapis::slam {
 /// Adds a node at the identity for every id that only edges name, in the order of ids. Returns how many.
 std::size_t add_missing_nodes(PoseGraphSnapshot& graph);
 
-/// Marks edges between ids that do not follow one another as loop closures: files do not distinguish edge types.
+/// Marks edges as loop closures unless no node of the graph has an id between those of their ends: files do not
+/// distinguish edge types, and ids have gaps where slam was started again.
 void mark_loop_closures(PoseGraphSnapshot& graph);
 
 /// Poses by chaining edges from the first node of each connected part, over as few edges as possible (breadth-first);

@@ -6,7 +6,7 @@
 #include <set>
 #include <tuple>
 
-#include "common/mapping/wire/map_description.hpp"
+#include "common/mapping/file/map_description.hpp"
 #include "common/runtime/context.hpp"
 #include "semantic_mapper/conversions.hpp"
 #include "semantic_mapper/core/floor_plan.hpp"
@@ -24,8 +24,8 @@ struct MapProgress {
   std::uint64_t frames_dropped = 0;
 };
 
-/// Publishes a map: description, tiles and their state, obstacles, provisional area, and views while they have readers,
-/// each at its own period. Between changes of the configuration one publisher serves one map after the other.
+/// Publishes description, tiles and state, obstacles and provisional area of a map, and views of it while they have
+/// readers, each at its own period; one map after the other.
 class MapPublisher {
  public:
   /// `config` has the range and the heights of the robot.
@@ -37,13 +37,13 @@ class MapPublisher {
   void describe(const mapping::LabelList& labels, const MapProgress& progress);
   /// A new map begins, whose first frame has this stamp.
   void begin_map(time::Time stamp);
-  /// Adds the votes of the newest frame to the obstacles.
-  void add(std::span<const mapping::VoxelVotes> votes, time::Time stamp);
+  /// Adds the votes of the newest frame.
+  void add_obstacles(time::Time stamp, const mapping::FrameVotes& votes);
   /// The stamps of frames have jumped by this step.
   void follow_clock(time::Duration step);
   /// Publishes what is due; everything with `is_final`.
   void publish(SemanticMapper& mapper, const mapping::LabelList& labels, const MapProgress& progress, bool is_final);
-  /// Publishes the last of a map, and waits a moment until its readers have it.
+  /// Publishes the last changes of a map, and waits a moment until readers have them.
   void finish(SemanticMapper& mapper, const mapping::LabelList& labels, const MapProgress& progress);
 
  private:

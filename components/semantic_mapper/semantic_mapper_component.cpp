@@ -11,12 +11,9 @@
 #include "common/mapping/wire/frame_codec.hpp"
 #include "common/mapping/wire/tile_codec.hpp"
 #include "common/messages/labels.hpp"
-#include "common/messages/map_description.hpp"
 #include "common/messages/time.hpp"
 #include "common/runtime/run_component.hpp"
 #include "common/topics/camera.hpp"
-#include "common/topics/map.hpp"
-#include "common/topics/map_views.hpp"
 #include "common/topics/services.hpp"
 #include "common/topics/slam.hpp"
 
@@ -28,19 +25,22 @@ constexpr const char* kOctreeFile = "map.ot";
 constexpr const char* kPointsFile = "map.ply";
 constexpr const char* kFramesFile = "frames.lapis";
 constexpr std::size_t kFramesPerBeat = 1000;  // seconds of work while a map is rebuilt
-constexpr double kFarewell_s = 1.0;
 constexpr double kLongestSave_s = 300.0;
 constexpr double kLongestFlush_s = 600.0;
 constexpr std::size_t kWaitingFrames = 30;  // images wait here for slam's pose: one second at 30 Hz
 constexpr std::size_t kWaitingInfos = 64;   // on a network they are ahead of their images by half a second more
 
-double seconds_since(const std::optional<time::Time>& then, time::Time now) {
-  return then ? (now - *then).seconds() : std::numeric_limits<double>::infinity();
-}
-
 bool has_pose(const lapis_msgs::msg::TrackedFrame& frame) {
   namespace Constants = lapis_msgs::msg::TrackedFrame_Constants;
   return frame.state() == Constants::STATE_TRACKING || frame.state() == Constants::STATE_DEAD_RECKONING;
+}
+
+/// With what other sections say of the map.
+SemanticMapperComponentConfig completed(SemanticMapperComponentConfig config) {
+  config.map.integration.max_range_m = config.robot.sensing_range_m;
+  config.map.band = {config.robot.obstacle_min_height_m, config.robot.obstacle_max_height_m};
+  if (config.sensor_model.fusion == "bki") config.map.integration.kernel_length_voxels = config.kernel_length_voxels;
+  return config;
 }
 
 /// Number in the notes of a map file; 0 when there is no such note.
@@ -70,11 +70,7 @@ config::Rules SemanticMapperComponent::rules(const Config& config) {
 }
 
 SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::Context& context)
-    : config_(config), context_(context), map_description_(context.advertise(topics::kMapDescription)),
-      tiles_(context.advertise(topics::kVoxelTiles)), map_state_(context.advertise(topics::kMapState)),
-      obstacles_(context.advertise(topics::kObstacles)), octomap_(context.advertise(topics::kOctomap)),
-      points_(context.advertise(topics::kMapPoints)), grid_(context.advertise(topics::kOccupancyGrid)),
-      provisional_(context.advertise(topics::kProvisionalArea)),
+    : config_(completed(config)), context_(context), publisher_(config_, context),
       tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
@@ -86,11 +82,6 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
              {kMapFile, kOctreeFile, kPointsFile, kFramesFile},
              config.save_period_s},
             context) {
-  config_.map.integration.max_range_m = config_.robot.sensing_range_m;
-  config_.map.band = {config_.robot.obstacle_min_height_m, config_.robot.obstacle_max_height_m};
-  if (config_.sensor_model.fusion == "bki") {
-    config_.map.integration.kernel_length_voxels = config_.kernel_length_voxels;
-  }
   if (config_.map.re_anchor) {
     files::require_writable_folder(config_.map.stored_frames.spill_dir, "semantic_mapper.stored_frames.spill_dir");
   }
@@ -100,7 +91,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
   tracked_.on_clock_set([this](time::Duration step) { follow_clock(step); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
-  describe_map();
+  publisher_.describe(label_list_, progress_);
 }
 
 /// Loads the map to resume, if there is one; throws with the file and the remedy.
@@ -120,7 +111,7 @@ void SemanticMapperComponent::load_map() {
   resumed_labels_ = label_list_ = resumed_->labels;
   config_.frame.max_label = label_list_.largest_accepted_id();
   resumed_frames_ = note(*resumed_, "frames");
-  const auto unlike = resumed_->frames ? mapping::difference(*resumed_->frames, frame_settings()) : "";
+  const auto unlike = resumed_->frames ? mapping::difference(*resumed_->frames, frame_settings(config_)) : "";
   if (!unlike.empty())
     spdlog::warn("{}: its frames entered it otherwise than new ones: {}", config_.resume_from, unlike);
   is_mixed_ = !resumed_->frames || !unlike.empty();
@@ -158,31 +149,10 @@ void SemanticMapperComponent::set_labels(const vision_msgs::msg::LabelInfo& mess
   config_.frame.max_label = label_list_.largest_accepted_id();
 }
 
-mapping::FrameSettings SemanticMapperComponent::frame_settings() const {
-  return {config_.map.integration, config_.frame.stride};
-}
-
-/// Publishes the description of the map when it differs from the one published last: at the start, and later only in
-/// cycles, before the tiles that need it, so that in lock-step each description is published in a defined tick. Throws
-/// std::runtime_error that names what is not allowed.
-void SemanticMapperComponent::describe_map() {
-  mapping::MapDescription now;
-  now.resolution_m = config_.map.resolution_m;
-  now.frames = frame_settings();
-  now.sensor_model = mapping::with_classes(config_.sensor_model, label_list_);
-  now.labels = label_list_;
-  now.epoch = epoch_;
-  now.session = session_;
-  if (described_ == now) return;
-  mapping::validate(now);
-  map_description_.publish(messages::to_message(now, header(published_stamp_)));
-  described_ = std::move(now);
-}
-
 void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
   while (next_frame(cycle)) {
   }
-  describe_map();
+  publisher_.describe(label_list_, progress_);
   if (mapper_ == nullptr) return;
   if (graph_) follow_graph(*graph_);
   graph_.reset();
@@ -192,7 +162,8 @@ void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
     mapper_->re_anchor(static_cast<std::size_t>(config_.re_anchor_work_per_cycle));
   }
   report_drift();
-  publish(cycle.is_final);
+  publisher_.publish(*mapper_, label_list_, progress_, cycle.is_final);
+  save_when_due();
 }
 
 /// Joins and integrates the oldest tracked frame; false when its partners may still come.
@@ -217,7 +188,7 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   for (const Match match : {depth_match, label_match, confidence_match, info_match}) {
     if (match == Match::kWait) return false;
   }
-  published_stamp_ = now;
+  progress_.published = now;
   if (!has_pose(tracked)) {
     drop("slam has no pose");
   } else if (depth == nullptr) {
@@ -238,8 +209,8 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
 void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& depth, const Image* labels,
                                         const Image* confidence, const Info& info) {
   const time::Time stamp = messages::from_message(tracked.header().stamp());
-  const bool is_first = mapper_ == nullptr || tracked.session() != session_;
-  if (!is_first && (stamp - stamp_).seconds() < config_.frame_interval_s) return;
+  const bool is_first = mapper_ == nullptr || tracked.session() != progress_.session;
+  if (!is_first && (stamp - progress_.newest).seconds() < config_.frame_interval_s) return;
   auto frame = to_core(depth, labels, confidence, info, config_.frame);
   if (!frame) return drop(frame.reason);
   const auto above_list = frame->labels_out_of_list();
@@ -249,7 +220,8 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
   if (is_first) start_new_map(tracked.session(), stamp);
   const auto& before = mapper_->newest_record();
   if (is_first && before && before->stamp == stamp) {
-    stamp_ = stamp;  // a rebuilt map has the frame: in lock-step, the tick in which its process died comes again
+    progress_.newest =
+        stamp;  // a rebuilt map has the frame: in lock-step, the tick in which its process died comes again
     return;
   }
   const auto packed = journal_ && !config_.map.re_anchor ? mapping::pack(anchored->frame) : std::vector<std::uint8_t>{};
@@ -262,10 +234,10 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
   }
   if (journal_)
     keep_newest_frame(config_.map.re_anchor ? mapper_->store().packed_frame(mapper_->store().size() - 1) : packed);
-  stamp_ = stamp;
-  obstacle_layer_->add(stamp - clock_steps_, report.votes);
-  ++frames_integrated_;
-  context_.status().value("frames", frames_integrated_);
+  progress_.newest = stamp;
+  publisher_.add_obstacles(stamp, report.votes);
+  ++progress_.frames_integrated;
+  context_.status().value("frames", progress_.frames_integrated);
   context_.status().value("stored_frames_mb", std::to_string(mapper_->frame_bytes() >> 20));
   report_store(mapper_->store());
 }
@@ -305,7 +277,7 @@ void SemanticMapperComponent::log_drift() const {
 }
 
 void SemanticMapperComponent::drop(const std::string& reason) {
-  ++frames_dropped_;
+  ++progress_.frames_dropped;
   context_.status().count("frames dropped: " + reason);
   if (context_.rate_limit().pass(reason)) spdlog::warn("frame dropped: {}", reason);
 }
@@ -336,13 +308,10 @@ void SemanticMapperComponent::follow_clock(time::Duration step) {
   const time::Time first = tracked_.front().first;
   for (auto* images : {&depth_, &labels_, &confidence_}) images->expect_restart(first);
   info_.expect_restart(first);
-  step = std::min(step, first - stamp_);
-  clock_steps_ = {clock_steps_.nanoseconds + step.nanoseconds};
-  stamp_ = stamp_ + step;
-  for (auto* stamp : {&tiles_stamp_, &views_stamp_, &obstacles_stamp_, &provisional_stamp_}) {
-    if (*stamp) *stamp = **stamp + step;
-  }
-  disk_.note_save(stamp_);
+  step = std::min(step, first - progress_.newest);
+  progress_.newest = progress_.newest + step;
+  publisher_.follow_clock(step);
+  disk_.note_save(progress_.newest);
 }
 
 /// The first map of the process resumes the saved one, if there is one that fits.
@@ -357,7 +326,7 @@ std::unique_ptr<SemanticMapper> SemanticMapperComponent::begin_map(std::int64_t 
     forget_resumed();
   }
   if (rebuilt_from_) {
-    frames_integrated_ += rebuilt_from_->frames;
+    progress_.frames_integrated += rebuilt_from_->frames;
     return std::move(rebuilt_);
   }
   if (!resumed_) return std::make_unique<SemanticMapper>(config_.map);
@@ -389,122 +358,21 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
   mapper_ = begin_map(session);
   disk_.begin(stamp, resumed_ || rebuilt_from_);
   begin_journal(session);
-  session_ = session;
+  progress_.session = session;
   if (rebuilt_from_ && graph_) follow_graph(*graph_);  // as the earlier process had done
   resumed_.reset();
   rebuilt_from_.reset();
-  floor_plan_.emplace(config_.map.band);
-  obstacle_layer_.emplace(config_.obstacles, config_.map.band, config_.map.resolution_m);
-  begin_epoch(stamp);
-  tiles_stamp_.reset();
-  views_stamp_.reset();
-  obstacles_stamp_.reset();
-  provisional_stamp_.reset();
-  provisional_changes_.reset();
-}
-
-/// Ends all tiles published so far.
-void SemanticMapperComponent::begin_epoch(time::Time stamp) {
-  for (const auto& [x, y, z] : published_tiles_) {
-    lapis_msgs::msg::VoxelTile tile;
-    tile.x(x);
-    tile.y(y);
-    tile.z(z);
-    tiles_.end_key(tile);
-  }
-  published_tiles_.clear();
-  epoch_ = std::max(stamp.nanoseconds, epoch_ + 1);
+  publisher_.begin_map(stamp);
 }
 
 void SemanticMapperComponent::follow_graph(const Graph& graph) {
-  if (graph.session() == session_) mapper_->update_keyframe_poses(graph.version(), to_core(graph));
+  if (graph.session() == progress_.session) mapper_->update_keyframe_poses(graph.version(), to_core(graph));
 }
 
-void SemanticMapperComponent::publish(bool is_final) {
-  if (is_final || seconds_since(tiles_stamp_, stamp_) >= config_.tile_period_s) publish_tiles();
-  if (seconds_since(obstacles_stamp_, published_stamp_) >= config_.obstacle_period_s) publish_obstacles();
-  if (is_final || seconds_since(provisional_stamp_, published_stamp_) >= config_.view_period_s)
-    publish_provisional_area();
-  publish_views(is_final || seconds_since(views_stamp_, stamp_) >= config_.view_period_s);
-  if (!disk_.is_due(stamp_)) return;
-  disk_.note_save(stamp_);
+void SemanticMapperComponent::save_when_due() {
+  if (!disk_.is_due(progress_.newest)) return;
+  disk_.note_save(progress_.newest);
   if (const auto problem = save()) spdlog::error("map not saved: {}; mapping continues", *problem);
-}
-
-void SemanticMapperComponent::publish_tiles() {
-  tiles_stamp_ = stamp_;
-  if (!mapper_->has_changes()) return;
-  if (mapper_->enlarge_tiles()) {
-    begin_epoch(stamp_);
-    describe_map();
-    spdlog::info("large map: tiles of {} m from now on", mapper_->tile_edge_m());
-  }
-  floor_plan_->mark_changed(mapper_->changed_blocks());
-  for (const auto& tile : mapper_->take_changed_tiles()) {
-    published_tiles_.emplace(tile.index.x, tile.index.y, tile.index.z);
-    tiles_.publish(to_message(tile, epoch_));
-  }
-  if (mapper_->tiles_too_large() > 0) {
-    context_.status().value("tiles_too_large", static_cast<std::uint64_t>(mapper_->tiles_too_large()));
-    if (context_.rate_limit().pass("tile")) {
-      spdlog::warn("{} tiles are over 1 MiB and were not published; lower semantic_mapper.tile_edge_m",
-                   mapper_->tiles_too_large());
-    }
-  }
-  const auto state = mapper_->state();
-  lapis_msgs::msg::MapState message;
-  message.header(header(stamp_));
-  message.epoch(epoch_);
-  message.version(state.version);
-  message.session(session_);
-  message.graph_version(mapper_->graph_version());
-  message.resolution_m(state.resolution_m);
-  message.tile_edge_m(mapper_->tile_edge_m());
-  message.tiles(state.tiles);
-  message.checksum(state.checksum);
-  message.frames_integrated(frames_integrated_);
-  message.frames_dropped(frames_dropped_);
-  message.frames_off(mapper_->frames_far_off());
-  map_state_.publish(message);
-}
-
-/// Also for frames that could not be integrated, because the robot has to find its way back to where slam tracks.
-void SemanticMapperComponent::publish_obstacles() {
-  obstacles_stamp_ = published_stamp_;
-  obstacles_.publish(to_message(obstacle_layer_->grid(), header(published_stamp_)));
-}
-
-/// Publishes the area when it has changed, also when a new map begins, in which no frame waits.
-void SemanticMapperComponent::publish_provisional_area() {
-  provisional_stamp_ = published_stamp_;
-  if (provisional_changes_ == mapper_->provisional_changes()) return;
-  provisional_changes_ = mapper_->provisional_changes();
-  OccupancyGrid area = mapper_->provisional_area();
-  if (area == provisional_area_) return;
-  provisional_.publish(to_message(area, header(published_stamp_)));
-  provisional_area_ = std::move(area);
-}
-
-/// True when a view has a reader and is due, or when a reader has come since the last call.
-bool SemanticMapperComponent::wants_view(const dds::Writer& writer, bool is_due) {
-  const bool has_new_reader = std::exchange(seen_matches_[&writer], writer.total_matches()) != writer.total_matches();
-  return writer.matched() > 0 && (is_due || has_new_reader);
-}
-
-void SemanticMapperComponent::publish_views(bool is_due) {
-  if (is_due) views_stamp_ = stamp_;
-  const bool wants_octomap = wants_view(octomap_, is_due);
-  const bool wants_points = wants_view(points_, is_due);
-  const bool wants_grid = wants_view(grid_, is_due);
-  if (!wants_octomap && !wants_points && !wants_grid) return;
-  publish_tiles();  // so that all outputs show one version
-  const auto reader = belief_reader();
-  const auto& map = mapper_->map();
-  if (wants_octomap) {
-    octomap_.publish(to_message(encode_octree(map, reader, label_list_), map.resolution_m(), header(stamp_)));
-  }
-  if (wants_points) points_.publish(to_message(occupied_points(map, reader, label_list_), header(stamp_)));
-  if (wants_grid) grid_.publish(to_message(floor_plan_->project(map, reader), header(stamp_)));
 }
 
 std_srvs::srv::Trigger_Response SemanticMapperComponent::save_on_request() {
@@ -546,14 +414,14 @@ void SemanticMapperComponent::report_disk() {
 
 std::optional<std::string> SemanticMapperComponent::write_files() {
   const runtime::LongWork work(context_.heart(), "saves the map", kLongestSave_s);
-  const auto reader = belief_reader();
+  const auto reader = belief_reader(config_, label_list_);
   const mapping::MapFile file{mapper_->map(),
                               reader.model(),
                               label_list_,
                               {{"frames", std::to_string(resumed_frames_ + mapper_->frames_integrated())},
                                {"graph_version", std::to_string(mapper_->graph_version())},
-                               {"session", std::to_string(session_)}},
-                              is_mixed_ ? std::nullopt : std::optional(frame_settings())};
+                               {"session", std::to_string(progress_.session)}},
+                              is_mixed_ ? std::nullopt : std::optional(frame_settings(config_))};
   if (auto problem = mapping::save_map(disk_.path(kMapFile), file)) return problem;
   const auto tree = encode_octree(file.map, reader, label_list_);
   if (auto problem = files::replace_file(disk_.path(kOctreeFile), tree.file)) return problem;
@@ -562,31 +430,16 @@ std::optional<std::string> SemanticMapperComponent::write_files() {
 }
 
 void SemanticMapperComponent::finish() {
-  spdlog::info("{} frames integrated, {} dropped", frames_integrated_, frames_dropped_);
+  spdlog::info("{} frames integrated, {} dropped", progress_.frames_integrated, progress_.frames_dropped);
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
   if (mapper_ == nullptr) return;
   if (graph_) follow_graph(*graph_);
   flush();
   log_drift();
-  publish_provisional_area();
-  publish_tiles();
-  for (dds::Writer* writer : std::initializer_list<dds::Writer*>{&map_description_, &tiles_, &map_state_}) {
-    writer->wait_until_acknowledged(kFarewell_s);
-  }
+  publisher_.finish(*mapper_, label_list_, progress_);
   if (!disk_.is_kept()) return;
   if (const auto problem = save()) throw std::runtime_error(*problem);
   if (journal_) journal_->remove();  // nobody has to rebuild a map that is whole
-}
-
-mapping::BeliefReader SemanticMapperComponent::belief_reader() const {
-  return mapping::BeliefReader(mapping::with_classes(config_.sensor_model, label_list_));
-}
-
-std_msgs::msg::Header SemanticMapperComponent::header(time::Time stamp) const {
-  std_msgs::msg::Header h;
-  h.stamp(messages::to_message(stamp));
-  h.frame_id(context_.frame("map"));
-  return h;
 }
 
 }  // namespace lapis::semantic_mapper

@@ -2,6 +2,7 @@
 
 #include <string>
 
+#include "common/mapping/file/map_description.hpp"
 #include "common/robot/robot_description.hpp"
 #include "semantic_mapper/core/obstacle_layer.hpp"
 #include "semantic_mapper/core/occupancy_grid.hpp"
@@ -29,6 +30,17 @@ struct SemanticMapperComponentConfig {
   bool keep_frames = false;
   robot::RobotDescription robot;
 };
+
+/// How frames enter the map.
+inline mapping::FrameSettings frame_settings(const SemanticMapperComponentConfig& config) {
+  return {config.map.integration, config.frame.stride};
+}
+
+/// Reads what counts say about these classes.
+inline mapping::BeliefReader belief_reader(const SemanticMapperComponentConfig& config,
+                                           const mapping::LabelList& labels) {
+  return mapping::BeliefReader(mapping::with_classes(config.sensor_model, labels));
+}
 
 template <class Field>
 void describe(Field& field, ObstacleConfig& c) {

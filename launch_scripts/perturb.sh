@@ -9,22 +9,25 @@ usage() {
 usage: perturb.sh SEQUENCE... [--kinds KIND,...] [--out DIR] [--results FILE] [--table] [--set KEY=VALUE]...
 
 Changes the images of each SEQUENCE (a folder in the layout of the TUM RGB-D benchmark, with camera.yaml and
-associations.txt) as worse cameras would give them, plays what comes of it with replay.sh, and prints a table: share of the
-frames that were tracked, error of the trajectory (ATE, SE(3)), and CPU time of slam per frame, each beside that of the
-sequence as it is. Each run is a row of FILE as soon as it has ended, with a hash of the sources; what has a row of the same
-sources is not repeated.
+associations.txt, images rectified) as worse cameras would give them, plays what comes of it with replay.sh, and prints a
+table: share of the frames that were tracked, error of the trajectory (ATE, SE(3)), and CPU time of slam per frame, the
+latter two also as ratios to those of the sequence as it is. Each run is a row of FILE as soon as it has ended, with a key
+(hash of the sources, the sequence's lists and the settings); what has a row of the same key is not repeated.
 
   --kinds KIND,...  default: all of
-                    none, 7.5 Hz, gamma 0.4, gamma 2.5, exposure jumps, motion blur, rolling shutter, depth late, holes,
-                    JPEG 60, depth +3 %, depth -3 %, focal length +3 %, focal length -3 %, depth not registered, person
-  --out DIR         changed sequences and run folders; default: out/perturbations
+                    none, every second, 7.5 Hz, gamma 0.4, gamma 2.5, exposure jumps, motion blur, rolling shutter,
+                    depth late, holes, JPEG 60, depth +3 %, depth -3 %, focal length +3 %, focal length -3 %,
+                    depth not registered, person
+                    (blur and rolling shutter come of the turns in groundtruth.txt; late depth halves the rate, so that
+                    'every second' is what to compare it with)
+  --out DIR         run folders, and the changed sequences of runs that failed; default: out/perturbations
   --results FILE    rows; default: docs/results/perturbations.csv
   --table           no runs: the table of the rows that are there
   --set KEY=VALUE   configuration, as for replay.sh
 
 Rows in which more than a tenth of the frames have less than 30 % usable pixels (with depth, neither black nor white) are
 marked: nobody could track these.
-Exit status: 0 done, 1 a run failed, 2 bad set-up.
+Exit status: 0 done, 1 a run failed, 2 bad set-up, 130 and 143 interrupted.
 TEXT
 }
 

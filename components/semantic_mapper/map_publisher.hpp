@@ -28,7 +28,7 @@ struct MapProgress {
 /// readers, each at its own period; one map after the other.
 class MapPublisher {
  public:
-  /// `config` has the range and the heights of the robot.
+  /// `config` is completed with what the robot's section says, and outlives the publisher.
   MapPublisher(const SemanticMapperComponentConfig& config, runtime::Context& context);
 
   /// Publishes the description of the map when it differs from the one published last: at the start, and later only in
@@ -41,7 +41,7 @@ class MapPublisher {
   void add_obstacles(time::Time stamp, const mapping::FrameVotes& votes);
   /// The stamps of frames have jumped by this step.
   void follow_clock(time::Duration step);
-  /// Publishes what is due; everything with `is_final`.
+  /// Publishes what is due, with `is_final` everything but obstacles.
   void publish(SemanticMapper& mapper, const mapping::LabelList& labels, const MapProgress& progress, bool is_final);
   /// Publishes the last changes of a map, and waits a moment until readers have them.
   void finish(SemanticMapper& mapper, const mapping::LabelList& labels, const MapProgress& progress);
@@ -57,7 +57,7 @@ class MapPublisher {
   bool wants_view(const dds::Writer& writer, bool is_due);
   std_msgs::msg::Header header(time::Time stamp) const;
 
-  SemanticMapperComponentConfig config_;
+  const SemanticMapperComponentConfig& config_;
   runtime::Context& context_;
   dds::Publisher<lapis_msgs::msg::MapDescription>& description_;
   dds::Publisher<lapis_msgs::msg::VoxelTile>& tiles_;

@@ -219,9 +219,8 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
   if (!anchored) return drop(anchored.reason);
   if (is_first) start_new_map(tracked.session(), stamp);
   const auto& before = mapper_->newest_record();
-  if (is_first && before && before->stamp == stamp) {
-    progress_.newest =
-        stamp;  // a rebuilt map has the frame: in lock-step, the tick in which its process died comes again
+  if (is_first && before && before->stamp == stamp) {  // a rebuilt map has it: in lock-step, the tick in which its
+    progress_.newest = stamp;                          // process died comes again
     return;
   }
   const auto packed = journal_ && !config_.map.re_anchor ? mapping::pack(anchored->frame) : std::vector<std::uint8_t>{};

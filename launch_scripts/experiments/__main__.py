@@ -8,8 +8,9 @@ from benchmark_table import id_of, read_table
 
 try:
     from experiments import figures, report, tables
-    from experiments.protocol import REPOSITORY, ProtocolError, hash_of_sources, read_protocol, run_id, runs_of
-    from experiments.runs import Experiment, programs
+    from experiments.protocol import ProtocolError, read_protocol, run_id, runs_of
+    from experiments.runs import Experiment
+    from sources import REPOSITORY, hash_of_sources, problem_of_programs
 except ModuleNotFoundError as missing:
     sys.exit(f"experiment.sh: no Python module {missing.name}; launch_scripts/setup.sh --dev installs what is needed")
 
@@ -35,16 +36,6 @@ def fail(text):
     sys.exit(2)
 
 
-def newer_source():
-    """A source that no program knows yet; None if there is none."""
-    built = max(program.stat().st_mtime for program in programs().glob("lapis_*"))
-    for folder in ("common", "components", "idl"):
-        for file in (REPOSITORY / folder).rglob("*"):
-            if file.suffix in (".cpp", ".hpp", ".idl") and file.stat().st_mtime > built:
-                return file
-    return None
-
-
 def wanted_rows(rows, runs, keys):
     if keys:
         return [row for row in rows if any(row["key"].startswith(key) for key in keys)]
@@ -54,8 +45,8 @@ def wanted_rows(rows, runs, keys):
 
 def play(protocol, runs, rows, options):
     """How many runs failed."""
-    if source := newer_source():
-        raise ProtocolError(f"{source} is newer than the programs: build them first, for rows say which sources made them")
+    if problem := problem_of_programs():
+        raise ProtocolError(problem)
     known = {id_of(row): row["outcome"] for row in read_table(rows)[1]}
     todo = [run for run in runs if run_id(run) not in known or
             options.repeat_failed and known[run_id(run)] == "FAILED"]

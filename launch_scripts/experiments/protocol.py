@@ -7,9 +7,7 @@ import re
 
 import yaml
 
-REPOSITORY = pathlib.Path(__file__).resolve().parent.parent.parent
-SOURCES = ("common", "components", "idl", "CMakeLists.txt", "CMakePresets.json", "config/robot.yaml",
-           "config/run.yaml", "config/systems", "config/scenes", "config/labels", "launch_scripts/explore.sh", "launch_scripts/lib.sh")
+from sources import REPOSITORY
 
 Run = collections.namedtuple("Run", "scene duration_s label seed key arguments")
 
@@ -85,20 +83,6 @@ def scenes_of(names):
         return [str(names)]
     before, first, last, after = match.groups()
     return [f"{before}{number}{after}" for number in range(int(first), int(last) + 1)]
-
-
-def hash_of_sources():
-    """Of all that programs are made of, and of configuration that every run reads."""
-    digest = hashlib.sha256()
-    for source in SOURCES:
-        path = REPOSITORY / source
-        for file in sorted(path.rglob("*")) if path.is_dir() else [path]:
-            if file.is_file() and "__pycache__" not in file.parts:
-                digest.update(str(file.relative_to(REPOSITORY)).encode() + b"\0" + file.read_bytes())
-    furniture = pathlib.Path("/usr/share/sweethome3d/furniture")
-    libraries = sorted(p.name for p in furniture.glob("*")) if furniture.is_dir() else ["parametric furniture"]
-    digest.update("\n".join(libraries).encode())
-    return digest.hexdigest()
 
 
 def world_file(protocol):

@@ -3,7 +3,7 @@
 import subprocess
 
 from experiments import tables
-from experiments.protocol import REPOSITORY
+from sources import REPOSITORY
 from experiments.runs import in_file_name
 
 FIGURES = {"runs": "All runs: boxes from quartile to quartile, whiskers to the extremes.",

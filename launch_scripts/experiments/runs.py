@@ -11,17 +11,14 @@ import sys
 import time
 
 import benchmark_rows
-from experiments.protocol import REPOSITORY, ProtocolError, run_id, setting_of
+from experiments.protocol import ProtocolError, run_id, setting_of
+from sources import REPOSITORY, programs
 
 SCRIPTS = REPOSITORY / "launch_scripts"
 LAST_DOMAIN = 101
 TIMELINE = ("time_s", "path_length_m", "explored_volume_m3", "explored_share", "position_error_m")
 TIMELINE_STEP = 5  # its lines are a second apart
 FIGURES_OF_MAPS = ("map_error", "beside_truth")
-
-
-def programs():
-    return pathlib.Path(os.environ.get("LAPIS_BIN", REPOSITORY / "build/release/bin"))
 
 
 def in_file_name(label):

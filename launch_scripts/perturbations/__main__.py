@@ -2,22 +2,29 @@
 
 import argparse
 import csv
+import fcntl
+import hashlib
 import json
+import math
 import os
 import pathlib
+import shutil
+import signal
 import subprocess
 import sys
 
 try:
     import numpy as np
 
-    from experiments.protocol import REPOSITORY, hash_of_sources
     from perturbations.kinds import KINDS, share_of_poor_shots
     from perturbations.sequence import SequenceError, read_sequence, write_sequence
+    from sources import REPOSITORY, hash_of_sources, problem_of_programs
 except ModuleNotFoundError as missing:
-    sys.exit(f"perturb.sh: no Python module {missing.name}; launch_scripts/setup.sh --dev installs what is needed")
+    print(f"perturb.sh: no Python module {missing.name}; launch_scripts/setup.sh --dev installs what is needed", file=sys.stderr)
+    sys.exit(2)
 
 COLUMNS = ("sequence", "kind", "key", "frames", "tracked_share", "ate_se3_rmse_m", "cpu_ms_per_frame.slam", "poor_share")
+OWN_SOURCES = ("launch_scripts/replay.sh", "launch_scripts/perturbations")
 SEED = 1
 MOST_POOR = 0.1  # of the frames; with more, nobody asks that the camera is tracked
 
@@ -25,7 +32,7 @@ MOST_POOR = 0.1  # of the frames; with more, nobody asks that the camera is trac
 def parse():
     parser = argparse.ArgumentParser(prog="perturb.sh")
     parser.add_argument("sequences", nargs="+", type=pathlib.Path)
-    parser.add_argument("--kinds", default="", help="comma-separated; default: all")
+    parser.add_argument("--kinds", default="")
     parser.add_argument("--out", type=pathlib.Path, default=REPOSITORY / "out/perturbations")
     parser.add_argument("--results", type=pathlib.Path, default=REPOSITORY / "docs/results/perturbations.csv")
     parser.add_argument("--table", action="store_true")
@@ -42,8 +49,68 @@ def fail(text):
     sys.exit(2)
 
 
-def in_file_name(kind):
-    return "".join(c if c.isalnum() or c in "+-." else "_" for c in kind)
+def read_sequences(folders):
+    sequences = [read_sequence(folder) for folder in folders]
+    names = [sequence.name for sequence in sequences]
+    if twice := [name for name in names if names.count(name) > 1]:
+        fail(f"two sequences are called {twice[0]}: rows would not tell them apart")
+    return sequences
+
+
+class Run:
+    """One sequence with one kind of images."""
+
+    def __init__(self, sequence, kind, sources, options):
+        self.sequence, self.kind, self.options = sequence, kind, options
+        words = (sources, sequence.hash(), kind, *options.settings)
+        self.key = hashlib.sha256("\0".join(words).encode()).hexdigest()[:16]
+        name = "".join(c if c.isalnum() or c in "+-." else "_" for c in kind)
+        self.data, self.folder = (options.out / of / sequence.name / name for of in ("data", "runs"))
+
+    def __str__(self):
+        return f"{self.sequence.name}, {self.kind}"
+
+    def row(self, rows):
+        """That of this run; none if it has not been played."""
+        is_this = {"sequence": self.sequence.name, "kind": self.kind, "key": self.key}.items()
+        return next((row for row in rows if is_this <= row.items()), None)
+
+    def play(self):
+        """Its row; none, with a message, when it failed."""
+        for folder in (self.data, self.folder):
+            folder.parent.mkdir(parents=True, exist_ok=True)
+        camera, shots = KINDS[self.kind](self.sequence, np.random.default_rng(SEED))
+        write_sequence(self.data, self.sequence, camera, shots)
+        poor = share_of_poor_shots(read_sequence(self.data, fewest=1).shots())
+        if status := self.replay():
+            print(f"perturb.sh: {self}: replay.sh failed with status {status}, log {self.folder}.log", file=sys.stderr)
+            return None
+        try:
+            metrics = json.loads((self.folder / "metrics.json").read_text(encoding="utf-8"))
+            tracked = metrics["frames_tracked"] / metrics["frames_total"]
+        except (OSError, ValueError, KeyError, TypeError, ZeroDivisionError) as problem:
+            print(f"perturb.sh: {self}: {self.folder}/metrics.json does not say what was tracked ({problem})", file=sys.stderr)
+            return None
+        shutil.rmtree(self.data)
+        return {"sequence": self.sequence.name, "kind": self.kind, "key": self.key, "frames": metrics["frames_total"],
+                "tracked_share": round(tracked, 4), "ate_se3_rmse_m": metrics.get("ate_se3_rmse_m"),
+                "cpu_ms_per_frame.slam": (metrics.get("cpu_ms_per_frame") or {}).get("slam"), "poor_share": round(poor, 4)}
+
+    def replay(self):
+        """Status of replay.sh. Its interruption ends this script, and the other way round."""
+        (self.folder / "metrics.json").unlink(missing_ok=True)
+        command = ["setpriv", "--pdeathsig", "TERM", REPOSITORY / "launch_scripts/replay.sh", self.data, "--out", self.folder]
+        command += [word for setting in self.options.settings for word in ("--set", setting)]
+        with open(f"{self.folder}.log", "w", encoding="utf-8") as log, \
+                subprocess.Popen(command, stdout=log, stderr=subprocess.STDOUT) as process:
+            try:
+                status = process.wait()
+            except SystemExit:
+                process.terminate()
+                raise
+        if status in (130, 143):
+            sys.exit(status)
+        return status
 
 
 def read_rows(file):
@@ -53,91 +120,79 @@ def read_rows(file):
         return list(csv.DictReader(stream))
 
 
-def write_rows(file, rows):
+def add_row(file, row):
+    """In place of one of the same sequence and kind with this key; all others stay."""
+    is_this = {name: row[name] for name in ("sequence", "kind", "key")}.items()
+    rows = [other for other in read_rows(file) if not is_this <= other.items()]
     file.parent.mkdir(parents=True, exist_ok=True)
     part = file.with_name(file.name + ".part")
     with part.open("w", newline="", encoding="utf-8") as stream:
         writer = csv.DictWriter(stream, COLUMNS, lineterminator="\n")
         writer.writeheader()
-        writer.writerows(rows)
+        writer.writerows([*rows, row])
     part.replace(file)
 
 
-def play(sequence, kind, key, options):
-    """The row of a run; none when it failed."""
-    name = sequence.folder.resolve().name
-    data, run = (options.out / of / name / in_file_name(kind) for of in ("data", "runs"))
-    data.parent.mkdir(parents=True, exist_ok=True)
-    run.parent.mkdir(parents=True, exist_ok=True)
-    camera, shots = KINDS[kind](sequence, np.random.default_rng(SEED))
-    write_sequence(data, sequence, camera, shots)
-    poor = share_of_poor_shots(read_sequence(data).shots())
-    command = [REPOSITORY / "launch_scripts/replay.sh", data, "--out", run]
-    command += [word for setting in options.settings for word in ("--set", setting)]
-    with open(f"{run}.log", "w", encoding="utf-8") as log:
-        status = subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False,
-                                env=os.environ | {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}).returncode
-    if status != 0:
-        print(f"perturb.sh: {name}, {kind}: replay.sh failed with status {status}, log {run}.log", file=sys.stderr)
-        return None
-    metrics = json.loads((run / "metrics.json").read_text(encoding="utf-8"))
-    frames = metrics["frames_total"]
-    return {"sequence": name, "kind": kind, "key": key, "frames": frames,
-            "tracked_share": round(metrics["frames_tracked"] / frames, 4),
-            "ate_se3_rmse_m": metrics["ate_se3_rmse_m"],
-            "cpu_ms_per_frame.slam": (metrics.get("cpu_ms_per_frame") or {}).get("slam"), "poor_share": round(poor, 4)}
-
-
-def play_all(sequences, key, options):
-    """How many runs failed."""
+def play(runs, options):
+    """How many runs failed. The folder is this script's alone."""
+    if problem := problem_of_programs():
+        fail(problem)
+    for number in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(number, lambda number, _: sys.exit(128 + number))
+    options.out.mkdir(parents=True, exist_ok=True)
     failures = 0
-    todo = [(sequence, kind) for sequence in sequences for kind in options.kinds]
-    for number, (sequence, kind) in enumerate(todo, 1):
-        name = sequence.folder.resolve().name
-        is_this = {"sequence": name, "kind": kind, "key": key}.items()
-        if any(is_this <= row.items() for row in read_rows(options.results)):
+    folder = os.open(options.out, os.O_RDONLY)
+    try:
+        fcntl.flock(folder, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        fail(f"{options.out} is in use by another perturb.sh; choose another with --out DIR")
+    for number, run in enumerate(runs, 1):
+        if run.row(read_rows(options.results)):
             continue
-        row = play(sequence, kind, key, options)
+        row = run.play()
         failures += row is None
-        if row is None:
-            continue
-        others = [other for other in read_rows(options.results) if not is_this <= other.items()]
-        write_rows(options.results, [*others, row])
-        print(f"[{number}/{len(todo)}] {name}, {kind}: {100 * row['tracked_share']:.1f} % tracked", flush=True)
+        if row:
+            add_row(options.results, row)
+            print(f"[{number}/{len(runs)}] {run}: {100 * row['tracked_share']:.1f} % tracked", flush=True)
     return failures
 
 
-def number_of(row, column):
-    return float(row[column]) if row.get(column) else float("nan")
+def text_of(row, column, factor, unit):
+    return f"{factor * float(row[column]):.{2 if unit == 'cm' else 1}f} {unit}" if row.get(column) else "-"
 
 
-def print_table(rows):
+def ratio(row, plain, column):
+    value, of_plain = (float(of.get(column) or math.nan) for of in (row, plain))
+    return f"{value / of_plain:.2f}" if of_plain > 0 and math.isfinite(value) else "-"
+
+
+def print_table(runs, rows):
     """Errors and cost beside those of the sequence as it is."""
-    of_none = {row["sequence"]: row for row in rows if row["kind"] == "none"}
     print("| sequence | images | frames | tracked | ATE | ratio | slam, CPU per frame | ratio | |\n"
           "| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
-    for row in rows:
-        plain = of_none.get(row["sequence"], {})
-        ate, cpu = number_of(row, "ate_se3_rmse_m"), number_of(row, "cpu_ms_per_frame.slam")
-        note = "too dark, too bright, or without depth" if number_of(row, "poor_share") > MOST_POOR else ""
-        print(f"| {row['sequence']} | {row['kind']} | {row['frames']} | {100 * number_of(row, 'tracked_share'):.1f} % | "
-              f"{100 * ate:.2f} cm | {ate / number_of(plain, 'ate_se3_rmse_m'):.2f} | {cpu:.1f} ms | "
-              f"{cpu / number_of(plain, 'cpu_ms_per_frame.slam'):.2f} | {note} |")
+    plain = {run.sequence.name: run.row(rows) for run in runs if run.kind == "none"}
+    for run in runs:
+        if not (row := run.row(rows)):
+            continue
+        of_plain = plain.get(run.sequence.name) or {}
+        note = "too dark, too bright, or without depth" if float(row["poor_share"]) > MOST_POOR else ""
+        print(f"| {run.sequence.name} | {run.kind} | {row['frames']} | {text_of(row, 'tracked_share', 100, '%')} | "
+              f"{text_of(row, 'ate_se3_rmse_m', 100, 'cm')} | {ratio(row, of_plain, 'ate_se3_rmse_m')} | "
+              f"{text_of(row, 'cpu_ms_per_frame.slam', 1, 'ms')} | {ratio(row, of_plain, 'cpu_ms_per_frame.slam')} | {note} |")
 
 
 def main():
     options = parse()
     failures = 0
     try:
-        sequences = [read_sequence(folder) for folder in options.sequences]
-        key = hash_of_sources()[:16]
+        sources = hash_of_sources(OWN_SOURCES)
+        runs = [Run(sequence, kind, sources, options) for sequence in read_sequences(options.sequences)
+                for kind in options.kinds]
         if not options.table:
-            failures = play_all(sequences, key, options)
+            failures = play(runs, options)
     except SequenceError as problem:
         fail(problem)
-    names = [sequence.folder.resolve().name for sequence in sequences]
-    rows = [row for row in read_rows(options.results) if row["key"] == key and row["sequence"] in names]
-    print_table(sorted(rows, key=lambda row: (names.index(row["sequence"]), list(KINDS).index(row["kind"]))))
+    print_table(runs, read_rows(options.results))
     return 1 if failures else 0
 
 

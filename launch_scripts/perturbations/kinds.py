@@ -9,8 +9,10 @@ import io
 import numpy as np
 from PIL import Image
 
-from perturbations.sequence import Shot, turns_of
+from perturbations.sequence import Shot, turn_rates_of
 
+SLOW_HZ = 7.5
+GAMMA = 2.2  # from light to what a screen is given
 EXPOSED_SHARE = 0.5  # of the time between two images
 READ_OUT_SHARE = 0.8  # of it, a rolling shutter takes from the first row to the last
 PERSON_DISTANCE_M, PERSON_WIDTH_M, PERSON_SPEED_MPS, PERSON_PERIOD_S = 1.3, 0.5, 1.0, 5.0
@@ -36,11 +38,17 @@ def as_it_is(sequence, _):
     return sequence.camera, sequence.shots()
 
 
-def fewer_frames(rate_hz):
-    def kind(sequence, _):
-        step = max(1, round(sequence.rate_hz / rate_hz))
-        return sequence.camera | {"fps": rate_hz}, (shot for i, shot in enumerate(sequence.shots()) if i % step == 0)
-    return kind
+def fewer_frames(sequence, step):
+    camera = sequence.camera | {"fps": sequence.rate_hz / step}
+    return camera, (shot for i, shot in enumerate(sequence.shots()) if i % step == 0)
+
+
+def every_second(sequence, _):
+    return fewer_frames(sequence, 2)
+
+
+def slow(sequence, _):
+    return fewer_frames(sequence, max(1, round(sequence.rate_hz / SLOW_HZ)))
 
 
 def gamma(exponent):
@@ -56,19 +64,26 @@ def jpeg(quality):
     return looks(encoded)
 
 
+def light_of(color):
+    return (color / 255.0) ** GAMMA
+
+
+def color_of(light):
+    return np.round(255.0 * np.minimum(light, 1.0) ** (1.0 / GAMMA)).astype(np.uint8)
+
+
 def exposure_jumps(sequence, _):
-    """Brightness doubles and halves from one second to the next, as light; what is too bright is white."""
+    """Light doubles and halves from one second to the next; what is too bright is white."""
     def shots():
         for shot in sequence.shots():
             factor = (1.0, 2.0, 1.0, 0.5)[int(shot.stamp_s) % 4]
-            light = factor * (shot.color / 255.0) ** 2.2
-            yield Shot(shot.stamp_s, np.round(255.0 * np.minimum(light, 1.0) ** (1 / 2.2)).astype(np.uint8), shot.depth)
+            yield Shot(shot.stamp_s, color_of(factor * light_of(shot.color)), shot.depth)
     return sequence.camera, shots()
 
 
 def flows_of(sequence):
-    """Shift of the image's centre from each shot to the next one [n, 2, in px]."""
-    turns = turns_of(sequence)
+    """Shift of the image's centre in the time between two images, at each of them [n, 2, in px]."""
+    turns = turn_rates_of(sequence) / sequence.rate_hz
     return np.stack((-sequence.camera["fx"] * turns[:, 1], sequence.camera["fy"] * turns[:, 0]), axis=1)
 
 
@@ -80,18 +95,23 @@ def shifted(image, shift_px):
 
 
 def motion_blur(sequence, _):
+    flows = flows_of(sequence)
+
     def shots():
-        for shot, flow in zip(sequence.shots(), flows_of(sequence)):
+        for shot, flow in zip(sequence.shots(), flows):
             steps = int(np.ceil(np.abs(EXPOSED_SHARE * flow).max())) + 1
-            parts = [shifted(shot.color, EXPOSED_SHARE * flow * at) for at in np.linspace(-0.5, 0.5, steps)]
-            yield Shot(shot.stamp_s, np.round(np.mean(parts, axis=0)).astype(np.uint8), shot.depth)
+            light = light_of(shot.color)
+            parts = [shifted(light, EXPOSED_SHARE * flow * at) for at in np.linspace(-0.5, 0.5, steps)]
+            yield Shot(shot.stamp_s, color_of(np.mean(parts, axis=0)), shot.depth)
     return sequence.camera, shots()
 
 
 def rolling_shutter(sequence, _):
     """Each row of the colour image is of an instant of its own; depth is not."""
+    flows = flows_of(sequence)
+
     def shots():
-        for shot, flow in zip(sequence.shots(), flows_of(sequence)):
+        for shot, flow in zip(sequence.shots(), flows):
             height, width = shot.depth.shape
             when = READ_OUT_SHARE * (np.arange(height) / height - 0.5)
             rows = np.clip(np.arange(height) - np.round(when * flow[1]).astype(int), 0, height - 1)
@@ -123,8 +143,10 @@ def holes(sequence, random):
 
 def with_flying_pixels(depth, random):
     near, far = depth.astype(np.float64), depth.astype(np.float64)
-    for axis, step in ((0, 1), (0, -1), (1, 1), (1, -1)):
-        other = np.roll(depth, step, axis)
+    height, width = depth.shape
+    around = np.pad(depth, 1, mode="edge")
+    for row, column in ((0, 1), (2, 1), (1, 0), (1, 2)):
+        other = around[row:row + height, column:column + width]
         near = np.where(other > 0, np.minimum(near, other), near)
         far = np.maximum(far, other)
     is_edge = (depth > 0) & (far > 1.05 * near)
@@ -199,7 +221,7 @@ def person(sequence, random):
     return camera, shots()
 
 
-KINDS = {"none": as_it_is, "7.5 Hz": fewer_frames(7.5), "gamma 0.4": gamma(0.4), "gamma 2.5": gamma(2.5),
+KINDS = {"none": as_it_is, "every second": every_second, "7.5 Hz": slow, "gamma 0.4": gamma(0.4), "gamma 2.5": gamma(2.5),
          "exposure jumps": exposure_jumps, "motion blur": motion_blur, "rolling shutter": rolling_shutter,
          "depth late": late_depth, "holes": holes, "JPEG 60": jpeg(60),
          "depth +3 %": calibration(depth_scale=1 / 1.03), "depth -3 %": calibration(depth_scale=1 / 0.97),

@@ -12,7 +12,7 @@ import tempfile
 import unittest
 
 REPOSITORY = pathlib.Path(sys.argv.pop(1))
-SHARED = ("lib.sh", "usage.py", "packages.txt")  # no scripts
+SHARED = ("lib.sh", "sources.py", "usage.py", "packages.txt")  # no scripts
 
 
 def contents(folder):

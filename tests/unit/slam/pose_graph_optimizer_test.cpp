@@ -329,7 +329,7 @@ TEST(Initialization, NoisyPlanarGraphsConvergeFromIt) {
   EXPECT_LT(report.final_chi2, of_truth);
 }
 
-TEST(Initialization, LoopClosuresOfFilesAreEdgesBetweenDistantIds) {
+TEST(Initialization, LoopClosuresOfFilesAreEdgesBetweenNodesThatDoNotFollowOneAnother) {
   PoseGraphSnapshot graph;
   for (const auto& [from, to] :
        {std::pair(0, 1), {5, 4}, {5, 1'000'006}, {1'000'006, 1'000'007}, {1, 4}, {2, 4}, {1'000'007, 5}}) {

@@ -1,5 +1,6 @@
 #include "slam/core/graph/pose_graph_initialization.hpp"
 
+#include <algorithm>
 #include <deque>
 #include <set>
 

@@ -7,8 +7,8 @@ namespace lapis::slam {
 /// Adds a node at the identity for every id that only edges name, in the order of ids. Returns how many.
 std::size_t add_missing_nodes(PoseGraphSnapshot& graph);
 
-/// Files do not distinguish edge types: an edge is a step of the camera when no node has an id between those of its ends
-/// (ids have gaps where slam was started again), and a loop closure otherwise.
+/// Files do not distinguish edge types: an edge is a step of the camera when no node has an id between those of its
+/// ends (ids have gaps where slam was started again), and a loop closure otherwise.
 void mark_loop_closures(PoseGraphSnapshot& graph);
 
 /// Poses by chaining edges from the first node of each connected part, over as few edges as possible (breadth-first);

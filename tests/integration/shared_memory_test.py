@@ -11,7 +11,7 @@ import chain
 
 MEMORY = Path("/dev/shm")
 SEGMENT = re.compile(r"fastrtps_[0-9a-f]{16}")
-KILLS = 10
+KILLS = int(os.environ.get("LAPIS_KILLS", "10"))
 
 
 class SharedMemoryTest(chain.ChainTest):

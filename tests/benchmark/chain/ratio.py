@@ -39,8 +39,8 @@ def arguments():
     parser.add_argument("--set", action="append", default=[], dest="settings")
     options = parser.parse_args()
     for checkout in (options.base, options.changed):
-        if not (checkout / "build/release/bin/lapis_supervisor").is_file():
-            parser.error(f"{checkout}: no build/release/bin/lapis_supervisor; build its target programs first")
+        if not (checkout / "build/release/bin/lapis_simulator").is_file():
+            parser.error(f"{checkout}: no build/release/bin/lapis_simulator; build it first")
     if options.rounds < 1:
         parser.error(f"--rounds {options.rounds}: wanted is 1 or more")
     return options

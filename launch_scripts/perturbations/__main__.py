@@ -133,13 +133,23 @@ def add_row(file, row):
     part.replace(file)
 
 
+def make_folder(option, folder):
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as problem:
+        fail(f"{option}: {folder} cannot be made a folder ({problem.strerror}); choose another")
+    if not os.access(folder, os.W_OK):
+        fail(f"{option}: {folder} cannot be written; choose another")
+
+
 def play(runs, options):
     """How many runs failed. The folder is this script's alone."""
     if problem := problem_of_programs():
         fail(problem)
     for number in (signal.SIGINT, signal.SIGTERM):
         signal.signal(number, lambda number, _: sys.exit(128 + number))
-    options.out.mkdir(parents=True, exist_ok=True)
+    for option, place in (("--out", options.out), ("--results", options.results.parent)):
+        make_folder(option, place)
     failures = 0
     folder = os.open(options.out, os.O_RDONLY)
     try:
@@ -192,6 +202,9 @@ def main():
             failures = play(runs, options)
     except SequenceError as problem:
         fail(problem)
+    except OSError as problem:  # for example a full disk
+        print(f"perturb.sh: {problem}", file=sys.stderr)
+        return 1
     print_table(runs, read_rows(options.results))
     return 1 if failures else 0
 

@@ -290,6 +290,14 @@ class CommandTest(PretendedPrograms):
         self.assertIn(row, self.run_it(self.sequence, *kind).stdout)
         self.assertEqual(len(self.played()), 4)
 
+    def test_places_that_cannot_be_written_are_named_before_anything_is_played(self):
+        (self.folder / "out").write_text("a file")
+        self.assertIn("--out: ", self.run_it(self.sequence, status=2).stderr)
+        (self.folder / "out").unlink()
+        self.rows = self.folder / "launch_scripts/replay.sh/rows.csv"
+        self.assertIn("--results: ", self.run_it(self.sequence, status=2).stderr)
+        self.assertEqual(self.played(), [])
+
     def test_an_interruption_ends_it(self):
         self.run_it(self.sequence, "--kinds", "JPEG 60, none", status=143)
         self.assertEqual(len(self.played()), 1)

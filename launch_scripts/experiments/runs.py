@@ -18,6 +18,7 @@ SCRIPTS = REPOSITORY / "launch_scripts"
 LAST_DOMAIN = 101
 TIMELINE = ("time_s", "path_length_m", "explored_volume_m3", "explored_share", "position_error_m")
 TIMELINE_STEP = 5  # its lines are a second apart
+BAD_SET_UP = 2  # exit status of explore.sh
 FIGURES_OF_MAPS = ("map_error", "beside_truth")
 
 
@@ -66,6 +67,8 @@ class Experiment:
         folder = self.folder(run)
         if process.returncode in (130, 143, -signal.SIGINT, -signal.SIGTERM):
             self.interrupt(process.returncode if process.returncode > 0 else 128 - process.returncode)
+        if process.returncode == BAD_SET_UP:
+            self.refuse(run)
         if process.returncode == 0:
             (folder / "identity").write_text(run_id(run) + "\n", encoding="utf-8")
         else:
@@ -113,6 +116,13 @@ class Experiment:
         failed = f", {self.failures} failed" if self.failures else ""
         print(f"[{self.count - len(waiting)}/{self.count}] {run.scene}, {run.label}, seed {run.seed}: {outcome}{failed}; "
               f"about {text_of_duration(left_s)} left", flush=True)
+
+    def refuse(self, run):
+        """What is wrong with one run is wrong with all of them, and says nothing about the method."""
+        lines = pathlib.Path(f"{self.folder(run)}.log").read_text(encoding="utf-8", errors="replace").splitlines()
+        print(f"experiment.sh: {run.scene}, {run.label}, seed {run.seed} cannot run as the protocol says; the end of "
+              f"{self.folder(run)}.log: {lines[-1] if lines else 'nothing'}", file=sys.stderr)
+        self.interrupt(BAD_SET_UP)
 
     def interrupt(self, status):
         """What is under way ends in order, and has no row."""

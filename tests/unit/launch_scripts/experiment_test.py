@@ -131,6 +131,13 @@ class ExperimentTest(PretendedPrograms):
         self.assertEqual(self.experiment("--repeat-failed")[1], ["flat_1/lapis/1", "flat_2/nearest/1"])
         self.assertNotIn("FAILED", [row["outcome"] for row in self.rows()])
 
+    def test_a_bad_set_up_ends_the_experiment_and_is_no_failure_of_a_method(self):
+        self.order(status={"flat_1/nearest/1": 2})
+        output, played = self.experiment(status=2)
+        self.assertEqual(played, ["flat_1/lapis/1", "flat_1/nearest/1"])
+        self.assertIn("flat_1, near, seed 1 cannot run as the protocol says", output)
+        self.assertEqual([row["method"] for row in self.rows()], ["lapis"])
+
     def test_a_figure_that_no_run_has_is_named(self):
         self.protocol.write_text(PROTOCOL.replace("[lost_time_s]", "[lost_time]"))
         self.assertIn("no row has the figure lost_time\n", self.experiment()[0])

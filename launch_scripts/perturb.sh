@@ -17,7 +17,7 @@ latter two also as ratios to those of the sequence as it is. Each run is a row o
   --kinds KIND,...  default: all of
                     none, every second, 7.5 Hz, gamma 0.4, gamma 2.5, exposure jumps, motion blur, rolling shutter,
                     depth late, holes, JPEG 60, depth +3 %, depth -3 %, focal length +3 %, focal length -3 %,
-                    depth not registered, person
+                    depth not registered, own depth camera, person
                     (blur and rolling shutter come of the turns in groundtruth.txt; late depth halves the rate, so that
                     'every second' is what to compare it with)
   --out DIR         run folders, and the changed sequences of runs that failed; default: out/perturbations

@@ -58,4 +58,12 @@ void Rectifier::rectify(geometry::Image<std::uint16_t>& image) const {
   if (maps_ != nullptr) remap(image, CV_16UC1, maps_->nearest, cv::Mat(), cv::INTER_NEAREST);
 }
 
+const Rectifier& KeptRectifier::of(const geometry::LensCamera& camera) {
+  if (rectifier_ == nullptr || camera != camera_) {
+    rectifier_ = std::make_unique<const Rectifier>(camera);
+    camera_ = camera;
+  }
+  return *rectifier_;
+}
+
 }  // namespace lapis::images

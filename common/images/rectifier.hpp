@@ -30,4 +30,14 @@ class Rectifier {
   std::unique_ptr<const Maps> maps_;  // null: the lens has no distortion
 };
 
+/// Keeps the rectifier of the camera that was asked for last, because its tables take longer than a frame.
+class KeptRectifier {
+ public:
+  const Rectifier& of(const geometry::LensCamera& camera);
+
+ private:
+  geometry::LensCamera camera_;
+  std::unique_ptr<const Rectifier> rectifier_;  // of camera_
+};
+
 }  // namespace lapis::images

@@ -94,12 +94,10 @@ Converted<geometry::LensCamera> lens_camera(const sensor_msgs::msg::CameraInfo& 
   return camera;
 }
 
-Converted<geometry::PinholeCamera> from_message(const sensor_msgs::msg::CameraInfo& message) {
-  using Result = Converted<geometry::PinholeCamera>;
-  const auto camera = lens_camera(message);
-  if (!camera) return Result::refused(camera.reason);
-  if (camera->is_distorted()) return Result::refused("camera info has distortion; rectify the images first");
-  return camera->pinhole;
+std::string size_problem(const std::string& what, int width, int height, const geometry::PinholeCamera& camera) {
+  if (width == camera.width && height == camera.height) return "";
+  const auto text = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
+  return what + " image is " + text(width, height) + ", camera info says " + text(camera.width, camera.height);
 }
 
 Converted<geometry::GrayImage> to_gray(const Image& message) {

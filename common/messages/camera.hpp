@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "common/geometry/image.hpp"
 #include "common/geometry/pinhole_camera.hpp"
 #include "common/messages/converted.hpp"
@@ -10,8 +12,8 @@ namespace lapis::messages {
 /// Camera of a camera info with the distortion model plumb_bob or rational_polynomial, or without distortion; refuses
 /// other models, whose coefficients mean something else, and a camera without valid size and focal length.
 Converted<geometry::LensCamera> lens_camera(const sensor_msgs::msg::CameraInfo& message);
-/// The same for callers that need images without distortion; refuses a distorted camera.
-Converted<geometry::PinholeCamera> from_message(const sensor_msgs::msg::CameraInfo& message);
+/// Why an image does not have the size of its camera; empty when it has. `what`: "depth".
+std::string size_problem(const std::string& what, int width, int height, const geometry::PinholeCamera& camera);
 
 /// Luminance of an rgb8, bgr8, rgba8, bgra8 or mono8 image (ITU-R BT.601 weights).
 Converted<geometry::GrayImage> to_gray(const sensor_msgs::msg::Image& message);

@@ -60,12 +60,14 @@ geometry_msgs::msg::TransformStamped stamped_transform(const geometry::Pose& T_p
 
 }  // namespace
 
-CameraMessages to_messages(const CameraFrame& frame, const geometry::PinholeCamera& camera, const CameraFrameIds& ids) {
+CameraMessages to_messages(const CameraFrame& frame, const CameraSetUp& cameras, const CameraFrameIds& ids) {
   const auto h = header(frame.stamp, ids.optical);
+  const auto of_depth = cameras.depth ? header(frame.stamp, ids.depth_optical) : h;
   CameraMessages out;
   out.color = image_message(frame.color, "rgb8", h);
-  out.info = info_message(camera, h);
-  if (frame.depth_mm != nullptr) out.depth = image_message(*frame.depth_mm, "16UC1", h);
+  out.color_info = info_message(cameras.color, h);
+  out.depth_info = info_message(cameras.depth ? cameras.depth->camera : cameras.color, of_depth);
+  if (frame.depth_mm != nullptr) out.depth = image_message(*frame.depth_mm, "16UC1", of_depth);
   if (frame.labels != nullptr) out.labels = label_message(*frame.labels, h);
   if (frame.T_world_base) {
     nav_msgs::msg::Odometry truth;
@@ -77,11 +79,14 @@ CameraMessages to_messages(const CameraFrame& frame, const geometry::PinholeCame
   return out;
 }
 
-tf2_msgs::msg::TFMessage to_static_transforms(const geometry::CameraMount& mount, const CameraFrameIds& ids,
-                                              time::Time stamp) {
+tf2_msgs::msg::TFMessage to_static_transforms(const CameraSetUp& cameras, const CameraFrameIds& ids, time::Time stamp) {
   tf2_msgs::msg::TFMessage message;
-  message.transforms().push_back(stamped_transform(T_base_link(mount), ids.base, ids.camera, stamp));
+  message.transforms().push_back(stamped_transform(T_base_link(cameras.mount), ids.base, ids.camera, stamp));
   message.transforms().push_back(stamped_transform(geometry::T_link_optical(), ids.camera, ids.optical, stamp));
+  if (cameras.depth) {
+    message.transforms().push_back(
+        stamped_transform(cameras.depth->T_color_depth, ids.optical, ids.depth_optical, stamp));
+  }
   return message;
 }
 

@@ -85,16 +85,29 @@ std::string StaticTransforms::add(const tf2_msgs::msg::TFMessage& message) {
 }
 
 std::optional<geometry::Pose> StaticTransforms::find(const std::string& parent, const std::string& child) const {
+  std::map<std::string, geometry::Pose> above;  // the parent in itself and in the frames above it
+  climb(parent, [&](const std::string& frame, const geometry::Pose& T) { return !above.emplace(frame, T).second; });
+  std::optional<geometry::Pose> found;
+  climb(child, [&](const std::string& frame, const geometry::Pose& T) {
+    const auto common = above.find(frame);
+    if (common != above.end()) found = common->second.inverse() * T;
+    return found.has_value();
+  });
+  return found;
+}
+
+/// Calls `visit` for a frame and those above it, with the pose of the first one in each, until it returns true.
+template <class Visit>
+void StaticTransforms::climb(const std::string& first, Visit visit) const {
   geometry::Pose T = geometry::Pose::Identity();
-  std::string frame = child;
+  std::string frame = first;
   for (std::size_t steps = 0; steps <= links_.size(); ++steps) {  // bounded, because faulty input may form a cycle
-    if (frame == parent) return T;
-    const auto it = links_.find(frame);
-    if (it == links_.end()) return std::nullopt;
-    T = it->second.T_parent_child * T;
-    frame = it->second.parent;
+    if (visit(frame, T)) return;
+    const auto link = links_.find(frame);
+    if (link == links_.end()) return;
+    T = link->second.T_parent_child * T;
+    frame = link->second.parent;
   }
-  return std::nullopt;
 }
 
 }  // namespace lapis::messages

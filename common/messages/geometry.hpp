@@ -33,7 +33,7 @@ class StaticTransforms {
   /// Stores the valid transforms, of up to kMostFrames child frames; returns the reason why the last of the others was
   /// refused, or an empty text.
   std::string add(const tf2_msgs::msg::TFMessage& message);
-  /// T_parent_child along the chain of announced transforms; nothing until the chain is complete.
+  /// T_parent_child along the announced transforms, up and down their tree; nothing until they connect the two frames.
   std::optional<geometry::Pose> find(const std::string& parent, const std::string& child) const;
 
  private:
@@ -41,6 +41,9 @@ class StaticTransforms {
     std::string parent;
     geometry::Pose T_parent_child;
   };
+  template <class Visit>
+  void climb(const std::string& first, Visit visit) const;
+
   std::map<std::string, Link> links_;
 };
 

@@ -16,7 +16,7 @@ constexpr std::chrono::milliseconds kSettling(500);
 
 CameraPublisher::CameraPublisher(Context& context, const Parts& parts, bool is_live)
     : ids_{context.frame("base_link"), context.frame("camera_link"), context.frame("camera_color_optical_frame"),
-           "world"},
+           context.frame("camera_depth_optical_frame"), "world"},
       pace_(context.participant().pace()), is_live_(is_live), color_(context.advertise(topics::kColor)),
       depth_(context.advertise(topics::kDepth)), color_info_(context.advertise(topics::kColorInfo)),
       depth_info_(context.advertise(topics::kDepthInfo)),
@@ -38,9 +38,9 @@ bool CameraPublisher::has_readers(std::size_t number) {
   return Clock::now() - *matched_since_ >= kSettling;
 }
 
-void CameraPublisher::publish_latched(const geometry::CameraMount& mount, const mapping::LabelList& labels,
+void CameraPublisher::publish_latched(const messages::CameraSetUp& cameras, const mapping::LabelList& labels,
                                       time::Time stamp) {
-  static_transforms_.publish(messages::to_static_transforms(mount, ids_, stamp));
+  static_transforms_.publish(messages::to_static_transforms(cameras, ids_, stamp));
   if (label_info_ != nullptr) label_info_->publish(messages::to_message(labels, stamp, ids_.optical));
 }
 
@@ -51,8 +51,8 @@ void CameraPublisher::publish(const messages::CameraMessages& messages) {
     if (is_late) return publisher.leave_out();
     publisher.publish(message);
   };
-  send(color_info_, messages.info);
-  send(depth_info_, messages.info);
+  send(color_info_, messages.color_info);
+  send(depth_info_, messages.depth_info);
   send(color_, messages.color);
   if (messages.depth) send(depth_, *messages.depth);
   if (messages.labels && labels_ != nullptr) send(*labels_, *messages.labels);

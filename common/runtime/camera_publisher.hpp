@@ -27,7 +27,7 @@ class CameraPublisher {
   /// subscriptions match. Call it often.
   bool has_readers(std::size_t number);
   /// Publishes the camera mount and the classes, once.
-  void publish_latched(const geometry::CameraMount& mount, const mapping::LabelList& labels, time::Time stamp);
+  void publish_latched(const messages::CameraSetUp& cameras, const mapping::LabelList& labels, time::Time stamp);
   /// Publishes the frame, and then its stamp on /clock. Lock-step publishes a frame again when a participant is late.
   /// Images and their infos are all published or all left out, which their writers count.
   void publish(const messages::CameraMessages& messages);

@@ -12,13 +12,13 @@ inline constexpr dds::Topic<sensor_msgs::msg::Image> kColor{"/camera/color/image
 inline constexpr dds::Topic<sensor_msgs::msg::CompressedImage> kCompressedColor{
     "/camera/color/image_raw/compressed", dds::kImage, "camera", "camera rate",
     "JPEG or PNG; read instead of image_raw with slam.input.color: compressed"};
-inline constexpr dds::Topic<sensor_msgs::msg::Image> kDepth{
-    "/camera/depth/image_raw", dds::kImage, "camera", "camera rate",
-    "16UC1 in mm or 32FC1 in m, registered to colour; 0 = none"};
+inline constexpr dds::Topic<sensor_msgs::msg::Image> kDepth{"/camera/depth/image_raw", dds::kImage, "camera",
+                                                            "camera rate", "16UC1 in mm or 32FC1 in m; 0 = none"};
 inline constexpr dds::Topic<sensor_msgs::msg::CameraInfo> kColorInfo{"/camera/color/camera_info", dds::kImageInfo,
                                                                      "camera", "camera rate", "intrinsics"};
 inline constexpr dds::Topic<sensor_msgs::msg::CameraInfo> kDepthInfo{
-    "/camera/depth/camera_info", dds::kImageInfo, "camera", "camera rate", "intrinsics, the same as colour"};
+    "/camera/depth/camera_info", dds::kImageInfo, "camera", "camera rate",
+    "intrinsics; those of colour where depth is registered to it"};
 inline constexpr dds::Topic<sensor_msgs::msg::Image> kLabels{
     "/camera/semantic/image_raw", dds::kImage, "camera, or a segmentation", "camera rate or less",
     "mono8 or mono16 class ids; 0 and the largest id = unlabelled"};

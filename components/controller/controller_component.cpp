@@ -174,7 +174,7 @@ void ControllerComponent::take_frame(const Odometry& odometry, const Image* dept
 void ControllerComponent::see(const Image& depth, const Info& info, time::Time now) {
   const auto T_base_camera = static_transforms_.find(base_frame_, depth.header().frame_id());
   if (!T_base_camera) return drop("depth", "no transform from " + base_frame_ + " to its frame on /tf_static");
-  const auto view = to_core(depth, info, *T_base_camera);
+  const auto view = to_core(depth, info, *T_base_camera, rectifier_);
   if (!view) return drop("depth", view.reason);
   controller_.see(*view, messages::from_message(depth.header().stamp()) - clock_steps_, now);
 }

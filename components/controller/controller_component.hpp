@@ -3,6 +3,7 @@
 #include <optional>
 #include <string>
 
+#include "common/images/rectifier.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
 #include "common/runtime/stamped_input.hpp"
@@ -74,6 +75,7 @@ class ControllerComponent {
   std::optional<OccupancyGrid> obstacles_;
 
   messages::StaticTransforms static_transforms_;
+  images::KeptRectifier rectifier_;  // of the depth camera
   std::uint64_t frames_ = 0;
   time::Time camera_stamp_;                     // stamp of the depth image that arrived last
   std::optional<time::Duration> camera_ahead_;  // of the steady clock, by the least delayed images; none in lock-step

@@ -59,16 +59,16 @@ messages::Converted<Grid> to_core(const nav_msgs::msg::OccupancyGrid& message) {
 }
 
 messages::Converted<DepthView> to_core(const sensor_msgs::msg::Image& depth, const sensor_msgs::msg::CameraInfo& info,
-                                       const geometry::Pose& T_base_camera) {
+                                       const geometry::Pose& T_base_camera, images::KeptRectifier& rectifier) {
   using Result = messages::Converted<DepthView>;
-  const auto camera = messages::from_message(info);
+  const auto camera = messages::lens_camera(info);
   if (!camera) return Result::refused(camera.reason);
   auto image = messages::to_depth(depth);
   if (!image) return Result::refused(image.reason);
-  if (image->width != camera->width || image->height != camera->height) {
-    return Result::refused("depth image and camera info have different sizes");
-  }
-  return DepthView{std::move(*image), *camera, T_base_camera};
+  const auto problem = messages::size_problem("depth", image->width, image->height, camera->pinhole);
+  if (!problem.empty()) return Result::refused(problem);
+  rectifier.of(*camera).rectify(*image);
+  return DepthView{std::move(*image), camera->pinhole, T_base_camera};
 }
 
 bool is_finite(const Velocity& velocity) {

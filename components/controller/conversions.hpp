@@ -3,6 +3,7 @@
 #include <string>
 #include <vector>
 
+#include "common/images/rectifier.hpp"
 #include "common/messages/converted.hpp"
 #include "controller/core/command_odometry.hpp"
 #include "controller/core/controller.hpp"
@@ -20,9 +21,10 @@ messages::Converted<PlanarPose> to_core(const geometry_msgs::msg::Pose& message)
 messages::Converted<std::vector<PlanarPose>> to_core(const nav_msgs::msg::Path& message);
 /// Refused when the number of cells differs from the size, the resolution is out of range, or the grid is rotated.
 messages::Converted<Grid> to_core(const nav_msgs::msg::OccupancyGrid& message);
-/// Refused when the image or the camera info is not usable, or when their sizes differ.
+/// What the depth camera sees, rectified. Refused when the image or the camera info is not usable, or when their sizes
+/// differ.
 messages::Converted<DepthView> to_core(const sensor_msgs::msg::Image& depth, const sensor_msgs::msg::CameraInfo& info,
-                                       const geometry::Pose& T_base_camera);
+                                       const geometry::Pose& T_base_camera, images::KeptRectifier& rectifier);
 
 bool is_finite(const Velocity& velocity);
 geometry_msgs::msg::Twist to_message(const Velocity& velocity);

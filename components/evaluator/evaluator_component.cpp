@@ -68,7 +68,8 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
       truth_(context, topics::kGroundTruth, "ground truth", kWaitingFrames),
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
-      info_(context, topics::kDepthInfo, "camera info", kWaitingInfos), maps_(truth_folder(config)) {
+      info_(context, topics::kColorInfo, "camera info", kWaitingInfos), depth_camera_(context, static_transforms_),
+      maps_(truth_folder(config)) {
   if (config_.output_dir.empty()) {
     throw std::runtime_error("evaluator.output_dir is not set; give --set evaluator.output_dir=FOLDER");
   }
@@ -274,15 +275,19 @@ void EvaluatorComponent::add_to_references(const geometry::Pose& T_map_camera, c
   const auto refuse = [this](const std::string& why) {
     context_.status().count("frames not in the reference: " + why);
   };
-  const auto camera = messages::from_message(info);
+  const auto camera = messages::lens_camera(info);
   if (!camera) return refuse(camera.reason);
-  const auto depth_m = messages::to_depth(depth);
+  const auto depth_m = depth_camera_.convert(depth, info);
   if (!depth_m) return refuse(depth_m.reason);
   geometry::LabelImage ids;
   if (labels != nullptr) {
-    if (auto converted = messages::to_labels(*labels)) ids = std::move(*converted);
+    auto converted = messages::to_labels(*labels);
+    if (converted && messages::size_problem("label", converted->width, converted->height, camera->pinhole).empty()) {
+      rectifier_.of(*camera).rectify(*converted);
+      ids = std::move(*converted);
+    }
   }
-  const std::string problem = maps_.add_reference_frame(*camera, *depth_m, ids, T_map_camera);
+  const std::string problem = maps_.add_reference_frame(camera->pinhole, *depth_m, ids, T_map_camera);
   if (!problem.empty()) refuse(problem);
 }
 

@@ -5,8 +5,10 @@
 #include <string>
 #include <vector>
 
+#include "common/images/rectifier.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
+#include "common/runtime/depth_camera.hpp"
 #include "common/runtime/stamped_input.hpp"
 #include "evaluator/core/run/decision_record.hpp"
 #include "evaluator/core/run/run_record.hpp"
@@ -77,8 +79,10 @@ class EvaluatorComponent {
   runtime::StampedInput<Odometry> truth_;
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Image> labels_;
-  runtime::StampedInput<Info> info_;
+  runtime::StampedInput<Info> info_;  // of colour, to which labels and poses belong
   messages::StaticTransforms static_transforms_;
+  runtime::DepthCamera depth_camera_;
+  images::KeptRectifier rectifier_;  // of labels
   lapis_msgs::msg::PoseGraph graph_;
   ProcessCosts costs_;
   std::optional<lapis_msgs::msg::PlannerStatus> planner_;  // newest

@@ -29,34 +29,43 @@ std::uint32_t packed(const geometry::Rgb8& color) {
   return static_cast<std::uint32_t>(color.r) << 16 | static_cast<std::uint32_t>(color.g) << 8 | color.b;
 }
 
+/// Converts images of one camera, and takes out the distortion of its lens.
+struct RectifiedImages {
+  const geometry::LensCamera& camera;
+  images::KeptRectifier& rectifier;
+
+  /// Converts an image, if there is one. Returns the problem with it, or an empty text.
+  template <class Pixels>
+  std::string take(const char* what, const sensor_msgs::msg::Image* message,
+                   messages::Converted<Pixels> (*convert)(const sensor_msgs::msg::Image&),
+                   std::optional<Pixels>& out) const {
+    if (message == nullptr) return "";
+    auto image = convert(*message);
+    if (!image) return image.reason;
+    const std::string problem = messages::size_problem(what, image->width, image->height, camera.pinhole);
+    if (!problem.empty()) return problem;
+    rectifier.of(camera).rectify(*image);
+    out = std::move(*image);
+    return "";
+  }
+};
+
 }  // namespace
 
-messages::Converted<mapping::CompactFrame> to_core(const sensor_msgs::msg::Image& depth,
-                                                   const sensor_msgs::msg::Image* labels,
-                                                   const sensor_msgs::msg::Image* confidence,
-                                                   const sensor_msgs::msg::CameraInfo& info,
-                                                   const mapping::CompactFrameConfig& config) {
+messages::Converted<mapping::CompactFrame> to_core(const SeenMessages& seen, const mapping::CompactFrameConfig& config,
+                                                   images::KeptRectifier& rectifier) {
   using Result = messages::Converted<mapping::CompactFrame>;
-  const auto camera = messages::from_message(info);
+  const auto camera = messages::lens_camera(seen.info);
   if (!camera) return Result::refused(camera.reason);
-  const auto metres = messages::to_depth(depth);
-  if (!metres) return Result::refused(metres.reason);
-  std::optional<geometry::LabelImage> ids;
-  if (labels != nullptr) {
-    auto converted = messages::to_labels(*labels);
-    if (!converted) return Result::refused(converted.reason);
-    ids = std::move(*converted);
-  }
-  std::optional<geometry::ConfidenceImage> certainty;
-  if (confidence != nullptr) {
-    auto converted = messages::to_confidence(*confidence);
-    if (!converted) return Result::refused(converted.reason);
-    certainty = std::move(*converted);
-  }
-  std::string error;
-  auto frame = mapping::CompactFrame::make(*camera, *metres, ids ? &*ids : nullptr, config, error,
-                                           certainty ? &*certainty : nullptr);
-  if (!frame) return Result::refused(error);
+  const RectifiedImages images{*camera, rectifier};
+  std::optional<geometry::LabelImage> labels;
+  std::optional<geometry::ConfidenceImage> confidence;
+  std::string problem = images.take("label", seen.labels, messages::to_labels, labels);
+  if (problem.empty()) problem = images.take("confidence", seen.confidence, messages::to_confidence, confidence);
+  if (!problem.empty()) return Result::refused(problem);
+  auto frame = mapping::CompactFrame::make(camera->pinhole, seen.depth, labels ? &*labels : nullptr, config, problem,
+                                           confidence ? &*confidence : nullptr);
+  if (!frame) return Result::refused(problem);
   return std::move(*frame);
 }
 

@@ -3,6 +3,8 @@
 #include <span>
 #include <string>
 
+#include "common/geometry/image.hpp"
+#include "common/images/rectifier.hpp"
 #include "common/mapping/model/label_list.hpp"
 #include "common/mapping/wire/map_mirror.hpp"
 #include "common/messages/converted.hpp"
@@ -17,13 +19,17 @@
 
 namespace lapis::semantic_mapper {
 
-/// Compact frame of the depth and, where there are any, the labels and their confidence of one instant; refused with a
-/// reason when they do not fit each other or the camera info.
-messages::Converted<mapping::CompactFrame> to_core(const sensor_msgs::msg::Image& depth,
-                                                   const sensor_msgs::msg::Image* labels,
-                                                   const sensor_msgs::msg::Image* confidence,
-                                                   const sensor_msgs::msg::CameraInfo& info,
-                                                   const mapping::CompactFrameConfig& config);
+/// Images of one instant in the view of the colour camera.
+struct SeenMessages {
+  const geometry::DepthImage& depth;  ///< [m], rectified
+  const sensor_msgs::msg::CameraInfo& info;
+  const sensor_msgs::msg::Image* labels = nullptr;      ///< as the lens shows it, as all that follow; null: none
+  const sensor_msgs::msg::Image* confidence = nullptr;  ///< of the labels; null: none
+};
+/// Compact frame, in which labels and confidence are rectified, too; refused with a reason when the images do not fit
+/// each other or the camera info.
+messages::Converted<mapping::CompactFrame> to_core(const SeenMessages& seen, const mapping::CompactFrameConfig& config,
+                                                   images::KeptRectifier& rectifier);
 /// Adds the pose of a tracked frame to its compact frame; refused when the poses are not valid, or when odometry alone
 /// gave them and the message states no drift.
 messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& tracked, mapping::CompactFrame frame);

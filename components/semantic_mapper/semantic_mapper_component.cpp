@@ -16,6 +16,7 @@
 #include "common/topics/camera.hpp"
 #include "common/topics/services.hpp"
 #include "common/topics/slam.hpp"
+#include "common/topics/transforms.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {
@@ -75,7 +76,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
       depth_(context, topics::kDepth, "depth", kWaitingFrames),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       confidence_(context, topics::kLabelConfidence, "label confidence", kWaitingFrames),
-      info_(context, topics::kColorInfo, "camera info", kWaitingInfos),
+      info_(context, topics::kColorInfo, "camera info", kWaitingInfos), depth_camera_(context, static_transforms_),
       disk_({SemanticMapperComponent::kName,
              config.output_dir,
              config.resume_from,
@@ -87,6 +88,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   }
   load_map();
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
+  context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
   tracked_.on_clock_set([this](time::Duration step) { follow_clock(step); });
@@ -179,6 +181,7 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   Info* info = nullptr;
   // Labels are optional: a slow segmentation costs frames their labels, but does not cost the map its frames.
   const bool is_last_chance = cycle.inputs_complete || tracked_.is_full();
+  if (depth_camera_.is_awaited() && !is_last_chance) return false;
   const bool no_labels_come = is_last_chance || !labels_.has_publisher();
   const bool no_confidence_comes = is_last_chance || !confidence_.has_publisher();
   const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
@@ -211,7 +214,9 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
   const time::Time stamp = messages::from_message(tracked.header().stamp());
   const bool is_first = mapper_ == nullptr || tracked.session() != progress_.session;
   if (!is_first && (stamp - progress_.newest).seconds() < config_.frame_interval_s) return;
-  auto frame = to_core(depth, labels, confidence, info, config_.frame);
+  const auto seen_depth = depth_camera_.convert(depth, info);
+  if (!seen_depth) return drop(seen_depth.reason);
+  auto frame = to_core({*seen_depth, info, labels, confidence}, config_.frame, rectifier_);
   if (!frame) return drop(frame.reason);
   const auto above_list = frame->labels_out_of_list();
   if (above_list > 0) context_.status().count("pixels unlabelled: label not in the list", above_list);

@@ -4,7 +4,10 @@
 #include <optional>
 #include <string>
 
+#include "common/images/rectifier.hpp"
 #include "common/mapping/file/map_file.hpp"
+#include "common/messages/geometry.hpp"
+#include "common/runtime/depth_camera.hpp"
 #include "common/runtime/saved_map.hpp"
 #include "common/runtime/stamped_input.hpp"
 #include "idl/std_srvs.hpp"
@@ -68,8 +71,11 @@ class SemanticMapperComponent {
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Image> labels_;
   runtime::StampedInput<Image> confidence_;
-  runtime::StampedInput<Info> info_;
-  std::optional<Graph> graph_;  // newest one, not applied yet
+  runtime::StampedInput<Info> info_;  // of colour, to which labels and poses belong
+  messages::StaticTransforms static_transforms_;
+  runtime::DepthCamera depth_camera_;
+  images::KeptRectifier rectifier_;  // of labels
+  std::optional<Graph> graph_;       // newest one, not applied yet
   mapping::LabelList label_list_;
 
   runtime::SavedMap disk_;

@@ -15,12 +15,44 @@
 namespace lapis::sensor_replay {
 namespace {
 
-constexpr std::array kRequiredKeys{"width", "height", "fx", "fy", "cx", "cy", "depth_scale", "fps"};
-constexpr std::array kOptionalKeys{"distortion", "camera_height", "pitch_down_deg"};
+using Names = std::vector<std::string>;
 
+/// The keys of a map.
+struct Keys {
+  Names required, optional;
+  bool contains(const std::string& name) const {
+    const auto has = [&](const Names& names) { return std::find(names.begin(), names.end(), name) != names.end(); };
+    return has(required) || has(optional);
+  }
+  std::string text() const {
+    std::string names;
+    for (const Names& some : {required, optional}) {
+      for (const std::string& name : some) names += (names.empty() ? "" : ", ") + name;
+    }
+    return names;
+  }
+};
+
+const Keys& file_keys() {
+  static const Keys keys{{"width", "height", "fx", "fy", "cx", "cy", "depth_scale", "fps"},
+                         {"distortion", "camera_height", "pitch_down_deg", "depth"}};
+  return keys;
+}
+const Keys& depth_keys() {
+  static const Keys keys{{"width", "height", "fx", "fy", "cx", "cy"}, {"distortion", "position", "rpy_deg"}};
+  return keys;
+}
+
+/// A map of the file: the whole of it, or one that is the value of a key.
 class Reader {
  public:
-  Reader(const std::filesystem::path& file, const YAML::Node& root) : file_(file), root_(root) { check_keys(); }
+  Reader(const std::filesystem::path& file, const YAML::Node& root, const Keys& keys) : file_(file), root_(root) {
+    check(keys);
+  }
+
+  std::optional<Reader> map(const char* key, const Keys& keys) const {
+    return root_[key] ? std::optional(Reader(file_, root_[key], keys)) : std::nullopt;
+  }
 
   double number(const char* key, double low, double high) const { return number(key, root_[key], low, high); }
 
@@ -34,15 +66,29 @@ class Reader {
     return static_cast<int>(value);
   }
 
-  std::array<double, 5> distortion() const {
-    std::array<double, 5> result{};
-    const YAML::Node node = root_["distortion"];
+  /// A list of N numbers, or zeros where there is none. `what`: the numbers in words.
+  template <std::size_t N>
+  std::array<double, N> numbers(const char* key, const char* what, double limit) const {
+    std::array<double, N> result{};
+    const YAML::Node node = root_[key];
     if (!node) return result;
-    if (!node.IsSequence() || node.size() != result.size()) {
-      fail_at(file_, line(node), "distortion: must be five numbers [k1, k2, p1, p2, k3]");
-    }
-    for (std::size_t i = 0; i < result.size(); ++i) result[i] = number("distortion", node[i], -10.0, 10.0);
+    if (!node.IsSequence() || node.size() != N) fail_at(file_, line(node), std::string(key) + ": must be " + what);
+    for (std::size_t i = 0; i < N; ++i) result[i] = number(key, node[i], -limit, limit);
     return result;
+  }
+
+  geometry::PinholeCamera pinhole() const {
+    geometry::PinholeCamera camera;
+    camera.width = size("width", 16, 16384);
+    camera.height = size("height", 16, 16384);
+    camera.fx = number("fx", 1.0, 1e5);
+    camera.fy = number("fy", 1.0, 1e5);
+    camera.cx = number("cx", 0.0, camera.width);
+    camera.cy = number("cy", 0.0, camera.height);
+    return camera;
+  }
+  std::array<double, 5> distortion() const {
+    return numbers<5>("distortion", "five numbers [k1, k2, p1, p2, k3]", 10.0);
   }
 
  private:
@@ -57,29 +103,19 @@ class Reader {
     fail_at(file_, line(node), what.str());
   }
 
-  void check_keys() const {
+  void check(const Keys& keys) const {
     if (!root_.IsMap()) throw std::runtime_error(file_.string() + ": must be a list of \"key: value\"");
     std::set<std::string> seen;
     for (const auto& entry : root_) {
       const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "?";
-      if (!is_known(name)) fail_at(file_, line(entry.first), "unknown key \"" + name + "\"; known are " + known_keys());
+      if (!keys.contains(name)) {
+        fail_at(file_, line(entry.first), "unknown key \"" + name + "\"; known are " + keys.text());
+      }
       if (!seen.insert(name).second) fail_at(file_, line(entry.first), "key \"" + name + "\" occurs twice");
     }
-    for (const char* key : kRequiredKeys) {
+    for (const std::string& key : keys.required) {
       if (!seen.contains(key)) throw std::runtime_error(file_.string() + ": key \"" + key + "\" is missing");
     }
-  }
-
-  static bool is_known(const std::string& name) {
-    return std::find(kRequiredKeys.begin(), kRequiredKeys.end(), name) != kRequiredKeys.end() ||
-           std::find(kOptionalKeys.begin(), kOptionalKeys.end(), name) != kOptionalKeys.end();
-  }
-
-  static std::string known_keys() {
-    std::string names;
-    for (const char* key : kRequiredKeys) names += std::string(key) + ", ";
-    for (const char* key : kOptionalKeys) names += std::string(key) + ", ";
-    return names.substr(0, names.size() - 2);
   }
 
   std::filesystem::path file_;
@@ -95,6 +131,23 @@ YAML::Node load(const std::filesystem::path& file) {
   }
 }
 
+/// In the order of ROS: about the fixed axes x, y, z.
+Eigen::Quaterniond rotation_of(const std::array<double, 3>& rpy_deg) {
+  const auto turn = [&](std::size_t i) {
+    return Eigen::AngleAxisd(rpy_deg[i] * std::numbers::pi / 180.0,
+                             Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i)));
+  };
+  return turn(2) * turn(1) * turn(0);
+}
+
+DepthCameraFile depth_camera(const Reader& reader) {
+  const auto distortion = reader.distortion();
+  const auto position = reader.numbers<3>("position", "three numbers [x, y, z]", 1.0);
+  const auto rpy_deg = reader.numbers<3>("rpy_deg", "three numbers [roll, pitch, yaw]", 180.0);
+  return {{reader.pinhole(), {distortion.begin(), distortion.end()}},
+          geometry::make_pose({position[0], position[1], position[2]}, rotation_of(rpy_deg))};
+}
+
 }  // namespace
 
 CameraFile read_camera_file(const std::filesystem::path& file) {
@@ -102,15 +155,11 @@ CameraFile read_camera_file(const std::filesystem::path& file) {
     throw std::runtime_error(file.string() + ": not found; write the camera's calibration into it, for example: " +
                              example_camera_file(file.parent_path().filename().string()));
   }
-  const Reader reader(file, load(file));
+  const Reader reader(file, load(file), file_keys());
   CameraFile result;
-  result.camera.width = reader.size("width", 16, 16384);
-  result.camera.height = reader.size("height", 16, 16384);
-  result.camera.fx = reader.number("fx", 1.0, 1e5);
-  result.camera.fy = reader.number("fy", 1.0, 1e5);
-  result.camera.cx = reader.number("cx", 0.0, result.camera.width);
-  result.camera.cy = reader.number("cy", 0.0, result.camera.height);
+  result.camera = reader.pinhole();
   result.distortion = reader.distortion();
+  if (const auto depth = reader.map("depth", depth_keys())) result.depth_camera = depth_camera(*depth);
   result.depth_scale = reader.number("depth_scale", 1.0, 1e5);
   result.fps = reader.number("fps", 0.1, 1000.0);
   result.mount.height_m = reader.number_or_zero("camera_height", 0.0, 10.0);

@@ -6,6 +6,7 @@
 
 namespace lapis::sensor_replay {
 
+messages::CameraSetUp to_set_up(const CameraFile& file);
 messages::CameraMessages to_messages(const ReplayFrame& frame, const CameraFile& camera,
                                      const messages::CameraFrameIds& ids);
 mapping::LabelList to_label_list(const std::vector<ClassName>& classes);

@@ -58,7 +58,7 @@ SensorReplayComponent::SensorReplayComponent(const Config& config, runtime::Cont
       frames_([this](std::size_t index) { return dataset_.load_frame(index); }, range_),
       camera_(context, {dataset_.has_labels(), dataset_.has_ground_truth()}, config.rate > 0.0) {
   const auto labels = dataset_.has_labels() ? to_label_list(dataset_.classes()) : mapping::LabelList();
-  camera_.publish_latched(dataset_.camera().mount, labels, dataset_.stamp(range_.begin));
+  camera_.publish_latched(to_set_up(dataset_.camera()), labels, dataset_.stamp(range_.begin));
   spdlog::info("{}: {} frames, {:.1f} s", config_.dataset, range_.size(),
                (dataset_.stamp(range_.end - 1) - dataset_.stamp(range_.begin)).seconds());
   if (config_.rate > 0.0) {

@@ -75,12 +75,16 @@ sensor_msgs::msg::Imu to_message(const ImuSample& sample, const SimulatorFrameId
 
 }  // namespace
 
-SensorMessages to_messages(const SensorFrame& frame, const geometry::PinholeCamera& camera,
+messages::CameraSetUp set_up(const robot::CameraDescription& camera) {
+  return {camera_mount(camera), pinhole_camera(camera), std::nullopt};
+}
+
+SensorMessages to_messages(const SensorFrame& frame, const messages::CameraSetUp& cameras,
                            const SimulatorFrameIds& ids) {
   SensorMessages out;
   const messages::CameraFrame seen{frame.stamp, frame.images.color, &frame.images.depth_mm, &frame.images.labels,
                                    frame.T_world_base};
-  out.camera = messages::to_messages(seen, camera, ids.camera);
+  out.camera = messages::to_messages(seen, cameras, ids.camera);
   auto& twist = out.camera.ground_truth->twist().twist();
   twist.linear().x(frame.robot.velocity.x());
   twist.linear().y(frame.robot.velocity.y());

@@ -3,6 +3,7 @@
 #include <vector>
 
 #include "common/messages/camera_frame.hpp"
+#include "common/robot/robot_description.hpp"
 #include "idl/geometry_msgs.hpp"
 #include "simulator/core/simulation.hpp"
 
@@ -22,7 +23,8 @@ struct SensorMessages {
   std::vector<sensor_msgs::msg::Imu> imu;
 };
 
-SensorMessages to_messages(const SensorFrame& frame, const geometry::PinholeCamera& camera,
+messages::CameraSetUp set_up(const robot::CameraDescription& camera);
+SensorMessages to_messages(const SensorFrame& frame, const messages::CameraSetUp& cameras,
                            const SimulatorFrameIds& ids);
 DriveCommand from_message(const geometry_msgs::msg::Twist& message);
 

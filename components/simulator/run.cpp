@@ -53,7 +53,7 @@ void Run::begin_next() {
     add_to_ideal_map();  // adds the last frame: only published frames count
     Step step;
     step.frame = simulation_.next(command);
-    step.messages = to_messages(step.frame, pinhole_camera(config_.robot.camera), ids_);
+    step.messages = to_messages(step.frame, set_up(config_.robot.camera), ids_);
     return step;
   });
 }

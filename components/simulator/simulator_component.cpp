@@ -195,7 +195,7 @@ void SimulatorComponent::begin() {
   ran_s_ = 0.0;
   running_since_.reset();
   due_ = Clock::now();
-  camera_.publish_latched(robot::camera_mount(config_.robot.camera), world_.scene().labels, time::Time{});
+  camera_.publish_latched(set_up(config_.robot.camera), world_.scene().labels, time::Time{});
 }
 
 /// Begins at most one tick, because the executor handles signals, services and commands between ticks.

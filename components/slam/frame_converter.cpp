@@ -7,14 +7,8 @@
 namespace lapis::slam {
 namespace {
 
+using messages::size_problem;
 using Gray = messages::Converted<geometry::GrayImage>;
-
-/// Why an image does not have the camera's size; empty when it does.
-std::string size_problem(const std::string& what, int width, int height, const geometry::PinholeCamera& camera) {
-  if (width == camera.width && height == camera.height) return "";
-  const auto text = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };
-  return what + " image is " + text(width, height) + ", camera info says " + text(camera.width, camera.height);
-}
 
 Gray to_gray(const sensor_msgs::msg::Image& color, const geometry::PinholeCamera& camera) {
   auto gray = messages::to_gray(color);
@@ -37,31 +31,15 @@ Gray to_gray(const sensor_msgs::msg::CompressedImage& color, const geometry::Pin
 
 }  // namespace
 
-messages::Converted<RgbdFrame> FrameConverter::convert(const ColorMessage& color, const sensor_msgs::msg::Image& depth,
+messages::Converted<RgbdFrame> FrameConverter::convert(const ColorMessage& color, geometry::DepthImage depth,
                                                        const sensor_msgs::msg::CameraInfo& info, time::Time stamp) {
   using Result = messages::Converted<RgbdFrame>;
   const auto camera = messages::lens_camera(info);
   if (!camera) return Result::refused(std::string(topics::kColorInfo.name) + ": " + camera.reason);
-  auto metres = messages::to_depth(depth);
-  if (!metres) return Result::refused(metres.reason);
-  const auto problem = size_problem("depth", metres->width, metres->height, camera->pinhole);
-  if (!problem.empty()) return Result::refused(problem);
   auto gray = std::visit([&](const auto& message) { return to_gray(message, camera->pinhole); }, color);
   if (!gray) return Result::refused(gray.reason);
-  if (camera->is_distorted()) {
-    rectifier(*camera).rectify(*gray);
-    rectifier(*camera).rectify(*metres);
-  }
-  return RgbdFrame{stamp, camera->pinhole, std::move(*gray), std::move(*metres)};
-}
-
-/// Made once per calibration, because its tables take longer than a frame.
-const images::Rectifier& FrameConverter::rectifier(const geometry::LensCamera& camera) {
-  if (rectifier_ == nullptr || camera != camera_) {
-    rectifier_ = std::make_unique<const images::Rectifier>(camera);
-    camera_ = camera;
-  }
-  return *rectifier_;
+  rectifier_.of(*camera).rectify(*gray);
+  return RgbdFrame{stamp, camera->pinhole, std::move(*gray), std::move(depth)};
 }
 
 }  // namespace lapis::slam

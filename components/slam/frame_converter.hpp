@@ -1,6 +1,5 @@
 #pragma once
 
-#include <memory>
 #include <variant>
 
 #include "common/geometry/pinhole_camera.hpp"
@@ -14,19 +13,17 @@ namespace lapis::slam {
 /// A colour image as received: raw or compressed.
 using ColorMessage = std::variant<sensor_msgs::msg::Image, sensor_msgs::msg::CompressedImage>;
 
-/// Converts messages to frames: colour becomes grey values, depth becomes metres, and both are rectified.
+/// Converts messages to frames: colour becomes grey values, and is rectified.
 class FrameConverter {
  public:
-  /// Colour, depth registered to it, and camera info of one instant; refused with a reason when they are invalid or do
-  /// not fit each other. The calibration may change from frame to frame; each frame has its own camera.
-  messages::Converted<RgbdFrame> convert(const ColorMessage& color, const sensor_msgs::msg::Image& depth,
+  /// Colour and camera info of one instant, with what DepthConverter makes of its depth; refused with a reason when
+  /// they are invalid or do not fit each other. The calibration may change from frame to frame; each frame has its own
+  /// camera.
+  messages::Converted<RgbdFrame> convert(const ColorMessage& color, geometry::DepthImage depth,
                                          const sensor_msgs::msg::CameraInfo& info, time::Time stamp);
 
  private:
-  const images::Rectifier& rectifier(const geometry::LensCamera& camera);
-
-  geometry::LensCamera camera_;  // of the rectifier
-  std::unique_ptr<const images::Rectifier> rectifier_;
+  images::KeptRectifier rectifier_;
 };
 
 }  // namespace lapis::slam

@@ -20,8 +20,10 @@ time::Duration tolerance_of(time::Duration period) {
 
 }  // namespace
 
-FrameInput::FrameInput(const FrameInputConfig& config, runtime::Context& context)
+FrameInput::FrameInput(const FrameInputConfig& config, const messages::StaticTransforms& transforms,
+                       runtime::Context& context)
     : status_(context.status()), fixed_tolerance_(time::Duration::from_seconds(config.max_stamp_difference_s)),
+      depth_camera_(context, transforms),
       color_(config.color == "compressed" ? Color(context, topics::kCompressedColor, "colour", kWaitingMessages)
                                           : Color(context, topics::kColor, "colour", kWaitingMessages)),
       depth_(context, topics::kDepth, "depth", kWaitingMessages),
@@ -49,6 +51,7 @@ std::optional<JoinedFrame> FrameInput::oldest(const runtime::Cycle& cycle) {
   if (color_.empty()) return std::nullopt;
   const auto& [stamp, color] = color_.front();
   const bool is_last_chance = cycle.inputs_complete || color_.is_full();
+  if (depth_camera_.is_awaited() && !is_last_chance) return std::nullopt;
   const auto known = known_tolerance();
   tolerance_ = known.value_or(is_last_chance ? kLargestTolerance : time::Duration{});
   Image* depth = nullptr;
@@ -69,7 +72,9 @@ std::optional<JoinedFrame> FrameInput::oldest(const runtime::Cycle& cycle) {
 }
 
 messages::Converted<RgbdFrame> FrameInput::convert(const JoinedFrame& frame) {
-  return converter_.convert(*frame.color, *frame.depth, *frame.info, frame.stamp);
+  auto depth = depth_camera_.convert(*frame.depth, *frame.info);
+  if (!depth) return messages::Converted<RgbdFrame>::refused(depth.reason);
+  return converter_.convert(*frame.color, std::move(*depth), *frame.info, frame.stamp);
 }
 
 void FrameInput::pop(const JoinedFrame& frame) {

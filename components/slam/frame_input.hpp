@@ -6,6 +6,7 @@
 #include <string>
 
 #include "common/runtime/context.hpp"
+#include "common/runtime/depth_camera.hpp"
 #include "common/runtime/stamped_input.hpp"
 #include "slam/frame_converter.hpp"
 
@@ -31,7 +32,8 @@ struct JoinedFrame {
 /// is a frame with a problem; a depth image without colour is counted on /diagnostics. Neither holds up others.
 class FrameInput {
  public:
-  FrameInput(const FrameInputConfig& config, runtime::Context& context);
+  /// `transforms` are kept up to date by the caller, and outlive this object.
+  FrameInput(const FrameInputConfig& config, const messages::StaticTransforms& transforms, runtime::Context& context);
 
   /// Called when the camera has restarted in lock-step: stamps of colour went back by more than a second.
   void on_restart(std::function<void()> action) { on_restart_ = std::move(action); }
@@ -61,6 +63,7 @@ class FrameInput {
   std::function<void()> on_restart_;
   std::function<void(time::Duration)> on_clock_set_;
   FrameConverter converter_;
+  runtime::DepthCamera depth_camera_;
   Color color_;
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Info> info_;

@@ -43,7 +43,7 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
       odometry_(context.advertise(topics::kSlamOdometry)), tracked_frame_(context.advertise(topics::kTrackedFrame)),
       transforms_(context.advertise(topics::kTransforms)), path_(context.advertise(topics::kKeyframePath)),
       pose_graph_(context.advertise(topics::kPoseGraph)), status_(context.advertise(topics::kSlamStatus)),
-      landmarks_(context, config.landmark_period_s), input_(config.input, context),
+      landmarks_(context, config.landmark_period_s), input_(config.input, static_transforms_, context),
       disk_({SlamComponent::kName,
              config.output_dir,
              config.resume_from,

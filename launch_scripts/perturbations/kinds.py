@@ -177,6 +177,14 @@ def unregistered_depth(sequence, _):
     return sequence.camera, shots()
 
 
+def depth_camera_of_its_own(sequence, _):
+    """The same, and camera.yaml says so."""
+    camera, shots = unregistered_depth(sequence, _)
+    own = {key: camera[key] for key in ("width", "height", "cx", "cy")}
+    own |= {key: DEPTH_FOCAL_RATIO * camera[key] for key in ("fx", "fy")}
+    return camera | {"depth": own | {"position": [-DEPTH_OFFSET_M, 0.0, 0.0]}}, shots
+
+
 def seen_by_depth_camera(depth, camera):
     """What a camera with DEPTH_FOCAL_RATIO times the focal length, DEPTH_OFFSET_M to the left, measures of these points: the
     nearest one in each pixel, each point being as large as two pixels."""
@@ -226,7 +234,8 @@ KINDS = {"none": as_it_is, "every second": every_second, "7.5 Hz": slow, "gamma 
          "depth late": late_depth, "holes": holes, "JPEG 60": jpeg(60),
          "depth +3 %": calibration(depth_scale=1 / 1.03), "depth -3 %": calibration(depth_scale=1 / 0.97),
          "focal length +3 %": calibration(fx=1.03, fy=1.03), "focal length -3 %": calibration(fx=0.97, fy=0.97),
-         "depth not registered": unregistered_depth, "person": person}
+         "depth not registered": unregistered_depth, "own depth camera": depth_camera_of_its_own,
+         "person": person}
 
 DARK, BRIGHT, ENOUGH_PIXELS = 5, 250, 0.3
 

@@ -36,12 +36,19 @@ std::string describe_labels(const TumDataset& dataset) {
   return std::to_string(dataset.classes().size()) + " classes";
 }
 
-std::string describe_camera(const CameraFile& file) {
-  const auto& camera = file.camera;
+std::string describe_pinhole(const geometry::PinholeCamera& camera) {
   return std::to_string(camera.width) + "x" + std::to_string(camera.height) + ", fx " + number(camera.fx, 1) + " fy " +
-         number(camera.fy, 1) + " cx " + number(camera.cx, 1) + " cy " + number(camera.cy, 1) + ", mounted " +
-         number(file.mount.height_m, 2) + " m high, " +
+         number(camera.fy, 1) + " cx " + number(camera.cx, 1) + " cy " + number(camera.cy, 1);
+}
+
+std::string describe_camera(const CameraFile& file) {
+  return describe_pinhole(file.camera) + ", mounted " + number(file.mount.height_m, 2) + " m high, " +
          number(file.mount.pitch_down_rad * 180.0 / std::numbers::pi, 1) + " deg down";
+}
+
+std::string describe_depth_camera(const DepthCameraFile& file) {
+  const Eigen::Vector3d& position = file.T_color_depth.translation();
+  return describe_pinhole(file.camera.pinhole) + ", " + number(100.0 * position.norm(), 1) + " cm from colour";
 }
 
 }  // namespace
@@ -65,6 +72,7 @@ std::string describe(const TumDataset& dataset) {
   text += line("duration", number(dataset.duration().seconds(), 3) + " s, from " + time::to_string(dataset.stamp(0)) +
                                ", nominally " + number(dataset.camera().fps, 1) + " Hz");
   text += line("camera", describe_camera(dataset.camera()));
+  if (const auto& depth = dataset.camera().depth_camera) text += line("depth camera", describe_depth_camera(*depth));
   text += line("depth", describe_depth(dataset));
   text += line("labels", describe_labels(dataset));
   text += line("ground truth", describe_ground_truth(dataset));

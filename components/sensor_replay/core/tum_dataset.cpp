@@ -47,7 +47,9 @@ TumDataset::TumDataset(const TumDatasetConfig& config, const CameraReader& read_
   if (!fs::is_directory(config.folder)) fail(config.folder, "no such folder (expected a TUM RGB-D data set)");
   read_frames();
   camera_ = read_camera(config.folder / "camera.yaml");
-  rectifier_.emplace(geometry::LensCamera{camera_.camera, {camera_.distortion.begin(), camera_.distortion.end()}});
+  const geometry::LensCamera lens{camera_.camera, {camera_.distortion.begin(), camera_.distortion.end()}};
+  rectifier_.emplace(lens);
+  depth_rectifier_.emplace(camera_.depth_camera ? camera_.depth_camera->camera : lens);
   const fs::path truth = config.folder / "groundtruth.txt";
   if (fs::exists(truth)) trajectory_ = trajectory::read_trajectory(truth);
   has_labels_ = fs::is_directory(config.folder / "label");
@@ -112,6 +114,12 @@ fs::path TumDataset::label_file(std::size_t index) const {
   return fs::path("label") / fs::path(frames_[index].color.file).filename().replace_extension(".png");
 }
 
+ImageSize TumDataset::depth_size() const {
+  if (!camera_.depth_camera) return image_size();
+  const auto& camera = camera_.depth_camera->camera.pinhole;
+  return {camera.width, camera.height};
+}
+
 std::size_t TumDataset::frames_without_depth() const {
   return static_cast<std::size_t>(
       std::count_if(frames_.begin(), frames_.end(), [](const ListedFrame& frame) { return !frame.depth; }));
@@ -148,9 +156,9 @@ LoadedFrame TumDataset::load_frame(std::size_t index) const {
   rectifier_->rectify(frame.color);
   frame.T_world_camera = ground_truth(index);
   if (listed.depth) {
-    frame.depth = take(read_depth(config_.folder / listed.depth->file, image_size(), camera_.depth_scale),
+    frame.depth = take(read_depth(config_.folder / listed.depth->file, depth_size(), camera_.depth_scale),
                        ImagePart::kDepth, listed.depth->file, frame.problems);
-    if (frame.depth) rectifier_->rectify(*frame.depth);
+    if (frame.depth) depth_rectifier_->rectify(*frame.depth);
   } else {
     frame.problems.push_back({ImagePart::kDepth, ImageFault::kNotListed, {}});
   }

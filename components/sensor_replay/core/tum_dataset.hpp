@@ -37,12 +37,12 @@ struct ImageProblem {
 /// "depth/00007.png: truncated or not an image".
 std::string to_string(const ImageProblem& problem);
 
-/// A decoded and rectified frame. Every image has the size of the camera.
+/// A decoded and rectified frame. Every image has the size of its camera.
 struct ReplayFrame {
   std::size_t index = 0;
   time::Time stamp;  ///< stamp of the colour image, which is that of the whole frame
   geometry::ColorImage color;
-  std::optional<DepthMillimetres> depth;         ///< registered to colour; empty: see `problems`
+  std::optional<DepthMillimetres> depth;         ///< as its camera sees it; empty: see `problems`
   std::optional<geometry::LabelImage> label;     ///< empty: see `problems`, or the data set has no labels
   std::optional<geometry::Pose> T_world_camera;  ///< ground truth; empty when there is none within the tolerance
   std::vector<ImageProblem> problems;            ///< problems of depth and label
@@ -105,10 +105,13 @@ class TumDataset {
   void check_image_size() const;
   std::filesystem::path label_file(std::size_t index) const;
   ImageSize image_size() const { return {camera_.camera.width, camera_.camera.height}; }
+  ImageSize depth_size() const;
 
   TumDatasetConfig config_;
   CameraFile camera_;
-  std::optional<images::Rectifier> rectifier_;  // set in the constructor
+  // Both are set in the constructor.
+  std::optional<images::Rectifier> rectifier_;  // of colour and labels
+  std::optional<images::Rectifier> depth_rectifier_;
   std::vector<ListedFrame> frames_;
   trajectory::Trajectory trajectory_;
   std::vector<ClassName> class_list_;

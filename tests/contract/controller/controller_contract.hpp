@@ -49,7 +49,7 @@ class Surroundings {
         pose_(context.advertise(topics::kSlamOdometry)), mount_(context.advertise(topics::kStaticTransforms)),
         map_(context.advertise(topics::kObstacles)), planner_(context.advertise(topics::kPlannerStatus)),
         path(context.advertise(topics::kPlannerPath)) {
-    mount_.publish(messages::to_static_transforms({1.0, 0.0}, kIds, stamp));
+    mount_.publish(messages::to_static_transforms({{1.0, 0.0}, {}, std::nullopt}, kIds, stamp));
   }
 
   /// The next frame.
@@ -103,7 +103,8 @@ class Surroundings {
   std::function<void(nav_msgs::msg::OccupancyGrid&)> spoil_map;
 
  private:
-  inline static const messages::CameraFrameIds kIds{"base_link", "camera_link", "camera_color_optical_frame", "map"};
+  inline static const messages::CameraFrameIds kIds{"base_link", "camera_link", "camera_color_optical_frame",
+                                                    "camera_depth_optical_frame", "map"};
   inline static const geometry::PinholeCamera kCamera{160, 90, 80, 80, 79.5, 44.5};
 
   double room_m() const {
@@ -120,10 +121,11 @@ class Surroundings {
     std::transform(seen.depth.pixels.begin(), seen.depth.pixels.end(), depth_mm.pixels.begin(),
                    [](float metres) { return static_cast<std::uint16_t>(std::lround(1e3f * metres)); });
     const geometry::ColorImage color(kCamera.width, kCamera.height);
-    auto frame = messages::to_messages({stamp, color, &depth_mm, nullptr, std::nullopt}, kCamera, kIds);
-    if (spoil_view) spoil_view(*frame.depth, frame.info);
+    auto frame =
+        messages::to_messages({stamp, color, &depth_mm, nullptr, std::nullopt}, {{}, kCamera, std::nullopt}, kIds);
+    if (spoil_view) spoil_view(*frame.depth, frame.depth_info);
     depth_.publish(*frame.depth);
-    info_.publish(frame.info);
+    info_.publish(frame.depth_info);
   }
   void publish_pose() {
     nav_msgs::msg::Odometry message;

@@ -68,7 +68,7 @@ TEST_F(ReplayContract, EveryFrameComesWithItsStampAndFrameIds) {
     const auto metres = messages::to_depth(depth[i]);
     ASSERT_TRUE(metres) << metres.reason;
     EXPECT_NEAR((*metres)(5, 3), 0.001 * sensor_replay::test::synthetic_depth(static_cast<int>(i), 5, 3), 1e-5);
-    ASSERT_TRUE(messages::from_message(info[i]));
+    ASSERT_TRUE(messages::lens_camera(info[i]));
   }
   ASSERT_EQ(mount.size(), 1u);
   EXPECT_EQ(mount[0].transforms().back().child_frame_id(), "camera_color_optical_frame");

@@ -122,7 +122,7 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   }
   ASSERT_TRUE(probe.wait_until([&] { return !mount.empty() && !names.empty(); }));
   EXPECT_EQ(names[0].class_map().size(), 10U);
-  const auto camera = messages::from_message(info[0]);
+  const auto camera = messages::lens_camera(info[0]);
   ASSERT_TRUE(camera);
   EXPECT_NEAR(camera->fx, 320.0, 1e-9);
   EXPECT_NEAR(camera->fy, 320.0, 0.01);

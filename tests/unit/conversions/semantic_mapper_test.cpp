@@ -26,6 +26,13 @@ sensor_msgs::msg::Image depth_image(std::uint32_t width, std::uint32_t height, s
   return message;
 }
 
+/// Class 3 everywhere.
+sensor_msgs::msg::Image label_image(std::uint32_t width, std::uint32_t height) {
+  auto message = depth_image(width, height, 3);
+  message.encoding("mono16");
+  return message;
+}
+
 sensor_msgs::msg::CameraInfo camera_info(std::uint32_t width, std::uint32_t height) {
   sensor_msgs::msg::CameraInfo info;
   info.width(width);
@@ -44,35 +51,57 @@ lapis_msgs::msg::TrackedFrame tracked_frame() {
   return message;
 }
 
-mapping::CompactFrame compact_frame() {
-  const auto frame = to_core(depth_image(8, 6, 1000), nullptr, nullptr, camera_info(8, 6), {});
-  return *frame;
+messages::Converted<mapping::CompactFrame> compact(const sensor_msgs::msg::CameraInfo& info,
+                                                   const sensor_msgs::msg::Image* labels = nullptr,
+                                                   const sensor_msgs::msg::Image* confidence = nullptr) {
+  images::KeptRectifier rectifier;
+  mapping::CompactFrameConfig every_pixel;
+  every_pixel.stride = 1;
+  return to_core({geometry::DepthImage(8, 6, 1.0F), info, labels, confidence}, every_pixel, rectifier);
 }
+mapping::CompactFrame compact_frame() { return *compact(camera_info(8, 6)); }
 
 TEST(SemanticMapperConversions, DepthWithoutLabelsIsAFrameWithoutLabels) {
-  const auto frame = to_core(depth_image(8, 6, 1000), nullptr, nullptr, camera_info(8, 6), {});
+  const auto frame = compact(camera_info(8, 6));
   ASSERT_TRUE(frame);
   EXPECT_FALSE(frame->has_labels());
   EXPECT_DOUBLE_EQ(frame->median_depth_m(), 1.0);
 }
 
 TEST(SemanticMapperConversions, SizesThatDisagreeAreRefused) {
-  EXPECT_FALSE(to_core(depth_image(8, 6, 1000), nullptr, nullptr, camera_info(4, 6), {}));
-  auto labels = depth_image(4, 6, 1);
-  labels.encoding("mono16");
-  EXPECT_FALSE(to_core(depth_image(8, 6, 1000), &labels, nullptr, camera_info(8, 6), {}));
+  EXPECT_FALSE(compact(camera_info(4, 6)));
+  const auto labels = label_image(4, 6);
+  EXPECT_THAT(compact(camera_info(8, 6), &labels).reason, HasSubstr("label image is 4x6, camera info says 8x6"));
+  const auto whole = label_image(8, 6);
+  auto confidence = label_image(8, 5);
+  confidence.encoding("mono8");
+  confidence.step(8);
+  confidence.data().resize(40);
+  EXPECT_THAT(compact(camera_info(8, 6), &whole, &confidence).reason, HasSubstr("confidence image is 8x5"));
 }
 
-// Live depth and labels are not rectified: a map of distorted images would be wrong.
-TEST(SemanticMapperConversions, DistortedCamerasAreRefusedWithTheReason) {
+TEST(SemanticMapperConversions, LensesThatNobodyKnowsAreRefusedWithTheReason) {
   auto info = camera_info(8, 6);
-  info.distortion_model("plumb_bob");
-  info.d({0.1, 0.0, 0.0, 0.0, 0.0});
-  EXPECT_EQ(to_core(depth_image(8, 6, 1000), nullptr, nullptr, info, {}).reason,
-            "camera info has distortion; rectify the images first");
   info.distortion_model("equidistant");
-  EXPECT_THAT(to_core(depth_image(8, 6, 1000), nullptr, nullptr, info, {}).reason,
-              HasSubstr("distortion model 'equidistant'"));
+  EXPECT_THAT(compact(info).reason, HasSubstr("distortion model 'equidistant'"));
+}
+
+// Depth has been rectified; labels come as the lens shows them. This lens shows the corners of the view outside of its
+// image.
+TEST(SemanticMapperConversions, LabelsOfALensAreRectified) {
+  auto info = camera_info(8, 6);
+  const auto labels = label_image(8, 6);
+  const auto straight = compact(info, &labels);
+  info.distortion_model("plumb_bob");
+  info.d({1.0, 0.0, 0.0, 0.0, 0.0});
+  const auto bent = compact(info, &labels);
+  ASSERT_TRUE(straight && bent) << straight.reason << bent.reason;
+  const auto unlabelled = [](const mapping::CompactFrame& frame) {
+    return std::count(frame.labels().begin(), frame.labels().end(), 0);
+  };
+  EXPECT_EQ(unlabelled(*straight), 0);
+  EXPECT_GE(unlabelled(*bent), 4);
+  EXPECT_LT(unlabelled(*bent), 24);
 }
 
 TEST(SemanticMapperConversions, AnchorKeepsIdsAndStamp) {

@@ -9,7 +9,8 @@
 namespace lapis::sensor_replay {
 namespace {
 
-const messages::CameraFrameIds kIds{"base_link", "camera_link", "camera_color_optical_frame", "world"};
+const messages::CameraFrameIds kIds{"base_link", "camera_link", "camera_color_optical_frame",
+                                    "camera_depth_optical_frame", "world"};
 
 CameraFile camera_file() {
   CameraFile file;
@@ -30,9 +31,12 @@ ReplayFrame frame() {
 
 TEST(SensorReplayConversions, ConsumersReadBackWhatWasRecorded) {
   const auto out = to_messages(frame(), camera_file(), kIds);
-  const auto camera = messages::from_message(out.info);
-  ASSERT_TRUE(camera);
-  EXPECT_EQ(*camera, camera_file().camera);
+  for (const auto& info : {out.color_info, out.depth_info}) {
+    const auto camera = messages::lens_camera(info);
+    ASSERT_TRUE(camera);
+    EXPECT_EQ(camera->pinhole, camera_file().camera);
+    EXPECT_FALSE(camera->is_distorted());
+  }
   const auto depth = messages::to_depth(*out.depth);
   ASSERT_TRUE(depth);
   EXPECT_FLOAT_EQ((*depth)(5, 3), 1.234f);
@@ -46,7 +50,8 @@ TEST(SensorReplayConversions, ConsumersReadBackWhatWasRecorded) {
 
 TEST(SensorReplayConversions, EveryMessageOfAFrameHasItsStamp) {
   const auto out = to_messages(frame(), camera_file(), kIds);
-  for (const auto& header : {out.color.header(), out.info.header(), out.depth->header(), out.labels->header()}) {
+  for (const auto& header : {out.color.header(), out.color_info.header(), out.depth_info.header(), out.depth->header(),
+                             out.labels->header()}) {
     EXPECT_EQ(messages::from_message(header.stamp()), time::Time{1'500'000'000});
     EXPECT_EQ(header.frame_id(), kIds.optical);
   }
@@ -76,10 +81,30 @@ TEST(SensorReplayConversions, MissingPartsAreNotPublished) {
 
 TEST(SensorReplayConversions, StaticTransformsGiveTheMount) {
   messages::StaticTransforms transforms;
-  transforms.add(messages::to_static_transforms(camera_file().mount, kIds, time::Time{}));
+  transforms.add(messages::to_static_transforms(to_set_up(camera_file()), kIds, time::Time{}));
   const auto T = transforms.find("base_link", "camera_color_optical_frame");
   ASSERT_TRUE(T);
   EXPECT_TRUE(T->isApprox(T_base_camera(camera_file().mount), 1e-12));
+}
+
+TEST(SensorReplayConversions, ADepthCameraOfItsOwnHasItsFrameItsCalibrationAndItsMount) {
+  auto file = camera_file();
+  const auto T_color_depth =
+      geometry::make_pose({0.025, 0.0, 0.001}, Eigen::Quaterniond(0.9998, 0.02, 0.0, 0.0).normalized());
+  file.depth_camera = {{{16, 12, 21.0, 22.0, 7.0, 6.0}, {}}, T_color_depth};
+  auto seen = frame();
+  seen.depth = DepthMillimetres(16, 12, 1234);
+  const auto out = to_messages(seen, file, kIds);
+  EXPECT_EQ(out.depth->header().frame_id(), kIds.depth_optical);
+  EXPECT_EQ(out.depth_info.header().frame_id(), kIds.depth_optical);
+  EXPECT_EQ(out.color_info.header().frame_id(), kIds.optical);
+  EXPECT_EQ(messages::lens_camera(out.depth_info)->pinhole, file.depth_camera->camera.pinhole);
+  EXPECT_EQ(messages::lens_camera(out.color_info)->pinhole, file.camera);
+  messages::StaticTransforms transforms;
+  transforms.add(messages::to_static_transforms(to_set_up(file), kIds, time::Time{}));
+  const auto T = transforms.find(kIds.optical, kIds.depth_optical);
+  ASSERT_TRUE(T);
+  EXPECT_TRUE(T->isApprox(T_color_depth, 1e-12));
 }
 
 TEST(SensorReplayConversions, GroundTruthIsThePoseOfTheBase) {

@@ -84,7 +84,7 @@ class KindsTest(InAFolder):
 
     def test_every_kind_is_the_same_twice_and_leaves_alone_what_it_does_not_name(self):
         of_color = ("gamma 0.4", "gamma 2.5", "exposure jumps", "motion blur", "rolling shutter", "JPEG 60", "person")
-        of_depth = ("holes", "depth not registered", "person")
+        of_depth = ("holes", "depth not registered", "own depth camera", "person")
         for kind in kinds.KINDS:
             with self.subTest(kind):
                 camera, shots = self.played(kind)
@@ -97,7 +97,7 @@ class KindsTest(InAFolder):
                     np.testing.assert_array_equal(shots[3].color, self.color)
                 if kind not in (*of_depth, "depth late", "every second"):
                     np.testing.assert_array_equal(shots[3].depth, depth_of(3))
-                if len(shots) == SHOTS and kind[:6] not in ("depth ", "focal "):
+                if len(shots) == SHOTS and kind[:6] not in ("depth ", "focal ", "own de"):
                     self.assertEqual(camera, CAMERA)
 
     def test_calibrations_are_off_as_named(self):
@@ -162,6 +162,19 @@ class KindsTest(InAFolder):
                     if 0 <= row < HEIGHT and 0 <= column < WIDTH:
                         nearest[row, column] = min(nearest[row, column], depth_of(0)[v, u])
         np.testing.assert_array_equal(depth, np.where(np.isfinite(nearest), nearest, 0))
+
+    def test_a_depth_camera_of_its_own_is_stated_with_what_it_measures(self):
+        camera, shots = self.played("own depth camera")
+        own = camera["depth"]
+        self.assertEqual((own["width"], own["height"], own["cx"], own["cy"]), (WIDTH, HEIGHT, camera["cx"], camera["cy"]))
+        self.assertAlmostEqual(own["fx"], 1.11 * FOCAL)
+        silent = self.played("depth not registered", "silent")
+        self.assertNotIn("depth", silent[0])
+        np.testing.assert_array_equal(shots[0].depth, silent[1][0].depth)
+        # What it measures, put back: the middle of the wall is where the colour camera sees it.
+        z = shots[0].depth[24, 32] / 1000
+        x = (32 - own["cx"]) / own["fx"] * z + own["position"][0]
+        self.assertAlmostEqual(1000 * z, depth_of(0)[24, round(31.5 + FOCAL * x / z)], delta=40)
 
     def test_holes_take_a_tenth_and_pixels_at_edges_fly_between_near_and_far(self):
         shots = self.played("holes")[1]

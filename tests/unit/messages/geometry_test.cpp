@@ -98,6 +98,26 @@ TEST(StaticTransforms, MultipliesAlongTheChainOfSeveralWriters) {
   EXPECT_TRUE(transforms.find("optical", "optical")->isApprox(Pose::Identity()));
 }
 
+TEST(StaticTransforms, ConnectsTwoFramesThroughTheOneAboveBoth) {
+  std::mt19937 random(7);
+  const Pose T_link_color = random_pose(random), T_link_depth = random_pose(random), T_depth_imu = random_pose(random);
+  StaticTransforms transforms;
+  transforms.add(announce({link("camera_link", "color", T_link_color), link("camera_link", "depth", T_link_depth),
+                           link("depth", "imu", T_depth_imu), link("arm", "hand", T_depth_imu)}));
+  ASSERT_TRUE(transforms.find("color", "imu"));
+  EXPECT_TRUE(transforms.find("color", "imu")->isApprox(T_link_color.inverse() * T_link_depth * T_depth_imu, 1e-12));
+  ASSERT_TRUE(transforms.find("color", "camera_link"));
+  EXPECT_TRUE(transforms.find("color", "camera_link")->isApprox(T_link_color.inverse(), 1e-12));
+  EXPECT_FALSE(transforms.find("color", "hand"));
+}
+
+TEST(StaticTransforms, ACycleConnectsNothingElse) {
+  StaticTransforms transforms;
+  transforms.add(announce({link("a", "b", Pose::Identity()), link("b", "a", Pose::Identity())}));
+  EXPECT_FALSE(transforms.find("c", "a"));
+  EXPECT_FALSE(transforms.find("a", "c"));
+}
+
 TEST(StaticTransforms, LastAnnouncementOfAChildWins) {
   std::mt19937 random(6);
   const Pose first = random_pose(random);

@@ -50,6 +50,27 @@ TEST_F(CameraYaml, MountAndDistortionMayBeAbsent) {
   EXPECT_EQ(camera.distortion, (std::array<double, 5>{}));
 }
 
+TEST_F(CameraYaml, ADepthCameraOfItsOwnHasCalibrationAndPlace) {
+  EXPECT_FALSE(read(test::kCameraFile).depth_camera);
+  const std::string depth =
+      std::string(test::kCameraFile) + "depth: {width: 64, height: 48, fx: 50, fy: 51, cx: 31, cy: 23";
+  const auto plain = read(depth + "}\n").depth_camera;
+  ASSERT_TRUE(plain);
+  EXPECT_EQ(plain->camera.pinhole, (geometry::PinholeCamera{64, 48, 50.0, 51.0, 31.0, 23.0}));
+  EXPECT_FALSE(plain->camera.is_distorted());
+  EXPECT_TRUE(plain->T_color_depth.isApprox(geometry::Pose::Identity()));
+  const auto whole =
+      read(depth + ", distortion: [0.1, 0, 0, 0, 0], position: [-0.025, 0.001, 0], rpy_deg: [0, 0, 90]}\n")
+          .depth_camera;
+  ASSERT_TRUE(whole);
+  EXPECT_EQ(whole->camera.distortion[0], 0.1);
+  EXPECT_TRUE((whole->T_color_depth * Eigen::Vector3d(1.0, 0.0, 2.0)).isApprox(Eigen::Vector3d(-0.025, 1.001, 2.0)));
+  EXPECT_THAT(error(depth + ", postion: [0, 0, 0]}\n"), HasSubstr(":10: unknown key \"postion\"; known are width"));
+  EXPECT_THAT(error(depth + ", position: [0, 0]}\n"), HasSubstr("position: must be three numbers [x, y, z]"));
+  EXPECT_THAT(error(std::string(test::kCameraFile) + "depth: {width: 64}\n"), HasSubstr("key \"height\" is missing"));
+  EXPECT_THAT(error(std::string(test::kCameraFile) + "depth: 3\n"), HasSubstr("must be a list of"));
+}
+
 TEST_F(CameraYaml, KeyErrorsNameFileLineAndKey) {
   EXPECT_THAT(error(std::string(test::kCameraFile) + "deph_scale: 1\n"),
               testing::AllOf(HasSubstr(file_.string() + ":10: unknown key \"deph_scale\""), HasSubstr("depth_scale")));

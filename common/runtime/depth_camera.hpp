@@ -1,0 +1,33 @@
+#pragma once
+
+#include "common/messages/depth_converter.hpp"
+#include "common/runtime/context.hpp"
+#include "common/topics/camera.hpp"
+
+namespace lapis::runtime {
+
+/// A DepthConverter that listens to the camera info of depth.
+class DepthCamera {
+ public:
+  /// `transforms` are kept up to date by the caller, and outlive this object.
+  DepthCamera(Context& context, const messages::StaticTransforms& transforms)
+      : converter_(transforms), source_(context.subscribe(topics::kDepthInfo, [this](sensor_msgs::msg::CameraInfo& m) {
+          converter_.set_info(std::move(m));
+        })) {}
+  DepthCamera(const DepthCamera&) = delete;
+  DepthCamera& operator=(const DepthCamera&) = delete;
+
+  /// True while the calibration may still come: somebody publishes it, and nothing has arrived.
+  bool is_awaited() const { return !converter_.has_info() && source_.matched() > 0; }
+  /// See DepthConverter::convert.
+  messages::Converted<geometry::DepthImage> convert(const sensor_msgs::msg::Image& depth,
+                                                    const sensor_msgs::msg::CameraInfo& color_info) {
+    return converter_.convert(depth, color_info);
+  }
+
+ private:
+  messages::DepthConverter converter_;
+  dds::Source& source_;
+};
+
+}  // namespace lapis::runtime

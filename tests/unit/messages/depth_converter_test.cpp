@@ -1,0 +1,120 @@
+#include "common/messages/depth_converter.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "common/messages/camera.hpp"
+
+namespace lapis::messages {
+namespace {
+
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+
+constexpr std::uint32_t kColumns = 64, kLines = 48;
+
+sensor_msgs::msg::CameraInfo calibration(const std::string& frame, double focal_px) {
+  sensor_msgs::msg::CameraInfo info;
+  info.header().frame_id(frame);
+  info.width(kColumns);
+  info.height(kLines);
+  info.distortion_model("plumb_bob");
+  info.d({0.0, 0.0, 0.0, 0.0, 0.0});
+  info.k({focal_px, 0.0, 31.5, 0.0, focal_px, 23.5, 0.0, 0.0, 1.0});
+  return info;
+}
+
+/// 1 m, but 1 mm more from column to column.
+sensor_msgs::msg::Image ramp_of_depth(const std::string& frame) {
+  sensor_msgs::msg::Image message;
+  message.header().frame_id(frame);
+  message.width(kColumns);
+  message.height(kLines);
+  message.encoding("16UC1");
+  message.step(2 * kColumns);
+  for (std::uint32_t i = 0; i < kColumns * kLines; ++i) {
+    const std::uint32_t millimetres = 1000 + i % kColumns;
+    message.data().push_back(static_cast<std::uint8_t>(millimetres & 255U));
+    message.data().push_back(static_cast<std::uint8_t>(millimetres >> 8U));
+  }
+  return message;
+}
+
+tf2_msgs::msg::TFMessage mounts() {
+  tf2_msgs::msg::TFMessage message;
+  for (const auto& [child, x] : {std::pair("color", 0.0), std::pair("depth", 0.1)}) {
+    geometry_msgs::msg::TransformStamped link;
+    link.header().frame_id("camera_link");
+    link.child_frame_id(child);
+    link.transform().translation().x(x);
+    link.transform().rotation().w(1.0);
+    message.transforms().push_back(link);
+  }
+  return message;
+}
+
+TEST(DepthConverter, DepthOfTheColourFrameWithoutACameraInfoIsRegistered) {
+  const StaticTransforms none;
+  DepthConverter converter(none);
+  const auto depth = converter.convert(ramp_of_depth("color"), calibration("color", 100.0));
+  ASSERT_TRUE(depth) << depth.reason;
+  EXPECT_EQ(depth->pixels, to_depth(ramp_of_depth("color"))->pixels);
+  EXPECT_TRUE(converter.convert(ramp_of_depth("depth"), calibration("", 100.0))) << "a colour info that has no frame";
+}
+
+// The radial model pulls pixels of the right edge inwards; the ramp shows from where.
+TEST(DepthConverter, TheLensIsThatOfColourUnlessDepthHasItsOwn) {
+  const StaticTransforms none;
+  DepthConverter converter(none);
+  auto lens = calibration("color", 100.0);
+  const auto expect_source = [&](double k1) {
+    const auto depth = converter.convert(ramp_of_depth("color"), lens);
+    ASSERT_TRUE(depth) << depth.reason;
+    constexpr int u = 55, v = 24;
+    const double x = (u - 31.5) / 100.0, y = (v - 23.5) / 100.0;
+    const double source = 31.5 + 100.0 * x * (1.0 + k1 * (x * x + y * y));
+    EXPECT_NEAR((*depth)(u, v), 1.0 + 0.001 * source, 0.00055) << k1;
+  };
+  for (const double k1 : {-1.0, 0.8, 0.0}) {
+    lens.d({k1, 0.0, 0.0, 0.0});
+    expect_source(k1);
+  }
+  converter.set_info(calibration("color", 100.0));
+  lens.d({-1.0, 0.0, 0.0, 0.0});
+  expect_source(0.0);
+}
+
+TEST(DepthConverter, DepthOfAnotherFrameIsSeenFromTheColourCamera) {
+  StaticTransforms transforms;
+  DepthConverter converter(transforms);
+  converter.set_info(calibration("depth", 80.0));
+  const auto color = calibration("color", 100.0);
+  EXPECT_THAT(converter.convert(ramp_of_depth("depth"), color).reason, HasSubstr("/tf_static"));
+  transforms.add(mounts());
+  const auto depth = converter.convert(ramp_of_depth("depth"), color);
+  ASSERT_TRUE(depth) << depth.reason;
+  // The depth camera's column 25 sees x = 0.1 + (25 - 31.5) / 80 * z, which is in this column of the colour camera.
+  const double z = 1.025, column = 31.5 + 100.0 * (0.1 + (25.0 - 31.5) / 80.0 * z) / z;
+  EXPECT_NEAR((*depth)(static_cast<int>(std::lround(column)), 24), z, 0.0011);
+  EXPECT_EQ((*depth)(0, 24), 0.0F) << "to the left of what the depth camera sees";
+}
+
+TEST(DepthConverter, WhatDoesNotFitIsRefusedWithWhatToLookAt) {
+  const StaticTransforms none;
+  DepthConverter converter(none);
+  EXPECT_THAT(converter.convert(ramp_of_depth("depth"), calibration("color", 100.0)).reason,
+              AllOf(HasSubstr("/camera/color/camera_info"), HasSubstr("/camera/depth/camera_info")));
+  auto info = calibration("color", 100.0);
+  info.width(32);
+  EXPECT_THAT(converter.convert(ramp_of_depth("color"), info).reason,
+              HasSubstr("depth image is 64x48, camera info says 32x48"));
+  info.distortion_model("equidistant");
+  EXPECT_THAT(converter.convert(ramp_of_depth("color"), info).reason,
+              AllOf(HasSubstr("/camera/color/camera_info: "), HasSubstr("equidistant")));
+  converter.set_info(info);
+  EXPECT_THAT(converter.convert(ramp_of_depth("color"), calibration("color", 100.0)).reason,
+              AllOf(HasSubstr("/camera/depth/camera_info: "), HasSubstr("equidistant")));
+}
+
+}  // namespace
+}  // namespace lapis::messages

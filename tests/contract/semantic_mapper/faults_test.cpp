@@ -34,12 +34,12 @@ const Spoiled kSpoiled[] = {
     {"depth image rows are shorter than their width", [](CameraFrame& f, TrackedFrame&) { f.depth->step(17); }},
     {"depth image is big-endian", [](CameraFrame& f, TrackedFrame&) { f.depth->is_bigendian(1); }},
     {"label encoding '32FC1'", [](CameraFrame& f, TrackedFrame&) { f.labels->encoding("32FC1"); }},
-    {"label size differs",
+    {"label image is ",
      [](CameraFrame& f, TrackedFrame&) {
        f.labels->height(f.labels->height() / 2);
        f.labels->data().resize(f.labels->step() * f.labels->height());
      }},
-    {"depth size differs", [](CameraFrame& f, TrackedFrame&) { f.info->height(17); }},
+    {"x17", [](CameraFrame& f, TrackedFrame&) { f.info->height(17); }},
     {"keyframe_pose: quaternion is not a unit one",
      [](CameraFrame&, TrackedFrame& pose) { pose.keyframe_pose().orientation().w(7.0); }},
     {"pose_in_keyframe: pose has numbers that are not finite",

@@ -124,8 +124,8 @@ TEST_F(SimulatorContract, AFrameHasOneStampTrueImagesAndFrameIds) {
   EXPECT_EQ(names[0].class_map().size(), 10U);
   const auto camera = messages::lens_camera(info[0]);
   ASSERT_TRUE(camera);
-  EXPECT_NEAR(camera->fx, 320.0, 1e-9);
-  EXPECT_NEAR(camera->fy, 320.0, 0.01);
+  EXPECT_NEAR(camera->pinhole.fx, 320.0, 1e-9);
+  EXPECT_NEAR(camera->pinhole.fy, 320.0, 0.01);
   const auto metres = messages::to_depth(depth.back());
   ASSERT_TRUE(metres);
   EXPECT_GT((*metres)(320, 180), 1.0F) << "the start looks at the far wall";

@@ -42,7 +42,7 @@ struct RectifiedImages {
     if (message == nullptr) return "";
     auto image = convert(*message);
     if (!image) return image.reason;
-    const std::string problem = messages::size_problem(what, image->width, image->height, camera.pinhole);
+    auto problem = messages::size_problem(what, image->width, image->height, camera.pinhole);
     if (!problem.empty()) return problem;
     rectifier.of(camera).rectify(*image);
     out = std::move(*image);

@@ -14,6 +14,7 @@ paired tests; beside the rows are these as Markdown, CSV and LaTeX, figures, and
 in docs/results/NAME as soon as it has ended, with a key (hash of the sources and of the configuration that its results
 depend on). What has a row of the same key is not repeated: an experiment resumes where its rows end, on another
 machine, too. A run that fails or is killed is a row, too, and counts as a failure.
+One that cannot start as the protocol says ends the experiment.
 
   --out DIR        run folders; default: out/experiments/NAME
   --results DIR    rows and tables; default: docs/results/NAME

@@ -5,6 +5,18 @@
 #include "common/topics/transforms.hpp"
 
 namespace lapis::messages {
+namespace {
+
+constexpr double kMostColorPixels = 16.0;  // that a depth pixel is as wide, or as high, as
+
+/// False for calibrations that cannot be of one sensor; registration would take minutes for an image.
+bool fit(const images::RgbdCalibration& cameras) {
+  const geometry::PinholeCamera &color = cameras.color.pinhole, &depth = cameras.depth.pinhole;
+  return color.fx <= kMostColorPixels * depth.fx && color.fy <= kMostColorPixels * depth.fy &&
+         color.width <= kMostColorPixels * depth.width && color.height <= kMostColorPixels * depth.height;
+}
+
+}  // namespace
 
 Converted<geometry::DepthImage> DepthConverter::convert(const sensor_msgs::msg::Image& depth,
                                                         const sensor_msgs::msg::CameraInfo& color_info) {
@@ -29,6 +41,10 @@ Converted<images::RgbdCalibration> DepthConverter::calibration(const std::string
     const auto depth = lens_camera(*info_);
     if (!depth) return Result::refused(std::string(topics::kDepthInfo.name) + ": " + depth.reason);
     cameras.depth = *depth;
+    if (!fit(cameras)) {
+      return Result::refused(std::string("a pixel of ") + topics::kDepthInfo.name + " is more than 16 of " +
+                             topics::kColorInfo.name + ": one of them is wrong");
+    }
   }
   const std::string& color_frame = color_info.header().frame_id();
   if (color_frame.empty() || color_frame == depth_frame) return cameras;

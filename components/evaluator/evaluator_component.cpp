@@ -193,6 +193,7 @@ std::optional<EvaluatorComponent::Partners> EvaluatorComponent::partners_of(cons
   const time::Time stamp = tracked_.front().first;
   const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
   const auto is_over = [&](const auto& input) { return cycle.inputs_complete || !input.has_publisher(); };
+  if (depth_camera_.is_awaited() && !cycle.inputs_complete && !tracked_.is_full()) return std::nullopt;
   Partners found;
   // slam's messages of one frame have the same stamp; for a frame without a pose, slam publishes no odometry.
   const bool no_odometry_comes = tier_of(tracked) == PoseTier::kNone || is_over(odometry_) || tracked_.is_full();

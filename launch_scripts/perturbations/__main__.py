@@ -51,6 +51,8 @@ def fail(text):
 
 def read_sequences(folders):
     sequences = [read_sequence(folder) for folder in folders]
+    if of_its_own := [sequence.folder for sequence in sequences if "depth" in sequence.camera]:
+        fail(f"{of_its_own[0]}/camera.yaml: depth: wanted is depth that is registered to colour")
     names = [sequence.name for sequence in sequences]
     if twice := [name for name in names if names.count(name) > 1]:
         fail(f"two sequences are called {twice[0]}: rows would not tell them apart")

@@ -111,6 +111,12 @@ TEST(DepthConverter, WhatDoesNotFitIsRefusedWithWhatToLookAt) {
   info.distortion_model("equidistant");
   EXPECT_THAT(converter.convert(ramp_of_depth("color"), info).reason,
               AllOf(HasSubstr("/camera/color/camera_info: "), HasSubstr("equidistant")));
+  converter.set_info(calibration("color", 1e-300));
+  EXPECT_THAT(converter.convert(ramp_of_depth("color"), calibration("color", 100.0)).reason, HasSubstr("more than 16"));
+  auto huge = calibration("color", 100.0);
+  huge.width(16384);
+  converter.set_info(calibration("color", 100.0));
+  EXPECT_THAT(converter.convert(ramp_of_depth("color"), huge).reason, HasSubstr("more than 16"));
   converter.set_info(info);
   EXPECT_THAT(converter.convert(ramp_of_depth("color"), calibration("color", 100.0)).reason,
               AllOf(HasSubstr("/camera/depth/camera_info: "), HasSubstr("equidistant")));

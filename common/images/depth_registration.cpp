@@ -1,6 +1,7 @@
 #include "common/images/depth_registration.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace lapis::images {
@@ -10,17 +11,12 @@ constexpr float kNearest_m = 0.01F;  // nothing nearer to the colour camera is t
 // Pixels overlap by this much to either side [px]: on a slanted surface neighbours shift by unequal amounts.
 constexpr float kOverlap_px = 0.15F;
 
-/// The same as std::ceil, which is a call where the processor is not known.
-int ceil_of(float x) {
-  const int truncated = static_cast<int>(x);
-  return truncated + static_cast<int>(x > static_cast<float>(truncated));
-}
-
 /// The pixels whose centres are within `reach` of a position, cut off at the image's border.
 struct Span {
   int first, end;
   Span(float position, float reach, int size)
-      : first(std::max(0, ceil_of(position - reach))), end(std::min(size, ceil_of(position + reach))) {}
+      : first(std::max(0, static_cast<int>(std::ceil(position - reach)))),
+        end(std::min(size, static_cast<int>(std::ceil(position + reach)))) {}
 };
 
 /// False for a position that no int holds.

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "common/geometry/image.hpp"
+#include "common/geometry/pinhole_camera.hpp"
+#include "slam/core/frame/frame.hpp"
+
+namespace lapis::slam {
+
+/// How far the depth camera is from where it was taken to be. A pixel of depth `z` that is shown at `pixel` belongs at
+///   centre + focal_ratio * (pixel - centre) + focal length * shift_m / z.
+struct DepthOffset {
+  double focal_ratio = 1.0;                           ///< focal length that was assumed / true focal length
+  Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();  ///< of the depth camera: x to the right, y down [m]
+};
+
+/// What one frame shows of the offset: where depth jumps, and how strong the contrast of grey values is everywhere.
+class EdgeView {
+ public:
+  static constexpr int kLevels = 4;
+
+  explicit EdgeView(const RgbdFrame& frame);
+
+  /// Between a near pixel and the far one beside it.
+  struct Edge {
+    Eigen::Vector2f pixel;
+    float depth_m = 0.0F;  ///< of the near one
+    bool is_upright = false;
+  };
+  const std::vector<Edge>& edges() const { return edges_; }
+  /// Contrast across an edge as a multiple of the image's mean one, interpolated; 1 outside of the image.
+  /// @param level of a pyramid: 0 is the image, each further one is blurred to half of the size.
+  double contrast(const Eigen::Vector2d& pixel, bool is_upright, int level) const;
+  const geometry::PinholeCamera& camera() const { return camera_; }
+
+ private:
+  using Levels = std::array<geometry::Image<float>, kLevels>;
+
+  geometry::PinholeCamera camera_;
+  std::vector<Edge> edges_;
+  Levels across_columns_, across_rows_;
+};
+
+/// The offset that puts jumps of depth where grey values have contrast.
+struct DepthAlignment {
+  DepthOffset offset;
+  double moved_px = 0.0;     ///< by how much it moves edges (RMS)
+  double gain_sigmas = 0.0;  ///< by how much contrast at edges is larger than without it, over parts of the views
+};
+
+/// Searches focal ratios from 0.76 to 1.3 and shifts to 8 cm [cf. Levinson and Thrun, "Automatic online calibration of
+/// cameras and lasers", RSS 2013: depth discontinuities at image edges]. The views show edges.
+DepthAlignment align_depth(std::span<const EdgeView> views);
+
+}  // namespace lapis::slam

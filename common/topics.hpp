@@ -48,6 +48,7 @@ void for_each(Visitor&& visit) {
   visit(kLandmarks);
   visit(kLandmarkState);
   visit(kSlamStatus);
+  visit(kDepthEstimate);
   visit(kMapDescription);
   visit(kVoxelTiles);
   visit(kMapState);

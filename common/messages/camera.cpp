@@ -94,6 +94,22 @@ Converted<geometry::LensCamera> lens_camera(const sensor_msgs::msg::CameraInfo& 
   return camera;
 }
 
+sensor_msgs::msg::CameraInfo to_camera_info(const geometry::LensCamera& camera, const std_msgs::msg::Header& header) {
+  constexpr std::size_t kRational = 8;
+  constexpr std::size_t kPlumbBob = 5;
+  const geometry::PinholeCamera& c = camera.pinhole;
+  sensor_msgs::msg::CameraInfo info;
+  info.header(header);
+  info.width(static_cast<std::uint32_t>(c.width));
+  info.height(static_cast<std::uint32_t>(c.height));
+  info.distortion_model(camera.distortion.size() == kRational ? "rational_polynomial" : "plumb_bob");
+  info.d(camera.distortion.empty() ? std::vector<double>(kPlumbBob, 0.0) : camera.distortion);
+  info.k({c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0});
+  info.r({1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
+  info.p({c.fx, 0.0, c.cx, 0.0, 0.0, c.fy, c.cy, 0.0, 0.0, 0.0, 1.0, 0.0});
+  return info;
+}
+
 std::string size_problem(const std::string& what, int width, int height, const geometry::PinholeCamera& camera) {
   if (width == camera.width && height == camera.height) return "";
   const auto text = [](int w, int h) { return std::to_string(w) + "x" + std::to_string(h); };

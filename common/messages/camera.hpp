@@ -12,6 +12,8 @@ namespace lapis::messages {
 /// Camera of a camera info with the distortion model plumb_bob or rational_polynomial, or without distortion; refuses
 /// other models, whose coefficients mean something else, and a camera without valid size and focal length.
 Converted<geometry::LensCamera> lens_camera(const sensor_msgs::msg::CameraInfo& message);
+/// Inverse of lens_camera, for images that are not rectified by anybody else.
+sensor_msgs::msg::CameraInfo to_camera_info(const geometry::LensCamera& camera, const std_msgs::msg::Header& header);
 /// Why an image does not have the size of its camera; empty when it has. `what`: "depth".
 std::string size_problem(const std::string& what, int width, int height, const geometry::PinholeCamera& camera);
 

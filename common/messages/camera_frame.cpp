@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <cstring>
 
+#include "common/messages/camera.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/time.hpp"
 
 namespace lapis::messages {
 namespace {
-
-constexpr std::size_t kDistortionCoefficients = 5;  // of plumb_bob
 
 template <class Pixel>
 sensor_msgs::msg::Image image_message(const geometry::Image<Pixel>& image, const std::string& encoding,
@@ -36,19 +35,6 @@ sensor_msgs::msg::Image label_message(const geometry::LabelImage& labels, const 
   return image_message(narrow, "mono8", h);
 }
 
-sensor_msgs::msg::CameraInfo info_message(const geometry::PinholeCamera& c, const std_msgs::msg::Header& h) {
-  sensor_msgs::msg::CameraInfo info;
-  info.header(h);
-  info.width(static_cast<std::uint32_t>(c.width));
-  info.height(static_cast<std::uint32_t>(c.height));
-  info.distortion_model("plumb_bob");
-  info.d(std::vector<double>(kDistortionCoefficients, 0.0));  // the images are rectified
-  info.k({c.fx, 0.0, c.cx, 0.0, c.fy, c.cy, 0.0, 0.0, 1.0});
-  info.r({1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0});
-  info.p({c.fx, 0.0, c.cx, 0.0, 0.0, c.fy, c.cy, 0.0, 0.0, 0.0, 1.0, 0.0});
-  return info;
-}
-
 geometry_msgs::msg::TransformStamped stamped_transform(const geometry::Pose& T_parent_child, const std::string& parent,
                                                        const std::string& child, time::Time stamp) {
   geometry_msgs::msg::TransformStamped message;
@@ -65,8 +51,8 @@ CameraMessages to_messages(const CameraFrame& frame, const CameraSetUp& cameras,
   const auto of_depth = cameras.depth ? header(frame.stamp, ids.depth_optical) : h;
   CameraMessages out;
   out.color = image_message(frame.color, "rgb8", h);
-  out.color_info = info_message(cameras.color, h);
-  out.depth_info = info_message(cameras.depth ? cameras.depth->camera : cameras.color, of_depth);
+  out.color_info = to_camera_info({cameras.color, {}}, h);
+  out.depth_info = to_camera_info({cameras.depth ? cameras.depth->camera : cameras.color, {}}, of_depth);
   if (frame.depth_mm != nullptr) out.depth = image_message(*frame.depth_mm, "16UC1", of_depth);
   if (frame.labels != nullptr) out.labels = label_message(*frame.labels, h);
   if (frame.T_world_base) {

@@ -1,6 +1,9 @@
 #include "common/messages/depth_converter.hpp"
 
+#include <algorithm>
+
 #include "common/messages/camera.hpp"
+#include "common/messages/time.hpp"
 #include "common/topics/camera.hpp"
 #include "common/topics/transforms.hpp"
 
@@ -9,6 +12,8 @@ namespace {
 
 constexpr double kMostColorPixels = 16.0;  // that a depth pixel is as wide, or as high, as
 
+constexpr std::size_t kMostEstimates = 8;
+
 /// False for calibrations that cannot be of one sensor; registration would take minutes for an image.
 bool fit(const images::RgbdCalibration& cameras) {
   const geometry::PinholeCamera &color = cameras.color.pinhole, &depth = cameras.depth.pinhole;
@@ -16,7 +21,51 @@ bool fit(const images::RgbdCalibration& cameras) {
          color.width <= kMostColorPixels * depth.width && color.height <= kMostColorPixels * depth.height;
 }
 
+/// Rotation and position of the depth camera by `r` and `p`; refused where these are not of a pair of cameras.
+Converted<geometry::Pose> beside_color(const sensor_msgs::msg::CameraInfo& info) {
+  using Result = Converted<geometry::Pose>;
+  const auto& p = info.p();
+  const Eigen::Matrix3d R = Eigen::Map<const Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>(info.r().data());
+  const Eigen::Vector3d t{-p[3] / p[0], -p[7] / p[5], -p[11]};
+  constexpr double kRounding = 1e-3;
+  const bool is_rotation = R.allFinite() && (R * R.transpose()).isIdentity(kRounding) && R.determinant() > 0.0;
+  if (!is_rotation || !t.allFinite()) return Result::refused("r and p are not of a pair of cameras");
+  return geometry::make_pose(t, Eigen::Quaterniond(R));
+}
+
 }  // namespace
+
+sensor_msgs::msg::CameraInfo to_depth_info(const std_msgs::msg::Header& header,
+                                           const images::RgbdCalibration& cameras) {
+  const geometry::PinholeCamera& camera = cameras.depth.pinhole;
+  sensor_msgs::msg::CameraInfo info = to_camera_info(cameras.depth, header);
+  const Eigen::Matrix3d R = cameras.T_color_depth.linear();
+  const Eigen::Vector3d t = cameras.T_color_depth.translation();
+  for (int row = 0; row < 3; ++row) {
+    for (int column = 0; column < 3; ++column) info.r()[static_cast<std::size_t>(3 * row + column)] = R(row, column);
+  }
+  info.p({camera.fx, 0.0, camera.cx, -camera.fx * t.x(), 0.0, camera.fy, camera.cy, -camera.fy * t.y(), 0.0, 0.0, 1.0,
+          -t.z()});
+  return info;
+}
+
+std::string DepthConverter::set_estimate(const sensor_msgs::msg::CameraInfo& info) {
+  const auto depth = lens_camera(info);
+  if (!depth) return depth.reason;
+  const auto T_color_depth = beside_color(info);
+  if (!T_color_depth) return T_color_depth.reason;
+  const time::Time since = from_message(info.header().stamp());
+  std::erase_if(estimates_, [&](const Estimate& other) { return other.since >= since; });
+  if (estimates_.size() >= kMostEstimates) estimates_.erase(estimates_.begin());
+  estimates_.push_back({since, *depth, *T_color_depth});
+  return "";
+}
+
+const DepthConverter::Estimate& DepthConverter::estimate_at(time::Time stamp) const {
+  const auto later = std::find_if(estimates_.begin(), estimates_.end(),
+                                  [&](const Estimate& estimate) { return estimate.since > stamp; });
+  return later == estimates_.begin() ? *later : *(later - 1);
+}
 
 Converted<geometry::DepthImage> DepthConverter::convert(const sensor_msgs::msg::Image& depth,
                                                         const sensor_msgs::msg::CameraInfo& color_info) {
@@ -37,6 +86,13 @@ Converted<images::RgbdCalibration> DepthConverter::calibration(const std::string
   const auto color = lens_camera(color_info);
   if (!color) return Result::refused(std::string(topics::kColorInfo.name) + ": " + color.reason);
   images::RgbdCalibration cameras{*color, *color};
+  if (has_estimate()) {
+    const Estimate& estimate = estimate_at(from_message(color_info.header().stamp()));
+    cameras.depth = estimate.depth;
+    cameras.T_color_depth = estimate.T_color_depth;
+    if (!fit(cameras)) return Result::refused("the estimate of the depth camera does not fit that of colour");
+    return cameras;
+  }
   if (info_) {
     const auto depth = lens_camera(*info_);
     if (!depth) return Result::refused(std::string(topics::kDepthInfo.name) + ": " + depth.reason);

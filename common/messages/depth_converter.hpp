@@ -2,14 +2,20 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "common/geometry/image.hpp"
 #include "common/images/depth_registration.hpp"
 #include "common/messages/converted.hpp"
 #include "common/messages/geometry.hpp"
+#include "common/time/time.hpp"
 #include "idl/sensor_msgs.hpp"
 
 namespace lapis::messages {
+
+/// The depth camera beside that of colour, as for stereo cameras in ROS: `r` turns to the axes of colour, `p` projects
+/// from the frame of colour, which the header names.
+sensor_msgs::msg::CameraInfo to_depth_info(const std_msgs::msg::Header& header, const images::RgbdCalibration& cameras);
 
 /// Brings the depth images of an RGB-D sensor to the view of its colour camera, by the camera infos of both and the
 /// static transforms. Without a camera info of depth, depth of the colour camera's frame counts as registered to it.
@@ -21,17 +27,31 @@ class DepthConverter {
   /// The newest calibration of the depth camera.
   void set_info(sensor_msgs::msg::CameraInfo info) { info_ = std::move(info); }
   bool has_info() const { return info_.has_value(); }
+  /// What was found out about the depth camera (to_depth_info); from its stamp on, it counts instead of camera info and
+  /// transforms of depth. Returns why it cannot be used, or an empty text.
+  std::string set_estimate(const sensor_msgs::msg::CameraInfo& info);
+  bool has_estimate() const { return !estimates_.empty(); }
+  /// By what the newest image was converted.
+  const images::RgbdCalibration* used() const { return registration_ ? &registration_->calibration() : nullptr; }
   /// Depth [m] of the size of the colour camera, along the axis of that camera without its lens distortion; refused
   /// with the reason when image, calibrations and frames do not fit each other.
   Converted<geometry::DepthImage> convert(const sensor_msgs::msg::Image& depth,
                                           const sensor_msgs::msg::CameraInfo& color_info);
 
  private:
+  struct Estimate {
+    time::Time since;
+    geometry::LensCamera depth;
+    geometry::Pose T_color_depth = geometry::Pose::Identity();
+  };
   Converted<images::RgbdCalibration> calibration(const std::string& depth_frame,
                                                  const sensor_msgs::msg::CameraInfo& color_info) const;
+  /// That of an image; before the oldest one that one.
+  const Estimate& estimate_at(time::Time stamp) const;
 
   const StaticTransforms& transforms_;
   std::optional<sensor_msgs::msg::CameraInfo> info_;
+  std::vector<Estimate> estimates_;                        // the newest ones, by time
   std::optional<images::DepthRegistration> registration_;  // made once per calibration
 };
 

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <string>
+
 #include "common/messages/depth_converter.hpp"
 #include "common/runtime/context.hpp"
 #include "common/topics/camera.hpp"
+#include "common/topics/slam.hpp"
 
 namespace lapis::runtime {
 
@@ -17,8 +20,20 @@ class DepthCamera {
   DepthCamera(const DepthCamera&) = delete;
   DepthCamera& operator=(const DepthCamera&) = delete;
 
+  /// Uses what slam finds out about the depth camera, where it does that (slam.depth_calibration: estimate).
+  void follow_slam(Context& context) {
+    estimates_ = &context.subscribe(topics::kDepthEstimate, [&](const sensor_msgs::msg::CameraInfo& m) {
+      const std::string problem = converter_.set_estimate(m);
+      if (problem.empty()) return;
+      context.status().count(std::string(topics::kDepthEstimate.name) + " dropped: " + problem);
+    });
+  }
   /// True while the calibration may still come: somebody publishes it, and nothing has arrived.
-  bool is_awaited() const { return !converter_.has_info() && source_.matched() > 0; }
+  bool is_awaited() const {
+    if (estimates_ != nullptr && estimates_->matched() > 0 && !converter_.has_estimate()) return true;
+    return !converter_.has_info() && source_.matched() > 0;
+  }
+  messages::DepthConverter& converter() { return converter_; }
   /// See DepthConverter::convert.
   messages::Converted<geometry::DepthImage> convert(const sensor_msgs::msg::Image& depth,
                                                     const sensor_msgs::msg::CameraInfo& color_info) {
@@ -28,6 +43,7 @@ class DepthCamera {
  private:
   messages::DepthConverter converter_;
   dds::Source& source_;
+  dds::Source* estimates_ = nullptr;
 };
 
 }  // namespace lapis::runtime

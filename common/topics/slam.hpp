@@ -3,6 +3,7 @@
 #include "common/dds/topic.hpp"
 #include "idl/lapis_msgs.hpp"
 #include "idl/nav_msgs.hpp"
+#include "idl/sensor_msgs.hpp"
 
 namespace lapis::topics {
 
@@ -26,5 +27,8 @@ inline constexpr dds::Topic<lapis_msgs::msg::LandmarkState> kLandmarkState{
     "graph version and checksum of the landmarks"};
 inline constexpr dds::Topic<lapis_msgs::msg::SlamStatus> kSlamStatus{"/slam/status", dds::kLatched, "slam",
                                                                      "1 Hz and on change", "state, reason, counts"};
+inline constexpr dds::Topic<sensor_msgs::msg::CameraInfo> kDepthEstimate{
+    "/slam/depth_camera_info", dds::kLatched, "slam", "on change, with slam.depth_calibration: estimate",
+    "the depth camera as slam has found it: r and p say where it is beside colour, as of a stereo camera"};
 
 }  // namespace lapis::topics

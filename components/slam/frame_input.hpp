@@ -44,6 +44,7 @@ class FrameInput {
   std::optional<JoinedFrame> oldest(const runtime::Cycle& cycle);
   /// Content of a frame; refused with a reason when it cannot be used.
   messages::Converted<RgbdFrame> convert(const JoinedFrame& frame);
+  messages::DepthConverter& depth_converter() { return depth_camera_.converter(); }
   /// Removes the oldest frame, which must be `frame`, and the messages that only older frames could use.
   void pop(const JoinedFrame& frame);
 

@@ -18,6 +18,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr std::size_t kEarlyReadings = 1000;
+constexpr int kViewsToContradict = 8;
 constexpr int kMostDoubtfulFrames = 15;  // about as many as a recognised place needs to be confirmed, several times
 constexpr double kFarewell_s = 1.0;
 constexpr double kLongestSave_s = 600.0;
@@ -50,6 +51,9 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
              {kMapFile, kGraphFile, kKeyframesFile},
              config.autosave_period_s},
             context) {
+  const bool estimates_depth = config.depth_calibration == "estimate";
+  if (estimates_depth) depth_estimate_ = &context.advertise(topics::kDepthEstimate);
+  calibrator_.emplace(estimates_depth ? 1 : kViewsToContradict);
   cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
   load_map();
   input_.on_restart([this] {
@@ -148,6 +152,10 @@ std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
   if (!resumed_) return std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, frame_.T_base_camera);
   saved_camera_ = resumed_->state.keyframes.back().camera;
   saved_version_ = resumed_->state.graph_version;
+  if (depth_estimate_ != nullptr && resumed_->depth_camera) {
+    const auto& [camera, T_color_depth] = *resumed_->depth_camera;
+    use_estimate({camera, camera, T_color_depth}, {});
+  }
   auto slam = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, std::move(resumed_->state));
   resumed_.reset();
   return slam;
@@ -170,6 +178,10 @@ void SlamComponent::track(const JoinedFrame& joined) {
   auto frame = input_.convert(joined);
   if (!frame) return drop(joined.stamp, frame.reason);
   if (saved_camera_) accept_saved_map(frame->camera);
+  if (calibrate_depth(*frame, *joined.info)) {
+    frame = input_.convert(joined);
+    if (!frame) return drop(joined.stamp, frame.reason);
+  }
   ++frames_total_;
   frame_.stamp = joined.stamp;
   frame->stamp = clock_.advance(joined.stamp, time::Arrival::clock::now());
@@ -177,6 +189,42 @@ void SlamComponent::track(const JoinedFrame& joined) {
   if (result.state == TrackingState::kTracking) ++frames_tracked_;
   publish(result);
   judge_clock(result);
+}
+
+/// Compares depth with colour; true when the frame has to be converted again, because the calibration has changed.
+bool SlamComponent::calibrate_depth(const RgbdFrame& frame, const sensor_msgs::msg::CameraInfo& info) {
+  if (!calibrator_ || !calibrator_->wants(frame.stamp)) return false;
+  const auto alignment = calibrator_->add(frame);
+  const images::RgbdCalibration& used = *input_.depth_converter().used();
+  if (!alignment) {
+    // Those who map with the estimate wait for it, also where there is nothing to correct.
+    if (depth_estimate_ != nullptr && !depth_camera_) use_estimate(used, info.header().stamp());
+    return false;
+  }
+  const images::RgbdCalibration cameras = corrected(used, alignment->offset);
+  const std::string found = "depth seems to be of a camera with " + describe(cameras) + " (edges lie " +
+                            fmt::format("{:.1f}", alignment->moved_px) + " px off)";
+  context_.status().value("depth_camera", found);
+  if (depth_estimate_ == nullptr) {
+    spdlog::warn("{}: correct /camera/depth/camera_info and /tf_static, or set slam.depth_calibration: estimate",
+                 found);
+    calibrator_.reset();
+    return false;
+  }
+  spdlog::info("{}: used from now on", found);
+  use_estimate(cameras, info.header().stamp());
+  return true;
+}
+
+void SlamComponent::use_estimate(const images::RgbdCalibration& cameras, const builtin_interfaces::msg::Time& since) {
+  std_msgs::msg::Header header;
+  header.stamp(since);
+  header.frame_id(frame_.optical_frame);
+  const auto info = messages::to_depth_info(header, cameras);
+  const std::string problem = input_.depth_converter().set_estimate(info);
+  if (!problem.empty()) throw std::logic_error("estimate of the depth camera: " + problem);
+  depth_camera_ = SavedDepthCamera{cameras.depth, cameras.T_color_depth};
+  depth_estimate_->publish(info);
 }
 
 void SlamComponent::add_mount(const tf2_msgs::msg::TFMessage& message) {
@@ -404,7 +452,7 @@ PoseGraphSnapshot SlamComponent::published_graph() const {
   return graph;
 }
 
-SlamFile SlamComponent::saved_map() const { return {session_, epoch_, keyframe_ids_, slam_->state()}; }
+SlamFile SlamComponent::saved_map() const { return {session_, epoch_, keyframe_ids_, slam_->state(), depth_camera_}; }
 
 void SlamComponent::finish() {
   spdlog::info("{} of {} frames tracked, {} dropped", frames_tracked_, frames_total_, frames_dropped_);

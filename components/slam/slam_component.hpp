@@ -10,6 +10,7 @@
 #include "slam/conversions.hpp"
 #include "slam/core/files/slam_file.hpp"
 #include "slam/core/rgbd_slam.hpp"
+#include "slam/depth_calibrator.hpp"
 #include "slam/frame_input.hpp"
 #include "slam/landmark_publisher.hpp"
 #include "slam/map_saver.hpp"
@@ -37,6 +38,8 @@ class SlamComponent {
   void name_map(time::Time first_stamp);
   void accept_saved_map(const geometry::PinholeCamera& camera);
   void track(const JoinedFrame& joined);
+  bool calibrate_depth(const RgbdFrame& frame, const sensor_msgs::msg::CameraInfo& info);
+  void use_estimate(const images::RgbdCalibration& cameras, const builtin_interfaces::msg::Time& since);
   void add_mount(const tf2_msgs::msg::TFMessage& message);
   void add_odometry(const nav_msgs::msg::Odometry& message);
   std::string use_odometry(time::Time stamp, const geometry::Pose& T_odom_base);
@@ -67,6 +70,7 @@ class SlamComponent {
   dds::Publisher<nav_msgs::msg::Path>& path_;
   dds::Publisher<lapis_msgs::msg::PoseGraph>& pose_graph_;
   dds::Publisher<lapis_msgs::msg::SlamStatus>& status_;
+  dds::Publisher<sensor_msgs::msg::CameraInfo>* depth_estimate_ = nullptr;  // none: nothing is to be corrected
   LandmarkPublisher landmarks_;
 
   FrameInput input_;
@@ -76,7 +80,9 @@ class SlamComponent {
   std::optional<geometry::PinholeCamera> saved_camera_;  // of the map that was resumed, until a frame has been compared
   std::unique_ptr<RgbdSlam> slam_;                       // exists once the camera's mount is known
   std::deque<std::pair<time::Time, geometry::Pose>> early_odometry_;  // T_odom_base from before that
-  FrameContext frame_;                                                // of the newest frame
+  std::optional<DepthCalibrator> calibrator_;
+  std::optional<SavedDepthCamera> depth_camera_;  // as estimated
+  FrameContext frame_;                            // of the newest frame
   SlamClock clock_;
   std::optional<int> doubtful_frames_;  // since the camera's clock was set, until the map is known to be still right
   std::int64_t session_ = -1;

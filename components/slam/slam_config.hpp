@@ -14,6 +14,7 @@ struct SlamComponentConfig {
   FrameInputConfig input;
   double graph_period_s = 0.5;
   double landmark_period_s = 2.0;
+  std::string depth_calibration = "given";
   std::string publish_odom_frame = "auto";
   std::string output_dir;
   std::string resume_from;
@@ -296,6 +297,10 @@ void describe(Field& field, SlamComponentConfig& c) {
   field("max_stamp_difference_s", c.input.max_stamp_difference_s, config::in_range(0.0, 0.5),
         "largest difference between the stamps of colour, depth and camera info of a frame; 0: 0.6 of the camera's "
         "period, at most 0.12 s [s]");
+  field("depth_calibration", c.depth_calibration, config::one_of({"given", "estimate"}),
+        "where the depth camera is beside that of colour; given: as camera infos and /tf_static say, and slam reports "
+        "when the first images contradict it; estimate: slam corrects it by the edges in these images, and publishes "
+        "that on /slam/depth_camera_info");
   field("graph_period_s", c.graph_period_s, config::in_range(0.0, 60.0),
         "shortest time between publications of the pose graph, by the frames' time stamps [s]");
   field("landmark_period_s", c.landmark_period_s, config::in_range(0, 60),

@@ -17,9 +17,10 @@ using geometry::Matrix6d;
 using geometry::Pose;
 
 constexpr std::string_view kMagic = "LAPISLAM";
-constexpr std::uint32_t kFormatVersion = 3;
+constexpr std::uint32_t kFormatVersion = 4;
 constexpr std::uint32_t kFirstWithWheels = 2;  // older versions can still be read
 constexpr std::uint32_t kFirstWithIds = 3;
+constexpr std::uint32_t kFirstWithDepthCamera = 4;
 constexpr std::size_t kTagSize = 4;
 constexpr double kUnit16 = 32767.0;  // stands for a component of 1
 
@@ -31,6 +32,10 @@ concept Is = std::same_as<std::remove_const_t<T>, Plain>;
 
 void fields(auto& data, Is<geometry::PinholeCamera> auto& camera) {
   data(camera.width, camera.height, camera.fx, camera.fy, camera.cx, camera.cy);
+}
+
+void fields(auto& data, Is<SavedDepthCamera> auto& depth) {
+  data(depth.camera.pinhole, depth.camera.distortion, depth.T_color_depth);
 }
 
 void fields(auto& data, Is<Feature> auto& feature) {
@@ -88,6 +93,7 @@ void sections(auto& section, Is<SlamFile> auto& file, std::uint32_t version) {
   if (version < kFirstWithIds) return;
   section("NAME", file.epoch, file.keyframe_ids.stretches);
   section("ODOM", state.motion);
+  if (version >= kFirstWithDepthCamera) section("DEPC", file.depth_camera);
 }
 
 class Encoder {
@@ -268,6 +274,14 @@ class SectionReader {
   std::string problem_;
 };
 
+bool is_sound(const SavedDepthCamera& depth) {
+  const auto& distortion = depth.camera.distortion;
+  constexpr std::size_t kMostCoefficients = 8;
+  return geometry::is_valid(depth.camera.pinhole) && geometry::is_valid(depth.T_color_depth) &&
+         distortion.size() <= kMostCoefficients &&
+         std::all_of(distortion.begin(), distortion.end(), [](double d) { return std::isfinite(d); });
+}
+
 struct Content {
   std::uint32_t version = 0;
   std::span<const std::uint8_t> bytes;
@@ -316,6 +330,10 @@ std::optional<SlamFile> decode_slam_file(std::span<const std::uint8_t> bytes, st
       file.keyframe_ids.are_sound() && file.keyframe_ids.of(file.state.keyframes.size()) < PublishedIds::kEnd;
   if (!ids_are_sound || file.epoch < 0 || file.epoch > kLastStamp_ns) {
     error = "has published ids or an epoch out of range";
+    return std::nullopt;
+  }
+  if (file.depth_camera && !is_sound(*file.depth_camera)) {
+    error = "has a depth camera that cannot be";
     return std::nullopt;
   }
   if (const auto fault = find_fault(file.state)) {

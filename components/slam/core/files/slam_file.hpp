@@ -11,12 +11,19 @@
 
 namespace lapis::slam {
 
+/// The depth camera, and where it is beside that of colour.
+struct SavedDepthCamera {
+  geometry::LensCamera camera;
+  geometry::Pose T_color_depth = geometry::Pose::Identity();
+};
+
 /// Everything in a slam.lapis file; docs/slam_file.md describes its layout.
 struct SlamFile {
   std::int64_t session = 0;  ///< session that wrote it
   std::int64_t epoch = 0;    ///< of its landmarks
   PublishedIds keyframe_ids;
   SlamState state;
+  std::optional<SavedDepthCamera> depth_camera;  ///< as slam has estimated it
 };
 
 /// Bytes of a slam.lapis file. Equal content gives equal bytes. Pixels, depths, surface points and the distances of

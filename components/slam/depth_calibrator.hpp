@@ -1,0 +1,39 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "common/images/depth_registration.hpp"
+#include "slam/core/calibration/depth_alignment.hpp"
+
+namespace lapis::slam {
+
+/// Compares depth with colour in the first seconds: do jumps of depth lie where grey values have contrast?
+class DepthCalibrator {
+ public:
+  /// `fewest_views`: before anything is concluded [1, 16]. With 1, the first view may show a wrong calibration, and the
+  /// next ones make the correction better.
+  explicit DepthCalibrator(int fewest_views) : fewest_views_(fewest_views) {}
+
+  /// Whether a frame of this time is wanted: views are some time apart, until enough has been seen.
+  bool wants(time::Time stamp) const;
+  /// Takes a frame into account. An alignment that moves depth notably ends what the views have shown: later ones have
+  /// to be of depth that is corrected by it.
+  std::optional<DepthAlignment> add(const RgbdFrame& frame);
+
+ private:
+  int fewest_views_;
+  std::vector<EdgeView> views_;  // with edges
+  std::optional<time::Time> newest_;
+  int seen_ = 0;  // views, also those without edges
+  int found_ = 0;
+};
+
+/// The calibration that puts depth where `offset` says, from the one that it was registered by.
+images::RgbdCalibration corrected(const images::RgbdCalibration& used, const DepthOffset& offset);
+
+/// The depth camera in words: focal length, and where it is beside that of colour.
+std::string describe(const images::RgbdCalibration& cameras);
+
+}  // namespace lapis::slam

@@ -1,13 +1,17 @@
 // lapis_slam alone, fed with the kinds of cameras that there are.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstring>
 #include <functional>
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/messages/camera.hpp"
 #include "common/topics/camera.hpp"
 #include "tests/contract/slam/slam_contract.hpp"
+#include "tests/support/boards.hpp"
 
 namespace lapis::test {
 namespace {
@@ -205,6 +209,54 @@ TEST_F(SlamInputs, CalibrationMayChange) {
     EXPECT_EQ(frames.back().session(), frames.front().session());
     expect_pose(at, slow_motion(0), slow_motion(i));
   }
+}
+
+/// Boards before a wall, of whose depth nobody says that it is of another camera, 3 cm to the left.
+class SlamDepthCalibration : public SlamInputs {
+ protected:
+  explicit SlamDepthCalibration(const std::vector<std::string>& arguments = {}) : SlamInputs(arguments) {}
+
+  CameraFrame frame_of_boards(time::Time at) const {
+    const auto boards = make_boards(2);
+    CameraFrame frame{feed.camera().color(at, slow_motion(0)),
+                      feed.camera().depth_metres(at, slow_motion(0)),
+                      {},
+                      feed.camera().info(at)};
+    geometry::PinholeCamera camera = messages::lens_camera(*frame.info)->pinhole;
+    const auto gray = gray_of(boards, camera);
+    for (std::size_t i = 0; i < frame.color->data().size(); ++i) frame.color->data()[i] = gray.pixels[i / 3];
+    camera.fx *= 1.11;
+    camera.fy *= 1.11;
+    const auto depth = depth_of(boards, camera, {-0.03, 0.0, 0.0});
+    std::memcpy(frame.depth->data().data(), depth.pixels.data(), frame.depth->data().size());
+    return frame;
+  }
+};
+
+TEST_F(SlamDepthCalibration, WhatContradictsTheImagesIsReported) {
+  constexpr int kViews = 8, kBetween = 7;  // frames, 0.23 s
+  for (int i = 0; i < kViews; ++i) {
+    ASSERT_TRUE(answers(frame_of_boards(CameraFeed::stamp(kBetween * i)), kBetween * i)) << slam.log();
+  }
+  EXPECT_THAT(slam.log(), ::testing::HasSubstr("depth seems to be of a camera with fx 3"));
+  EXPECT_THAT(slam.log(), ::testing::HasSubstr("cm to the left of colour"));
+  EXPECT_THAT(slam.log(), ::testing::HasSubstr("set slam.depth_calibration: estimate"));
+}
+
+class SlamDepthEstimate : public SlamDepthCalibration {
+ protected:
+  SlamDepthEstimate() : SlamDepthCalibration({"--set", "slam.depth_calibration=estimate"}) {}
+
+  const std::vector<sensor_msgs::msg::CameraInfo>& estimates = probe.collect(topics::kDepthEstimate);
+};
+
+TEST_F(SlamDepthEstimate, IsPublishedWithTheFirstFrame) {
+  ASSERT_TRUE(answers(frame_of_boards(CameraFeed::stamp(0)), 0)) << slam.log();
+  ASSERT_TRUE(probe.wait_until([&] { return !estimates.empty(); })) << slam.log();
+  const auto& info = estimates.front();
+  EXPECT_EQ(stamp_of(info), CameraFeed::stamp(0));
+  EXPECT_NEAR(info.k()[0], 1.11 * feed.camera().info(CameraFeed::stamp(0)).k()[0], 1.0);
+  EXPECT_NEAR(-info.p()[3] / info.p()[0], -0.03, 0.005);
 }
 
 }  // namespace

@@ -99,6 +99,41 @@ TEST(DepthConverter, DepthOfAnotherFrameIsSeenFromTheColourCamera) {
   EXPECT_EQ((*depth)(0, 24), 0.0F) << "to the left of what the depth camera sees";
 }
 
+TEST(DepthConverter, AnEstimateCountsFromItsStampOn) {
+  StaticTransforms none;
+  DepthConverter converter(none);
+  auto color = calibration("color", 100.0);
+  images::RgbdCalibration cameras{{{64, 48, 100.0, 100.0, 31.5, 23.5}, {}},
+                                  {{64, 48, 80.0, 81.0, 30.0, 22.0}, {0.1, 0.0, 0.0, 0.0}}};
+  cameras.T_color_depth =
+      geometry::make_pose({-0.03, 0.01, 0.002}, Eigen::Quaterniond(Eigen::AngleAxisd(0.02, Eigen::Vector3d::UnitY())));
+  const auto header_at = [](int second) {
+    std_msgs::msg::Header header;
+    header.stamp().sec(second);
+    return header;
+  };
+  EXPECT_FALSE(converter.has_estimate());
+  EXPECT_EQ(converter.set_estimate(to_depth_info(header_at(5), cameras)), "");
+  const images::RgbdCalibration first = cameras;
+  cameras.depth.pinhole.fx = 90.0;
+  EXPECT_EQ(converter.set_estimate(to_depth_info(header_at(7), cameras)), "");
+  for (const auto& [second, expected] :
+       {std::pair(1, first), std::pair(5, first), std::pair(6, first), std::pair(7, cameras), std::pair(9, cameras)}) {
+    color.header(header_at(second));
+    ASSERT_TRUE(converter.convert(ramp_of_depth("color"), color));
+    EXPECT_EQ(converter.used()->depth, expected.depth) << second;
+    EXPECT_TRUE(converter.used()->T_color_depth.isApprox(expected.T_color_depth, 1e-12)) << second;
+  }
+}
+
+TEST(DepthConverter, AnEstimateThatIsNotOfAPairOfCamerasIsRefused) {
+  StaticTransforms none;
+  DepthConverter converter(none);
+  EXPECT_THAT(converter.set_estimate(calibration("color", 100.0)), HasSubstr("pair of cameras"));
+  EXPECT_THAT(converter.set_estimate(calibration("color", 0.0)), HasSubstr("focal length"));
+  EXPECT_FALSE(converter.has_estimate());
+}
+
 TEST(DepthConverter, WhatDoesNotFitIsRefusedWithWhatToLookAt) {
   const StaticTransforms none;
   DepthConverter converter(none);

@@ -2,72 +2,30 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <iostream>
-#include <random>
 #include <vector>
+
+#include "slam/depth_calibrator.hpp"
+#include "tests/support/boards.hpp"
 
 namespace lapis::slam {
 namespace {
 
 const geometry::PinholeCamera kView{320, 240, 260.0, 260.0, 159.5, 119.5};
 
-struct Board {
-  Eigen::Vector3d centre;
-  double half_m = 0.0;
-  std::uint8_t gray = 0;
-};
-
-/// Boards before a wall 4 m away, all square to the view; their grey values are random, and have noise.
-std::vector<Board> boards(std::uint32_t seed) {
-  std::mt19937 random(seed);
-  std::uniform_real_distribution<double> share(0.0, 1.0);
-  std::vector<Board> all;
-  for (int i = 0; i < 14; ++i) {
-    const double z = 1.0 + 2.0 * share(random);
-    const double x = (1.2 * share(random) - 0.6) * z, y = (0.9 * share(random) - 0.45) * z;
-    const auto gray = static_cast<std::uint8_t>(30.0 + 190.0 * share(random));
-    all.push_back({{x, y, z}, (0.05 + 0.1 * share(random)) * z, gray});
-  }
-  return all;
-}
-
-const Board* nearest(const std::vector<Board>& all, const Eigen::Vector3d& origin, const Eigen::Vector3d& ray) {
-  const Board* found = nullptr;
-  for (const Board& board : all) {
-    const Eigen::Vector3d p = origin + board.centre.z() * ray;
-    if (std::abs(p.x() - board.centre.x()) > board.half_m || std::abs(p.y() - board.centre.y()) > board.half_m)
-      continue;
-    if (found == nullptr || board.centre.z() < found->centre.z()) found = &board;
-  }
-  return found;
-}
-
-/// Grey values at the origin, and depth of a camera at `shift_m` whose focal length is kView's over `focal_ratio`.
-RgbdFrame see(const std::vector<Board>& all, const DepthOffset& offset) {
-  constexpr double kWall_m = 4.0;
-  constexpr std::uint8_t kWallGray = 120;
-  RgbdFrame frame{
-      {}, kView, geometry::GrayImage(kView.width, kView.height), geometry::DepthImage(kView.width, kView.height)};
+/// Depth is of a camera at `shift_m` whose focal length is that of colour over `focal_ratio`.
+RgbdFrame see(const std::vector<lapis::test::Board>& boards, const DepthOffset& offset) {
   geometry::PinholeCamera depth_camera = kView;
   depth_camera.fx /= offset.focal_ratio;
   depth_camera.fy /= offset.focal_ratio;
-  const Eigen::Vector3d origin{offset.shift_m.x(), offset.shift_m.y(), 0.0};
-  std::mt19937 random(7);
-  for (int v = 0; v < kView.height; ++v) {
-    for (int u = 0; u < kView.width; ++u) {
-      const Board* board = nearest(all, Eigen::Vector3d::Zero(), kView.unproject(u, v, 1.0));
-      frame.gray(u, v) = static_cast<std::uint8_t>((board == nullptr ? kWallGray : board->gray) + random() % 9);
-      board = nearest(all, origin, depth_camera.unproject(u, v, 1.0));
-      frame.depth(u, v) = static_cast<float>(board == nullptr ? kWall_m : board->centre.z());
-    }
-  }
-  return frame;
+  return {{},
+          kView,
+          lapis::test::gray_of(boards, kView),
+          lapis::test::depth_of(boards, depth_camera, {offset.shift_m.x(), offset.shift_m.y(), 0.0})};
 }
 
 DepthAlignment align(const DepthOffset& truth) {
   std::vector<EdgeView> views;
-  for (std::uint32_t seed = 1; seed <= 3; ++seed) views.emplace_back(see(boards(seed), truth));
+  for (std::uint32_t seed = 1; seed <= 3; ++seed) views.emplace_back(see(lapis::test::make_boards(seed), truth));
   return align_depth(views);
 }
 
@@ -90,20 +48,76 @@ TEST(DepthAlignment, LeavesRegisteredDepthWhereItIs) {
 }
 
 TEST(DepthAlignment, FindsEdgesBehindGapsWithoutDepth) {
-  const auto all = boards(1);
-  RgbdFrame frame = see(all, {});
-  const std::size_t before = EdgeView(frame).edges().size();
+  RgbdFrame frame = see(lapis::test::make_boards(1), {});
+  const auto before = static_cast<double>(EdgeView(frame).edges().size());
   const geometry::DepthImage whole = frame.depth;
   for (int v = 0; v < kView.height; ++v) {
     for (int u = 1; u < kView.width; ++u) {
       if (whole(u, v) - whole(u - 1, v) > 0.1F) frame.depth(u, v) = 0.0F;
     }
   }
-  EXPECT_NEAR(static_cast<double>(EdgeView(frame).edges().size()), static_cast<double>(before),
-              0.05 * static_cast<double>(before));
+  EXPECT_NEAR(static_cast<double>(EdgeView(frame).edges().size()), before, 0.05 * before);
 }
 
 TEST(DepthAlignment, ABareWallHasNoEdges) { EXPECT_TRUE(EdgeView(see({}, {})).edges().empty()); }
+
+TEST(DepthCalibrator, TheCorrectedCalibrationPutsDepthWhereColourSeesIt) {
+  const DepthOffset truth{1.0 / 1.11, {-0.025, 0.0}};
+  const auto boards = lapis::test::make_boards(2);
+  const RgbdFrame frame = see(boards, truth);
+  DepthCalibrator calibrator(1);
+  const auto found = calibrator.add(frame);
+  ASSERT_TRUE(found);
+  const auto cameras = corrected({{kView, {}}, {kView, {}}}, found->offset);
+  EXPECT_NEAR(cameras.depth.pinhole.fx, 1.11 * kView.fx, 1.0);
+  EXPECT_NEAR(cameras.T_color_depth.translation().x(), -0.025, 0.003);
+  const geometry::DepthImage seen = lapis::test::depth_of(boards, kView, Eigen::Vector3d::Zero());
+  const geometry::DepthImage registered = images::DepthRegistration(cameras)(frame.depth);
+  int known = 0;
+  int right = 0;
+  for (std::size_t i = 0; i < seen.pixels.size(); ++i) {
+    if (registered.pixels[i] <= 0.0F) continue;
+    ++known;
+    right += std::abs(registered.pixels[i] - seen.pixels[i]) < 0.01F ? 1 : 0;
+  }
+  EXPECT_GT(known, 0.7 * static_cast<double>(seen.pixels.size()));
+  EXPECT_GT(right, 0.98 * known);
+}
+
+TEST(DepthCalibrator, RegisteredDepthIsNotCorrectedAndTheSearchEnds) {
+  DepthCalibrator calibrator(1);
+  int views = 0;
+  for (time::Time stamp; calibrator.wants(stamp); stamp = stamp + time::Duration::from_seconds(0.25), ++views) {
+    RgbdFrame frame = see(lapis::test::make_boards(3), {});
+    frame.stamp = stamp;
+    EXPECT_FALSE(calibrator.add(frame));
+    EXPECT_FALSE(calibrator.wants(stamp + time::Duration::from_seconds(0.1)));
+  }
+  EXPECT_EQ(views, 16);
+}
+
+TEST(DepthCalibrator, BareWallsSayNothing) {
+  DepthCalibrator calibrator(1);
+  EXPECT_FALSE(calibrator.add(see({}, {1.2, {0.05, 0.0}})));
+}
+
+TEST(DepthCalibrator, ACorrectionAddsToWhatWasKnown) {
+  images::RgbdCalibration known{{kView, {}}, {kView, {}}};
+  known.depth.pinhole.fx = 300.0;
+  known.T_color_depth.translation() = Eigen::Vector3d(-0.02, 0.0, 0.001);
+  // A pixel (u, z) of the depth camera is seen at cx + 260 * ((u - cx) / 300 - 0.02 / z) before the correction.
+  const DepthOffset offset{0.95, {0.01, -0.004}};
+  const auto cameras = corrected(known, offset);
+  constexpr double kPixel = 40.0, kDepth_m = 1.7;
+  const auto shown = [&](const images::RgbdCalibration& c) {
+    const double x = (kPixel - kView.cx) / c.depth.pinhole.fx + c.T_color_depth.translation().x() / kDepth_m;
+    return kView.cx + kView.fx * x;
+  };
+  const double moved =
+      kView.cx + offset.focal_ratio * (shown(known) - kView.cx) + kView.fx * offset.shift_m.x() / kDepth_m;
+  EXPECT_NEAR(shown(cameras), moved, 1e-9);
+  EXPECT_EQ(describe(cameras), "fx 315.8, fy 273.7, 0.9 cm to the left of colour and 0.4 cm above it");
+}
 
 }  // namespace
 }  // namespace lapis::slam

@@ -63,6 +63,8 @@ SlamFile sample_file(unsigned seed, std::size_t keyframes, int features) {
   file.session = 123'456'789;
   file.epoch = 123'456'790;
   file.keyframe_ids.skip(keyframes / 2);
+  file.depth_camera =
+      SavedDepthCamera{{{640, 480, 585.0, 586.0, 320.0, 240.0}, {0.1, -0.2, 0.0, 0.0, 0.01}}, sampler.pose()};
   SlamState& state = file.state;
   state.scale_factor = 1.3;
   state.graph_version = keyframes + 2;

@@ -95,6 +95,9 @@ TEST(SlamFile, ReadEqualsWritten) {
   ASSERT_EQ(a.motion->odometry.size(), b.motion->odometry.size());
   EXPECT_EQ(a.motion->odometry.back().stamp, b.motion->odometry.back().stamp);
   EXPECT_EQ(a.motion->odometry.back().T_odom_base.matrix(), b.motion->odometry.back().T_odom_base.matrix());
+  ASSERT_TRUE(read->depth_camera);
+  EXPECT_EQ(read->depth_camera->camera, file.depth_camera->camera);
+  EXPECT_EQ(read->depth_camera->T_color_depth.matrix(), file.depth_camera->T_color_depth.matrix());
 }
 
 // Bytes of the file as an older version wrote it: without the sections from `first_missing` on.
@@ -106,6 +109,14 @@ Bytes older_version(std::uint8_t version, std::string_view first_missing) {
   bytes.erase(at, bytes.end());
   bytes[kVersionAt] = version;
   return bytes;
+}
+
+TEST(SlamFile, AMapOfTheThirdVersionHasNoDepthCamera) {
+  std::string error;
+  const auto read = decode_slam_file(older_version(3, "DEPC"), error);
+  ASSERT_TRUE(read) << error;
+  EXPECT_FALSE(read->depth_camera);
+  EXPECT_TRUE(read->state.motion);
 }
 
 TEST(SlamFile, AMapOfTheSecondVersionHasTheIdsOfItsElementsAndNoMotion) {
@@ -252,15 +263,18 @@ TEST(SlamFile, ErrorsNameFileVersionAndSection) {
 
   Bytes bytes = encode_slam_file(test::sample_file(1, 2));
   bytes.back() ^= 1U;
-  EXPECT_EQ(refusal(bytes), "is damaged: its section ODOM has another checksum than when it was written");
+  EXPECT_EQ(refusal(bytes), "is damaged: its section DEPC has another checksum than when it was written");
   SlamFile timeless = test::sample_file(1, 1);
   timeless.session = -1;
   EXPECT_EQ(refusal(encode_slam_file(timeless)), "has a session out of range");
   SlamFile nameless = test::sample_file(1, 1);
   nameless.keyframe_ids.stretches = {{5, 10}, {4, 20}};
   EXPECT_EQ(refusal(encode_slam_file(nameless)), "has published ids or an epoch out of range");
+  SlamFile blind = test::sample_file(1, 1);
+  blind.depth_camera->camera.pinhole.fx = 0.0;
+  EXPECT_EQ(refusal(encode_slam_file(blind)), "has a depth camera that cannot be");
   bytes[8] = 9;
-  EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1 to 3");
+  EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1 to 4");
 }
 
 TEST(SlamFile, OldFileStaysWholeWhenThereIsNoSpace) {

@@ -23,7 +23,7 @@ struct SlamFile {
   std::int64_t epoch = 0;    ///< of its landmarks
   PublishedIds keyframe_ids;
   SlamState state;
-  std::optional<SavedDepthCamera> depth_camera;  ///< as slam has estimated it
+  std::optional<SavedDepthCamera> depth_camera = std::nullopt;  ///< as slam has estimated it
 };
 
 /// Bytes of a slam.lapis file. Equal content gives equal bytes. Pixels, depths, surface points and the distances of

@@ -61,38 +61,54 @@ std::string DepthConverter::set_estimate(const sensor_msgs::msg::CameraInfo& inf
   return "";
 }
 
-const DepthConverter::Estimate& DepthConverter::estimate_at(time::Time stamp) const {
+void DepthConverter::note_given(const Converted<images::RgbdCalibration>& given, time::Time stamp) {
+  const bool is_same = given_.has_value() == given.value.has_value() && (!given_ || *given_ == *given);
+  if (has_converted_ && !is_same) std::erase_if(estimates_, [&](const Estimate& e) { return e.since < stamp; });
+  given_ = given.value;
+  has_converted_ = true;
+}
+
+const DepthConverter::Estimate* DepthConverter::estimate_at(time::Time stamp, const geometry::LensCamera& color,
+                                                            int width, int height) const {
+  if (estimates_.empty()) return nullptr;
   const auto later = std::find_if(estimates_.begin(), estimates_.end(),
                                   [&](const Estimate& estimate) { return estimate.since > stamp; });
-  return later == estimates_.begin() ? *later : *(later - 1);
+  const Estimate& found = later == estimates_.begin() ? *later : *(later - 1);
+  const geometry::PinholeCamera& camera = found.depth.pinhole;
+  const bool is_usable = camera.width == width && camera.height == height && fit({color, found.depth, {}});
+  return is_usable ? &found : nullptr;
 }
 
 Converted<geometry::DepthImage> DepthConverter::convert(const sensor_msgs::msg::Image& depth,
                                                         const sensor_msgs::msg::CameraInfo& color_info) {
   using Result = Converted<geometry::DepthImage>;
-  const auto cameras = calibration(depth.header().frame_id(), color_info);
-  if (!cameras) return Result::refused(cameras.reason);
+  auto cameras = given(depth.header().frame_id(), color_info);
   auto metres = to_depth(depth);
   if (!metres) return metres;
+  if (has_estimate()) {
+    const auto color = lens_camera(color_info);
+    if (!color) return Result::refused(cameras.reason);
+    const time::Time stamp = from_message(color_info.header().stamp());
+    note_given(cameras, stamp);
+    if (const Estimate* estimate = estimate_at(stamp, *color, metres->width, metres->height)) {
+      cameras = images::RgbdCalibration{*color, estimate->depth, estimate->T_color_depth};
+    } else {
+      estimates_.clear();
+    }
+  }
+  if (!cameras) return Result::refused(cameras.reason);
   const auto problem = size_problem("depth", metres->width, metres->height, cameras->depth.pinhole);
   if (!problem.empty()) return Result::refused(problem);
   if (!registration_ || !(registration_->calibration() == *cameras)) registration_.emplace(*cameras);
   return (*registration_)(std::move(*metres));
 }
 
-Converted<images::RgbdCalibration> DepthConverter::calibration(const std::string& depth_frame,
-                                                               const sensor_msgs::msg::CameraInfo& color_info) const {
+Converted<images::RgbdCalibration> DepthConverter::given(const std::string& depth_frame,
+                                                         const sensor_msgs::msg::CameraInfo& color_info) const {
   using Result = Converted<images::RgbdCalibration>;
   const auto color = lens_camera(color_info);
   if (!color) return Result::refused(std::string(topics::kColorInfo.name) + ": " + color.reason);
   images::RgbdCalibration cameras{*color, *color};
-  if (has_estimate()) {
-    const Estimate& estimate = estimate_at(from_message(color_info.header().stamp()));
-    cameras.depth = estimate.depth;
-    cameras.T_color_depth = estimate.T_color_depth;
-    if (!fit(cameras)) return Result::refused("the estimate of the depth camera does not fit that of colour");
-    return cameras;
-  }
   if (info_) {
     const auto depth = lens_camera(*info_);
     if (!depth) return Result::refused(std::string(topics::kDepthInfo.name) + ": " + depth.reason);

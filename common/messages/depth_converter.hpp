@@ -28,7 +28,7 @@ class DepthConverter {
   void set_info(sensor_msgs::msg::CameraInfo info) { info_ = std::move(info); }
   bool has_info() const { return info_.has_value(); }
   /// What was found out about the depth camera (to_depth_info); from its stamp on, it counts instead of camera info and
-  /// transforms of depth. Returns why it cannot be used, or an empty text.
+  /// transforms of depth, until these or the camera of colour change. Returns why it cannot be used, or an empty text.
   std::string set_estimate(const sensor_msgs::msg::CameraInfo& info);
   bool has_estimate() const { return !estimates_.empty(); }
   /// By what the newest image was converted.
@@ -44,14 +44,19 @@ class DepthConverter {
     geometry::LensCamera depth;
     geometry::Pose T_color_depth = geometry::Pose::Identity();
   };
-  Converted<images::RgbdCalibration> calibration(const std::string& depth_frame,
-                                                 const sensor_msgs::msg::CameraInfo& color_info) const;
-  /// That of an image; before the oldest one that one.
-  const Estimate& estimate_at(time::Time stamp) const;
+  /// By camera infos and transforms.
+  Converted<images::RgbdCalibration> given(const std::string& depth_frame,
+                                           const sensor_msgs::msg::CameraInfo& color_info) const;
+  /// Forgets estimates from before `stamp` when what is given has changed since the last image.
+  void note_given(const Converted<images::RgbdCalibration>& given, time::Time stamp);
+  /// Of an image; before the oldest estimate that one. Nothing when there is none of this size.
+  const Estimate* estimate_at(time::Time stamp, const geometry::LensCamera& color, int width, int height) const;
 
   const StaticTransforms& transforms_;
   std::optional<sensor_msgs::msg::CameraInfo> info_;
-  std::vector<Estimate> estimates_;                        // the newest ones, by time
+  std::vector<Estimate> estimates_;               // the newest ones, by time
+  std::optional<images::RgbdCalibration> given_;  // for the last image
+  bool has_converted_ = false;
   std::optional<images::DepthRegistration> registration_;  // made once per calibration
 };
 

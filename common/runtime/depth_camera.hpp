@@ -22,7 +22,7 @@ class DepthCamera {
 
   /// Uses what slam finds out about the depth camera, where it does that (slam.depth_calibration: estimate).
   void follow_slam(Context& context) {
-    estimates_ = &context.subscribe(topics::kDepthEstimate, [&](const sensor_msgs::msg::CameraInfo& m) {
+    estimates_ = &context.subscribe(topics::kDepthEstimate, [this, &context](const sensor_msgs::msg::CameraInfo& m) {
       const std::string problem = converter_.set_estimate(m);
       if (problem.empty()) return;
       context.status().count(std::string(topics::kDepthEstimate.name) + " dropped: " + problem);

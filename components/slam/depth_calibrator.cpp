@@ -1,5 +1,6 @@
 #include "slam/depth_calibrator.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <spdlog/fmt/fmt.h>
@@ -8,33 +9,46 @@ namespace lapis::slam {
 namespace {
 
 constexpr std::size_t kFewestEdges = 300;
-constexpr int kMostViews = 16;       // with edges: what these do not show is small
-constexpr int kMostSeen = 300;       // a minute of bare walls
-constexpr int kMostCorrections = 4;  // each makes the last one better
-constexpr double kLeast_s = 0.2;     // between views
+constexpr std::size_t kMostViews = 16;  // with edges: what these do not show is small
+constexpr int kMostSeen = 300;          // a minute of bare walls
+constexpr int kMostCorrections = 4;     // each makes the last one better
+constexpr double kLeast_s = 0.2;        // between views
 constexpr double kLeastSigmas = 4.0;
 constexpr double kFirstNotable_px = 1.5, kNotable_px = 0.75;  // a correction is made better by less
+
+/// The search may leave what it began with.
+bool is_plausible(const DepthOffset& offset) {
+  constexpr double kLeastRatio = 0.7, kMostRatio = 1.4, kMostShift_m = 0.12;
+  return offset.focal_ratio > kLeastRatio && offset.focal_ratio < kMostRatio && offset.shift_m.norm() < kMostShift_m;
+}
 
 bool is_power_of_two(std::size_t n) { return (n & (n - 1)) == 0; }
 
 }  // namespace
 
 bool DepthCalibrator::wants(time::Time stamp) const {
-  const bool is_over = views_.size() >= static_cast<std::size_t>(kMostViews) || seen_ >= kMostSeen;
-  return !is_over && found_ < kMostCorrections && (!newest_ || std::abs((stamp - *newest_).seconds()) >= kLeast_s);
+  return !is_over() && (!newest_ || std::abs((stamp - *newest_).seconds()) >= kLeast_s);
 }
 
-std::optional<DepthAlignment> DepthCalibrator::add(const RgbdFrame& frame) {
+bool DepthCalibrator::is_over() const {
+  return views_.size() >= kMostViews || seen_ >= kMostSeen || found_ >= kMostCorrections;
+}
+
+std::optional<DepthAlignment> DepthCalibrator::add(const RgbdFrame& frame, const images::RgbdCalibration& used) {
+  if (!used_ || !(*used_ == used)) views_.clear();
+  used_ = used;
   newest_ = frame.stamp;
   ++seen_;
   EdgeView view(frame);
   if (view.edges().size() < kFewestEdges) return std::nullopt;
   views_.push_back(std::move(view));
   const auto count = views_.size();
-  if (count < static_cast<std::size_t>(fewest_views_) || !is_power_of_two(count)) return std::nullopt;
+  const int fewest = found_ > 0 ? std::max(2, fewest_views_) : fewest_views_;
+  if (count < static_cast<std::size_t>(fewest) || !is_power_of_two(count)) return std::nullopt;
   const DepthAlignment alignment = align_depth(views_);
   const double notable_px = found_ == 0 ? kFirstNotable_px : kNotable_px;
-  if (alignment.gain_sigmas < kLeastSigmas || alignment.moved_px < notable_px) return std::nullopt;
+  if (alignment.gain_sigmas < kLeastSigmas || !(alignment.moved_px >= notable_px)) return std::nullopt;
+  if (!is_plausible(alignment.offset)) return std::nullopt;
   views_.clear();
   ++found_;
   return alignment;
@@ -45,9 +59,8 @@ images::RgbdCalibration corrected(const images::RgbdCalibration& used, const Dep
   geometry::PinholeCamera& depth = cameras.depth.pinhole;
   depth.fx /= offset.focal_ratio;
   depth.fy /= offset.focal_ratio;
-  Eigen::Vector3d shift = offset.focal_ratio * used.T_color_depth.translation();
-  shift.head<2>() += offset.shift_m;
-  cameras.T_color_depth.translation() = shift;
+  auto beside = cameras.T_color_depth.translation().head<2>();
+  beside = offset.focal_ratio * beside + offset.shift_m;
   return cameras;
 }
 

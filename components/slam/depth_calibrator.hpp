@@ -18,13 +18,15 @@ class DepthCalibrator {
 
   /// Whether a frame of this time is wanted: views are some time apart, until enough has been seen.
   bool wants(time::Time stamp) const;
-  /// Takes a frame into account. An alignment that moves depth notably ends what the views have shown: later ones have
-  /// to be of depth that is corrected by it.
-  std::optional<DepthAlignment> add(const RgbdFrame& frame);
+  bool is_over() const;
+  /// Takes a frame, whose depth was registered by `used`, into account. An alignment that moves depth notably ends what
+  /// the views have shown: later ones have to be of depth that is corrected by it.
+  std::optional<DepthAlignment> add(const RgbdFrame& frame, const images::RgbdCalibration& used);
 
  private:
   int fewest_views_;
-  std::vector<EdgeView> views_;  // with edges
+  std::vector<EdgeView> views_;                  // with edges
+  std::optional<images::RgbdCalibration> used_;  // for all of them
   std::optional<time::Time> newest_;
   int seen_ = 0;  // views, also those without edges
   int found_ = 0;

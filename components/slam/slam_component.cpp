@@ -53,7 +53,7 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
             context) {
   const bool estimates_depth = config.depth_calibration == "estimate";
   if (estimates_depth) depth_estimate_ = &context.advertise(topics::kDepthEstimate);
-  calibrator_.emplace(estimates_depth ? 1 : kViewsToContradict);
+  renew_calibrator();
   cv::setNumThreads(1);  // the other processes need their cores; results do not depend on it
   load_map();
   input_.on_restart([this] {
@@ -152,10 +152,13 @@ std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
   if (!resumed_) return std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, frame_.T_base_camera);
   saved_camera_ = resumed_->state.keyframes.back().camera;
   saved_version_ = resumed_->state.graph_version;
-  if (depth_estimate_ != nullptr && resumed_->depth_camera) {
-    const auto& [camera, T_color_depth] = *resumed_->depth_camera;
-    use_estimate({camera, camera, T_color_depth}, {});
+  depth_camera_ = resumed_->depth_camera;
+  if (depth_camera_ && depth_estimate_ == nullptr) {
+    spdlog::warn("{}: its depth camera was estimated, which slam.depth_calibration: given leaves out",
+                 config_.resume_from);
+    depth_camera_.reset();
   }
+  keep_estimate();
   auto slam = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, std::move(resumed_->state));
   resumed_.reset();
   return slam;
@@ -191,11 +194,19 @@ void SlamComponent::track(const JoinedFrame& joined) {
   judge_clock(result);
 }
 
+void SlamComponent::renew_calibrator() { calibrator_.emplace(depth_estimate_ != nullptr ? 1 : kViewsToContradict); }
+
 /// Compares depth with colour; true when the frame has to be converted again, because the calibration has changed.
 bool SlamComponent::calibrate_depth(const RgbdFrame& frame, const sensor_msgs::msg::CameraInfo& info) {
+  if (depth_camera_ && !input_.depth_converter().has_estimate()) {
+    spdlog::warn("what is said of the cameras has changed: the depth camera is estimated anew");
+    depth_camera_.reset();
+    renew_calibrator();
+  }
   if (!calibrator_ || !calibrator_->wants(frame.stamp)) return false;
-  const auto alignment = calibrator_->add(frame);
   const images::RgbdCalibration& used = *input_.depth_converter().used();
+  const auto alignment = calibrator_->add(frame, used);
+  if (calibrator_->is_over()) calibrator_.reset();  // its views take tens of megabytes
   if (!alignment) {
     // Those who map with the estimate wait for it, also where there is nothing to correct.
     if (depth_estimate_ != nullptr && !depth_camera_) use_estimate(used, info.header().stamp());
@@ -222,9 +233,18 @@ void SlamComponent::use_estimate(const images::RgbdCalibration& cameras, const b
   header.frame_id(frame_.optical_frame);
   const auto info = messages::to_depth_info(header, cameras);
   const std::string problem = input_.depth_converter().set_estimate(info);
-  if (!problem.empty()) throw std::logic_error("estimate of the depth camera: " + problem);
+  if (!problem.empty()) {
+    context_.status().count("estimates of the depth camera dropped: " + problem);
+    return;
+  }
   depth_camera_ = SavedDepthCamera{cameras.depth, cameras.T_color_depth};
   depth_estimate_->publish(info);
+}
+
+/// The newest estimate counts for all stamps: those to come may be earlier ones, of another run or another clock.
+void SlamComponent::keep_estimate() {
+  if (!depth_camera_) return;
+  use_estimate({depth_camera_->camera, depth_camera_->camera, depth_camera_->T_color_depth}, {});
 }
 
 void SlamComponent::add_mount(const tf2_msgs::msg::TFMessage& message) {
@@ -283,6 +303,7 @@ void SlamComponent::follow_clock(time::Duration step) {
   clock_.set(step);
   spdlog::warn("the clock of the camera was set by {:+.1f} s", step.seconds());
   doubtful_frames_ = 0;
+  keep_estimate();
   last_pose_.reset();
   graph_stamp_.reset();
   landmarks_.forget_stamps();
@@ -307,6 +328,7 @@ void SlamComponent::end_map() {
   slam_->settle();
   if (const auto problem = write_files()) spdlog::error("{}; tracking continues", *problem);
   slam_.reset();
+  keep_estimate();
   clock_ = {};
   doubtful_frames_.reset();
   saved_version_ = 0;

@@ -38,7 +38,9 @@ class SlamComponent {
   void name_map(time::Time first_stamp);
   void accept_saved_map(const geometry::PinholeCamera& camera);
   void track(const JoinedFrame& joined);
+  void renew_calibrator();
   bool calibrate_depth(const RgbdFrame& frame, const sensor_msgs::msg::CameraInfo& info);
+  void keep_estimate();
   void use_estimate(const images::RgbdCalibration& cameras, const builtin_interfaces::msg::Time& since);
   void add_mount(const tf2_msgs::msg::TFMessage& message);
   void add_odometry(const nav_msgs::msg::Odometry& message);

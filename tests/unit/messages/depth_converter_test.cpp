@@ -126,6 +126,39 @@ TEST(DepthConverter, AnEstimateCountsFromItsStampOn) {
   }
 }
 
+TEST(DepthConverter, AnEstimateEndsWhenWhatIsGivenChanges) {
+  StaticTransforms none;
+  DepthConverter converter(none);
+  auto color = calibration("color", 100.0);
+  images::RgbdCalibration cameras{{{64, 48, 100.0, 100.0, 31.5, 23.5}, {}}, {{64, 48, 80.0, 80.0, 31.5, 23.5}, {}}};
+  std_msgs::msg::Header header;
+  converter.set_estimate(to_depth_info(header, cameras));
+  ASSERT_TRUE(converter.convert(ramp_of_depth("color"), color));
+  EXPECT_EQ(converter.used()->depth.pinhole.fx, 80.0);
+  header.stamp().sec(5);
+  cameras.depth.pinhole.fx = 85.0;
+  converter.set_estimate(to_depth_info(header, cameras));  // by somebody who knows already
+  color = calibration("color", 101.0);
+  color.header().stamp().sec(5);
+  ASSERT_TRUE(converter.convert(ramp_of_depth("color"), color));
+  EXPECT_EQ(converter.used()->depth.pinhole.fx, 85.0);
+  color = calibration("color", 102.0);
+  color.header().stamp().sec(6);
+  ASSERT_TRUE(converter.convert(ramp_of_depth("color"), color));
+  EXPECT_FALSE(converter.has_estimate());
+  EXPECT_EQ(converter.used()->depth.pinhole.fx, 102.0);
+}
+
+TEST(DepthConverter, AnEstimateOfAnotherSizeEnds) {
+  StaticTransforms none;
+  DepthConverter converter(none);
+  const images::RgbdCalibration cameras{{{64, 48, 100.0, 100.0, 31.5, 23.5}, {}},
+                                        {{32, 24, 50.0, 50.0, 15.5, 11.5}, {}}};
+  EXPECT_EQ(converter.set_estimate(to_depth_info({}, cameras)), "");
+  EXPECT_TRUE(converter.convert(ramp_of_depth("color"), calibration("color", 100.0)));
+  EXPECT_FALSE(converter.has_estimate());
+}
+
 TEST(DepthConverter, AnEstimateThatIsNotOfAPairOfCamerasIsRefused) {
   StaticTransforms none;
   DepthConverter converter(none);

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <random>
 #include <vector>
 
 #include "slam/depth_calibrator.hpp"
@@ -11,6 +12,7 @@ namespace lapis::slam {
 namespace {
 
 const geometry::PinholeCamera kView{320, 240, 260.0, 260.0, 159.5, 119.5};
+const images::RgbdCalibration kRegistered{{kView, {}}, {kView, {}}};
 
 /// Depth is of a camera at `shift_m` whose focal length is that of colour over `focal_ratio`.
 RgbdFrame see(const std::vector<lapis::test::Board>& boards, const DepthOffset& offset) {
@@ -66,9 +68,9 @@ TEST(DepthCalibrator, TheCorrectedCalibrationPutsDepthWhereColourSeesIt) {
   const auto boards = lapis::test::make_boards(2);
   const RgbdFrame frame = see(boards, truth);
   DepthCalibrator calibrator(1);
-  const auto found = calibrator.add(frame);
+  const auto found = calibrator.add(frame, kRegistered);
   ASSERT_TRUE(found);
-  const auto cameras = corrected({{kView, {}}, {kView, {}}}, found->offset);
+  const auto cameras = corrected(kRegistered, found->offset);
   EXPECT_NEAR(cameras.depth.pinhole.fx, 1.11 * kView.fx, 1.0);
   EXPECT_NEAR(cameras.T_color_depth.translation().x(), -0.025, 0.003);
   const geometry::DepthImage seen = lapis::test::depth_of(boards, kView, Eigen::Vector3d::Zero());
@@ -90,28 +92,56 @@ TEST(DepthCalibrator, RegisteredDepthIsNotCorrectedAndTheSearchEnds) {
   for (time::Time stamp; calibrator.wants(stamp); stamp = stamp + time::Duration::from_seconds(0.25), ++views) {
     RgbdFrame frame = see(lapis::test::make_boards(3), {});
     frame.stamp = stamp;
-    EXPECT_FALSE(calibrator.add(frame));
+    EXPECT_FALSE(calibrator.add(frame, kRegistered));
     EXPECT_FALSE(calibrator.wants(stamp + time::Duration::from_seconds(0.1)));
   }
   EXPECT_EQ(views, 16);
 }
 
+/// Boards of one grey value before a wall with strong texture: contrast is larger everywhere else.
+TEST(DepthCalibrator, TextureBehindPlainThingsMovesNothing) {
+  for (std::uint32_t seed = 1; seed <= 8; ++seed) {
+    const auto boards = lapis::test::make_boards(seed);
+    RgbdFrame frame = see(boards, {});
+    std::mt19937 random(seed);
+    for (int v = 0; v < kView.height; ++v) {
+      for (int u = 0; u < kView.width; ++u) {
+        const bool is_wall = frame.depth(u, v) > 3.9F;
+        frame.gray(u, v) = is_wall ? static_cast<std::uint8_t>(random() % 256) : std::uint8_t{128};
+      }
+    }
+    DepthCalibrator calibrator(1);
+    const auto found = calibrator.add(frame, kRegistered);
+    EXPECT_FALSE(found) << found->moved_px << " px, " << found->gain_sigmas << " sigmas";
+  }
+}
+
+TEST(DepthCalibrator, ViewsOfAnotherCalibrationDoNotCount) {
+  const RgbdFrame frame = see(lapis::test::make_boards(2), {1.0 / 1.11, {-0.025, 0.0}});
+  DepthCalibrator calibrator(2);
+  EXPECT_FALSE(calibrator.add(frame, kRegistered));
+  images::RgbdCalibration other = kRegistered;
+  other.depth.pinhole.fx += 1.0;
+  EXPECT_FALSE(calibrator.add(frame, other));
+  EXPECT_TRUE(calibrator.add(frame, other));
+}
+
 TEST(DepthCalibrator, BareWallsSayNothing) {
   DepthCalibrator calibrator(1);
-  EXPECT_FALSE(calibrator.add(see({}, {1.2, {0.05, 0.0}})));
+  EXPECT_FALSE(calibrator.add(see({}, {1.2, {0.05, 0.0}}), kRegistered));
 }
 
 TEST(DepthCalibrator, ACorrectionAddsToWhatWasKnown) {
   images::RgbdCalibration known{{kView, {}}, {kView, {}}};
   known.depth.pinhole.fx = 300.0;
-  known.T_color_depth.translation() = Eigen::Vector3d(-0.02, 0.0, 0.001);
+  known.T_color_depth.translation() = Eigen::Vector3d(-0.02, 0.0, 0.0);
   // A pixel (u, z) of the depth camera is seen at cx + 260 * ((u - cx) / 300 - 0.02 / z) before the correction.
   const DepthOffset offset{0.95, {0.01, -0.004}};
   const auto cameras = corrected(known, offset);
   constexpr double kPixel = 40.0, kDepth_m = 1.7;
   const auto shown = [&](const images::RgbdCalibration& c) {
-    const double x = (kPixel - kView.cx) / c.depth.pinhole.fx + c.T_color_depth.translation().x() / kDepth_m;
-    return kView.cx + kView.fx * x;
+    const Eigen::Vector3d p = c.T_color_depth * c.depth.pinhole.unproject(kPixel, kView.cy, kDepth_m);
+    return kView.project(p).x();
   };
   const double moved =
       kView.cx + offset.focal_ratio * (shown(known) - kView.cx) + kView.fx * offset.shift_m.x() / kDepth_m;

@@ -273,6 +273,9 @@ TEST(SlamFile, ErrorsNameFileVersionAndSection) {
   SlamFile blind = test::sample_file(1, 1);
   blind.depth_camera->camera.pinhole.fx = 0.0;
   EXPECT_EQ(refusal(encode_slam_file(blind)), "has a depth camera that cannot be");
+  SlamFile strange = test::sample_file(1, 1);
+  strange.depth_camera->camera.distortion.resize(6);
+  EXPECT_EQ(refusal(encode_slam_file(strange)), "has a depth camera that cannot be");
   bytes[8] = 9;
   EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1 to 4");
 }

@@ -16,6 +16,8 @@ namespace {
 constexpr double kJumpShare = 1.08, kJump_m = 0.1;  // far is at least that much farther than near
 constexpr int kWidestGap_px = 8;                    // without depth, between near and far
 constexpr int kBorder_px = 2;
+constexpr float kNearest_m = 0.1F;  // nearer things would move by any number of pixels
+constexpr std::size_t kMostEdges = 2000;  // more say the same again
 constexpr double kMostContrast = 4.0;  // times the mean: few strong edges shall not decide
 constexpr int kTiles = 4;              // in each direction, of a view
 
@@ -51,16 +53,38 @@ float beside(const geometry::DepthImage& depth, int column, int row, int right, 
   return 0.0F;
 }
 
-double focal_of(const geometry::PinholeCamera& camera) { return 0.5 * (camera.fx + camera.fy); }
+std::vector<EdgeView::Edge> edges_of(const geometry::DepthImage& depth) {
+  constexpr std::array<std::pair<int, int>, 4> kBeside{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
+  std::vector<EdgeView::Edge> all;
+  for (int row = kBorder_px; row < depth.height - kBorder_px; ++row) {
+    for (int column = kBorder_px; column < depth.width - kBorder_px; ++column) {
+      const float near = depth(column, row);
+      if (near < kNearest_m) continue;
+      for (const auto& [right, down] : kBeside) {
+        const float far = beside(depth, column, row, right, down);
+        if (far < kJumpShare * near || far - near < kJump_m) continue;
+        const Eigen::Vector2f half{0.5F * static_cast<float>(right), 0.5F * static_cast<float>(down)};
+        all.push_back({Eigen::Vector2f(column, row) + half, near, right != 0});
+      }
+    }
+  }
+  const std::size_t stride = all.size() / kMostEdges + 1;
+  std::vector<EdgeView::Edge> edges;
+  for (std::size_t i = 0; i < all.size(); i += stride) edges.push_back(all[i]);
+  return edges;
+}
 
 Eigen::Vector2d moved(const geometry::PinholeCamera& camera, const EdgeView::Edge& edge, const DepthOffset& offset) {
   const Eigen::Vector2d centre{camera.cx, camera.cy};
   return centre + offset.focal_ratio * (edge.pixel.cast<double>() - centre) +
-         focal_of(camera) / edge.depth_m * offset.shift_m;
+         Eigen::Vector2d(camera.fx, camera.fy).cwiseProduct(offset.shift_m) / edge.depth_m;
 }
 
+/// An edge that leaves the image is taken where it was, so that nothing is gained by that.
 double contrast_at(const EdgeView& view, const EdgeView::Edge& edge, const DepthOffset& offset, int level) {
-  return view.contrast(moved(view.camera(), edge, offset), edge.is_upright, level);
+  const Eigen::Vector2d pixel = moved(view.camera(), edge, offset);
+  const bool is_inside = view.camera().contains(pixel, std::ldexp(1.0, level));
+  return view.contrast(is_inside ? pixel : edge.pixel.cast<double>(), edge.is_upright, level);
 }
 
 /// Mean contrast at every `stride`th edge.
@@ -103,7 +127,7 @@ class Search : public cv::MinProblemSolver::Function {
     }
     const auto middle = depths.begin() + static_cast<std::ptrdiff_t>(depths.size() / 2);
     std::nth_element(depths.begin(), middle, depths.end());
-    per_shift_px_ = focal_of(views.front().camera()) / *middle;
+    per_shift_px_ = views.front().camera().fx / *middle;
   }
   int getDims() const override { return 3; }
   double calc(const double* x) const override { return -score(views_, offset(x), level_, 1); }
@@ -137,7 +161,8 @@ DepthOffset refined(std::span<const EdgeView> views, DepthOffset offset) {
 /// Mean gain of contrast over its standard error. A tile of a view is one sample, as the edges in it belong to few
 /// things.
 double gain_sigmas(std::span<const EdgeView> views, const DepthOffset& offset) {
-  constexpr int kFewest = 10;
+  constexpr int kFewest = 10;          // edges of a tile
+  constexpr double kFewestTiles = 8.0;  // fewer agree by chance, or because they show one thing
   struct Sum {
     double gain = 0.0;
     int edges = 0;
@@ -161,7 +186,7 @@ double gain_sigmas(std::span<const EdgeView> views, const DepthOffset& offset) {
     mean += (gain - mean) / n;
     squares += (gain - before) * (gain - mean);
   }
-  return n >= 3.0 && squares > 0.0 ? mean / std::sqrt(squares / (n - 1.0) / n) : 0.0;
+  return n >= kFewestTiles && squares > 0.0 ? mean / std::sqrt(squares / (n - 1.0) / n) : 0.0;
 }
 
 double moved_px(std::span<const EdgeView> views, const DepthOffset& offset) {
@@ -178,21 +203,7 @@ double moved_px(std::span<const EdgeView> views, const DepthOffset& offset) {
 
 }  // namespace
 
-EdgeView::EdgeView(const RgbdFrame& frame) : camera_(frame.camera) {
-  constexpr std::array<std::pair<int, int>, 4> kBeside{{{1, 0}, {-1, 0}, {0, 1}, {0, -1}}};
-  const auto& depth = frame.depth;
-  for (int row = kBorder_px; row < depth.height - kBorder_px; ++row) {
-    for (int column = kBorder_px; column < depth.width - kBorder_px; ++column) {
-      const float near = depth(column, row);
-      if (near <= 0.0F) continue;
-      for (const auto& [right, down] : kBeside) {
-        const float far = beside(depth, column, row, right, down);
-        if (far < kJumpShare * near || far - near < kJump_m) continue;
-        const Eigen::Vector2f half{0.5F * static_cast<float>(right), 0.5F * static_cast<float>(down)};
-        edges_.push_back({Eigen::Vector2f(column, row) + half, near, right != 0});
-      }
-    }
-  }
+EdgeView::EdgeView(const RgbdFrame& frame) : camera_(frame.camera), edges_(edges_of(frame.depth)) {
   const cv::Mat raw(frame.gray.height, frame.gray.width, CV_8U, const_cast<std::uint8_t*>(frame.gray.pixels.data()));
   cv::Mat gray;
   cv::GaussianBlur(raw, gray, {3, 3}, 0.0);

@@ -13,7 +13,7 @@
 namespace lapis::slam {
 
 /// How far the depth camera is from where it was taken to be. A pixel of depth `z` that is shown at `pixel` belongs at
-///   centre + focal_ratio * (pixel - centre) + focal length * shift_m / z.
+///   centre + focal_ratio * (pixel - centre) + focal lengths * shift_m / z.
 struct DepthOffset {
   double focal_ratio = 1.0;                           ///< focal length that was assumed / true focal length
   Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();  ///< of the depth camera: x to the right, y down [m]
@@ -33,7 +33,7 @@ class EdgeView {
     bool is_upright = false;
   };
   const std::vector<Edge>& edges() const { return edges_; }
-  /// Contrast across an edge as a multiple of the image's mean one, interpolated; 1 outside of the image.
+  /// Contrast across an edge as a multiple of the image's mean one, interpolated; 1 at and beyond the border.
   /// @param level of a pyramid: 0 is the image, each further one is blurred to half of the size.
   double contrast(const Eigen::Vector2d& pixel, bool is_upright, int level) const;
   const geometry::PinholeCamera& camera() const { return camera_; }

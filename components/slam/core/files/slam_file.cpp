@@ -1,6 +1,7 @@
 #include "slam/core/files/slam_file.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <concepts>
 #include <string_view>
@@ -276,9 +277,14 @@ class SectionReader {
 
 bool is_sound(const SavedDepthCamera& depth) {
   const auto& distortion = depth.camera.distortion;
-  constexpr std::size_t kMostCoefficients = 8;
-  return geometry::is_valid(depth.camera.pinhole) && geometry::is_valid(depth.T_color_depth) &&
-         distortion.size() <= kMostCoefficients &&
+  constexpr std::array<std::size_t, 4> kLengths{0, 4, 5, 8};
+  constexpr int kLargestSide = 16384;
+  constexpr double kLargestFocal_px = 1e6, kFarthest_m = 10.0;
+  const geometry::PinholeCamera& camera = depth.camera.pinhole;
+  return geometry::is_valid(camera) && std::max(camera.width, camera.height) <= kLargestSide &&
+         std::max(camera.fx, camera.fy) <= kLargestFocal_px && geometry::is_valid(depth.T_color_depth) &&
+         depth.T_color_depth.translation().norm() <= kFarthest_m &&
+         std::find(kLengths.begin(), kLengths.end(), distortion.size()) != kLengths.end() &&
          std::all_of(distortion.begin(), distortion.end(), [](double d) { return std::isfinite(d); });
 }
 

@@ -16,10 +16,10 @@ namespace {
 constexpr double kJumpShare = 1.08, kJump_m = 0.1;  // far is at least that much farther than near
 constexpr int kWidestGap_px = 8;                    // without depth, between near and far
 constexpr int kBorder_px = 2;
-constexpr float kNearest_m = 0.1F;  // nearer things would move by any number of pixels
+constexpr float kNearest_m = 0.1F;        // nearer things would move by any number of pixels
 constexpr std::size_t kMostEdges = 2000;  // more say the same again
-constexpr double kMostContrast = 4.0;  // times the mean: few strong edges shall not decide
-constexpr int kTiles = 4;              // in each direction, of a view
+constexpr double kMostContrast = 4.0;     // times the mean: few strong edges shall not decide
+constexpr int kTiles = 4;                 // in each direction, of a view
 
 /// Mean contrast of grey values across columns (`dx` = 1) or rows is 1.
 cv::Mat contrast_of(const cv::Mat& gray, int dx) {
@@ -161,7 +161,7 @@ DepthOffset refined(std::span<const EdgeView> views, DepthOffset offset) {
 /// Mean gain of contrast over its standard error. A tile of a view is one sample, as the edges in it belong to few
 /// things.
 double gain_sigmas(std::span<const EdgeView> views, const DepthOffset& offset) {
-  constexpr int kFewest = 10;          // edges of a tile
+  constexpr int kFewest = 10;           // edges of a tile
   constexpr double kFewestTiles = 8.0;  // fewer agree by chance, or because they show one thing
   struct Sum {
     double gain = 0.0;

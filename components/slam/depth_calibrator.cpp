@@ -14,7 +14,7 @@ constexpr int kMostSeen = 300;          // a minute of bare walls
 constexpr int kMostCorrections = 4;     // each makes the last one better
 constexpr double kLeast_s = 0.2;        // between views
 constexpr double kLeastSigmas = 4.0;
-constexpr double kFirstNotable_px = 1.5, kNotable_px = 0.75;  // a correction is made better by less
+constexpr double kFirstNotable_px = 2.0, kNotable_px = 0.75;  // a correction is made better by less
 
 /// The search may leave what it began with.
 bool is_plausible(const DepthOffset& offset) {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <tuple>
+#include <utility>
 
 #include <opencv2/core.hpp>
 #include <opencv2/core/optim.hpp>
@@ -19,7 +19,7 @@ constexpr int kBorder_px = 2;
 constexpr float kNearest_m = 0.1F;        // nearer things would move by any number of pixels
 constexpr std::size_t kMostEdges = 2000;  // more say the same again
 constexpr double kMostContrast = 4.0;     // times the mean: few strong edges shall not decide
-constexpr int kTiles = 4;                 // in each direction, of a view
+constexpr int kTiles = 4;                 // in each direction, of an image
 
 /// Mean contrast of grey values across columns (`dx` = 1) or rows is 1.
 cv::Mat contrast_of(const cv::Mat& gray, int dx) {
@@ -158,8 +158,8 @@ DepthOffset refined(std::span<const EdgeView> views, DepthOffset offset) {
   return offset;
 }
 
-/// Mean gain of contrast over its standard error. A tile of a view is one sample, as the edges in it belong to few
-/// things.
+/// Mean gain of contrast over its standard error. A tile of the image is one sample, for all views together: the edges
+/// in it belong to few things, and a camera that stands shows the same ones again.
 double gain_sigmas(std::span<const EdgeView> views, const DepthOffset& offset) {
   constexpr int kFewest = 10;           // edges of a tile
   constexpr double kFewestTiles = 8.0;  // fewer agree by chance, or because they show one thing
@@ -167,13 +167,12 @@ double gain_sigmas(std::span<const EdgeView> views, const DepthOffset& offset) {
     double gain = 0.0;
     int edges = 0;
   };
-  std::map<std::tuple<std::size_t, int, int>, Sum> tiles;
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    for (const auto& edge : views[i].edges()) {
-      const auto tile = [](float at, int size) { return static_cast<int>(at * kTiles) / size; };
-      Sum& sum =
-          tiles[{i, tile(edge.pixel.x(), views[i].camera().width), tile(edge.pixel.y(), views[i].camera().height)}];
-      sum.gain += contrast_at(views[i], edge, offset, 0) - contrast_at(views[i], edge, {}, 0);
+  std::map<std::pair<int, int>, Sum> tiles;
+  for (const EdgeView& view : views) {
+    const auto tile = [](float at, int size) { return static_cast<int>(at * kTiles) / size; };
+    for (const auto& edge : view.edges()) {
+      Sum& sum = tiles[{tile(edge.pixel.x(), view.camera().width), tile(edge.pixel.y(), view.camera().height)}];
+      sum.gain += contrast_at(view, edge, offset, 0) - contrast_at(view, edge, {}, 0);
       ++sum.edges;
     }
   }

@@ -50,7 +50,7 @@ class EdgeView {
 struct DepthAlignment {
   DepthOffset offset;
   double moved_px = 0.0;     ///< by how much it moves edges (RMS)
-  double gain_sigmas = 0.0;  ///< by how much contrast at edges is larger than without it, over parts of the views
+  double gain_sigmas = 0.0;  ///< by how much contrast at edges is larger than without it, over parts of the image
 };
 
 /// Searches focal ratios from 0.76 to 1.3 and shifts to 8 cm [cf. Levinson and Thrun, "Automatic online calibration of

@@ -41,8 +41,9 @@ sensor_msgs::msg::CameraInfo to_depth_info(const std_msgs::msg::Header& header,
   sensor_msgs::msg::CameraInfo info = to_camera_info(cameras.depth, header);
   const Eigen::Matrix3d R = cameras.T_color_depth.linear();
   const Eigen::Vector3d t = cameras.T_color_depth.translation();
+  std::size_t at = 0;
   for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) info.r()[static_cast<std::size_t>(3 * row + column)] = R(row, column);
+    for (int column = 0; column < 3; ++column) info.r()[at++] = R(row, column);
   }
   info.p({camera.fx, 0.0, camera.cx, -camera.fx * t.x(), 0.0, camera.fy, camera.cy, -camera.fy * t.y(), 0.0, 0.0, 1.0,
           -t.z()});

@@ -5,7 +5,6 @@
 #include "common/messages/depth_converter.hpp"
 #include "common/runtime/context.hpp"
 #include "common/topics/camera.hpp"
-#include "common/topics/slam.hpp"
 
 namespace lapis::runtime {
 
@@ -20,12 +19,12 @@ class DepthCamera {
   DepthCamera(const DepthCamera&) = delete;
   DepthCamera& operator=(const DepthCamera&) = delete;
 
-  /// Uses what slam finds out about the depth camera, where it does that (slam.depth_calibration: estimate).
-  void follow_slam(Context& context) {
-    estimates_ = &context.subscribe(topics::kDepthEstimate, [this, &context](const sensor_msgs::msg::CameraInfo& m) {
+  /// Uses what somebody finds out about the depth camera, where one publishes that.
+  void follow(Context& context, const dds::Topic<sensor_msgs::msg::CameraInfo>& topic) {
+    estimates_ = &context.subscribe(topic, [this, &context, name = topic.name](const sensor_msgs::msg::CameraInfo& m) {
       const std::string problem = converter_.set_estimate(m);
       if (problem.empty()) return;
-      context.status().count(std::string(topics::kDepthEstimate.name) + " dropped: " + problem);
+      context.status().count(std::string(name) + " dropped: " + problem);
     });
   }
   /// True while the calibration may still come: somebody publishes it, and nothing has arrived.

@@ -78,7 +78,7 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
   info_.on_clock_set([this](time::Duration step) { record_.follow_camera_clock(step); });
   tracked_.on_clock_set([this](time::Duration step) { follow_clock(step); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
-  depth_camera_.follow_slam(context);
+  depth_camera_.follow(context, topics::kDepthEstimate);
   context.subscribe(topics::kPoseGraph, [this](auto& m) {
     if (!record_.session() || m.session() == *record_.session()) graph_ = std::move(m);
   });

@@ -89,7 +89,7 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   load_map();
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
-  depth_camera_.follow_slam(context);
+  depth_camera_.follow(context, topics::kDepthEstimate);
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
   tracked_.on_clock_set([this](time::Duration step) { follow_clock(step); });

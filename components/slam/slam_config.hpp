@@ -105,13 +105,11 @@ void describe(Field& field, TrackerConfig& c) {
         "begin a map with odometry");
   field("min_inliers", c.min_inliers, config::in_range(6, 200),
         "smallest number of inliers of a pose by features; with fewer, the frame has no pose by features");
-  field("min_inlier_share", c.min_inlier_share, config::in_range(0.0, 1.0),
-        "smallest share of matches that are inliers; with less (repetitive view, noise), the frame has no pose by "
-        "features");
+  field("rival_sigmas", c.rival_sigmas, config::in_range(0.0, 20.0),
+        "excess of a pose's inliers over the matches that agree with any other pose, or by chance, without which the "
+        "pose is not believed (a view that repeats itself, noise) [standard deviations, sqrt(sum of both)]");
   field("local_keyframes", c.local_keyframes, config::in_range(1, 50),
         "number of key-frames whose landmarks form the local map: the reference and its most covisible key-frames");
-  field("recovery_keyframes", c.recovery_keyframes, config::in_range(1, 50),
-        "number of newest key-frames that slam matches by brute force when matching with the local map fails");
   field("ransac_iterations", c.ransac_iterations, config::in_range(10, 10000),
         "largest number of RANSAC iterations of PnP, which gives the first pose from brute-force matches");
   field("ransac_error_px", c.ransac_error_px, config::in_range(0.5, 20),
@@ -205,9 +203,6 @@ template <class Field>
 void describe(Field& field, RelocalizationConfig& c) {
   field("min_inliers", c.min_inliers, config::in_range(10, 1000),
         "smallest number of inliers of the alignment with a recognised key-frame for slam to relocalise there");
-  field("majority_sigmas", c.majority_sigmas, config::in_range(0.0, 20.0),
-        "excess of inliers over half of the matches that a pose away from the prediction needs [standard deviations, "
-        "0.5 * sqrt(matches)]");
   field("max_sigma_m", c.max_sigma_m, config::in_range(1e-3, 1.0),
         "largest standard deviation of the position, in any direction, that a pose away from the prediction may have "
         "[m]");

@@ -47,9 +47,8 @@ struct SurfaceConfig {
 struct TrackerConfig {
   int min_matches = 30;            ///< an attempt with fewer inliers is followed by the next kind of matching [6, 500]
   int min_inliers = 15;            ///< a frame with fewer after the refinement has no pose [6, 200]
-  double min_inlier_share = 0.45;  ///< of the matches; with a smaller share the view repeats itself, or is noise [0, 1]
+  double rival_sigmas = 2.3;       ///< inliers beyond those of any other pose and of chance, in sigmas [0, 20]
   int local_keyframes = 5;         ///< key-frames whose landmarks form the local map [1, 50]
-  int recovery_keyframes = 5;      ///< newest key-frames tried by brute force when all else fails [1, 50]
   int ransac_iterations = 200;     ///< rounds of PnP with RANSAC [10, 10000]
   double ransac_error_px = 4.0;    ///< PnP inlier threshold [0.5, 20]
   int refine_iterations = 4;       ///< Levenberg-Marquardt steps per round [1, 50]
@@ -104,7 +103,6 @@ struct LoopConfig {
 /// Conditions under which a pose that was found by recognising a place is believed.
 struct RelocalizationConfig {
   int min_inliers = 25;          ///< of the alignment with the recognised key-frame [10, 1000]
-  double majority_sigmas = 2.3;  ///< away from the prediction: inliers above half of the matches, in sigmas [0, 20]
   double max_sigma_m = 0.06;     ///< largest position sigma of a pose there, in any direction [1e-3, 1]
   int confirmations = 2;         ///< further frames that have to find the same pose there [0, 100]
   double near_m = 0.25;          ///< distance of poses that count as the same, and from the prediction [0.01, 5]

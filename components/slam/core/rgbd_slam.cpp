@@ -48,7 +48,7 @@ class RgbdSlam::Implementation {
  public:
   Implementation(const SlamConfig& config, const Pose& T_map_first_camera, const Pose& T_base_camera)
       : config_(config), T_map_first_camera_(T_map_first_camera), extractor_(config.features), front_end_(config),
-        motion_(config.tracker.max_prediction_s, config.odometry, T_base_camera), builder_(config), loops_(config) {}
+        motion_(config, T_base_camera), builder_(config), loops_(config) {}
 
   Implementation(const SlamConfig& config, const Pose& T_base_camera, SlamState state)
       : Implementation(config, Pose::Identity(), T_base_camera) {

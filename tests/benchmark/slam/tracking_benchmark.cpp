@@ -1,14 +1,16 @@
 // What a frame costs, beside the chain that anybody writes first with OpenCV: the same frames, one after the other
-// through both, CPU time of the calling thread. Frames: a tour of a simulated scene, or else the recording
+// through both, CPU time of the calling thread. Frames: a recording, a tour of a simulated scene, or else the recording
 // aws_small_house_loop, or else a room of tiles.
 //   lapis_tracking_benchmark --scene apartment --recordings FOLDER
+//   lapis_tracking_benchmark --sequence FOLDER --frames
 #include <malloc.h>
 #include <cmath>
 #include <cstdio>
 #include <ctime>
 #include <exception>
-#include <functional>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <opencv2/core/utility.hpp>
@@ -28,10 +30,17 @@ constexpr const char* kRecording = "aws_small_house_loop";
 constexpr int kRoomFrames = 300;
 
 struct Options {
+  std::string sequence;
   std::string scene;
+  bool with_frames = false;
   int seed = 1;
   std::string folder;
   std::vector<std::string> overrides;
+};
+
+/// Poses of the camera: true ones, and as a chain has them.
+struct Poses {
+  std::vector<geometry::Pose> truth, estimate;
 };
 
 struct Times {
@@ -40,6 +49,7 @@ struct Times {
   int plain_poses = 0;
   std::size_t keyframes = 0;
   double bytes_per_keyframe = NAN;
+  Poses ours, plain;  // empty where the truth is not known
 };
 
 double thread_ms() {
@@ -56,11 +66,12 @@ double allocated_bytes() {
 // Plays frames through both chains.
 class Race {
  public:
-  Race(const SlamConfig& config, const geometry::Pose& T_base_camera) : slam_(config, T_base_camera, T_base_camera) {}
+  Race(const SlamConfig& config, const geometry::Pose& T_base_camera, bool with_frames = false)
+      : slam_(config, T_base_camera, T_base_camera), with_frames_(with_frames) {}
 
   void add_odometry(time::Time stamp, const geometry::Pose& T_odom_base) { slam_.add_odometry(stamp, T_odom_base); }
 
-  void run(const RgbdFrame& frame) {
+  void run(const RgbdFrame& frame, const std::optional<geometry::Pose>& T_world_camera = std::nullopt) {
     const double before_bytes = allocated_bytes();
     const double start_ms = thread_ms();
     const TrackingResult result = slam_.process(frame);
@@ -76,6 +87,8 @@ class Race {
     const auto T_previous_camera = plain_.process(frame);
     times_.plain_ms.push_back(thread_ms() - plain_start_ms);
     if (T_previous_camera) ++times_.plain_poses;
+    if (T_world_camera) compare(result, T_previous_camera, *T_world_camera);
+    if (with_frames_) print_frame(frame.stamp, result, ours_ms);
   }
 
   Times finish() {
@@ -86,8 +99,35 @@ class Race {
   }
 
  private:
+  // Where the plain chain has no pose, it stays where it was.
+  void compare(const TrackingResult& result, const std::optional<geometry::Pose>& T_previous_camera,
+               const geometry::Pose& T_world_camera) {
+    if (T_previous_camera) T_plain_ = T_plain_ * *T_previous_camera;
+    times_.plain.truth.push_back(T_world_camera);
+    times_.plain.estimate.push_back(T_plain_);
+    if (!has_pose(result)) return;
+    times_.ours.truth.push_back(T_world_camera);
+    times_.ours.estimate.push_back(result.T_map_keyframe * result.T_keyframe_camera);
+  }
+
+  void print_frame(time::Time stamp, const TrackingResult& result, double ms) const {
+    std::printf("%8.3f s %s by %3zu%s %3u of %3u matches, %6.2f ms", stamp.seconds(),
+                has_pose(result) ? "pose" : "none", static_cast<std::size_t>(result.keyframe_id),
+                result.is_keyframe ? " KF" : "   ", result.inliers, result.matches, ms);
+    if (has_pose(result) && !times_.ours.truth.empty()) {
+      const auto& [truth, estimate] = times_.ours;
+      const geometry::Pose T =
+          (truth.front().inverse() * truth.back()).inverse() * estimate.front().inverse() * estimate.back();
+      std::printf(", off by %6.2f cm %5.2f deg", 100.0 * T.translation().norm(),
+                  geometry::rotation_angle(T.linear()) * 180.0 / M_PI);
+    }
+    std::printf(" %s\n", result.reason.c_str());
+  }
+
   RgbdSlam slam_;
+  bool with_frames_;
   PlainChain plain_;
+  geometry::Pose T_plain_ = geometry::Pose::Identity();
   Times times_;
   double bytes_ = 0.0, first_bytes_ = 0.0;  // that slam holds: now, after the first key-frame
 };
@@ -106,9 +146,11 @@ Times race_on_tour(const SlamConfig& config, const simulator::SimulatorConfig& s
   return race.finish();
 }
 
-Times race_on_recording(const SlamConfig& config, const test::TumSequence& sequence) {
-  Race race(config, geometry::Pose::Identity());
-  for (std::size_t i = 0; i < sequence.entries.size(); ++i) race.run(sequence.load(i));
+Times race_on_recording(const SlamConfig& config, const test::TumSequence& sequence, bool with_frames) {
+  Race race(config, geometry::Pose::Identity(), with_frames);
+  for (std::size_t i = 0; i < sequence.entries.size(); ++i) {
+    race.run(sequence.load(i), sequence.entries[i].T_world_camera);
+  }
   return race.finish();
 }
 
@@ -138,6 +180,10 @@ void print(const std::string& frames, const Times& times) {
   print_row("OpenCV: ORB(1000), brute force, PnP RANSAC", times.plain_ms, plain_ms);
   std::printf("OpenCV found %d poses; slam holds %.3f MB (counted heap) more per key-frame, %zu key-frames\n",
               times.plain_poses, 1e-6 * times.bytes_per_keyframe, times.keyframes);
+  if (times.ours.truth.empty()) return;
+  std::printf("ATE (SE(3)): slam %.2f cm over %zu of %zu frames, OpenCV %.2f cm\n",
+              100.0 * test::ate_se3(times.ours.truth, times.ours.estimate), times.ours.truth.size(),
+              times.plain.truth.size(), 100.0 * test::ate_se3(times.plain.truth, times.plain.estimate));
 }
 
 void run(const Options& options) {
@@ -148,8 +194,12 @@ void run(const Options& options) {
     return print("tour of " + options.scene + ", seed " + std::to_string(options.seed),
                  race_on_tour(slam.method, simulated, options.folder));
   }
+  if (!options.sequence.empty()) {
+    return print(options.sequence,
+                 race_on_recording(slam.method, test::read_sequence(options.sequence), options.with_frames));
+  }
   if (const auto sequence = test::find_sequence(kRecording)) {
-    return print(kRecording, race_on_recording(slam.method, *sequence));
+    return print(kRecording, race_on_recording(slam.method, *sequence, options.with_frames));
   }
   print("room of tiles, 640x360", race_in_room(slam.method));
 }
@@ -164,6 +214,10 @@ int main(int argc, char** argv) {
   app.add_option("--scene", options.scene,
                  "tour of a simulated scene: bundled name or file; without it the recording aws_small_house_loop below "
                  "LAPIS_TEST_DATA, or else a room of tiles");
+  app.add_option("--sequence", options.sequence,
+                 "recording in the layout of the TUM RGB-D benchmark, with camera.yaml, associations.txt and "
+                 "groundtruth.txt line by line; images rectified, depth registered");
+  app.add_flag("--frames", options.with_frames, "of a recording: also a line for each frame");
   app.add_option("--seed", options.seed, "of the tour");
   app.add_option("--recordings", options.folder, "keep the frames of tours here, as lapis_slam_tours does");
   app.add_option("--set", options.overrides, "slam.KEY=VALUE, simulator.KEY=VALUE or robot.KEY=VALUE");

@@ -80,7 +80,7 @@ class MotionModelTest : public ::testing::Test {
   static time::Time stamp(double t_s) { return time::Time::from_seconds(10.0 + t_s); }
 
   Map map_ = three_keyframes();
-  MotionModel motion_{0.5, OdometryConfig{}, geometry::Pose::Identity()};
+  MotionModel motion_{SlamConfig{}, geometry::Pose::Identity()};
 };
 
 TEST_F(MotionModelTest, ContinuesASteadyMotionOverUnevenStamps) {

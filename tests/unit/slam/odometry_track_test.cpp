@@ -111,7 +111,7 @@ TEST(Disagreement, CountsSigmasOfBothMeasurementsTogether) {
 
 TEST(DeadReckoning, MovesTheCameraAsTheRobotMoves) {
   const Pose T_base_camera = geometry::se3_exp((Vector6d() << 0.1, 0.0, 1.0, -1.2, 1.2, -1.2).finished());
-  MotionModel motion(0.5, {}, T_base_camera);
+  MotionModel motion({}, T_base_camera);
   for (int i = 0; i <= 40; ++i) motion.add_odometry(at_s(0.1 * i), somewhere() * arc(0.1 * i));
   Map map;
   map.add_keyframe({});

@@ -7,7 +7,9 @@
 #include <Eigen/Eigenvalues>
 
 #include "slam/core/frame/noise_model.hpp"
+#include "slam/core/frame/surface.hpp"
 #include "slam/core/tracking/pose_solver.hpp"
+#include "slam/core/tracking/support.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
 namespace lapis::slam {
@@ -181,33 +183,104 @@ class SolvePose : public ::testing::Test {
  protected:
   SolvePose() {
     std::mt19937 random(8);
-    for (const PointConstraint& point : measure(config_.noise, some_pose(), 100, 1.0, random)) {
-      points_.push_back(point.p_reference);
-      pixels_.push_back(point.pixel);
-    }
-    for (std::size_t i = 0; i < 40; ++i) pixels_[i] = pixels_[(i + 13) % 40];
+    points_ = measure(config_.noise, some_pose(), 100, 1.0, random);
+    const std::vector<PointConstraint> right = points_;
+    for (std::size_t i = 0; i < 40; ++i) points_[i].pixel = right[(i + 13) % 40].pixel;
   }
   SlamConfig config_;
-  std::vector<Eigen::Vector3d> points_;
-  std::vector<Eigen::Vector2d> pixels_;
+  std::vector<PointConstraint> points_;
 };
 
 TEST_F(SolvePose, FindsThePoseAmongWrongMatchesAndRepeatsItself) {
-  const auto first = solve_pose(config_.tracker, test::small_camera(), points_, pixels_);
-  const auto second = solve_pose(config_.tracker, test::small_camera(), points_, pixels_);
+  const auto first = solve_pose(config_.tracker, test::small_camera(), points_);
+  const auto second = solve_pose(config_.tracker, test::small_camera(), points_);
   ASSERT_TRUE(first && second);
-  EXPECT_LT(error(some_pose(), *first).head<3>().norm(), 0.05);
-  EXPECT_LT(error(some_pose(), *first).tail<3>().norm(), 0.02);
-  EXPECT_TRUE(first->matrix() == second->matrix());
+  EXPECT_LT(error(some_pose(), first->T_reference_camera).head<3>().norm(), 0.05);
+  EXPECT_LT(error(some_pose(), first->T_reference_camera).tail<3>().norm(), 0.02);
+  EXPECT_TRUE(first->T_reference_camera.matrix() == second->T_reference_camera.matrix());
 }
 
 TEST_F(SolvePose, GivesNoneForTooFewOrForNonsense) {
   const auto few = static_cast<std::ptrdiff_t>(config_.tracker.min_inliers - 1);
-  EXPECT_FALSE(solve_pose(config_.tracker, test::small_camera(), {points_.begin(), points_.begin() + few},
-                          {pixels_.begin(), pixels_.begin() + few}));
+  EXPECT_FALSE(solve_pose(config_.tracker, test::small_camera(), {points_.begin(), points_.begin() + few}));
   std::mt19937 random(1);
-  std::shuffle(pixels_.begin(), pixels_.end(), random);
-  EXPECT_FALSE(solve_pose(config_.tracker, test::small_camera(), points_, pixels_));
+  for (std::size_t i = points_.size() - 1; i > 0; --i) std::swap(points_[i].pixel, points_[random() % (i + 1)].pixel);
+  EXPECT_FALSE(solve_pose(config_.tracker, test::small_camera(), points_));
+}
+
+// Where a camera has moved on by 10 cm and 3 degrees; what moves with the camera has the pose of before.
+class SomethingMoves : public ::testing::Test {
+ protected:
+  static std::vector<PointConstraint> seen_at(const Pose& T, int count, bool is_confirmed, unsigned seed) {
+    std::mt19937 random(seed);
+    auto points = measure({}, T, count, 1.0, random);
+    for (PointConstraint& point : points) point.is_confirmed = is_confirmed;
+    return points;
+  }
+  static std::vector<PointConstraint> together(std::vector<PointConstraint> a, const std::vector<PointConstraint>& b) {
+    a.insert(a.end(), b.begin(), b.end());
+    return a;
+  }
+  Support support(const std::vector<PointConstraint>& points) const {
+    return find_support(config_.tracker, test::small_camera(), points, truth_, kWindow_px2);
+  }
+
+  static constexpr double kWindow_px2 = 576.0;
+  SlamConfig config_;
+  Pose truth_ = geometry::se3_exp((Vector6d() << 0.08, 0.0, 0.06, 0.0, 0.05, 0.0).finished());
+};
+
+TEST_F(SomethingMoves, MatchesThatAgreeWithNoPoseAreNoRivals) {
+  auto points = together(seen_at(truth_, 60, true, 1), seen_at(truth_, 90, true, 2));
+  const auto right = points;
+  for (std::size_t i = 60; i < 150; ++i) points[i].pixel = right[60 + (i - 60 + 17) % 90].pixel;
+  const Support found = support(points);
+  EXPECT_GE(found.agree, 60);
+  EXPECT_EQ(found.rivals, 0);
+  EXPECT_TRUE(is_significant(config_.tracker, found)) << "though 90 of 150 disagree";
+}
+
+TEST_F(SomethingMoves, AnotherPoseWithAboutAsManyMatchesIsARival) {
+  const Support found = support(together(seen_at(truth_, 60, true, 1), seen_at(Pose::Identity(), 50, true, 2)));
+  EXPECT_NEAR(found.agree, 60, 3);
+  EXPECT_NEAR(found.rivals, 50, 6);
+  EXPECT_FALSE(is_significant(config_.tracker, found));
+  EXPECT_TRUE(is_significant(config_.tracker,
+                             support(together(seen_at(truth_, 90, true, 1), seen_at(Pose::Identity(), 40, true, 2)))));
+}
+
+TEST_F(SomethingMoves, AsFewMatchesAsChanceGivesAreNotSignificant) {
+  EXPECT_FALSE(is_significant(config_.tracker, {20, 200, 0, 17.4}));
+  EXPECT_TRUE(is_significant(config_.tracker, {50, 200, 0, 17.4}));
+}
+
+TEST_F(SomethingMoves, PointsThatSeveralKeyframesHaveSeenDecide) {
+  const auto points = together(seen_at(truth_, 40, true, 1), seen_at(Pose::Identity(), 120, false, 2));
+  const auto result = refine_pose(config_, {test::small_camera(), points, {}, nullptr}, Pose::Identity());
+  EXPECT_LT(error(truth_, result.T_reference_camera).norm(), 0.02);
+  const Support found = support(points);
+  EXPECT_EQ(found.of, 40);
+  EXPECT_TRUE(is_significant(config_.tracker, found));
+}
+
+// A person in front of the camera keeps its distance while the camera moves: its depth says that nothing moves.
+TEST_F(SomethingMoves, SurfacesThatContradictThePointsAreLeftOut) {
+  const auto camera = test::small_camera();
+  const auto with_person = [&](const Pose& T) {
+    RgbdFrame frame = test::render_room(camera, T, {});
+    for (int v = 0; v < camera.height; ++v) {
+      for (int u = camera.width / 4; u < camera.width / 2; ++u) frame.depth(u, v) = 0.8F;
+    }
+    return frame;
+  };
+  const RgbdFrame before = with_person(Pose::Identity()), now = with_person(truth_);
+  const auto surface = sample_surface(config_.surface, config_.noise, camera, before.depth);
+  for (const bool is_confirmed : {true, false}) {
+    const auto points = seen_at(truth_, 40, is_confirmed, 1);
+    const auto result = refine_pose(config_, {camera, points, surface, &now.depth}, Pose::Identity());
+    const double off = error(truth_, result.T_reference_camera).norm();
+    EXPECT_EQ(off < 0.015, is_confirmed) << off;
+  }
 }
 
 }  // namespace

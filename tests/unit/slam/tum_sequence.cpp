@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <iterator>
+#include <map>
 #include <sstream>
 #include <string>
 
@@ -34,16 +36,26 @@ void read_camera(const fs::path& file, TumSequence& sequence) {
   }
 }
 
-// Stamps of these recordings agree line by line.
+// The true pose of a frame is the one with the nearest stamp: these recordings have one for each frame.
 void read_truth(const fs::path& file, TumSequence& sequence) {
   std::ifstream stream(file);
-  std::size_t next = 0;
-  for (std::string line; std::getline(stream, line) && next < sequence.entries.size();) {
+  std::map<double, Pose> truth;
+  for (std::string line; std::getline(stream, line);) {
     if (line.empty() || line[0] == '#') continue;
     std::istringstream words(line);
     double stamp = 0.0, x = 0.0, y = 0.0, z = 0.0, qx = 0.0, qy = 0.0, qz = 0.0, qw = 1.0;
     words >> stamp >> x >> y >> z >> qx >> qy >> qz >> qw;
-    sequence.entries[next++].T_world_camera = geometry::make_pose({x, y, z}, {qw, qx, qy, qz});
+    truth[stamp] = geometry::make_pose({x, y, z}, {qw, qx, qy, qz});
+  }
+  if (truth.empty()) return;
+  for (auto& entry : sequence.entries) {
+    const double stamp = entry.stamp.seconds();
+    auto nearest = truth.lower_bound(stamp);
+    if (nearest == truth.end() ||
+        (nearest != truth.begin() && stamp - std::prev(nearest)->first < nearest->first - stamp)) {
+      --nearest;
+    }
+    entry.T_world_camera = nearest->second;
   }
 }
 
@@ -77,10 +89,7 @@ RgbdFrame TumSequence::load(std::size_t index) const {
   return frame;
 }
 
-std::optional<TumSequence> find_sequence(const std::string& name) {
-  const auto found = lapis::test::find_test_data("rgbd/" + name);
-  if (!found) return std::nullopt;
-  const fs::path& folder = *found;
+TumSequence read_sequence(const fs::path& folder) {
   std::ifstream associations(folder / "associations.txt");
   TumSequence sequence;
   std::string color_stamp, color, depth_stamp, depth;
@@ -91,6 +100,12 @@ std::optional<TumSequence> find_sequence(const std::string& name) {
   read_camera(folder / "camera.yaml", sequence);
   read_truth(folder / "groundtruth.txt", sequence);
   return sequence;
+}
+
+std::optional<TumSequence> find_sequence(const std::string& name) {
+  const auto found = lapis::test::find_test_data("rgbd/" + name);
+  if (!found) return std::nullopt;
+  return read_sequence(*found);
 }
 
 double ate_se3(const std::vector<Pose>& truth, const std::vector<Pose>& estimate) {

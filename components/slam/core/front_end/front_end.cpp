@@ -116,18 +116,32 @@ void FrontEnd::resume(const Map& map, KeyframeId reference, std::optional<time::
 // Searches near the pose that motion predicts, then in the whole map; the result is believed only when motion or the
 // next frames agree.
 TrackOutcome FrontEnd::find_pose(const Known& known, const Frame& frame) {
+  constexpr double kForgets = 0.8;
   awaits_confirmation_ = false;
-  TrackOutcome outcome = tracker_.track(known.map, frame, known.motion.predict(known.map, frame.input->stamp));
+  const auto predicted = known.motion.predict(known.map, frame.input->stamp);
+  const Relocalizer::Situation now{known.map, known.graph, known.motion, frame, is_contradicted()};
+  TrackOutcome outcome =
+      tracker_.track(known.map, frame, predicted, search_radius_px(),
+                     [&](const TrackOutcome& found) { return relocalizer_.motion_leads_to(now, found); });
+  surprise_px_ = predicted && outcome.is_tracked
+                     ? std::max(kForgets * surprise_px_, tracker_.surprise_px(known.map, frame, outcome, *predicted))
+                     : kUnknownSurprise_px;
   if (!outcome.is_tracked) {
     TrackOutcome found = relocalizer_.search(known.map, known.places, tracker_, frame);
     if (!found.is_tracked) return outcome;
     outcome = std::move(found);
   }
-  if (relocalizer_.believes({known.map, known.graph, known.motion, frame, is_contradicted()}, outcome)) return outcome;
+  if (relocalizer_.believes(now, outcome)) return outcome;
   outcome.is_tracked = false;
   outcome.reason = "a recognised place awaits confirmation";
   awaits_confirmation_ = true;
   return outcome;
+}
+
+// Where motion has predicted well, features are looked for nearby: a texture that repeats itself has others like them.
+double FrontEnd::search_radius_px() const {
+  constexpr double kTimesSurprise = 3.0, kLeast_px = 4.0;
+  return std::min(config_.matcher.search_radius_px, kLeast_px + kTimesSurprise * surprise_px_);
 }
 
 // Result for a pose by vision or surfaces. When the camera is back in a part of the map that odometry alone connects to

@@ -65,7 +65,10 @@ class FrontEnd {
   std::size_t places_doubted() const { return relocalizer_.doubted(); }
 
  private:
+  static constexpr double kUnknownSurprise_px = 1e6;
+
   TrackOutcome find_pose(const Known& known, const Frame& frame);
+  double search_radius_px() const;
   FrameOutcome hold(const Known& known, const Frame& frame, TrackOutcome seen, PoseSource source, bool wants_keyframe);
   FrameOutcome continue_without_features(const Known& known, const Frame& frame, const std::string& reason);
   FrameOutcome continue_blind(const Known& known, const Frame& frame, const std::string& reason, bool is_new_view);
@@ -85,12 +88,13 @@ class FrontEnd {
   SurfaceTracker surfaces_;
   KeyframeId reference_ = 0;
   int frames_since_keyframe_ = 0;
-  int blind_frames_ = 0;                  // in a row, with enough features but no pose by vision
-  int contradictions_ = 0;                // frames in a row that contradict odometry
-  int fits_ = 0;                          // frames in a row whose surfaces fit
-  std::optional<time::Time> held_stamp_;  // of the newest pose by vision or surfaces
-  bool awaits_confirmation_ = false;      // a place was recognised in the newest frame, but is not believed yet
-  bool is_placed_ = true;                 // false in a resumed map until the camera has been located in it
+  int blind_frames_ = 0;                      // in a row, with enough features but no pose by vision
+  int contradictions_ = 0;                    // frames in a row that contradict odometry
+  int fits_ = 0;                              // frames in a row whose surfaces fit
+  std::optional<time::Time> held_stamp_;      // of the newest pose by vision or surfaces
+  double surprise_px_ = kUnknownSurprise_px;  // how far features were from where motion predicted them, in late frames
+  bool awaits_confirmation_ = false;          // a place was recognised in the newest frame, but is not believed yet
+  bool is_placed_ = true;                     // false in a resumed map until the camera has been located in it
 };
 
 }  // namespace lapis::slam

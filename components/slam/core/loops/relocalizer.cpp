@@ -42,9 +42,9 @@ TrackOutcome Relocalizer::search(const Map& map, const LoopDetector& places, con
 
 bool Relocalizer::believes(const Situation& now, const TrackOutcome& outcome) {
   const Pose T_map_camera = now.map.keyframe(outcome.reference).T_map_camera * outcome.alignment.T_reference_camera;
-  bool is_believed = motion_leads_to(now, outcome.reference, T_map_camera);
+  bool is_believed = motion_leads_to(now, outcome);
   if (!is_believed) {
-    if (!is_distinct(outcome)) return false;
+    if (!is_certain(outcome)) return false;
     const auto last = now.motion.last_stamp();
     // After a gap, odometry does not tell how the robot has moved since its last pose.
     const bool has_odometry = last ? now.motion.odometry_between(*last, now.stamp()).has_value()
@@ -114,9 +114,18 @@ std::optional<MotionModel::Expected> Relocalizer::expected(const Situation& now,
                                compound_covariance(between, reckoned->T_reference_camera, reckoned->covariance)};
 }
 
-bool Relocalizer::motion_leads_to(const Situation& now, KeyframeId reference, const Pose& T_map_camera) const {
-  const auto lead = expected(now, reference);
-  return lead && is_near(lead->T_map_camera, T_map_camera, reach(lead->covariance));
+// Without odometry the camera may have gained speed since its last pose.
+bool Relocalizer::motion_leads_to(const Situation& now, const TrackOutcome& outcome) const {
+  const auto lead = expected(now, outcome.reference);
+  if (!lead) return false;
+  const Pose T_map_camera = now.map.keyframe(outcome.reference).T_map_camera * outcome.alignment.T_reference_camera;
+  Reach within = reach(lead->covariance);
+  if (!now.motion.dead_reckon(now.stamp())) {
+    const double times = (now.stamp() - *now.motion.last_stamp()).seconds() * config_.speed_m_s / config_.near_m;
+    within.m += (times - 1.0) * config_.near_m;
+    within.rad += (times - 1.0) * config_.near_rad;
+  }
+  return is_near(lead->T_map_camera, T_map_camera, within);
 }
 
 bool Relocalizer::is_within_reach(const Situation& now, const Pose& T_map_camera) const {
@@ -126,11 +135,9 @@ bool Relocalizer::is_within_reach(const Situation& now, const Pose& T_map_camera
   return elapsed_s >= 0.0 && elapsed_s <= config_.patience_s && is_near(last->second, T_map_camera, reach(elapsed_s));
 }
 
-bool Relocalizer::is_distinct(const TrackOutcome& outcome) const {
+bool Relocalizer::is_certain(const TrackOutcome& outcome) const {
   const Matrix6d information = edge_information(graph_, outcome.alignment.information);
-  const double matches = outcome.matches;
-  return outcome.alignment.inliers >= 0.5 * (matches + config_.majority_sigmas * std::sqrt(matches)) &&
-         largest_sigma(information.inverse(), 0) <= config_.max_sigma_m;
+  return largest_sigma(information.inverse(), 0) <= config_.max_sigma_m;
 }
 
 bool Relocalizer::sees_through_walls(const Situation& now, const TrackOutcome& outcome) const {

@@ -11,7 +11,7 @@
 namespace lapis::slam {
 
 /// Decides whether a pose is believed. A pose near the one that motion predicts is. Any other pose, found by
-/// recognising a place, has to be distinct; what else it needs depends on odometry:
+/// recognising a place, has to be certain; what else it needs depends on odometry:
 /// - without odometry since the last pose, it must not see through walls and furniture that should be in view, and it
 ///   has to be within reach of the last pose, or to be found again by the next frames;
 /// - with odometry that may have erred by that much (slip), it has to be found again;
@@ -35,6 +35,8 @@ class Relocalizer {
     bool is_odometry_refuted = false;  ///< the camera does not see what it should at the pose of odometry
     time::Time stamp() const { return frame.input->stamp; }
   };
+  /// Whether the camera is where motion predicts it.
+  bool motion_leads_to(const Situation& now, const TrackOutcome& outcome) const;
   /// Whether the outcome is believed now; if not, it may be remembered until later frames confirm it.
   bool believes(const Situation& now, const TrackOutcome& outcome);
   /// Number of recognised places that were not believed at once because odometry contradicted them.
@@ -64,12 +66,11 @@ class Relocalizer {
   /// Pose that odometry predicts, with the covariance of the path through the graph to `reference` included; without
   /// odometry that of MotionModel::expect.
   std::optional<MotionModel::Expected> expected(const Situation& now, KeyframeId reference) const;
-  bool motion_leads_to(const Situation& now, KeyframeId reference, const geometry::Pose& T_map_camera) const;
   /// Whether the camera can be there, soon after the last pose, when nothing tells how it has moved.
   bool is_within_reach(const Situation& now, const geometry::Pose& T_map_camera) const;
-  /// Whether clearly more than half of the matches with the place agree, and determine the pose well. Parts that repeat
-  /// themselves, such as the floor of a corridor, do neither.
-  bool is_distinct(const TrackOutcome& outcome) const;
+  /// Whether the matches determine the pose well. Parts that repeat themselves, such as the floor of a corridor, do
+  /// not.
+  bool is_certain(const TrackOutcome& outcome) const;
   /// Whether walls and furniture of the place that should be in view are missing.
   bool sees_through_walls(const Situation& now, const TrackOutcome& outcome) const;
   /// Whether slip since the last pose may explain the difference from odometry.

@@ -1,5 +1,7 @@
 #include "slam/core/motion/motion_model.hpp"
 
+#include <algorithm>
+
 #include "slam/core/motion/covariance.hpp"
 
 namespace lapis::slam {
@@ -8,17 +10,18 @@ using geometry::Matrix6d;
 using geometry::Pose;
 
 void MotionModel::resume(time::Time stamp, const RelativeCamera& camera, std::span<const OdometryReading> odometry) {
-  last_ = Last{stamp, camera, geometry::Vector6d::Zero()};
+  last_ = Last{stamp, camera, std::nullopt};
   odometry_.resume(odometry);
 }
 
 void MotionModel::update(const Map& map, time::Time stamp, const RelativeCamera& camera) {
-  Last next{stamp, camera, geometry::Vector6d::Zero()};
+  Last next{stamp, camera, std::nullopt};
   const double elapsed_s = last_ ? (stamp - last_->stamp).seconds() : 0.0;
   if (elapsed_s > 0.0 && elapsed_s <= max_gap_s_) {
     const Pose T_map_last = map.keyframe(last_->camera.reference).T_map_camera * last_->camera.T_reference_camera;
     const Pose T_map_camera = map.keyframe(camera.reference).T_map_camera * camera.T_reference_camera;
     next.velocity = geometry::se3_log(T_map_last.inverse() * T_map_camera) / elapsed_s;
+    if (last_->velocity) note_acceleration(*next.velocity - *last_->velocity, elapsed_s);
   }
   last_ = next;
 }
@@ -37,10 +40,25 @@ std::optional<MotionModel::Expected> MotionModel::expect(const Map& map, time::T
   if (!last_) return std::nullopt;
   const double elapsed_s = (stamp - last_->stamp).seconds();
   if (elapsed_s < 0.0 || elapsed_s > max_gap_s_) return std::nullopt;
-  const geometry::Vector6d moved = last_->velocity * elapsed_s;
-  return Expected{
-      map.keyframe(last_->camera.reference).T_map_camera * last_->camera.T_reference_camera * geometry::se3_exp(moved),
-      last_->camera.covariance + Matrix6d(moved.cwiseAbs2().asDiagonal())};
+  const Pose T_map_last = map.keyframe(last_->camera.reference).T_map_camera * last_->camera.T_reference_camera;
+  const Magnitude change =
+      last_->velocity ? Magnitude{acceleration_.m * elapsed_s, acceleration_.rad * elapsed_s} : assumed_speed_;
+  const geometry::Vector6d moved = last_->velocity.value_or(geometry::Vector6d::Zero()) * elapsed_s;
+  geometry::Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(change.m * elapsed_s), Eigen::Vector3d::Constant(change.rad * elapsed_s);
+  return Expected{T_map_last * geometry::se3_exp(moved),
+                  last_->camera.covariance + Matrix6d(sigma.cwiseAbs2().asDiagonal())};
+}
+
+// Strong accelerations are forgotten slowly: who has moved jerkily will do so again.
+void MotionModel::note_acceleration(const geometry::Vector6d& change, double elapsed_s) {
+  constexpr double kForgets = 0.95;
+  constexpr Magnitude kLeast{1.0, 2.0};
+  const auto renew = [&](double& acceleration, double now, double least) {
+    acceleration = std::max({least, kForgets * acceleration, now / elapsed_s});
+  };
+  renew(acceleration_.m, change.head<3>().norm(), kLeast.m);
+  renew(acceleration_.rad, change.tail<3>().norm(), kLeast.rad);
 }
 
 std::optional<Pose> MotionModel::predict(const Map& map, time::Time stamp) const {

@@ -7,6 +7,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
+#include "slam/core/config.hpp"
 #include "slam/core/map/map.hpp"
 #include "slam/core/motion/odometry_track.hpp"
 
@@ -23,10 +24,10 @@ struct RelativeCamera {
 /// velocity. It keeps poses relative to a key-frame, so that they follow when key-frames move.
 class MotionModel {
  public:
-  /// `max_gap_s`: longest time over which velocity is taken as constant; `T_base_camera`: pose of the camera on the
-  /// robot, for odometry.
-  MotionModel(double max_gap_s, const OdometryConfig& odometry, const geometry::Pose& T_base_camera)
-      : max_gap_s_(max_gap_s), odometry_(odometry), wheels_(odometry), T_base_camera_(T_base_camera) {}
+  /// `T_base_camera`: pose of the camera on the robot, for odometry.
+  MotionModel(const SlamConfig& config, const geometry::Pose& T_base_camera)
+      : max_gap_s_(config.tracker.max_prediction_s), assumed_speed_(assumed_speed(config.relocalization)),
+        odometry_(config.odometry), wheels_(config.odometry), T_base_camera_(T_base_camera) {}
 
   /// See OdometryTrack::add.
   bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base) { return odometry_.add(stamp, T_odom_base); }
@@ -36,8 +37,9 @@ class MotionModel {
   void update(const Map& map, time::Time stamp, const RelativeCamera& camera);
   /// T_map_camera that was found last, and its stamp; nothing before the first update.
   std::optional<std::pair<time::Time, geometry::Pose>> last_pose(const Map& map) const;
-  /// Pose that motion predicts, with its covariance: that of dead_reckon; or by constant velocity, with a standard
-  /// deviation as large as the motion since the last pose. Nothing in the same cases as predict.
+  /// Pose that motion predicts, with its covariance: that of dead_reckon; or by constant velocity, with accelerations
+  /// as large as those of late, or where the velocity is unknown with that of RelocalizationConfig. Nothing in the same
+  /// cases as predict.
   struct Expected {
     geometry::Pose T_map_camera = geometry::Pose::Identity();
     geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
@@ -70,9 +72,20 @@ class MotionModel {
   struct Last {
     time::Time stamp;
     RelativeCamera camera;
-    geometry::Vector6d velocity = geometry::Vector6d::Zero();  // [m/s, rad/s], camera frame
+    std::optional<geometry::Vector6d> velocity;  // [m/s, rad/s], camera frame
   };
+  /// Of translation and rotation.
+  struct Magnitude {
+    double m = 0.0, rad = 0.0;
+  };
+  static Magnitude assumed_speed(const RelocalizationConfig& config) {
+    return {config.speed_m_s, config.speed_m_s * config.near_rad / config.near_m};
+  }
+  void note_acceleration(const geometry::Vector6d& change, double elapsed_s);
+
   double max_gap_s_;
+  Magnitude assumed_speed_;           // [m/s, rad/s]
+  Magnitude acceleration_{1.0, 2.0};  // of late [m/s^2, rad/s^2]
   OdometryTrack odometry_;
   WheelCalibrator wheels_;
   geometry::Pose T_base_camera_;

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <optional>
 
-#include <opencv2/features2d.hpp>
+#include <opencv2/core.hpp>
 
 #include "slam/core/frame/noise_model.hpp"
 
@@ -72,20 +72,25 @@ cv::Mat descriptor_matrix(const std::vector<const Descriptor*>& descriptors) {
   return matrix;
 }
 
-// Best partner of each row of `from` in `to` that is clearly better than the second best; -1 = none.
-std::vector<int> best_partners(const MatcherConfig& config, const cv::Mat& from, const cv::Mat& to) {
-  std::vector<std::vector<cv::DMatch>> pairs;
-  cv::BFMatcher(cv::NORM_HAMMING).knnMatch(from, to, pairs, 2);
-  std::vector<int> partners(static_cast<std::size_t>(from.rows), -1);
-  for (std::size_t i = 0; i < pairs.size(); ++i) {
-    if (pairs[i].size() < 2) continue;
-    const auto& [best, second] = std::pair(pairs[i][0], pairs[i][1]);
-    if (best.distance > static_cast<float>(config.max_distance)) continue;
-    if (best.distance > static_cast<float>(config.max_ratio) * second.distance) continue;
-    partners[i] = best.trainIdx;
+// The most similar of the descriptors offered, and how similar the second best is.
+struct Partner {
+  int index = -1;
+  int distance = 257, second = 257;
+
+  void offer(int other, int with_distance) {
+    if (with_distance < distance) {
+      second = distance;
+      distance = with_distance;
+      index = other;
+    } else {
+      second = std::min(second, with_distance);
+    }
   }
-  return partners;
-}
+  bool is_clear(const MatcherConfig& config) const {
+    return distance <= config.max_distance &&
+           static_cast<float>(distance) <= static_cast<float>(config.max_ratio) * static_cast<float>(second);
+  }
+};
 
 }  // namespace
 
@@ -138,14 +143,24 @@ std::vector<Match> match_brute_force(const MatcherConfig& config, const Keyframe
     ids.push_back(keyframe.landmarks[i]);
   }
   if (seen.size() < 2 || known.size() < 2) return {};
-  const cv::Mat seen_matrix = descriptor_matrix(seen);
-  const cv::Mat known_matrix = descriptor_matrix(known);
-  const std::vector<int> forward = best_partners(config, seen_matrix, known_matrix);
-  const std::vector<int> backward = best_partners(config, known_matrix, seen_matrix);
+  cv::Mat distances;
+  cv::batchDistance(descriptor_matrix(seen), descriptor_matrix(known), distances, CV_32S, cv::noArray(),
+                    cv::NORM_HAMMING);
+  std::vector<Partner> of_seen(seen.size()), of_known(known.size());
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const int* row = distances.ptr<int>(static_cast<int>(i));
+    for (std::size_t j = 0; j < known.size(); ++j) {
+      of_seen[i].offer(static_cast<int>(j), row[j]);
+      of_known[j].offer(static_cast<int>(i), row[j]);
+    }
+  }
   std::vector<Match> matches;
-  for (std::size_t i = 0; i < forward.size(); ++i) {
-    if (forward[i] < 0 || backward[static_cast<std::size_t>(forward[i])] != static_cast<int>(i)) continue;
-    matches.push_back({static_cast<int>(i), ids[static_cast<std::size_t>(forward[i])]});
+  for (std::size_t i = 0; i < of_seen.size(); ++i) {
+    if (!of_seen[i].is_clear(config)) continue;
+    const auto j = static_cast<std::size_t>(of_seen[i].index);
+    if (of_known[j].is_clear(config) && of_known[j].index == static_cast<int>(i)) {
+      matches.push_back({static_cast<int>(i), ids[j]});
+    }
   }
   return matches;
 }

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 
@@ -19,12 +20,14 @@ using geometry::Vector6d;
 constexpr double kHuber = 2.0;                          // sigmas up to which an error counts in full
 constexpr double kPixelGate = 5.99, kDepthGate = 6.63;  // chi-square, 95 % of 2 and 99 % of 1 degrees of freedom
 
-// A round of the refinement. The first ones only have to bring the pose close, so every `stride`th sample is enough.
+// A round of the refinement. The first ones only have to bring the pose close, so every `stride`th sample is enough; 0:
+// none counts.
 struct Round {
   double gate_share;  // of SurfaceConfig::max_distance_m
   std::size_t stride;
   double least_step;  // [m], [rad]; smaller ones end the round
 };
+constexpr Round kPoints{0.0, 0, 1e-3};
 constexpr std::array kRounds{Round{1.0, 4, 1e-3}, Round{0.4, 2, 1e-3}, Round{0.2, 1, 1e-5}};
 
 // Huber's cost and weight for the length of a whitened error. Sec. 5.6 in [Zhang 1997]
@@ -64,10 +67,27 @@ struct Linearisation {
   double cost() const { return points.cost + surface.cost + prior.cost; }
 };
 
+// The a-posteriori variance of the unit weight, as in any least-squares adjustment.
+double unit_variance(const Term& term, double effective_residuals) {
+  return std::max(term.squares / (effective_residuals - 6.0), 1e-4);
+}
+
+Matrix6d scaled_information(const Term& term, double effective_residuals) {
+  if (effective_residuals <= 6.0) return Matrix6d::Zero();
+  return term.full_hessian() / unit_variance(term, effective_residuals);
+}
+
 class Refinement {
  public:
   Refinement(const SlamConfig& config, const AlignmentProblem& problem, const Pose& T_reference_camera)
-      : config_(config), problem_(problem), T_(T_reference_camera), is_inlier_(problem.points.size(), true) {}
+      : config_(config), problem_(problem), T_(T_reference_camera), is_inlier_(problem.points.size(), true),
+        is_doubted_(problem.surface.size(), false) {
+    if (!starts_with_points()) return;
+    std::transform(problem.points.begin(), problem.points.end(), is_inlier_.begin(),
+                   [](const PointConstraint& point) { return point.is_confirmed; });
+  }
+
+  bool starts_with_points() const { return has_witnesses(config_.tracker, problem_.points); }
 
   // Levenberg-Marquardt on the current inliers.
   void optimise(const Round& round) {
@@ -101,6 +121,23 @@ class Refinement {
     }
   }
 
+  // Leaves out the surfaces of image blocks that contradict the pose of the points, as those of somebody who walks do.
+  // Within a block they move together, so that their mean shows what is within the noise of each.
+  void doubt_surfaces() {
+    constexpr double kSigmas2 = 9.0;
+    if (problem_.depth == nullptr) return;
+    const Term points = linearise(T_, kPoints).points;
+    const Matrix6d covariance = scaled_information(points, points.residuals).ldlt().solve(Matrix6d::Identity());
+    const std::vector<Block> blocks = blocks_at(T_.inverse());
+    for (std::size_t i = 0; i < blocks_of_.size(); ++i) {
+      if (blocks_of_[i] == kNoBlock) continue;
+      const Block& block = blocks[blocks_of_[i]];
+      const Vector6d jacobian = block.jacobian / block.weight;
+      const double variance = 1.0 / (config_.surface.weight * block.weight) + jacobian.dot(covariance * jacobian);
+      is_doubted_[i] = std::pow(block.distance / block.weight, 2) > kSigmas2 * variance;
+    }
+  }
+
   // A gate narrower than the noise would keep only what confirms the initial pose. A gate wider than necessary would
   // accept samples where something else has taken their place.
   void choose_surface_gate() {
@@ -126,11 +163,42 @@ class Refinement {
   Alignment summarise() const;
 
  private:
+  // Sums over the surface samples that an image block sees, weighted by their information.
+  struct Block {
+    double weight = 0.0, distance = 0.0;
+    Vector6d jacobian = Vector6d::Zero();
+  };
+  static constexpr std::size_t kNoBlock = std::numeric_limits<std::size_t>::max();
+
+  std::vector<Block> blocks_at(const Pose& T_camera_reference) {
+    constexpr std::size_t kColumns = 8, kRows = 6;
+    std::vector<Block> blocks(kColumns * kRows);
+    blocks_of_.assign(problem_.surface.size(), kNoBlock);
+    for (std::size_t i = 0; i < problem_.surface.size(); ++i) {
+      const SurfaceSample& sample = problem_.surface[i];
+      const auto residual =
+          surface_residual(config_.noise, problem_.camera, *problem_.depth, sample, T_camera_reference);
+      if (!residual || std::abs(residual->distance_m) > config_.surface.max_distance_m) continue;
+      const Eigen::Vector2d pixel = problem_.camera.project(T_camera_reference * sample.point);
+      const auto cell = [](double at, int size, std::size_t cells) {
+        return static_cast<std::size_t>(std::clamp(at / size, 0.0, 0.999) * static_cast<double>(cells));
+      };
+      blocks_of_[i] =
+          cell(pixel.y(), problem_.camera.height, kRows) * kColumns + cell(pixel.x(), problem_.camera.width, kColumns);
+      Block& block = blocks[blocks_of_[i]];
+      const double weight = 1.0 / (residual->sigma_m * residual->sigma_m);
+      block.weight += weight;
+      block.distance += weight * residual->distance_m;
+      block.jacobian += weight * residual->jacobian;
+    }
+    return blocks;
+  }
+
   Linearisation linearise(const Pose& T, const Round& round) const {
     Linearisation result;
     const Pose T_camera_reference = T.inverse();
     add_points(T_camera_reference, result.points);
-    if (problem_.depth != nullptr) add_surface(T_camera_reference, round, result);
+    if (problem_.depth != nullptr && round.stride > 0) add_surface(T_camera_reference, round, result);
     if (problem_.prior) add_prior(T, result.prior);
     return result;
   }
@@ -164,6 +232,7 @@ class Refinement {
     const double narrow_m = round.gate_share * config_.surface.max_distance_m;
     const double share = config_.surface.weight * static_cast<double>(round.stride);
     for (std::size_t i = 0; i < problem_.surface.size(); i += round.stride) {
+      if (is_doubted_[i]) continue;
       const SurfaceSample& sample = problem_.surface[i];
       const auto residual =
           surface_residual(config_.noise, problem_.camera, *problem_.depth, sample, T_camera_reference);
@@ -186,18 +255,10 @@ class Refinement {
   Pose T_;              // of the camera in the reference
   Linearisation last_;  // at T_
   std::vector<bool> is_inlier_;
-  double surface_gate_ = 0.0;  // of a plane distance, in sigmas, where that is wider than the round's gate
+  std::vector<bool> is_doubted_;        // of the surface samples
+  std::vector<std::size_t> blocks_of_;  // the same
+  double surface_gate_ = 0.0;           // of a plane distance, in sigmas, where that is wider than the round's gate
 };
-
-// The a-posteriori variance of the unit weight, as in any least-squares adjustment.
-double unit_variance(const Term& term, double effective_residuals) {
-  return std::max(term.squares / (effective_residuals - 6.0), 1e-4);
-}
-
-Matrix6d scaled_information(const Term& term, double effective_residuals) {
-  if (effective_residuals <= 6.0) return Matrix6d::Zero();
-  return term.full_hessian() / unit_variance(term, effective_residuals);
-}
 
 Alignment Refinement::summarise() const {
   const Pose T_camera_reference = T_.inverse();
@@ -225,6 +286,12 @@ Alignment Refinement::summarise() const {
 }
 
 }  // namespace
+
+double pixel_error(const geometry::PinholeCamera& camera, const PointConstraint& point,
+                   const geometry::Pose& T_camera_reference) {
+  const Eigen::Vector3d p = T_camera_reference * point.p_reference;
+  return p.z() > 0.0 ? (camera.project(p) - point.pixel).norm() : std::numeric_limits<double>::infinity();
+}
 
 std::optional<PointResidual> point_residual(const NoiseConfig& noise, const geometry::PinholeCamera& camera,
                                             const PointConstraint& point, const Pose& T_camera_reference) {
@@ -267,9 +334,24 @@ std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const 
   return residual;
 }
 
+bool has_witnesses(const TrackerConfig& config, std::span<const PointConstraint> points) {
+  const auto confirmed =
+      std::count_if(points.begin(), points.end(), [](const auto& point) { return point.is_confirmed; });
+  return confirmed >= 2 * config.min_inliers;
+}
+
 Alignment refine_pose(const SlamConfig& config, const AlignmentProblem& problem, const Pose& T_reference_camera) {
   Refinement refinement(config, problem, T_reference_camera);
-  for (const Round& round : kRounds) {
+  // Points that several key-frames have seen stand still; near surfaces outweigh them, and may be those of somebody who
+  // walks in front of the camera.
+  std::span<const Round> rounds = kRounds;
+  if (refinement.starts_with_points()) {
+    refinement.optimise(kPoints);
+    refinement.classify();
+    refinement.doubt_surfaces();
+    rounds = rounds.subspan(1);
+  }
+  for (const Round& round : rounds) {
     refinement.choose_surface_gate();
     refinement.optimise(round);
     refinement.classify();

@@ -19,6 +19,7 @@ struct PointConstraint {
   Eigen::Vector2d pixel = Eigen::Vector2d::Zero();        ///< [px]
   double depth_m = 0.0;                                   ///< measured z-depth, 0 = none
   double sigma_px = 1.0;                                  ///< of the pixel [px]
+  bool is_confirmed = true;  ///< several key-frames have seen it; else it may be of something that moves
 };
 
 /// Prior of the pose.
@@ -49,6 +50,10 @@ struct Alignment {
   double surface_variance = 1.0;  ///< of unit weight: `surface_information` is the Hessian divided by it
 };
 
+/// Distance of the pixel from where the pose has the point [px]; infinite behind the camera.
+double pixel_error(const geometry::PinholeCamera& camera, const PointConstraint& point,
+                   const geometry::Pose& T_camera_reference);
+
 /// Whitened residual (u, v, depth) of a point and its Jacobian by a right perturbation of T_reference_camera, whose
 /// inverse is given. The depth row is zero without a measured depth. Nothing when the point is not in front of the
 /// camera.
@@ -71,7 +76,11 @@ std::optional<SurfaceResidual> surface_residual(const NoiseConfig& noise, const 
                                                 const geometry::DepthImage& depth, const SurfaceSample& sample,
                                                 const geometry::Pose& T_camera_reference);
 
-/// Robust maximum-likelihood pose from points and surfaces, starting at `T_reference_camera`.
+/// Whether the confirmed points alone give a pose: twice TrackerConfig::min_inliers.
+bool has_witnesses(const TrackerConfig& config, std::span<const PointConstraint> points);
+
+/// Robust maximum-likelihood pose from points and surfaces, starting at `T_reference_camera`. Where the confirmed
+/// points are enough, the others count as far as they agree with them.
 Alignment refine_pose(const SlamConfig& config, const AlignmentProblem& problem,
                       const geometry::Pose& T_reference_camera);
 

@@ -1,10 +1,15 @@
 #include "slam/core/tracking/tracker.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstdio>
+#include <limits>
+#include <tuple>
 #include <utility>
 
 #include "slam/core/tracking/pose_solver.hpp"
+#include "slam/core/tracking/support.hpp"
 
 namespace lapis::slam {
 namespace {
@@ -13,6 +18,12 @@ using geometry::Pose;
 
 std::string shortage(int found, int needed, const char* what) {
   return std::to_string(found) + " " + what + ", " + std::to_string(needed) + " needed";
+}
+
+std::string doubt(const Support& support) {
+  std::string text = "only " + std::to_string(support.agree) + " of " + std::to_string(support.of) + " matches agree";
+  if (support.rivals > support.by_chance) text += ", and " + std::to_string(support.rivals) + " with another pose";
+  return text;
 }
 
 }  // namespace
@@ -36,30 +47,54 @@ Tracker::LocalMap Tracker::local_map(const Map& map, KeyframeId reference) const
   return local;
 }
 
-TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optional<Pose>& predicted) const {
+TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optional<Pose>& predicted, double radius_px,
+                            const std::function<bool(const TrackOutcome&)>& is_expected) const {
   TrackOutcome best;
   const int features = static_cast<int>(frame.features.size());
   best.reason = shortage(features, config_.tracker.min_inliers, "features");
   if (features < config_.tracker.min_inliers) return best;
+  const auto merit = [](const TrackOutcome& outcome, bool expected) {
+    return std::tuple(outcome.is_tracked && expected, outcome.is_tracked, outcome.inliers.size());
+  };
+  bool is_best_expected = false;
   const auto is_convincing = [&](TrackOutcome outcome) {
-    const bool better = outcome.is_tracked ? !best.is_tracked || outcome.inliers.size() > best.inliers.size()
-                                           : !best.is_tracked && outcome.inliers.size() >= best.inliers.size();
-    if (better) best = std::move(outcome);
-    return best.is_tracked && best.inliers.size() >= static_cast<std::size_t>(config_.tracker.min_matches);
+    const bool expected = outcome.is_tracked && is_expected(outcome);
+    if (outcome.is_tracked && predicted) {
+      const Pose d = (map.keyframe(outcome.reference).T_map_camera.inverse() * *predicted).inverse() *
+                     outcome.alignment.T_reference_camera;
+      fprintf(stderr, "  moved from prediction %.3f %.3f %.3f; %.3f rad; expected %d\n", d.translation().x(),
+              d.translation().y(), d.translation().z(), geometry::rotation_angle(d.linear()), (int)expected);
+    }
+    if (merit(outcome, expected) >= merit(best, is_best_expected)) {
+      best = std::move(outcome);
+      is_best_expected = expected;
+    }
+    return is_best_expected && best.inliers.size() >= static_cast<std::size_t>(config_.tracker.min_matches);
   };
   if (predicted) {
-    if (is_convincing(track_projected(map, frame, local_, *predicted, config_.matcher.search_radius_px))) return best;
-    if (is_convincing(track_projected(map, frame, local_, *predicted, config_.matcher.wide_search_radius_px)))
-      return best;
+    const std::array wider{config_.matcher.search_radius_px, config_.matcher.wide_search_radius_px};
+    if (is_convincing(track_projected(map, frame, local_, *predicted, radius_px))) return best;
+    for (const double wider_px : wider) {
+      if (wider_px <= radius_px) continue;
+      if (is_convincing(track_projected(map, frame, local_, *predicted, wider_px))) return best;
+    }
   }
-  if (is_convincing(track_brute_force(map, frame, local_)) || best.is_tracked) return best;
-  const auto count = std::min(map.keyframes().size(), static_cast<std::size_t>(config_.tracker.recovery_keyframes));
-  for (std::size_t back = 1; back <= count; ++back) {
-    const KeyframeId id = map.keyframes().size() - back;
-    if (id == local_.reference) continue;
-    if (is_convincing(track_brute_force(map, frame, local_map(map, id)))) break;
-  }
+  is_convincing(track_brute_force(map, frame, local_));
   return best;
+}
+
+double Tracker::surprise_px(const Map& map, const Frame& frame, const TrackOutcome& outcome,
+                            const Pose& T_map_camera) const {
+  const Pose T_camera_map = T_map_camera.inverse();
+  double squares = 0.0;
+  for (const Match& match : outcome.inliers) {
+    const Feature& feature = frame.features[static_cast<std::size_t>(match.feature)];
+    const Eigen::Vector3d p = T_camera_map * map.landmark(match.landmark).p_map;
+    if (p.z() < config_.noise.min_depth_m) return std::numeric_limits<double>::infinity();
+    const double error_px = (frame.input->camera.project(p) - feature.pixel).norm();
+    squares += std::pow(error_px / std::pow(config_.features.scale_factor, feature.octave), 2);
+  }
+  return std::sqrt(squares / static_cast<double>(outcome.inliers.size()));
 }
 
 TrackOutcome Tracker::recognize(const Map& map, const Frame& frame, KeyframeId keyframe,
@@ -73,62 +108,78 @@ TrackOutcome Tracker::recognize(const Map& map, const Frame& frame, KeyframeId k
 TrackOutcome Tracker::track_projected(const Map& map, const Frame& frame, const LocalMap& local, const Pose& predicted,
                                       double radius_px) const {
   const auto matches = match_by_projection(config_, map, local.landmarks, frame, predicted, radius_px);
-  return align(map, frame, local, matches, map.keyframe(local.reference).T_map_camera.inverse() * predicted);
+  const auto points = constraints(map, frame, local.reference, matches);
+  const Pose T_reference_camera = map.keyframe(local.reference).T_map_camera.inverse() * predicted;
+  const Witnesses all{points, 4.0 * radius_px * radius_px};
+  return settle(frame, local, {matches, points}, all, T_reference_camera);
 }
 
 TrackOutcome Tracker::track_brute_force(const Map& map, const Frame& frame, const LocalMap& local) const {
   TrackOutcome outcome;
   const Keyframe& reference = map.keyframe(local.reference);
+  const geometry::PinholeCamera& camera = frame.input->camera;
   const auto matches = match_brute_force(config_.matcher, reference, frame);
   outcome.matches = static_cast<int>(matches.size());
   outcome.reason = shortage(outcome.matches, config_.tracker.min_inliers, "matches");
   if (outcome.matches < config_.tracker.min_inliers) return outcome;
-  const Pose T_reference_map = reference.T_map_camera.inverse();
-  std::vector<Eigen::Vector3d> points;
-  std::vector<Eigen::Vector2d> pixels;
-  for (const Match& match : matches) {
-    points.push_back(T_reference_map * map.landmark(match.landmark).p_map);
-    pixels.push_back(frame.features[static_cast<std::size_t>(match.feature)].pixel);
-  }
-  const auto T_reference_camera = solve_pose(config_.tracker, frame.input->camera, points, pixels);
+  const auto points = constraints(map, frame, local.reference, matches);
+  const auto solved = solve_pose(config_.tracker, camera, witnesses(config_.tracker, points));
   outcome.reason = "no pose explains " + std::to_string(config_.tracker.min_inliers) + " matches";
-  if (!T_reference_camera) return outcome;
+  if (!solved) return outcome;
   // The pose is good enough to find the rest of the local map by projection.
-  const auto more = match_by_projection(config_, map, local.landmarks, frame,
-                                        reference.T_map_camera * *T_reference_camera, config_.matcher.search_radius_px);
-  return align(map, frame, local, more, *T_reference_camera);
+  const auto more =
+      match_by_projection(config_, map, local.landmarks, frame, reference.T_map_camera * solved->T_reference_camera,
+                          config_.matcher.search_radius_px);
+  const auto more_points = constraints(map, frame, local.reference, more);
+  const Witnesses all{points, static_cast<double>(camera.width) * camera.height};
+  return settle(frame, local, {more, more_points}, all, solved->T_reference_camera);
 }
 
-TrackOutcome Tracker::align(const Map& map, const Frame& frame, const LocalMap& local,
-                            const std::vector<Match>& matches, const Pose& T_reference_camera) const {
-  TrackOutcome outcome;
-  outcome.reference = local.reference;
-  outcome.matches = static_cast<int>(matches.size());
-  outcome.reason = shortage(outcome.matches, config_.tracker.min_inliers, "matches");
-  if (outcome.matches < config_.tracker.min_inliers) return outcome;
-  const Pose T_reference_map = map.keyframe(local.reference).T_map_camera.inverse();
+std::vector<PointConstraint> Tracker::constraints(const Map& map, const Frame& frame, KeyframeId reference,
+                                                  const std::vector<Match>& matches) const {
+  const Pose T_reference_map = map.keyframe(reference).T_map_camera.inverse();
   std::vector<PointConstraint> points;
   points.reserve(matches.size());
   for (const Match& match : matches) {
     const Feature& feature = frame.features[static_cast<std::size_t>(match.feature)];
+    const Landmark& landmark = map.landmark(match.landmark);
     const double sigma = config_.noise.pixel_sigma_px * std::pow(config_.features.scale_factor, feature.octave);
-    points.push_back({T_reference_map * map.landmark(match.landmark).p_map, feature.pixel, feature.depth_m, sigma});
+    points.push_back(
+        {T_reference_map * landmark.p_map, feature.pixel, feature.depth_m, sigma, landmark.observations.size() > 1});
   }
-  const AlignmentProblem problem{frame.input->camera, points, local.surface, &frame.input->depth};
+  return points;
+}
+
+TrackOutcome Tracker::settle(const Frame& frame, const LocalMap& local, const Matched& matched, const Witnesses& all,
+                             const Pose& T_reference_camera) const {
+  TrackOutcome outcome;
+  outcome.reference = local.reference;
+  outcome.matches = static_cast<int>(matched.matches.size());
+  outcome.reason = shortage(outcome.matches, config_.tracker.min_inliers, "matches");
+  if (outcome.matches < config_.tracker.min_inliers) return outcome;
+  const AlignmentProblem problem{frame.input->camera, matched.points, local.surface, &frame.input->depth};
   outcome.alignment = refine_pose(config_, problem, T_reference_camera);
-  for (std::size_t i = 0; i < matches.size(); ++i) {
-    if (outcome.alignment.is_inlier[i]) outcome.inliers.push_back(matches[i]);
+  for (std::size_t i = 0; i < matched.matches.size(); ++i) {
+    if (outcome.alignment.is_inlier[i]) outcome.inliers.push_back(matched.matches[i]);
   }
-  if (outcome.alignment.inliers < config_.tracker.min_inliers) {
-    outcome.reason = shortage(outcome.alignment.inliers, config_.tracker.min_inliers, "inliers");
-  } else if (outcome.alignment.inliers < config_.tracker.min_inlier_share * outcome.matches) {
-    outcome.reason = "only " + std::to_string(outcome.alignment.inliers) + " of " + std::to_string(outcome.matches) +
-                     " matches agree";
-  } else {
-    outcome.is_tracked = geometry::is_valid(outcome.alignment.T_reference_camera);
-    outcome.reason = outcome.is_tracked ? "" : "the pose is not finite";
-  }
+  outcome.reason = fault_of(outcome.alignment, frame.input->camera, all);
+  outcome.is_tracked = outcome.reason.empty();
   return outcome;
+}
+
+// Why the pose is not believed: it has too few inliers, or not more witnesses than any other pose, or chance.
+std::string Tracker::fault_of(const Alignment& alignment, const geometry::PinholeCamera& camera,
+                              const Witnesses& all) const {
+  const TrackerConfig& config = config_.tracker;
+  if (!geometry::is_valid(alignment.T_reference_camera)) return "the pose is not finite";
+  if (alignment.inliers < config.min_inliers) return shortage(alignment.inliers, config.min_inliers, "inliers");
+  const Support support = find_support(config, camera, all.points, alignment.T_reference_camera, all.window_px2);
+  int conf = 0;
+  for (auto& q : all.points) conf += q.is_confirmed;
+  fprintf(stderr, "  judge window %.0f inliers %d agree %d of %d confirmed %d rivals %d chance %.1f -> %d\n",
+          all.window_px2, alignment.inliers, support.agree, support.of, conf, support.rivals, support.by_chance,
+          (int)is_significant(config, support));
+  return is_significant(config, support) ? "" : doubt(support);
 }
 
 }  // namespace lapis::slam

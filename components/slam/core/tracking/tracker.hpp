@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
@@ -30,9 +31,13 @@ class Tracker {
 
   /// Renews the local map around `reference`; call it after every change of the map.
   void set_reference(const Map& map, KeyframeId reference);
-  /// Tries, in this order, until one is convincing: projection with the predicted pose, the same with a wider search,
-  /// brute force with the reference key-frame, brute force with the newest key-frames.
-  TrackOutcome track(const Map& map, const Frame& frame, const std::optional<geometry::Pose>& predicted) const;
+  /// Tries, in this order, until one is convincing: projection with the predicted pose, within `radius_px` and in two
+  /// wider searches; brute force with the reference key-frame. A pose that `is_expected` is not is the last resort.
+  TrackOutcome track(const Map& map, const Frame& frame, const std::optional<geometry::Pose>& predicted,
+                     double radius_px, const std::function<bool(const TrackOutcome&)>& is_expected) const;
+  /// Root-mean-square distance of the inliers from where `T_map_camera` has them, at the finest pyramid level [px].
+  double surprise_px(const Map& map, const Frame& frame, const TrackOutcome& outcome,
+                     const geometry::Pose& T_map_camera) const;
   /// Pose of a frame relative to a key-frame anywhere in the map: by brute force or, where the pose is roughly known
   /// (`T_map_camera`), by projection. No other key-frame is tried. It uses features alone: surfaces that are seen from
   /// metres apart are paired with other, parallel ones, an error of centimetres that does not show in the residuals.
@@ -51,8 +56,20 @@ class Tracker {
   TrackOutcome track_projected(const Map& map, const Frame& frame, const LocalMap& local,
                                const geometry::Pose& predicted, double radius_px) const;
   TrackOutcome track_brute_force(const Map& map, const Frame& frame, const LocalMap& local) const;
-  TrackOutcome align(const Map& map, const Frame& frame, const LocalMap& local, const std::vector<Match>& matches,
-                     const geometry::Pose& T_reference_camera) const;
+  struct Matched {
+    const std::vector<Match>& matches;
+    const std::vector<PointConstraint>& points;
+  };
+  /// Matches that tell right poses from wrong ones.
+  struct Witnesses {
+    const std::vector<PointConstraint>& points;
+    double window_px2 = 0.0;  // area in which the pixel of a wrong match can lie
+  };
+  std::vector<PointConstraint> constraints(const Map& map, const Frame& frame, KeyframeId reference,
+                                           const std::vector<Match>& matches) const;
+  TrackOutcome settle(const Frame& frame, const LocalMap& local, const Matched& matched, const Witnesses& all,
+                      const geometry::Pose& T_reference_camera) const;
+  std::string fault_of(const Alignment& alignment, const geometry::PinholeCamera& camera, const Witnesses& all) const;
 
   SlamConfig config_;
   LocalMap local_;

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <tuple>
 #include <utility>
@@ -59,12 +58,6 @@ TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optio
   bool is_best_expected = false;
   const auto is_convincing = [&](TrackOutcome outcome) {
     const bool expected = outcome.is_tracked && is_expected(outcome);
-    if (outcome.is_tracked && predicted) {
-      const Pose d = (map.keyframe(outcome.reference).T_map_camera.inverse() * *predicted).inverse() *
-                     outcome.alignment.T_reference_camera;
-      fprintf(stderr, "  moved from prediction %.3f %.3f %.3f; %.3f rad; expected %d\n", d.translation().x(),
-              d.translation().y(), d.translation().z(), geometry::rotation_angle(d.linear()), (int)expected);
-    }
     if (merit(outcome, expected) >= merit(best, is_best_expected)) {
       best = std::move(outcome);
       is_best_expected = expected;
@@ -107,11 +100,21 @@ TrackOutcome Tracker::recognize(const Map& map, const Frame& frame, KeyframeId k
 
 TrackOutcome Tracker::track_projected(const Map& map, const Frame& frame, const LocalMap& local, const Pose& predicted,
                                       double radius_px) const {
+  TrackOutcome outcome;
+  outcome.reference = local.reference;
   const auto matches = match_by_projection(config_, map, local.landmarks, frame, predicted, radius_px);
+  outcome.matches = static_cast<int>(matches.size());
+  outcome.reason = shortage(outcome.matches, config_.tracker.min_inliers, "matches");
+  if (outcome.matches < config_.tracker.min_inliers) return outcome;
   const auto points = constraints(map, frame, local.reference, matches);
-  const Pose T_reference_camera = map.keyframe(local.reference).T_map_camera.inverse() * predicted;
-  const Witnesses all{points, 4.0 * radius_px * radius_px};
-  return settle(frame, local, {matches, points}, all, T_reference_camera);
+  const AlignmentProblem problem{frame.input->camera, points, local.surface, &frame.input->depth};
+  outcome.alignment = refine_pose(config_, problem, map.keyframe(local.reference).T_map_camera.inverse() * predicted);
+  for (std::size_t i = 0; i < matches.size(); ++i) {
+    if (outcome.alignment.is_inlier[i]) outcome.inliers.push_back(matches[i]);
+  }
+  outcome.reason = fault_of(outcome.alignment, frame.input->camera, points, 4.0 * radius_px * radius_px);
+  outcome.is_tracked = outcome.reason.empty();
+  return outcome;
 }
 
 TrackOutcome Tracker::track_brute_force(const Map& map, const Frame& frame, const LocalMap& local) const {
@@ -126,13 +129,14 @@ TrackOutcome Tracker::track_brute_force(const Map& map, const Frame& frame, cons
   const auto solved = solve_pose(config_.tracker, camera, witnesses(config_.tracker, points));
   outcome.reason = "no pose explains " + std::to_string(config_.tracker.min_inliers) + " matches";
   if (!solved) return outcome;
-  // The pose is good enough to find the rest of the local map by projection.
-  const auto more =
-      match_by_projection(config_, map, local.landmarks, frame, reference.T_map_camera * solved->T_reference_camera,
-                          config_.matcher.search_radius_px);
-  const auto more_points = constraints(map, frame, local.reference, more);
-  const Witnesses all{points, static_cast<double>(camera.width) * camera.height};
-  return settle(frame, local, {more, more_points}, all, solved->T_reference_camera);
+  // The pose is good enough to find the rest of the local map by projection. These matches were sought near it; the
+  // first ones were not.
+  outcome = track_projected(map, frame, local, reference.T_map_camera * solved->T_reference_camera,
+                            config_.matcher.search_radius_px);
+  if (!outcome.is_tracked) return outcome;
+  outcome.reason = fault_of(outcome.alignment, camera, points, static_cast<double>(camera.width) * camera.height);
+  outcome.is_tracked = outcome.reason.empty();
+  return outcome;
 }
 
 std::vector<PointConstraint> Tracker::constraints(const Map& map, const Frame& frame, KeyframeId reference,
@@ -150,35 +154,13 @@ std::vector<PointConstraint> Tracker::constraints(const Map& map, const Frame& f
   return points;
 }
 
-TrackOutcome Tracker::settle(const Frame& frame, const LocalMap& local, const Matched& matched, const Witnesses& all,
-                             const Pose& T_reference_camera) const {
-  TrackOutcome outcome;
-  outcome.reference = local.reference;
-  outcome.matches = static_cast<int>(matched.matches.size());
-  outcome.reason = shortage(outcome.matches, config_.tracker.min_inliers, "matches");
-  if (outcome.matches < config_.tracker.min_inliers) return outcome;
-  const AlignmentProblem problem{frame.input->camera, matched.points, local.surface, &frame.input->depth};
-  outcome.alignment = refine_pose(config_, problem, T_reference_camera);
-  for (std::size_t i = 0; i < matched.matches.size(); ++i) {
-    if (outcome.alignment.is_inlier[i]) outcome.inliers.push_back(matched.matches[i]);
-  }
-  outcome.reason = fault_of(outcome.alignment, frame.input->camera, all);
-  outcome.is_tracked = outcome.reason.empty();
-  return outcome;
-}
-
-// Why the pose is not believed: it has too few inliers, or not more witnesses than any other pose, or chance.
+// Why the pose is not believed: it has too few inliers, or not more of the points than any other pose, or chance.
 std::string Tracker::fault_of(const Alignment& alignment, const geometry::PinholeCamera& camera,
-                              const Witnesses& all) const {
+                              const std::vector<PointConstraint>& points, double window_px2) const {
   const TrackerConfig& config = config_.tracker;
   if (!geometry::is_valid(alignment.T_reference_camera)) return "the pose is not finite";
   if (alignment.inliers < config.min_inliers) return shortage(alignment.inliers, config.min_inliers, "inliers");
-  const Support support = find_support(config, camera, all.points, alignment.T_reference_camera, all.window_px2);
-  int conf = 0;
-  for (auto& q : all.points) conf += q.is_confirmed;
-  fprintf(stderr, "  judge window %.0f inliers %d agree %d of %d confirmed %d rivals %d chance %.1f -> %d\n",
-          all.window_px2, alignment.inliers, support.agree, support.of, conf, support.rivals, support.by_chance,
-          (int)is_significant(config, support));
+  const Support support = find_support(config, camera, points, alignment.T_reference_camera, window_px2);
   return is_significant(config, support) ? "" : doubt(support);
 }
 

@@ -56,20 +56,11 @@ class Tracker {
   TrackOutcome track_projected(const Map& map, const Frame& frame, const LocalMap& local,
                                const geometry::Pose& predicted, double radius_px) const;
   TrackOutcome track_brute_force(const Map& map, const Frame& frame, const LocalMap& local) const;
-  struct Matched {
-    const std::vector<Match>& matches;
-    const std::vector<PointConstraint>& points;
-  };
-  /// Matches that tell right poses from wrong ones.
-  struct Witnesses {
-    const std::vector<PointConstraint>& points;
-    double window_px2 = 0.0;  // area in which the pixel of a wrong match can lie
-  };
   std::vector<PointConstraint> constraints(const Map& map, const Frame& frame, KeyframeId reference,
                                            const std::vector<Match>& matches) const;
-  TrackOutcome settle(const Frame& frame, const LocalMap& local, const Matched& matched, const Witnesses& all,
-                      const geometry::Pose& T_reference_camera) const;
-  std::string fault_of(const Alignment& alignment, const geometry::PinholeCamera& camera, const Witnesses& all) const;
+  /// `window_px2`: area in which the pixel of a wrong match can lie [px^2].
+  std::string fault_of(const Alignment& alignment, const geometry::PinholeCamera& camera,
+                       const std::vector<PointConstraint>& points, double window_px2) const;
 
   SlamConfig config_;
   LocalMap local_;

@@ -114,14 +114,16 @@ std::optional<MotionModel::Expected> Relocalizer::expected(const Situation& now,
                                compound_covariance(between, reckoned->T_reference_camera, reckoned->covariance)};
 }
 
-// Without odometry the camera may have gained speed since its last pose.
+// Without odometry the camera may have gained speed since its last pose; and stamps jitter, most where a clock was set.
 bool Relocalizer::motion_leads_to(const Situation& now, const TrackOutcome& outcome) const {
+  constexpr double kLeastElapsed_s = 0.05;
   const auto lead = expected(now, outcome.reference);
   if (!lead) return false;
   const Pose T_map_camera = now.map.keyframe(outcome.reference).T_map_camera * outcome.alignment.T_reference_camera;
   Reach within = reach(lead->covariance);
   if (!now.motion.dead_reckon(now.stamp())) {
-    const double times = (now.stamp() - *now.motion.last_stamp()).seconds() * config_.speed_m_s / config_.near_m;
+    const double elapsed_s = std::max(kLeastElapsed_s, (now.stamp() - *now.motion.last_stamp()).seconds());
+    const double times = elapsed_s * config_.speed_m_s / config_.near_m;
     within.m += (times - 1.0) * config_.near_m;
     within.rad += (times - 1.0) * config_.near_rad;
   }

@@ -45,13 +45,13 @@ struct SurfaceConfig {
 };
 
 struct TrackerConfig {
-  int min_matches = 30;            ///< an attempt with fewer inliers is followed by the next kind of matching [6, 500]
-  int min_inliers = 15;            ///< a frame with fewer after the refinement has no pose [6, 200]
-  double rival_sigmas = 2.3;       ///< inliers beyond those of any other pose and of chance, in sigmas [0, 20]
-  int local_keyframes = 5;         ///< key-frames whose landmarks form the local map [1, 50]
-  int ransac_iterations = 200;     ///< rounds of PnP with RANSAC [10, 10000]
-  double ransac_error_px = 4.0;    ///< PnP inlier threshold [0.5, 20]
-  int refine_iterations = 4;       ///< Levenberg-Marquardt steps per round [1, 50]
+  int min_matches = 30;          ///< an attempt with fewer inliers is followed by the next kind of matching [6, 500]
+  int min_inliers = 15;          ///< a frame with fewer after the refinement has no pose [6, 200]
+  double rival_sigmas = 2.3;     ///< inliers beyond those of any other pose and of chance, in sigmas [0, 20]
+  int local_keyframes = 5;       ///< key-frames whose landmarks form the local map [1, 50]
+  int ransac_iterations = 200;   ///< rounds of PnP with RANSAC [10, 10000]
+  double ransac_error_px = 4.0;  ///< PnP inlier threshold [0.5, 20]
+  int refine_iterations = 4;     ///< Levenberg-Marquardt steps per round [1, 50]
   int min_first_features = 100;  ///< features with depth to begin without odometry; max_features / 2 suffice [6, 5000]
   /// Frames in a row with enough features but no pose, after which the map continues at the pose of odometry [1, 1000].
   int max_blind_frames = 8;
@@ -102,14 +102,14 @@ struct LoopConfig {
 
 /// Conditions under which a pose that was found by recognising a place is believed.
 struct RelocalizationConfig {
-  int min_inliers = 25;          ///< of the alignment with the recognised key-frame [10, 1000]
-  double max_sigma_m = 0.06;     ///< largest position sigma of a pose there, in any direction [1e-3, 1]
-  int confirmations = 2;         ///< further frames that have to find the same pose there [0, 100]
-  double near_m = 0.25;          ///< distance of poses that count as the same, and from the prediction [0.01, 5]
-  double near_rad = 0.2;         ///< the same for the angle [0.01, 3]
-  double speed_m_s = 1.0;        ///< assumed speed between frames, without odometry [0, 10]
-  double patience_s = 2.0;       ///< after the last pose, while one within reach of it is believed at once [0, 10]
-  double memory_s = 0.5;         ///< longest time between frames that confirm each other [0.01, 10]
+  int min_inliers = 25;       ///< of the alignment with the recognised key-frame [10, 1000]
+  double max_sigma_m = 0.06;  ///< largest position sigma of a pose there, in any direction [1e-3, 1]
+  int confirmations = 2;      ///< further frames that have to find the same pose there [0, 100]
+  double near_m = 0.25;       ///< distance of poses that count as the same, and from the prediction [0.01, 5]
+  double near_rad = 0.2;      ///< the same for the angle [0.01, 3]
+  double speed_m_s = 1.0;     ///< assumed speed between frames, without odometry [0, 10]
+  double patience_s = 2.0;    ///< after the last pose, while one within reach of it is believed at once [0, 10]
+  double memory_s = 0.5;      ///< longest time between frames that confirm each other [0.01, 10]
   // Where odometry contradicts the place:
   double slip_share = 0.3;  ///< share of path and turn since the last pose that slip may explain [0, 1]
   double evidence_m = 4.0;  ///< path along which views have to agree with a place that slip does not explain [0.5, 100]

@@ -105,9 +105,10 @@ void describe(Field& field, TrackerConfig& c) {
         "begin a map with odometry");
   field("min_inliers", c.min_inliers, config::in_range(6, 200),
         "smallest number of inliers of a pose by features; with fewer, the frame has no pose by features");
-  field("rival_sigmas", c.rival_sigmas, config::in_range(0.0, 20.0),
-        "excess of a pose's inliers over the matches that agree with any other pose, or by chance, without which the "
-        "pose is not believed (a view that repeats itself, noise) [standard deviations, sqrt(sum of both)]");
+  field(
+      "rival_sigmas", c.rival_sigmas, config::in_range(0.0, 20.0),
+      "excess of the matches that agree with a pose (ransac_error_px) over those that agree with any other pose, or by "
+      "chance, without which the pose is not believed [standard deviations, sqrt(sum of both)]");
   field("local_keyframes", c.local_keyframes, config::in_range(1, 50),
         "number of key-frames whose landmarks form the local map: the reference and its most covisible key-frames");
   field("ransac_iterations", c.ransac_iterations, config::in_range(10, 10000),

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 
 #include <Eigen/SVD>
@@ -98,6 +99,10 @@ TumSequence read_sequence(const fs::path& folder) {
         {time::Time::from_seconds(std::stod(color_stamp)), folder / color, folder / depth, Pose::Identity()});
   }
   read_camera(folder / "camera.yaml", sequence);
+  if (sequence.entries.empty()) throw std::runtime_error((folder / "associations.txt").string() + " lists no frames");
+  if (!geometry::is_valid(sequence.camera)) {
+    throw std::runtime_error((folder / "camera.yaml").string() + " has no camera (width, height, fx, fy, cx, cy)");
+  }
   read_truth(folder / "groundtruth.txt", sequence);
   return sequence;
 }

@@ -24,6 +24,7 @@ struct TumSequence {
   RgbdFrame load(std::size_t index) const;
 };
 
+/// Throws with the file when there is no associations.txt or camera.yaml, or no frame.
 TumSequence read_sequence(const std::filesystem::path& folder);
 /// The shared recording `name` below LAPIS_TEST_DATA (default ../shared/data from the repository), or none.
 std::optional<TumSequence> find_sequence(const std::string& name);

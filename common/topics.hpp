@@ -21,6 +21,10 @@
 
 namespace lapis::topics {
 
+/// Frames that a process names by itself, not by what a message says.
+inline constexpr const char* kFrames[] = {
+    "map", "odom", "base_link", "camera_link", "camera_color_optical_frame", "camera_depth_optical_frame"};
+
 /// Calls `visit` with every row of the table, in its order.
 template <class Visitor>
 void for_each(Visitor&& visit) {
@@ -30,6 +34,7 @@ void for_each(Visitor&& visit) {
   visit(kColor);
   visit(kCompressedColor);
   visit(kDepth);
+  visit(kCompressedDepth);
   visit(kColorInfo);
   visit(kDepthInfo);
   visit(kLabels);

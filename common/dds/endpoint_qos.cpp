@@ -10,7 +10,7 @@ using namespace compat::fdds;  // NOLINT(google-build-using-namespace): policy n
 // Policies that readers and writers share.
 template <class EndpointQos>
 void apply_common(const Qos& wanted, const std::string& type_hash, const LinkSettings& link, EndpointQos& qos) {
-  qos.reliability().kind = RELIABLE_RELIABILITY_QOS;
+  qos.reliability().kind = wanted.best_effort ? BEST_EFFORT_RELIABILITY_QOS : RELIABLE_RELIABILITY_QOS;
   qos.reliability().max_blocking_time = compat::duration(100'000'000);
   qos.durability().kind = wanted.latched ? TRANSIENT_LOCAL_DURABILITY_QOS : VOLATILE_DURABILITY_QOS;
   qos.history().kind = KEEP_LAST_HISTORY_QOS;

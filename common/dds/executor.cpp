@@ -11,6 +11,12 @@ void Executor::add(Source& source) {
   wait_set_.attach_condition(source.condition());
 }
 
+void Executor::become_best_effort(Source& source) {
+  wait_set_.detach_condition(source.condition());
+  source.become_best_effort();
+  wait_set_.attach_condition(source.condition());
+}
+
 void Executor::every(Clock::duration period, std::function<void()> action) {
   timers_.push_back({period, Clock::now() + period, std::move(action)});
 }

@@ -20,6 +20,8 @@ class Executor {
   /// The source must outlive the executor's last spin(), and whoever reads sources() later.
   void add(Source& source);
   const std::vector<Source*>& sources() const { return sources_; }
+  /// Makes a source read BEST_EFFORT. Not for handlers of samples.
+  void become_best_effort(Source& source);
   /// Calls `action` every `period` of wall-clock time, for book-keeping only.
   void every(Clock::duration period, std::function<void()> action);
   /// Calls `action` once, when the steady clock reaches `due`.

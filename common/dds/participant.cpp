@@ -202,7 +202,7 @@ std::string Participant::describe_other_run(const std::string& run) const {
 
 void Participant::announce_graph() {
   rmw_dds_common::msg::NodeEntitiesInfo node;
-  node.node_namespace("/" + options_.name_space);
+  node.node_namespace("/" + options_.names.name_space);
   node.node_name(options_.node_name);
   for (const auto& reader : readers_) node.reader_gid_seq().push_back(to_message(reader));
   for (const auto& writer : writers_) node.writer_gid_seq().push_back(to_message(writer));

@@ -9,17 +9,20 @@
 #include "common/dds/discovery.hpp"
 #include "common/dds/gid.hpp"
 #include "common/dds/link.hpp"
+#include "common/dds/names.hpp"
 #include "common/dds/pace.hpp"
 #include "common/dds/packet_guard.hpp"
 #include "common/dds/peers.hpp"
+#include "common/dds/qos.hpp"
 
 namespace lapis::dds {
 
 struct ParticipantOptions {
-  std::string node_name;   ///< "slam"; with the namespace the node's ROS name
-  std::string name_space;  ///< "robot1" or empty
+  std::string node_name;  ///< "slam"; with the namespace the node's ROS name
+  Names names;
   DiscoverySettings discovery;
   Transport transport = Transport::kUdp;
+  SensorQos sensor_qos = SensorQos::kAuto;
   int socket_buffer_bytes = 4 << 20;
   std::optional<LinkSettings> link;  ///< none: link_of(discovery, transport)
 };
@@ -53,14 +56,17 @@ class Participant {
   std::string describe_other_run(const std::string& run) const;
   const LinkSettings& link() const { return link_; }
   Pace& pace() { return pace_; }
-  const std::string& name_space() const { return options_.name_space; }
+  SensorQos sensor_qos() const { return options_.sensor_qos; }
+  const Names& names() const { return options_.names; }
   /// Why shared memory is not used, although the options ask for it; empty when all is as asked for.
   const std::string& shared_memory_obstacle() const { return shared_memory_obstacle_; }
 
   /// Endpoints report themselves, so that the ROS 2 graph can list them.
   void add_reader(const Gid& gid) { readers_.push_back(gid); }
+  void remove_reader(const Gid& gid) { std::erase(readers_, gid); }
   void add_writer(const Gid& gid) { writers_.push_back(gid); }
-  /// Publishes the node's endpoints on `ros_discovery_info`; call it when all endpoints have been created.
+  /// Publishes the node's endpoints on `ros_discovery_info`; call it when all endpoints have been created, and when
+  /// they have changed.
   void announce_graph();
 
  private:

@@ -11,7 +11,7 @@ template <class Message>
 class Publisher : public Writer {
  public:
   Publisher(Participant& participant, const Topic<Message>& topic)
-      : Writer(participant, lapis::dds::dds_name(topic, participant.name_space()), Support::kDdsName,
+      : Writer(participant, lapis::dds::dds_name(topic, participant.names()), Support::kDdsName,
                make_type_support<Message>(), Support::kHash, topic.qos) {}
 
   /// Returns false when DDS refuses the sample, which is counted.

@@ -18,34 +18,57 @@ class Reader::Filter : public compat::SignatureFilter {
 
 Reader::Reader(Participant& participant, const std::string& dds_name, const std::string& type_name,
                compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos, Writers writers)
-    : participant_(participant), dds_name_(dds_name), is_latched_(qos.latched), is_keyed_(qos.keyed),
-      writers_(participant.peers()) {
-  compat::fdds::TopicDescription* topic = &participant.topic(dds_name, type_name, std::move(type));
+    : participant_(participant), dds_name_(dds_name), type_hash_(type_hash), qos_(qos), writers_(participant.peers()) {
+  qos_.best_effort |= qos.sensor && participant.sensor_qos() == SensorQos::kBestEffort;
+  topic_ = &participant.topic(dds_name, type_name, std::move(type));
   if (writers == Writers::kOne && !participant.peers().run().empty()) {
     filter_ = std::make_unique<Filter>(*this);
-    topic = filtered_ = &participant.filter(static_cast<compat::fdds::Topic&>(*topic), *filter_);
+    topic_ = filtered_ = &participant.filter(static_cast<compat::fdds::Topic&>(*topic_), *filter_);
   }
+  try {
+    create();
+  } catch (const std::runtime_error&) {
+    if (filtered_ != nullptr) participant.drop(*filtered_);
+    throw;
+  }
+}
+
+void Reader::create() {
   const auto mask = compat::fdds::StatusMask::subscription_matched()
                     << compat::fdds::StatusMask::requested_incompatible_qos();
-  reader_ =
-      participant.subscriber().create_datareader(topic, reader_qos(qos, type_hash, participant.link()), this, mask);
-  if (reader_ == nullptr) {
-    if (filtered_ != nullptr) participant.drop(*filtered_);
-    throw std::runtime_error("DDS reader of " + dds_name + " could not be created");
-  }
+  reader_ = participant_.subscriber().create_datareader(topic_, reader_qos(qos_, type_hash_, participant_.link()), this,
+                                                        mask);
+  if (reader_ == nullptr) throw std::runtime_error("DDS reader of " + dds_name_ + " could not be created");
   reader_->get_statuscondition().set_enabled_statuses(compat::fdds::StatusMask::data_available());
   gid_ = to_gid(reader_->guid());
-  participant.add_reader(gid_);
+  participant_.add_reader(gid_);
+}
+
+bool Reader::wants_best_effort() const {
+  return has_best_effort_writer_ && qos_.sensor && !qos_.best_effort && participant_.sensor_qos() == SensorQos::kAuto;
+}
+
+void Reader::become_best_effort() {
+  participant_.remove_reader(gid_);
+  participant_.subscriber().delete_datareader(reader_);
+  reader_ = nullptr;
+  {
+    const std::lock_guard lock(mutex_);
+    writers_.unmatch_all();
+  }
+  incompatible_ = 0;
+  qos_.best_effort = true;
+  create();
 }
 
 Reader::~Reader() {
-  participant_.subscriber().delete_datareader(reader_);
+  if (reader_ != nullptr) participant_.subscriber().delete_datareader(reader_);
   if (filtered_ != nullptr) participant_.drop(*filtered_);
 }
 
 Reader::Taken Reader::take(void* sample, compat::fdds::SampleInfo& info) {
   if (!compat::ok(reader_->take_next_sample(sample, &info))) {
-    if (is_keyed_) newest_ = reached_;
+    if (qos_.keyed) newest_ = reached_;
     return Taken::kNothing;
   }
   const Gid writer = to_gid(info.sample_identity.writer_guid());
@@ -53,13 +76,14 @@ Reader::Taken Reader::take(void* sample, compat::fdds::SampleInfo& info) {
   const std::uint64_t sequence = info.sample_identity.sequence_number().to64long();
   std::uint64_t& newest = reached_[writer];
   // Latched (and so all keyed) topics skip sequence numbers by design.
-  if (welcome == Welcome::kExpected && !is_latched_ && newest != 0 && sequence > newest + 1) {
+  if (welcome == Welcome::kExpected && !qos_.latched && newest != 0 && sequence > newest + 1) {
     missed_ += sequence - newest - 1;
   }
   newest = std::max(newest, sequence);
   // Samples of a keyed topic come in the order of their keys, so none is missing only when none is left.
-  if (!is_keyed_) newest_[writer] = newest;
+  if (!qos_.keyed) newest_[writer] = newest;
   if (welcome == Welcome::kRefused) return Taken::kRefused;
+  heard_ = std::chrono::steady_clock::now();
   return info.valid_data ? Taken::kSample : Taken::kKeyEnded;
 }
 
@@ -128,8 +152,9 @@ void Reader::on_subscription_matched(compat::fdds::DataReader* /*reader*/,
 }
 
 void Reader::on_requested_incompatible_qos(compat::fdds::DataReader* /*reader*/,
-                                           const compat::fdds::RequestedIncompatibleQosStatus& /*status*/) {
+                                           const compat::fdds::RequestedIncompatibleQosStatus& status) {
   ++incompatible_;
+  if (status.last_policy_id == compat::fdds::RELIABILITY_QOS_POLICY_ID) has_best_effort_writer_ = true;
 }
 
 }  // namespace lapis::dds

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <map>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 
 #include "common/dds/participant.hpp"
@@ -34,6 +36,11 @@ class Reader : private compat::fdds::DataReaderListener {
   /// Number of samples that were overwritten or lost before they could be taken.
   std::uint64_t missed() const { return missed_; }
   std::uint64_t incompatible() const { return incompatible_; }
+  /// True when a sensor topic is read RELIABLE, has a writer that offers less, and the participant may follow it.
+  bool wants_best_effort() const;
+  /// Reads the topic BEST_EFFORT from now on, by a new DDS reader. The old one must be in no wait set.
+  void become_best_effort();
+  bool is_best_effort() const { return qos_.best_effort; }
   /// Samples that were refused, because they came from another run or from a second writer of the stream.
   struct Refused {
     std::uint64_t count = 0;
@@ -43,8 +50,10 @@ class Reader : private compat::fdds::DataReaderListener {
   /// Whether what a writer sends now would be refused, so that it need not be waited for.
   bool refuses(const Gid& writer) const;
   const std::string& dds_name() const { return dds_name_; }
+  /// When the newest accepted sample was taken; nothing before the first one. Only for the thread of the wait set.
+  std::optional<std::chrono::steady_clock::time_point> heard() const { return heard_; }
   /// True when writers give a late joiner their last samples.
-  bool is_latched() const { return is_latched_; }
+  bool is_latched() const { return qos_.latched; }
   Gid gid() const { return gid_; }
   /// Number of matched writers that are not of another run.
   std::size_t matched() const;
@@ -57,6 +66,7 @@ class Reader : private compat::fdds::DataReaderListener {
   class Filter;
   enum class Welcome { kExpected, kInterrupted /* samples before it may have been refused */, kRefused };
 
+  void create();
   bool admits(const compat::rtps::GUID_t& signer);
   Welcome welcome_of(const Gid& writer);
   void note_refusal(const Gid& writer);
@@ -67,17 +77,20 @@ class Reader : private compat::fdds::DataReaderListener {
 
   Participant& participant_;
   std::string dds_name_;
-  bool is_latched_ = false;
-  bool is_keyed_ = false;
+  std::string type_hash_;
+  Qos qos_;
   Gid gid_{};
   std::map<Gid, std::uint64_t> newest_;   // all samples up to this number have been taken, or never will be
   std::map<Gid, std::uint64_t> reached_;  // largest number taken, be it refused
   std::uint64_t missed_ = 0;
+  std::optional<std::chrono::steady_clock::time_point> heard_;
   std::atomic<std::uint64_t> incompatible_{0};
-  mutable std::mutex mutex_;  // guards writers_ and refused_, which DDS threads change
+  std::atomic<bool> has_best_effort_writer_{false};  // that is not heard
+  mutable std::mutex mutex_;                         // guards writers_ and refused_, which DDS threads change
   StreamOwner writers_;
   Refused refused_;
   std::unique_ptr<Filter> filter_;
+  compat::fdds::TopicDescription* topic_ = nullptr;
   compat::fdds::ContentFilteredTopic* filtered_ = nullptr;  // null: the topic is not filtered
   compat::fdds::DataReader* reader_ = nullptr;
 };

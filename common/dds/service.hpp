@@ -36,10 +36,10 @@ class ServiceServer : public Source {
   using Handler = std::function<Response(const Request&)>;
 
   ServiceServer(Participant& participant, const ServiceTopic<Service>& service, Handler handler)
-      : Source(participant, request_dds_name(full_name(service, participant.name_space())),
+      : Source(participant, request_dds_name(full_name(service, participant.names())),
                idl::TypeSupport<Request>::kDdsName, make_type_support<Request>(), idl::TypeSupport<Request>::kHash,
                kService, Writers::kMany),
-        reply_(participant, reply_dds_name(full_name(service, participant.name_space())),
+        reply_(participant, reply_dds_name(full_name(service, participant.names())),
                idl::TypeSupport<Response>::kDdsName, make_type_support<Response>(), idl::TypeSupport<Response>::kHash,
                kService),
         handler_(std::move(handler)), every_call_counts_(service.every_call_counts) {}
@@ -138,10 +138,10 @@ class ServiceClient : public Source {
 
  public:
   ServiceClient(Participant& participant, const ServiceTopic<Service>& service)
-      : Source(participant, reply_dds_name(full_name(service, participant.name_space())),
+      : Source(participant, reply_dds_name(full_name(service, participant.names())),
                idl::TypeSupport<Response>::kDdsName, make_type_support<Response>(), idl::TypeSupport<Response>::kHash,
                kService, Writers::kMany),
-        request_(participant, request_dds_name(full_name(service, participant.name_space())),
+        request_(participant, request_dds_name(full_name(service, participant.names())),
                  idl::TypeSupport<Request>::kDdsName, make_type_support<Request>(), idl::TypeSupport<Request>::kHash,
                  kService) {}
 

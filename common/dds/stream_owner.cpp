@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <utility>
+#include <vector>
 
 namespace lapis::dds {
 
@@ -17,6 +18,12 @@ void StreamOwner::unmatch(const Gid& writer) {
   if (it == writers_.end()) return;
   it->second.is_matched = false;
   if (peers_.kinship(writer) != Kinship::kOwnRun) writers_.erase(it);
+}
+
+void StreamOwner::unmatch_all() {
+  std::vector<Gid> known;
+  for (const auto& [writer, peer] : writers_) known.push_back(writer);
+  for (const Gid& writer : known) unmatch(writer);
 }
 
 std::size_t StreamOwner::matched() const {

@@ -25,6 +25,7 @@ class StreamOwner {
 
   void match(const Gid& writer) { note(writer).is_matched = true; }
   void unmatch(const Gid& writer);
+  void unmatch_all();
   /// Number of writers that are matched and not of another run.
   std::size_t matched() const;
   bool is_matched(const Gid& writer) const;

@@ -46,7 +46,7 @@ class Subscription : public Source {
   using Handler = std::function<void(Message&)>;
 
   Subscription(Participant& participant, const Topic<Message>& topic, Handler handler)
-      : Source(participant, lapis::dds::dds_name(topic, participant.name_space()), Support::kDdsName,
+      : Source(participant, lapis::dds::dds_name(topic, participant.names()), Support::kDdsName,
                make_type_support<Message>(), Support::kHash, topic.qos,
                topic.has_many_writers ? Writers::kMany : Writers::kOne),
         handler_(std::move(handler)) {}

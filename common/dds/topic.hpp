@@ -32,14 +32,14 @@ struct ServiceTopic {
 };
 
 template <class Message>
-std::string dds_name(const Topic<Message>& topic, const std::string& name_space) {
-  return topic_dds_name(topic.is_global ? topic.name : in_namespace(topic.name, name_space));
+std::string dds_name(const Topic<Message>& topic, const Names& names) {
+  return topic_dds_name(names.full(topic.name, topic.is_global));
 }
 
 /// Name of a service as ROS 2 shows it.
 template <class Service>
-std::string full_name(const ServiceTopic<Service>& service, const std::string& name_space) {
-  return service.is_global ? service.name : in_namespace(service.name, name_space);
+std::string full_name(const ServiceTopic<Service>& service, const Names& names) {
+  return names.full(service.name, service.is_global);
 }
 
 }  // namespace lapis::dds

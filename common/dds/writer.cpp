@@ -10,11 +10,12 @@ namespace lapis::dds {
 Writer::Writer(Participant& participant, const std::string& dds_name, const std::string& type_name,
                compat::fdds::TypeSupport type, const std::string& type_hash, const Qos& qos)
     : participant_(participant), dds_name_(dds_name), qos_(qos) {
+  qos_.best_effort |= qos.sensor && participant.sensor_qos() == SensorQos::kBestEffort;
   auto& topic = participant.topic(dds_name, type_name, std::move(type));
   const auto mask = compat::fdds::StatusMask::publication_matched()
                     << compat::fdds::StatusMask::offered_incompatible_qos();
   writer_ =
-      participant.publisher().create_datawriter(&topic, writer_qos(qos, type_hash, participant.link()), this, mask);
+      participant.publisher().create_datawriter(&topic, writer_qos(qos_, type_hash, participant.link()), this, mask);
   if (writer_ == nullptr) throw std::runtime_error("DDS writer of " + dds_name + " could not be created");
   gid_ = to_gid(writer_->guid());
   participant.add_writer(gid_);

@@ -49,6 +49,24 @@ std::optional<ImageSize> jpeg_size(Bytes bytes) {
   return std::nullopt;
 }
 
+/// The decoded image if it has the pixels of an Image<Pixel>; nothing when it is damaged.
+template <class Pixel>
+std::optional<geometry::Image<Pixel>> decode(Bytes bytes, int flags) {
+  if (!encoded_size(bytes) || is_truncated_jpeg(bytes) || bytes.size() > std::numeric_limits<int>::max())
+    return std::nullopt;
+  try {
+    // The const_cast is safe because the decoder does not write to its input.
+    const cv::Mat coded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
+    const cv::Mat image = cv::imdecode(coded, flags);
+    if (image.empty() || !image.isContinuous() || image.type() != cv::traits::Type<Pixel>::value) return std::nullopt;
+    geometry::Image<Pixel> out(image.cols, image.rows);
+    std::copy_n(image.ptr<Pixel>(), out.pixels.size(), out.pixels.begin());
+    return out;
+  } catch (const cv::Exception&) {
+    return std::nullopt;
+  }
+}
+
 }  // namespace
 
 std::optional<ImageSize> encoded_size(Bytes bytes) {
@@ -68,19 +86,11 @@ bool is_truncated_jpeg(Bytes bytes) {
 }
 
 std::optional<geometry::GrayImage> decode_gray(Bytes bytes) {
-  if (!encoded_size(bytes) || is_truncated_jpeg(bytes) || bytes.size() > std::numeric_limits<int>::max())
-    return std::nullopt;
-  try {
-    // The const_cast is safe because the decoder does not write to its input.
-    const cv::Mat coded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
-    const cv::Mat image = cv::imdecode(coded, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
-    if (image.empty() || !image.isContinuous()) return std::nullopt;
-    geometry::GrayImage gray(image.cols, image.rows);
-    std::copy_n(image.ptr<std::uint8_t>(), gray.pixels.size(), gray.pixels.begin());
-    return gray;
-  } catch (const cv::Exception&) {
-    return std::nullopt;
-  }
+  return decode<std::uint8_t>(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+}
+
+std::optional<geometry::Image<std::uint16_t>> decode_wide(Bytes bytes) {
+  return decode<std::uint16_t>(bytes, cv::IMREAD_UNCHANGED);
 }
 
 }  // namespace lapis::images

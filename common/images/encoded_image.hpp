@@ -25,4 +25,7 @@ bool is_truncated_jpeg(std::span<const std::uint8_t> bytes);
 /// image is damaged.
 std::optional<geometry::GrayImage> decode_gray(std::span<const std::uint8_t> bytes);
 
+/// Values of a grey PNG with 16 bits per pixel; nothing when the image is damaged or of another kind.
+std::optional<geometry::Image<std::uint16_t>> decode_wide(std::span<const std::uint8_t> bytes);
+
 }  // namespace lapis::images

@@ -63,6 +63,22 @@ Converted<geometry::GrayImage> gray(const Image& image, Convert convert) {
   return map_pixels<std::uint8_t>(image, kBytesPerPixel, convert);
 }
 
+/// Grey values of a 16-bit image in proportion to its own, of which 99 % stay below 255.
+Converted<geometry::GrayImage> gray_of_wide(const Image& image) {
+  const auto problem = layout_problem(image, sizeof(std::uint16_t));
+  if (!problem.empty()) return Converted<geometry::GrayImage>::refused("colour " + problem);
+  auto values = map_pixels<std::uint16_t>(image, 2, [](const std::uint8_t* p) { return read<std::uint16_t>(p); });
+  auto sorted = values.pixels;
+  const auto bright = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() - 1 - (sorted.size() - 1) / 100);
+  std::nth_element(sorted.begin(), bright, sorted.end());
+  const std::uint32_t white = std::max<std::uint32_t>(*bright, 255);
+  geometry::GrayImage out(values.width, values.height);
+  std::transform(values.pixels.begin(), values.pixels.end(), out.pixels.begin(), [white](std::uint32_t value) {
+    return static_cast<std::uint8_t>(std::min(value, white) * 255 / white);
+  });
+  return out;
+}
+
 }  // namespace
 
 Converted<geometry::LensCamera> lens_camera(const sensor_msgs::msg::CameraInfo& message) {
@@ -119,14 +135,20 @@ std::string size_problem(const std::string& what, int width, int height, const g
 Converted<geometry::GrayImage> to_gray(const Image& message) {
   using Result = Converted<geometry::GrayImage>;
   const std::string& encoding = message.encoding();
-  if (encoding == "mono8") return gray<1>(message, [](const std::uint8_t* p) { return *p; });
+  if (encoding == "mono8" || encoding == "8UC1") return gray<1>(message, [](const std::uint8_t* p) { return *p; });
+  if (encoding == "mono16" || encoding == "16UC1") return gray_of_wide(message);
+  const bool has_chroma_first = encoding == "yuv422" || encoding == "uyvy";
+  if (has_chroma_first) return gray<2>(message, [](const std::uint8_t* p) { return p[1]; });
+  if (encoding == "yuv422_yuy2" || encoding == "yuyv")
+    return gray<2>(message, [](const std::uint8_t* p) { return *p; });
   const auto of_rgb = [](const std::uint8_t* p) { return luminance(p[0], p[1], p[2]); };
   const auto of_bgr = [](const std::uint8_t* p) { return luminance(p[2], p[1], p[0]); };
   if (encoding == "rgb8") return gray<3>(message, of_rgb);
   if (encoding == "bgr8") return gray<3>(message, of_bgr);
   if (encoding == "rgba8") return gray<4>(message, of_rgb);
   if (encoding == "bgra8") return gray<4>(message, of_bgr);
-  return Result::refused("colour encoding '" + shown(encoding) + "' is not rgb8, bgr8, rgba8, bgra8 or mono8");
+  return Result::refused("colour encoding '" + shown(encoding) +
+                         "' is not rgb8, bgr8, rgba8, bgra8, mono8, mono16 or yuv422");
 }
 
 Converted<geometry::DepthImage> to_depth(const Image& message) {

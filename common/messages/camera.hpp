@@ -17,7 +17,9 @@ sensor_msgs::msg::CameraInfo to_camera_info(const geometry::LensCamera& camera, 
 /// Why an image does not have the size of its camera; empty when it has. `what`: "depth".
 std::string size_problem(const std::string& what, int width, int height, const geometry::PinholeCamera& camera);
 
-/// Luminance of an rgb8, bgr8, rgba8, bgra8 or mono8 image (ITU-R BT.601 weights).
+/// Luminance of an rgb8, bgr8, rgba8, bgra8, mono8 (8UC1) or yuv422 image (ITU-R BT.601 weights; yuv422 and uyvy have
+/// Cb first, yuv422_yuy2 and yuyv Y). Of a mono16 (16UC1) image, as infra-red cameras send it in a part of the range,
+/// the brightest 1 % become 255.
 Converted<geometry::GrayImage> to_gray(const sensor_msgs::msg::Image& message);
 /// Depth in metres of a 16UC1 (millimetres; 0 and 65535 = none) or 32FC1 (metres) image; NaN, infinite and negative
 /// values become 0.

@@ -2,6 +2,8 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
+
 #include "common/messages/time.hpp"
 #include "common/runtime/lockstep_participant.hpp"
 #include "common/topics/diagnostics.hpp"
@@ -16,6 +18,10 @@ diagnostic_msgs::msg::KeyValue key_value(const std::string& key, const std::stri
   pair.value(value);
   return pair;
 }
+
+constexpr double kFollowPeriod_s = 0.2;
+constexpr double kWatchPeriod_s = 0.25;
+constexpr std::chrono::milliseconds kLongestSilence{1500};  // of a required topic
 
 double seconds(const timeval& t) { return static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_usec); }
 
@@ -37,6 +43,8 @@ Context::Context(const ContextOptions& options)
   }
   lockstep_ = std::make_unique<LockstepParticipant>(*this);
   executor_.set_cycle([this] { lockstep_->after_handlers(); });
+  every(kFollowPeriod_s, [this] { follow_sensor_writers(); });
+  every(kWatchPeriod_s, [this] { watch_required_topics(); });
   every(1.0, [this] { publish_diagnostics(); });
   every(Heart::kPeriod_s, [this] { heart_.beat(); });
 }
@@ -49,10 +57,7 @@ void Context::every(double period_s, std::function<void()> action) {
   executor_.every(period, std::move(action));
 }
 
-std::string Context::frame(const std::string& id) const {
-  const std::string& name_space = participant_.name_space();
-  return name_space.empty() ? id : name_space + "/" + id;
-}
+std::string Context::frame(const std::string& id) const { return participant_.names().full(id); }
 
 bool Context::is_free() const { return lockstep_->is_free(); }
 
@@ -72,6 +77,7 @@ void Context::stop(bool is_in_a_hurry) {
 }
 
 void Context::run() {
+  began_ = std::chrono::steady_clock::now();
   participant_.announce_graph();
   heart_.enter(Heart::Phase::kRunning);
   spdlog::info("ready");
@@ -86,6 +92,51 @@ void Context::run() {
 void Context::run_cycle(const Cycle& cycle) {
   if (cycle_) cycle_(cycle);
   if (status_.take_change()) publish_diagnostics();
+}
+
+/// Hears writers of sensor topics that offer less than RELIABLE. Lock-step counts samples, so it needs RELIABLE.
+void Context::follow_sensor_writers() {
+  if (!is_free()) return;
+  for (const auto& source : sources_) {
+    if (!source->wants_best_effort()) continue;
+    spdlog::warn(
+        "{}: a writer is BEST_EFFORT, so the topic is read BEST_EFFORT from now on, and samples may be lost; "
+        "where the driver can be set to RELIABLE, do so and start this process again",
+        source->dds_name());
+    executor_.become_best_effort(*source);
+    participant_.announce_graph();
+  }
+}
+
+/// Why nothing comes on a topic; empty when something does, or may still.
+std::string Context::silence_of(const dds::Source& source) const {
+  const auto since = std::max(source.heard().value_or(began_), began_);
+  if (!is_free() || std::chrono::steady_clock::now() - since < kLongestSilence) return "";
+  if (source.matched() > 0) return "its publisher is there and silent";
+  if (source.incompatible() > 0) return "the QoS of its publisher does not fit: see dds.sensor_qos";
+  return "nobody publishes it: see --remap and config/cameras";
+}
+
+/// The beginning and the end of a silence are logged once.
+void Context::watch_required_topics() {
+  for (auto& [source, reported] : required_) {
+    const std::string silence = silence_of(*source);
+    if (silence == reported) continue;
+    if (silence.empty()) {
+      spdlog::info("{} comes again", source->dds_name());
+    } else {
+      spdlog::warn("nothing comes on {}: {}", source->dds_name(), silence);
+    }
+    reported = silence;
+  }
+}
+
+std::string Context::silent_topics() const {
+  std::string text;
+  for (const auto& [source, silence] : required_) {
+    if (!silence.empty()) text += (text.empty() ? "" : "; ") + source->dds_name() + ", " + silence;
+  }
+  return text;
 }
 
 template <class Endpoint>
@@ -156,6 +207,7 @@ void Context::report_writer(const dds::Writer& writer, diagnostic_msgs::msg::Dia
 
 void Context::report_source(const dds::Source& source, diagnostic_msgs::msg::DiagnosticStatus& entry) {
   if (source.incompatible() > 0) add_incompatible(source, entry);
+  if (source.is_best_effort()) entry.values().push_back(key_value("best effort " + source.dds_name(), "1"));
   if (source.missed() > 0) {
     entry.values().push_back(key_value("missed samples " + source.dds_name(), std::to_string(source.missed())));
   }
@@ -166,6 +218,9 @@ void Context::publish_diagnostics() {
   report_process(entry);
   for (const auto& writer : writers_) report_writer(*writer, entry);
   for (const auto& source : sources_) report_source(*source, entry);
+  for (const auto& [source, silence] : required_) {
+    if (!silence.empty()) entry.values().push_back(key_value("silent " + source->dds_name(), silence));
+  }
   report_strangers(entry);
   report_dropped_packets(entry);
   if (const std::uint64_t undecodable = dds::undecodable_samples; undecodable > 0) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <stdexcept>
@@ -41,6 +42,8 @@ struct ContextOptions {
   std::string name;
   dds::ParticipantOptions participant;
   bool use_sim_time = false;
+  bool is_color_compressed = false;
+  bool is_depth_compressed = false;
 };
 
 /// What the runtime provides to a component: endpoints, clock and status. For use on the component's only thread.
@@ -75,6 +78,10 @@ class Context {
   }
   /// Sets the function that is called after handlers have run, or, in lock-step, when a tick's inputs are complete.
   void on_cycle(std::function<void(const Cycle&)> cycle) { cycle_ = std::move(cycle); }
+  /// Names the topic in the log and on /diagnostics whenever nothing has come on it for a while, in free run.
+  void require(dds::Source& source) { required_.push_back({&source}); }
+  /// Which required topics nothing comes on, and why; empty when all come.
+  std::string silent_topics() const;
   /// Calls `action` every `period_s` seconds of wall-clock time.
   void every(double period_s, std::function<void()> action);
 
@@ -85,7 +92,8 @@ class Context {
   /// True while the process works on its inputs as they come, not in lock-step.
   bool is_free() const;
   const std::string& name() const { return options_.name; }
-  /// Frame id with the robot's namespace: "map" -> "robot1/map".
+  const ContextOptions& options() const { return options_; }
+  /// Frame id as in messages, remapped and with the robot's namespace: "map" -> "robot1/map".
   std::string frame(const std::string& id) const;
   dds::Executor& executor() { return executor_; }
   dds::Participant& participant() { return participant_; }
@@ -107,6 +115,13 @@ class Context {
  private:
   friend class LockstepParticipant;
   void run_cycle(const Cycle& cycle);
+  struct RequiredTopic {
+    dds::Source* source;
+    std::string silence = {};  // what was reported; empty: it is not silent
+  };
+  void follow_sensor_writers();
+  void watch_required_topics();
+  std::string silence_of(const dds::Source& source) const;
   void publish_diagnostics();
   void report_process(diagnostic_msgs::msg::DiagnosticStatus& entry) const;
   void report_writer(const dds::Writer& writer, diagnostic_msgs::msg::DiagnosticStatus& entry);
@@ -126,6 +141,8 @@ class Context {
   std::vector<std::unique_ptr<dds::Writer>> writers_;
   std::vector<std::unique_ptr<dds::Source>> sources_;
   std::vector<std::unique_ptr<dds::Source>> services_;
+  std::vector<RequiredTopic> required_;
+  std::chrono::steady_clock::time_point began_ = std::chrono::steady_clock::now();
   std::unique_ptr<dds::Publisher<diagnostic_msgs::msg::DiagnosticArray>> diagnostics_;
   std::unique_ptr<dds::Subscription<rosgraph_msgs::msg::Clock>> clock_source_;
   std::unique_ptr<LockstepParticipant> lockstep_;

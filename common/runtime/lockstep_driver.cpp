@@ -33,6 +33,9 @@ std::string joined(const std::vector<std::string>& words) {
 LockstepDriver::LockstepDriver(Context& context, const LockstepConfig& config, std::function<void()> republish)
     : context_(context), config_(config), republish_(std::move(republish)),
       acks_(context.participant(), topics::kAck, [this](Ack& ack) { on_ack(ack); }) {
+  if (context.participant().sensor_qos() == dds::SensorQos::kBestEffort) {
+    throw std::runtime_error("dds.sensor_qos: best_effort loses samples, and lock-step counts them: use auto");
+  }
   context.executor().add(acks_);
   context.every(kJoinRepeat_s / 2, [this] { check_time(); });
   restart();

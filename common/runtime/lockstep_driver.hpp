@@ -43,6 +43,7 @@ class LockstepDriver {
 
   /// `republish` publishes the samples of the current tick (frame and /clock) again: for a participant that is late, or
   /// for one that has been restarted and has not received them.
+  /// Throws std::runtime_error where sensor topics are written by best effort.
   LockstepDriver(Context& context, const LockstepConfig& config, std::function<void()> republish);
 
   void begin(time::Time stamp, bool is_final);

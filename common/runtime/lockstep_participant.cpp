@@ -102,6 +102,12 @@ void LockstepParticipant::answer_pending() {
 
 /// The reason why a tick cannot be answered yet; empty when it can be answered.
 std::string LockstepParticipant::obstacle(const Tick& tick) const {
+  for (const auto& source : context_.sources()) {
+    if (source->is_best_effort()) {
+      return source->dds_name() + " is read BEST_EFFORT, and lock-step needs RELIABLE: see dds.sensor_qos, and start " +
+             context_.name() + " again";
+    }
+  }
   if (!are_endpoints_matched(tick)) return "matching endpoints";
   if (!has_joined_ && tick.tick() > 0 && !is_admitted(tick)) return "waiting to be admitted to the run";
   const auto* missing = inputs_.missing(tick.counts(), context_.sources());

@@ -7,7 +7,7 @@
 namespace {
 
 std::string qos_text(const lapis::dds::Qos& qos) {
-  std::string text = qos.latched ? "latched" : "reliable";
+  std::string text = qos.latched ? "latched" : qos.sensor ? "reliable, sensor" : "reliable";
   if (qos.keyed) return text + ", keyed, 1 per key";
   text += " " + std::to_string(qos.depth);
   return qos.reader_depth > 0 ? text + ", readers " + std::to_string(qos.reader_depth) : text;
@@ -19,7 +19,9 @@ int main() {
   std::cout
       << "# Topics\n\n"
          "Printed by `lapis_topics` from `common/topics/`; a test compares. Everything is RELIABLE and KEEP_LAST;\n"
-         "*latched* is TRANSIENT_LOCAL, the rest VOLATILE; the number is the depth. Names with a leading slash are ROS "
+         "*latched* is TRANSIENT_LOCAL, the rest VOLATILE; the number is the depth; *sensor*: read BEST_EFFORT where a "
+         "writer\n"
+         "offers no more (`dds.sensor_qos`). Names with a leading slash are ROS "
          "2\n"
          "names (`rt/...` on the wire); keyed topics are plain DDS, which ROS 2 tools do not see. `--namespace robot1` "
          "puts\n"

@@ -13,6 +13,7 @@
 #include "common/config/yaml.hpp"
 #include "common/dds/host_addresses.hpp"
 #include "common/dds/participant.hpp"
+#include "common/runtime/known_names.hpp"
 #include "common/runtime/version.hpp"
 
 namespace lapis::runtime {
@@ -26,6 +27,7 @@ constexpr int kSmallSocketBuffer = 1 << 20;
 struct Arguments {
   std::vector<std::string> config_files;
   std::vector<std::string> overrides;
+  std::vector<std::string> remaps;
   std::optional<int> domain;
   std::string name_space;
   std::string transport = "udp";
@@ -40,6 +42,10 @@ void add_common_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--config", arguments.config_files,
                  "YAML configuration file; later files override earlier ones (repeatable)");
   app.add_option("--set", arguments.overrides, "set one configuration value: path=value; overrides files (repeatable)");
+  app.add_option(
+      "--remap", arguments.remaps,
+      "another name for a topic, service or frame of docs/topics.md: from:=to, without the namespace; adds to "
+      "dds.remap (repeatable)");
   app.add_option("--domain", arguments.domain, "DDS domain; default: ROS_DOMAIN_ID, or 0 if it is not set")
       ->check(CLI::Range(0, dds::kLargestDomain));
   app.add_option("--namespace", arguments.name_space, "robot name that prefixes topics and frames");
@@ -58,16 +64,24 @@ void add_common_options(CLI::App& app, Arguments& arguments) {
   app.set_version_flag("--version", std::string("lapis ") + kVersion);
 }
 
+dds::SensorQos sensor_qos(const std::string& word) {
+  if (word == "auto") return dds::SensorQos::kAuto;
+  return word == "reliable" ? dds::SensorQos::kReliable : dds::SensorQos::kBestEffort;
+}
+
 ContextOptions context_options(const std::string& name, const Arguments& arguments, const DdsConfig& dds) {
   ContextOptions options;
   options.name = name;
   options.use_sim_time = arguments.use_sim_time;
   options.participant.node_name = name;
-  options.participant.name_space = arguments.name_space;
+  options.participant.names = {arguments.name_space, dds::parse_remaps(dds.remap, known_names())};
   options.participant.discovery = dds::discovery_from_environment();
   if (arguments.domain) options.participant.discovery.domain = *arguments.domain;
   options.participant.transport = arguments.transport == "shm" ? dds::Transport::kSharedMemory : dds::Transport::kUdp;
   options.participant.socket_buffer_bytes = dds.socket_buffer_bytes;
+  options.participant.sensor_qos = sensor_qos(dds.sensor_qos);
+  options.is_color_compressed = dds.color_transport == "compressed";
+  options.is_depth_compressed = dds.depth_transport == "compressed";
   return options;
 }
 
@@ -80,6 +94,7 @@ void log_setup(const config::Schema& schema, const ContextOptions& options) {
         "socket buffers below 1 MiB make images late: install /etc/sysctl.d/60-lapis.conf "
         "(launch_scripts/setup.sh --sysctl)");
   }
+  for (const auto& [from, to] : options.participant.names.remapped) spdlog::info("{} is called {}", from, to);
   if (!dds::stays_on_host(options.participant.discovery) && !dds::has_network_interface()) {
     spdlog::warn("no network interface is up: other hosts will not find this process until it is started again");
   }
@@ -207,6 +222,7 @@ int run(ComponentFactory factory, int argc, char** argv) {
     for (const auto& file : arguments.config_files) config::apply_file(factory.schema, file);
     for (const auto& assignment : arguments.overrides) config::apply_override(factory.schema, assignment);
     app.parse(argc, argv);  // again, because the component's own options override files
+    dds.remap.insert(dds.remap.end(), arguments.remaps.begin(), arguments.remaps.end());
     config::check(factory.schema);
     if (factory.rules) config::check(factory.schema, factory.rules());
     options = context_options(factory.name, arguments, dds);

@@ -19,12 +19,25 @@ namespace lapis::runtime {
 /// The keys of every process under `dds.`.
 struct DdsConfig {
   int socket_buffer_bytes = 4 << 20;
+  std::string sensor_qos = "auto";
+  std::string color_transport = "raw";
+  std::string depth_transport = "raw";
+  config::Words remap;
 };
 
 template <class Field>
 void describe(Field& field, DdsConfig& c) {
   field("socket_buffer_bytes", c.socket_buffer_bytes, config::in_range(65536, 1 << 30),
         "size requested for the send buffer and the receive buffer of each UDP socket [B]");
+  field("sensor_qos", c.sensor_qos, config::one_of({"auto", "reliable", "best_effort"}),
+        "how topics of sensors are read and written; auto: reliable, and read by best effort once a writer offers no "
+        "more; lock-step needs reliable");
+  field("color_transport", c.color_transport, config::one_of({"raw", "compressed"}),
+        "which topic of the colour images is read; compressed: /camera/color/image_raw/compressed");
+  field("depth_transport", c.depth_transport, config::one_of({"raw", "compressed"}),
+        "which topic of the depth images is read; compressed: /camera/depth/image_raw/compressedDepth");
+  field("remap", c.remap, config::anything(),
+        "other names of topics, services and frames, as from:=to; --remap adds to the list");
 }
 
 /// A component as run() sees it.

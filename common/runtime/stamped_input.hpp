@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "common/messages/converted.hpp"
 #include "common/messages/time.hpp"
 #include "common/runtime/context.hpp"
 #include "common/time/stamp_buffer.hpp"
@@ -25,6 +26,16 @@ class StampedInput {
   StampedInput(Context& context, const dds::Topic<Sample>& topic, std::string name, std::size_t capacity)
       : context_(context), name_(std::move(name)), buffer_(capacity),
         source_(context.subscribe(topic, [this](Sample& sample) { store(sample); })) {}
+  /// The same for samples that `decode` makes messages of, or refuses with a reason.
+  template <class Sample>
+  StampedInput(Context& context, const dds::Topic<Sample>& topic, std::string name, std::size_t capacity,
+               std::function<messages::Converted<Message>(const Sample&)> decode)
+      : context_(context), name_(std::move(name)), buffer_(capacity),
+        source_(context.subscribe(topic, [this, decode = std::move(decode)](const Sample& sample) {
+          auto message = decode(sample);
+          if (message) return store(*message);
+          context_.status().count(name_ + " dropped: " + message.reason);
+        })) {}
   StampedInput(const StampedInput&) = delete;
   StampedInput& operator=(const StampedInput&) = delete;
 
@@ -37,6 +48,8 @@ class StampedInput {
   /// the oldest message is the first one since. `step`: how far the clock was set.
   void on_clock_set(std::function<void(time::Duration step)> action) { on_clock_set_ = std::move(action); }
 
+  /// See Context::require.
+  void require() { context_.require(source_); }
   bool has_publisher() const { return source_.matched() > 0; }
   /// Number of messages that were lost before they could be taken.
   std::uint64_t missed() const { return source_.missed(); }

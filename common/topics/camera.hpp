@@ -8,12 +8,16 @@ namespace lapis::topics {
 
 // What a camera and a segmentation of its images publish.
 inline constexpr dds::Topic<sensor_msgs::msg::Image> kColor{"/camera/color/image_raw", dds::kImage, "camera",
-                                                            "15 or 30 Hz", "rgb8, bgr8, rgba8, bgra8 or mono8"};
+                                                            "5 to 90 Hz",
+                                                            "rgb8, bgr8, rgba8, bgra8, mono8, mono16 or yuv422"};
 inline constexpr dds::Topic<sensor_msgs::msg::CompressedImage> kCompressedColor{
     "/camera/color/image_raw/compressed", dds::kImage, "camera", "camera rate",
-    "JPEG or PNG; read instead of image_raw with slam.input.color: compressed"};
+    "JPEG or PNG; read instead of image_raw with dds.color_transport: compressed"};
 inline constexpr dds::Topic<sensor_msgs::msg::Image> kDepth{"/camera/depth/image_raw", dds::kImage, "camera",
                                                             "camera rate", "16UC1 in mm or 32FC1 in m; 0 = none"};
+inline constexpr dds::Topic<sensor_msgs::msg::CompressedImage> kCompressedDepth{
+    "/camera/depth/image_raw/compressedDepth", dds::kImage, "camera", "camera rate",
+    "PNG of ROS's compressedDepth; read instead of image_raw with dds.depth_transport: compressed"};
 inline constexpr dds::Topic<sensor_msgs::msg::CameraInfo> kColorInfo{"/camera/color/camera_info", dds::kImageInfo,
                                                                      "camera", "camera rate", "intrinsics"};
 inline constexpr dds::Topic<sensor_msgs::msg::CameraInfo> kDepthInfo{

@@ -8,8 +8,8 @@ namespace lapis::topics {
 
 // What a robot publishes besides its camera images.
 inline constexpr dds::Topic<nav_msgs::msg::Odometry> kWheelOdometry{
-    "/odom", dds::kBurst, "robot, controller", "50 Hz",
+    "/odom", dds::kSensorBurst, "robot, controller", "50 Hz",
     "optional; wheel odometry, drifting; from the controller: where its commands lead, with each of them"};
-inline constexpr dds::Topic<sensor_msgs::msg::Imu> kImu{"/imu", dds::kBurst, "robot", "200 Hz", "optional"};
+inline constexpr dds::Topic<sensor_msgs::msg::Imu> kImu{"/imu", dds::kSensorBurst, "robot", "200 Hz", "optional"};
 
 }  // namespace lapis::topics

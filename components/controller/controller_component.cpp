@@ -63,18 +63,22 @@ ControllerComponent::ControllerComponent(const Config& config, runtime::Context&
       command_(context.advertise(topics::kCommand)), local_path_(context.advertise(topics::kLocalPath)),
       status_(context.advertise(topics::kControllerStatus)),
       pose_(context, topics::kSlamOdometry, "pose", kWaitingFrames),
-      depth_(context, topics::kDepth, "depth", kWaitingFrames),
+      tolerance_(time::Duration::from_seconds(config.max_stamp_difference_s)),
+      depth_(runtime::depth_input(context, kWaitingFrames)),
       info_(context, topics::kDepthInfo, "camera info", kWaitingInfos) {
   if (config_.publish_odometry) {
     odometry_ = &context.advertise(topics::kWheelOdometry);
     transforms_ = &context.advertise(topics::kTransforms);
   }
+  depth_.require();
+  info_.require();
   depth_.on_arrival([this](time::Time stamp) { note_camera(stamp); });
   depth_.on_restart([this] { motion_ = CommandOdometry(drive_model(config_.robot)); });
   depth_.on_clock_set([this](time::Duration step) { follow_clock(step); });
   pose_.on_clock_set([this](time::Duration) {
     depth_.expect_restart(pose_.front().first);
     info_.expect_restart(pose_.front().first);
+    tolerance_.begin_anew();
   });
   context.subscribe(topics::kStaticTransforms, [this](const auto& m) { add_mount(m); });
   context.subscribe(topics::kTrackedFrame, [this](const auto& m) { note_frame(m); });
@@ -140,16 +144,20 @@ void ControllerComponent::take_inputs(const runtime::Cycle& cycle, time::Time no
 bool ControllerComponent::next_frame(const runtime::Cycle& cycle, time::Time now) {
   using time::Match;
   if (pose_.empty()) return false;
-  const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
   const auto& [stamp, odometry] = pose_.front();
   const bool is_last_chance = cycle.inputs_complete || pose_.is_full();
+  const auto known = tolerance_.of(stamp, pose_.second());
+  const auto tolerance = known.value_or(is_last_chance ? time::StampTolerance::kLargest : time::Duration{});
   Image* depth = nullptr;
   Info* info = nullptr;
   const auto depth_match = depth_.match(stamp, tolerance, is_last_chance, depth);
   const auto info_match = info_.match(stamp, tolerance, is_last_chance, info);
   if (depth_match == Match::kWait || info_match == Match::kWait) return false;
+  const bool is_whole = depth != nullptr && info != nullptr;
+  if (!is_whole && !known && !is_last_chance) return false;  // the next pose gives the tolerance
   take_frame(odometry, depth, info, now);
   const time::Time taken = stamp;
+  tolerance_.note(taken);
   depth_.drop_until(taken - tolerance);
   info_.drop_until(taken - tolerance);
   pose_.drop_until(taken);

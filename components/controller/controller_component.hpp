@@ -6,7 +6,9 @@
 #include "common/images/rectifier.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
+#include "common/runtime/depth_input.hpp"
 #include "common/runtime/stamped_input.hpp"
+#include "common/time/stamp_tolerance.hpp"
 #include "controller/controller_config.hpp"
 #include "controller/conversions.hpp"
 
@@ -65,6 +67,7 @@ class ControllerComponent {
   std::optional<time::Time> odometry_since_;   // when the first command was given
   std::optional<time::Time> published_until_;  // stamp of the newest odometry
   runtime::StampedInput<Odometry> pose_;
+  time::StampTolerance tolerance_;
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Info> info_;
 

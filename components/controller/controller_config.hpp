@@ -11,7 +11,7 @@ namespace lapis::controller {
 struct ControllerComponentConfig {
   ControllerConfig method;
   double rate_hz = 20.0;
-  double max_stamp_difference_s = 0.016;
+  double max_stamp_difference_s = 0.0;
   bool publish_odometry = false;
   robot::RobotDescription robot;
 };
@@ -58,8 +58,9 @@ template <class Field>
 void describe(Field& field, ControllerComponentConfig& c) {
   field("rate_hz", c.rate_hz, config::in_range(10.0, 20.0),
         "rate of commands in wall-clock mode; in lock-step there is one command for each tick [Hz]");
-  field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
-        "largest difference between the time stamps of pose, depth image and camera info of one frame [s]");
+  field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.5),
+        "largest difference between the stamps of pose, depth image and camera info of a frame; 0: 0.6 of the camera's "
+        "period, at most 0.12 s [s]");
   field("publish_odometry", c.publish_odometry, config::anything(),
         "whether /odom is the motion to which the controller's commands lead: for a robot that measures none "
         "(config/robot_without_odometry)");

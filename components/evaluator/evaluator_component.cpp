@@ -66,7 +66,7 @@ EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& c
     : config_(config), context_(context), tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
       odometry_(context, topics::kSlamOdometry, "slam odometry", kWaitingFrames),
       truth_(context, topics::kGroundTruth, "ground truth", kWaitingFrames),
-      depth_(context, topics::kDepth, "depth", kWaitingFrames),
+      depth_(runtime::depth_input(context, kWaitingFrames)),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       info_(context, topics::kColorInfo, "camera info", kWaitingInfos), depth_camera_(context, static_transforms_),
       maps_(truth_folder(config)) {

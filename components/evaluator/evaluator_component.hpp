@@ -9,6 +9,7 @@
 #include "common/messages/geometry.hpp"
 #include "common/runtime/context.hpp"
 #include "common/runtime/depth_camera.hpp"
+#include "common/runtime/depth_input.hpp"
 #include "common/runtime/stamped_input.hpp"
 #include "evaluator/core/run/decision_record.hpp"
 #include "evaluator/core/run/run_record.hpp"

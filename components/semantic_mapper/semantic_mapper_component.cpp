@@ -73,7 +73,8 @@ config::Rules SemanticMapperComponent::rules(const Config& config) {
 SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::Context& context)
     : config_(completed(config)), context_(context), publisher_(config_, context),
       tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
-      depth_(context, topics::kDepth, "depth", kWaitingFrames),
+      tolerance_(time::Duration::from_seconds(config.max_stamp_difference_s)),
+      depth_(runtime::depth_input(context, kWaitingFrames)),
       labels_(context, topics::kLabels, "labels", kWaitingFrames),
       confidence_(context, topics::kLabelConfidence, "label confidence", kWaitingFrames),
       info_(context, topics::kColorInfo, "camera info", kWaitingInfos), depth_camera_(context, static_transforms_),
@@ -92,6 +93,8 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   depth_camera_.follow(context, topics::kDepthEstimate);
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
+  depth_.require();
+  info_.require();
   tracked_.on_clock_set([this](time::Duration step) { follow_clock(step); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
   publisher_.describe(label_list_, progress_);
@@ -173,7 +176,6 @@ void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
 bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   using time::Match;
   if (tracked_.empty()) return false;
-  const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
   auto& [stamp, tracked] = tracked_.front();
   const time::Time now = stamp;
   Image* depth = nullptr;
@@ -183,6 +185,8 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   // Labels are optional: a slow segmentation costs frames their labels, but does not cost the map its frames.
   const bool is_last_chance = cycle.inputs_complete || tracked_.is_full();
   if (depth_camera_.is_awaited() && !is_last_chance) return false;
+  const auto known = tolerance_.of(stamp, tracked_.second());
+  const auto tolerance = known.value_or(is_last_chance ? time::StampTolerance::kLargest : time::Duration{});
   const bool no_labels_come = is_last_chance || !labels_.has_publisher();
   const bool no_confidence_comes = is_last_chance || !confidence_.has_publisher();
   const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
@@ -192,6 +196,8 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   for (const Match match : {depth_match, label_match, confidence_match, info_match}) {
     if (match == Match::kWait) return false;
   }
+  const bool is_whole = depth != nullptr && info != nullptr;
+  if (!is_whole && !known && !is_last_chance) return false;  // the next tracked frame gives the tolerance
   progress_.published = now;
   if (!has_pose(tracked)) {
     drop("slam has no pose");
@@ -202,6 +208,7 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   } else {
     integrate(tracked, *depth, labels, confidence, *info);
   }
+  tolerance_.note(now);
   tracked_.drop_until(now);
   depth_.drop_until(now - tolerance);
   labels_.drop_until(now - tolerance);
@@ -313,6 +320,7 @@ void SemanticMapperComponent::follow_clock(time::Duration step) {
   const time::Time first = tracked_.front().first;
   for (auto* images : {&depth_, &labels_, &confidence_}) images->expect_restart(first);
   info_.expect_restart(first);
+  tolerance_.begin_anew();
   step = std::min(step, first - progress_.newest);
   progress_.newest = progress_.newest + step;
   publisher_.follow_clock(step);

@@ -8,8 +8,10 @@
 #include "common/mapping/file/map_file.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/runtime/depth_camera.hpp"
+#include "common/runtime/depth_input.hpp"
 #include "common/runtime/saved_map.hpp"
 #include "common/runtime/stamped_input.hpp"
+#include "common/time/stamp_tolerance.hpp"
 #include "idl/std_srvs.hpp"
 #include "semantic_mapper/conversions.hpp"
 #include "semantic_mapper/core/frame_journal.hpp"
@@ -68,6 +70,7 @@ class SemanticMapperComponent {
   MapPublisher publisher_;
 
   runtime::StampedInput<Tracked> tracked_;
+  time::StampTolerance tolerance_;
   runtime::StampedInput<Image> depth_;
   runtime::StampedInput<Image> labels_;
   runtime::StampedInput<Image> confidence_;

@@ -17,7 +17,7 @@ struct SemanticMapperComponentConfig {
   mapping::SensorModel sensor_model;
   double kernel_length_voxels = 2.0;
   ObstacleConfig obstacles;
-  double max_stamp_difference_s = 0.016;
+  double max_stamp_difference_s = 0.0;
   double frame_interval_s = 0.0;
   double tile_period_s = 0.5;
   double view_period_s = 1.0;
@@ -110,9 +110,9 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
         "number of samples and votes of moved frames at which re-anchoring stops until the next cycle; it moves at "
         "least one frame");
   field("stored_frames", c.map.stored_frames);
-  field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
-        "largest difference between the stamps of pose, depth, labels and camera info of a frame that the mapper joins "
-        "[s]");
+  field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.5),
+        "largest difference between the stamps of pose, depth, labels and camera info of a frame; 0: 0.6 of the "
+        "camera's period, at most 0.12 s [s]");
   field("frame_interval_s", c.frame_interval_s, config::in_range(0.0, 60.0),
         "shortest time between integrated frames, by their time stamps; 0: every frame is integrated [s]");
   describe_output(field, c);

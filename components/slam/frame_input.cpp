@@ -1,8 +1,5 @@
 #include "slam/frame_input.hpp"
 
-#include <algorithm>
-#include <vector>
-
 #include "common/topics/camera.hpp"
 
 namespace lapis::slam {
@@ -10,24 +7,20 @@ namespace {
 
 constexpr std::size_t kWaitingMessages = 8;
 constexpr std::size_t kWaitingInfos = 64;  // small messages are ahead of their images, on a network by half a second
-constexpr std::size_t kPeriods = 9;        // their lower quartile is the camera's period, even where images are missing
-constexpr time::Duration kLargestTolerance{120'000'000};  // 0.6 of the period at 5 Hz
-
-/// Half of a period, and a tenth for its jitter. A neighbour's depth image is not taken instead: each is used once.
-time::Duration tolerance_of(time::Duration period) {
-  return std::min(time::Duration{period.nanoseconds / 10 * 6}, kLargestTolerance);
-}
 
 }  // namespace
 
-FrameInput::FrameInput(const FrameInputConfig& config, const messages::StaticTransforms& transforms,
+FrameInput::FrameInput(time::Duration tolerance, const messages::StaticTransforms& transforms,
                        runtime::Context& context)
-    : status_(context.status()), fixed_tolerance_(time::Duration::from_seconds(config.max_stamp_difference_s)),
-      depth_camera_(context, transforms),
-      color_(config.color == "compressed" ? Color(context, topics::kCompressedColor, "colour", kWaitingMessages)
-                                          : Color(context, topics::kColor, "colour", kWaitingMessages)),
-      depth_(context, topics::kDepth, "depth", kWaitingMessages),
+    : status_(context.status()), tolerance_(tolerance), depth_camera_(context, transforms),
+      color_(context.options().is_color_compressed
+                 ? Color(context, topics::kCompressedColor, "colour", kWaitingMessages)
+                 : Color(context, topics::kColor, "colour", kWaitingMessages)),
+      depth_(runtime::depth_input(context, kWaitingMessages)),
       info_(context, topics::kColorInfo, "camera info", kWaitingInfos) {
+  color_.require();
+  depth_.require();
+  info_.require();
   color_.on_restart([this] {
     begin_anew();
     if (on_restart_) on_restart_();
@@ -42,8 +35,7 @@ void FrameInput::begin_anew() {
   const time::Time first = color_.front().first;
   depth_.expect_restart(first);
   info_.expect_restart(first);
-  periods_.clear();
-  popped_.reset();
+  tolerance_.begin_anew();
 }
 
 std::optional<JoinedFrame> FrameInput::oldest(const runtime::Cycle& cycle) {
@@ -52,12 +44,12 @@ std::optional<JoinedFrame> FrameInput::oldest(const runtime::Cycle& cycle) {
   const auto& [stamp, color] = color_.front();
   const bool is_last_chance = cycle.inputs_complete || color_.is_full();
   if (depth_camera_.is_awaited() && !is_last_chance) return std::nullopt;
-  const auto known = known_tolerance();
-  tolerance_ = known.value_or(is_last_chance ? kLargestTolerance : time::Duration{});
+  const auto known = tolerance_.of(stamp, color_.second());
+  joined_within_ = known.value_or(is_last_chance ? time::StampTolerance::kLargest : time::Duration{});
   Image* depth = nullptr;
   Info* info = nullptr;
-  const auto depth_match = depth_.match(stamp, tolerance_, is_last_chance, depth);
-  const auto info_match = info_.match(stamp, tolerance_, is_last_chance, info);
+  const auto depth_match = depth_.match(stamp, joined_within_, is_last_chance, depth);
+  const auto info_match = info_.match(stamp, joined_within_, is_last_chance, info);
   if (depth_match == Match::kWait || info_match == Match::kWait) return std::nullopt;
   const bool is_whole = depth != nullptr && info != nullptr;
   if (!is_whole && !known && !is_last_chance) return std::nullopt;  // the next colour image gives the tolerance
@@ -78,29 +70,14 @@ messages::Converted<RgbdFrame> FrameInput::convert(const JoinedFrame& frame) {
 }
 
 void FrameInput::pop(const JoinedFrame& frame) {
-  if (popped_) periods_.push_back(frame.stamp - *popped_);
-  if (periods_.size() > kPeriods) periods_.pop_front();
-  popped_ = frame.stamp;
-  const time::Time too_old = frame.stamp - tolerance_;
+  tolerance_.note(frame.stamp);
+  const time::Time too_old = frame.stamp - joined_within_;
   const bool has_depth = frame.depth != nullptr;
   const time::Time depth_end = has_depth ? messages::from_message(frame.depth->header().stamp()) : too_old;
   const std::size_t unused = depth_.drop_until(depth_end) - (has_depth ? 1 : 0);
   if (unused > 0) status_.count("depth dropped: no colour image near it", unused);
   info_.drop_until(too_old);
   color_.drop_until(frame.stamp);
-}
-
-/// Largest difference of the stamps in a frame; nothing while there is only one colour image.
-std::optional<time::Duration> FrameInput::known_tolerance() const {
-  if (fixed_tolerance_.nanoseconds > 0) return fixed_tolerance_;
-  if (!periods_.empty()) {
-    std::vector<time::Duration> sorted(periods_.begin(), periods_.end());
-    std::sort(sorted.begin(), sorted.end());
-    return tolerance_of(sorted[(sorted.size() - 1) / 4]);
-  }
-  const auto second = color_.second();
-  if (!second) return std::nullopt;
-  return tolerance_of(*second - color_.front().first);
 }
 
 }  // namespace lapis::slam

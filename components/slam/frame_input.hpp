@@ -1,21 +1,17 @@
 #pragma once
 
-#include <deque>
 #include <functional>
 #include <optional>
 #include <string>
 
 #include "common/runtime/context.hpp"
 #include "common/runtime/depth_camera.hpp"
+#include "common/runtime/depth_input.hpp"
 #include "common/runtime/stamped_input.hpp"
+#include "common/time/stamp_tolerance.hpp"
 #include "slam/frame_converter.hpp"
 
 namespace lapis::slam {
-
-struct FrameInputConfig {
-  std::string color = "raw";            ///< raw or compressed
-  double max_stamp_difference_s = 0.0;  ///< 0: 0.6 of the time between colour images, at most 0.12 s
-};
 
 /// The messages of one frame; the pointers are valid until the frame is popped.
 struct JoinedFrame {
@@ -32,8 +28,9 @@ struct JoinedFrame {
 /// is a frame with a problem; a depth image without colour is counted on /diagnostics. Neither holds up others.
 class FrameInput {
  public:
-  /// `transforms` are kept up to date by the caller, and outlive this object.
-  FrameInput(const FrameInputConfig& config, const messages::StaticTransforms& transforms, runtime::Context& context);
+  /// `tolerance`: largest difference of the stamps in a frame; zero: see time::StampTolerance. `transforms` are kept up
+  /// to date by the caller, and outlive this object.
+  FrameInput(time::Duration tolerance, const messages::StaticTransforms& transforms, runtime::Context& context);
 
   /// Called when the camera has restarted in lock-step: stamps of colour went back by more than a second.
   void on_restart(std::function<void()> action) { on_restart_ = std::move(action); }
@@ -54,13 +51,10 @@ class FrameInput {
   using Color = runtime::StampedInput<ColorMessage>;
 
   void begin_anew();
-  std::optional<time::Duration> known_tolerance() const;
 
   runtime::Status& status_;
-  time::Duration fixed_tolerance_;      // zero: follows from the camera's period
-  time::Duration tolerance_;            // of the oldest frame
-  std::deque<time::Duration> periods_;  // between the newest colour images that were popped
-  std::optional<time::Time> popped_;
+  time::StampTolerance tolerance_;
+  time::Duration joined_within_;  // the tolerance of the oldest frame
   std::function<void()> on_restart_;
   std::function<void(time::Duration)> on_clock_set_;
   FrameConverter converter_;

@@ -44,7 +44,8 @@ SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
       odometry_(context.advertise(topics::kSlamOdometry)), tracked_frame_(context.advertise(topics::kTrackedFrame)),
       transforms_(context.advertise(topics::kTransforms)), path_(context.advertise(topics::kKeyframePath)),
       pose_graph_(context.advertise(topics::kPoseGraph)), status_(context.advertise(topics::kSlamStatus)),
-      landmarks_(context, config.landmark_period_s), input_(config.input, static_transforms_, context),
+      landmarks_(context, config.landmark_period_s),
+      input_(time::Duration::from_seconds(config.max_stamp_difference_s), static_transforms_, context),
       disk_({SlamComponent::kName,
              config.output_dir,
              config.resume_from,
@@ -434,7 +435,9 @@ void SlamComponent::report_waiting() {
   lapis_msgs::msg::SlamStatus message;
   message.header().stamp(messages::to_message(context_.now()));
   message.header().frame_id(ids_.map);
-  message.reason(waits_for_.empty() ? "waits for the camera's images" : "waits: " + waits_for_);
+  const std::string silent = context_.silent_topics();
+  const std::string missing = silent.empty() ? waits_for_ : silent;
+  message.reason(missing.empty() ? "waits for the camera's images" : "waits: " + missing);
   message.frames_total(frames_total_);
   message.frames_dropped(frames_dropped_);
   status_.publish(message);

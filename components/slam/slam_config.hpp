@@ -4,14 +4,13 @@
 
 #include "common/config/schema.hpp"
 #include "slam/core/config.hpp"
-#include "slam/frame_input.hpp"
 
 namespace lapis::slam {
 
 /// What the process adds to the method's configuration.
 struct SlamComponentConfig {
   SlamConfig method;
-  FrameInputConfig input;
+  double max_stamp_difference_s = 0.0;  ///< 0: 0.6 of the time between colour images, at most 0.12 s
   double graph_period_s = 0.5;
   double landmark_period_s = 2.0;
   std::string depth_calibration = "given";
@@ -271,14 +270,8 @@ void describe(Field& field, OdometryConfig& c) {
 }
 
 template <class Field>
-void describe(Field& field, FrameInputConfig& c) {
-  field("color", c.color, config::one_of({"raw", "compressed"}),
-        "topic of the colour images; raw: /camera/color/image_raw, compressed: /camera/color/image_raw/compressed");
-}
-
-template <class Field>
 void describe(Field& field, SlamComponentConfig& c) {
-  field("input", c.input);
+  field.moved("input.color", "dds.color_transport");
   field("features", c.method.features);
   field("noise", c.method.noise);
   field("matcher", c.method.matcher);
@@ -290,7 +283,7 @@ void describe(Field& field, SlamComponentConfig& c) {
   field("loop", c.method.loop);
   field("relocalization", c.method.relocalization);
   field("odometry", c.method.odometry);
-  field("max_stamp_difference_s", c.input.max_stamp_difference_s, config::in_range(0.0, 0.5),
+  field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.5),
         "largest difference between the stamps of colour, depth and camera info of a frame; 0: 0.6 of the camera's "
         "period, at most 0.12 s [s]");
   field("depth_calibration", c.depth_calibration, config::one_of({"given", "estimate"}),

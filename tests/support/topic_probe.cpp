@@ -14,7 +14,7 @@ constexpr auto kLongestNap = std::chrono::milliseconds(10);  // matching wakes n
 dds::ParticipantOptions participant_options(const std::string& name, const std::string& name_space) {
   dds::ParticipantOptions options;
   options.node_name = name;
-  options.name_space = name_space;
+  options.names.name_space = name_space;
   options.discovery = dds::discovery_from_environment();
   return options;
 }

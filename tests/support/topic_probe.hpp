@@ -24,6 +24,7 @@ inline constexpr dds::Topic<rmw_dds_common::msg::ParticipantEntitiesInfo> kRosGr
 class TopicProbe {
  public:
   explicit TopicProbe(const std::string& name = "probe", const std::string& name_space = "");
+  explicit TopicProbe(const dds::ParticipantOptions& options) : participant_(options) {}
 
   /// All samples of a topic from now on, in order of arrival. The reference stays valid as long as the probe.
   template <class Message>

@@ -14,6 +14,7 @@
 #include "common/topics/map.hpp"
 #include "common/topics/services.hpp"
 #include "common/topics/slam.hpp"
+#include "tests/support/camera_feed.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/endpoint_watcher.hpp"
 #include "tests/support/topic_probe.hpp"
@@ -31,7 +32,7 @@ constexpr const char* kEchoNode = "test_echo";
 template <class Message>
 void expect_endpoint(const EndpointWatcher& watcher, bool is_writer, const dds::Topic<Message>& topic,
                      const std::string& name_space = "") {
-  const std::string name = dds::dds_name(topic, name_space);
+  const std::string name = dds::dds_name(topic, {name_space, {}});
   const auto seen = is_writer ? watcher.writer(name) : watcher.reader(name);
   ASSERT_TRUE(seen) << (is_writer ? "writer of " : "reader of ") << name;
   EXPECT_EQ(seen->type, idl::TypeSupport<Message>::kDdsName) << name;
@@ -144,6 +145,100 @@ TEST(Wire, ImagesOfAMegabyteArriveWholeAndStampsAreCopied) {
     EXPECT_EQ(messages::from_message(odometry.back().header().stamp()).nanoseconds, i * 33'333'333);
     EXPECT_EQ(odometry.back().pose().pose().position().x(), 1e6);
   }
+}
+
+/// A sensor of another make.
+dds::ParticipantOptions best_effort_sensor() {
+  auto options = participant_options("sensor");
+  options.sensor_qos = dds::SensorQos::kBestEffort;
+  return options;
+}
+
+TEST(BestEffort, SensorIsHeardAndTheGraphAndTheDiagnosticsTell) {
+  TopicProbe sensor(best_effort_sensor());
+  TopicProbe probe;
+  const EndpointWatcher watcher(probe.participant());
+  const auto& graph = probe.collect(kRosGraph);
+  const auto& diagnostics = probe.collect(topics::kDiagnostics);
+  auto& color = sensor.advertise(topics::kColor);
+  const auto& odometry = sensor.collect(topics::kSlamOdometry);
+  ChildProcess echo(kEcho);
+  ASSERT_TRUE(echo.wait_for_line("rt/camera/color/image_raw: a writer is BEST_EFFORT")) << echo.log();
+  ASSERT_TRUE(sensor.wait_until_matched() && sensor.wait_until_known_by(kEchoNode)) << echo.log();
+  for (std::int64_t i = 1; i <= 10; ++i) {
+    const std::size_t before = odometry.size();
+    color.publish(image(i * 33'333'333, 1'000'000));
+    ASSERT_TRUE(sensor.wait_until([&] { return odometry.size() > before; })) << i << echo.log();
+  }
+  const auto told = [&] {
+    return newest_values(diagnostics, kEchoNode).contains("best effort rt/camera/color/image_raw");
+  };
+  EXPECT_TRUE(probe.wait_until(told)) << echo.log();
+  EXPECT_EQ(sum_of(newest_values(diagnostics, kEchoNode), "incompatible QoS"), 0.0);
+  const auto is_announced = [&] {
+    const auto announced = gids(graph.back().node_entities_info_seq().at(0).reader_gid_seq());
+    const auto endpoints = watcher.endpoints();
+    return std::any_of(endpoints.begin(), endpoints.end(), [&](const SeenEndpoint& endpoint) {
+      return endpoint.topic == "rt/camera/color/image_raw" && !endpoint.is_reliable && announced.contains(endpoint.gid);
+    });
+  };
+  EXPECT_TRUE(probe.wait_until(is_announced));
+}
+
+TEST(BestEffort, ReliableSensorThatComesLaterIsHeardToo) {
+  ChildProcess echo(kEcho);
+  ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
+  {
+    TopicProbe sensor(best_effort_sensor());
+    sensor.advertise(topics::kColor);
+    ASSERT_TRUE(echo.wait_for_line("a writer is BEST_EFFORT")) << echo.log();
+    ASSERT_TRUE(sensor.wait_until_matched()) << echo.log();
+  }
+  TopicProbe sensor;
+  auto& color = sensor.advertise(topics::kColor);
+  const auto& odometry = sensor.collect(topics::kSlamOdometry);
+  ASSERT_TRUE(sensor.wait_until_matched() && sensor.wait_until_known_by(kEchoNode)) << echo.log();
+  color.publish(image(1'000, 100));
+  EXPECT_TRUE(sensor.wait_until([&] { return !odometry.empty(); })) << echo.log();
+}
+
+TEST(BestEffort, IsRefusedAndCountedWhereReliableIsAskedFor) {
+  TopicProbe sensor(best_effort_sensor());
+  const auto& diagnostics = sensor.collect(topics::kDiagnostics);
+  auto& color = sensor.advertise(topics::kColor);
+  ChildProcess echo(kEcho, {"--set", "dds.sensor_qos=reliable"});
+  ASSERT_TRUE(echo.wait_for_line("rt/camera/color/image_raw: a peer was refused because of its QoS")) << echo.log();
+  EXPECT_TRUE(sensor.wait_until(
+      [&] { return sum_of(newest_values(diagnostics, kEchoNode), "incompatible QoS rt/camera/color") == 1.0; }));
+  EXPECT_EQ(color.matched(), 0u);
+}
+
+TEST(BestEffort, IsReadFromTheBeginningWhereItIsAskedFor) {
+  TopicProbe sensor(best_effort_sensor());
+  auto& color = sensor.advertise(topics::kColor);
+  const auto& odometry = sensor.collect(topics::kSlamOdometry);
+  ChildProcess echo(kEcho, {"--set", "dds.sensor_qos=best_effort"});
+  ASSERT_TRUE(wait_until_ready(echo)) << echo.log();
+  ASSERT_TRUE(sensor.wait_until_matched() && sensor.wait_until_known_by(kEchoNode)) << echo.log();
+  color.publish(image(1'000, 1'000'000));
+  EXPECT_TRUE(sensor.wait_until([&] { return !odometry.empty(); })) << echo.log();
+}
+
+TEST(Wire, RemappedTopicsAndFramesHaveTheirOtherNames) {
+  TopicProbe probe("probe", "robot1");
+  const EndpointWatcher watcher(probe.participant());
+  ChildProcess echo(kEcho, {"--namespace", "robot1", "--set", "dds.remap=[/camera/color/image_raw:=/rgb/image_raw]",
+                            "--remap", "/slam/odometry:=/pose", "--remap", "base_link:=base_footprint"});
+  const dds::Topic<sensor_msgs::msg::Image> other{"/rgb/image_raw", topics::kColor.qos, "", "", ""};
+  const dds::Topic<nav_msgs::msg::Odometry> pose{"/pose", topics::kSlamOdometry.qos, "", "", ""};
+  auto& color = probe.advertise(other);
+  const auto& odometry = probe.collect(pose);
+  ASSERT_TRUE(probe.wait_until_matched() && probe.wait_until_known_by(kEchoNode)) << echo.log();
+  EXPECT_FALSE(watcher.reader("rt/robot1/camera/color/image_raw"));
+  color.publish(image(1'000, 10));
+  ASSERT_TRUE(probe.wait_until([&] { return !odometry.empty(); })) << echo.log();
+  EXPECT_EQ(odometry[0].header().frame_id(), "robot1/map");
+  EXPECT_EQ(odometry[0].child_frame_id(), "robot1/base_footprint");
 }
 
 TEST(Wire, LateJoinerGetsTheLastLatchedSample) {

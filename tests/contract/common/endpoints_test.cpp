@@ -35,12 +35,12 @@ std::string line(bool is_writer, const std::string& dds_name, const dds::Qos& qo
 
 template <class... Messages>
 Lines writers(const dds::Topic<Messages>&... topics) {
-  return {line<Messages>(true, dds::dds_name(topics, ""), topics.qos)...};
+  return {line<Messages>(true, dds::dds_name(topics, {}), topics.qos)...};
 }
 
 template <class... Messages>
 Lines readers(const dds::Topic<Messages>&... topics) {
-  return {line<Messages>(false, dds::dds_name(topics, ""), topics.qos)...};
+  return {line<Messages>(false, dds::dds_name(topics, {}), topics.qos)...};
 }
 
 template <class Service>

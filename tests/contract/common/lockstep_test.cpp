@@ -68,6 +68,21 @@ TEST(LockstepOrder, StagesAreReleasedOneAfterAnotherWithTheCountsOfTheEarlierOne
   EXPECT_EQ(echoed, (std::map<std::uint64_t, std::uint64_t>{{1, 1}, {2, 2}, {3, 3}, {4, 4}, {5, 5}}));
 }
 
+TEST(LockstepSensors, OneThatIsReadByBestEffortIsNamed) {
+  TopicProbe driver("driver");
+  auto& tick = driver.advertise(topics::kTick);
+  const auto& acks = driver.collect(topics::kAck);
+  ChildProcess echo(kEcho, {"--set", "dds.sensor_qos=best_effort"});
+  ASSERT_TRUE(driver.wait_until_matched() && driver.wait_until_known_by("test_echo")) << echo.log();
+  lapis_msgs::msg::Tick message;
+  message.run_gid(tick.gid());
+  message.due({"test_echo"});
+  tick.publish(message);
+  ASSERT_TRUE(driver.wait_until([&] { return !acks.empty(); })) << echo.log();
+  EXPECT_EQ(acks.back().status(), lapis_msgs::msg::Ack_Constants::STATUS_BUSY);
+  EXPECT_THAT(acks.back().reason(), ::testing::HasSubstr("dds.sensor_qos"));
+}
+
 TEST(LockstepEnd, ParticipantWorksFreelyWhenTheDriverLeavesInTheMiddleOfATick) {
   ChildProcess echo(kEcho);
   {

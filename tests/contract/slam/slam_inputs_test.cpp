@@ -139,10 +139,29 @@ TEST_F(SlamInputs, DepthWithoutColorIsCounted) {
   EXPECT_EQ(count_of("dropped"), 3.0);
 }
 
-/// With slam.input.color: compressed.
+TEST_F(SlamInputs, StreamThatIsMissingIsNamedWithinTwoSeconds) {
+  const auto& status = probe.collect(topics::kSlamStatus);
+  const auto begin = std::chrono::steady_clock::now();
+  for (int i = 0; slam.log().find("nothing comes on rt/camera/depth/image_raw") == std::string::npos; ++i) {
+    CameraFrame sent = feed.frame(i);
+    sent.depth.reset();
+    feed.send(sent);
+    ASSERT_LT(Seconds(std::chrono::steady_clock::now() - begin).count(), 2.0) << slam.log();
+    probe.wait_until([] { return false; }, Seconds(0.1));
+  }
+  EXPECT_EQ(slam.log().find("nothing comes on rt/camera/color"), std::string::npos);
+  EXPECT_TRUE(probe.wait_until([&] {
+    return !status.empty() && status.back().reason().find("rt/camera/depth/image_raw") != std::string::npos;
+  })) << slam.log();
+  EXPECT_TRUE(newest_values(diagnostics, "slam").contains("silent rt/camera/depth/image_raw"));
+  feed.send(feed.frame(1000));
+  EXPECT_TRUE(slam.wait_for_line("rt/camera/depth/image_raw comes again")) << slam.log();
+}
+
+/// With dds.color_transport: compressed.
 class SlamCompressedInput : public SlamInputs {
  protected:
-  SlamCompressedInput() : SlamInputs({"--set", "slam.input.color=compressed"}) {}
+  SlamCompressedInput() : SlamInputs({"--set", "dds.color_transport=compressed"}) {}
 
   bool is_matched() const override { return color_.matched() > 0; }
   void send(int index, const std::string& extension, const std::function<void(std::vector<std::uint8_t>&)>& change) {
@@ -183,6 +202,41 @@ TEST_F(SlamCompressedInput, JpegAndPngAreTrackedAndDamagedOnesAreNot) {
   }
   EXPECT_TRUE(wait_for_count("compressed colour image is damaged", 1));
   EXPECT_TRUE(wait_for_count("neither JPEG nor PNG", 1));
+}
+
+/// With dds.depth_transport: compressed.
+class SlamCompressedDepth : public SlamInputs {
+ protected:
+  SlamCompressedDepth() : SlamInputs({"--set", "dds.depth_transport=compressed"}) {}
+
+  bool is_matched() const override { return depth_.matched() > 0; }
+  void send(int index) {
+    CameraFrame sent = feed.frame(index);
+    const cv::Mat pixels(static_cast<int>(sent.depth->height()), static_cast<int>(sent.depth->width()), CV_16UC1,
+                         sent.depth->data().data());
+    std::vector<std::uint8_t> png;
+    cv::imencode(".png", pixels, png);
+    sensor_msgs::msg::CompressedImage message;
+    message.header(sent.depth->header());
+    message.format("16UC1; compressedDepth png");
+    message.data().resize(12);
+    message.data().insert(message.data().end(), png.begin(), png.end());
+    depth_.publish(message);
+    sent.depth.reset();
+    feed.send(sent);
+  }
+
+ private:
+  dds::Publisher<sensor_msgs::msg::CompressedImage>& depth_ = probe.advertise(topics::kCompressedDepth);
+};
+
+TEST_F(SlamCompressedDepth, IsTracked) {
+  for (int i = 0; i < 6; ++i) {
+    send(i);
+    ASSERT_TRUE(wait_for_answer(CameraFeed::stamp(i))) << i << slam.log();
+    EXPECT_EQ(frames.back().state(), kTracking) << frames.back().reason();
+    expect_pose(CameraFeed::stamp(i), slow_motion(0), slow_motion(i));
+  }
 }
 
 /// With the lens of a wide camera: the corners lie 24 pixels off.

@@ -79,7 +79,7 @@ TEST_F(SlamContract, GarbageIsCountedAndTrackingContinues) {
     feed.send(frame);
     return track(index++);  // the next good frame is tracked
   };
-  EXPECT_TRUE(spoil([](auto& f) { f.color->encoding("yuv422"); }));
+  EXPECT_TRUE(spoil([](auto& f) { f.color->encoding("bayer_rggb8"); }));
   EXPECT_TRUE(spoil([](auto& f) { f.color->data().resize(100); }));
   EXPECT_TRUE(spoil([](auto& f) { f.color->width(0xFFFFFFFFu); }));
   EXPECT_TRUE(spoil([](auto& f) { f.depth->encoding("rgb8"); }));

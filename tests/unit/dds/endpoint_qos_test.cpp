@@ -7,11 +7,13 @@ namespace {
 
 using namespace compat::fdds;  // NOLINT(google-build-using-namespace): policy names only
 
-constexpr Qos kProfiles[] = {kImage, kState, kFrameState, kLatched, kCommand, kBurst, kLockstep, kKeyedTiles, kService};
+constexpr Qos kByBestEffort{.depth = 5, .sensor = true, .best_effort = true};
+constexpr Qos kProfiles[] = {kImage, kState,    kFrameState, kLatched, kCommand,
+                             kBurst, kLockstep, kKeyedTiles, kService, kByBestEffort};
 
 template <class EndpointQos>
 void expect_common(const EndpointQos& qos, const Qos& wanted) {
-  EXPECT_EQ(qos.reliability().kind, RELIABLE_RELIABILITY_QOS);
+  EXPECT_EQ(qos.reliability().kind, wanted.best_effort ? BEST_EFFORT_RELIABILITY_QOS : RELIABLE_RELIABILITY_QOS);
   EXPECT_EQ(qos.history().kind, KEEP_LAST_HISTORY_QOS);
   EXPECT_EQ(qos.history().depth, wanted.depth);
   EXPECT_EQ(qos.durability().kind, wanted.latched ? TRANSIENT_LOCAL_DURABILITY_QOS : VOLATILE_DURABILITY_QOS);

@@ -122,6 +122,34 @@ TEST(Gray, LuminanceFollowsBt601) {
   EXPECT_EQ(to_gray(image<std::uint8_t>("mono8", 3, 1, {0, 7, 255}))->pixels, (std::vector<std::uint8_t>{0, 7, 255}));
 }
 
+TEST(Gray, Yuv422HasLuminanceInEverySecondByte) {
+  const std::vector<std::uint8_t> chroma_first = {90, 1, 91, 2, 92, 3, 93, 4};
+  const std::vector<std::uint8_t> luminance_first = {1, 90, 2, 91, 3, 92, 4, 93};
+  for (const char* encoding : {"yuv422", "uyvy"}) {
+    EXPECT_EQ(to_gray(image(encoding, 4, 1, chroma_first, 2))->pixels, (std::vector<std::uint8_t>{1, 2, 3, 4}));
+  }
+  for (const char* encoding : {"yuv422_yuy2", "yuyv"}) {
+    EXPECT_EQ(to_gray(image(encoding, 4, 1, luminance_first, 2))->pixels, (std::vector<std::uint8_t>{1, 2, 3, 4}));
+  }
+}
+
+TEST(Gray, WideValuesUseTheWholeRangeWhateverPartTheCameraUses) {
+  std::vector<std::uint16_t> values(200, 1000);
+  values[0] = 0;
+  values[1] = 500;
+  values[2] = 60'000;  // 1 % glare does not count
+  for (const char* encoding : {"mono16", "16UC1"}) {
+    const auto gray = to_gray(image<std::uint16_t>(encoding, 20, 10, values));
+    ASSERT_TRUE(gray);
+    EXPECT_EQ(gray->pixels[0], 0);
+    EXPECT_EQ(gray->pixels[1], 127);
+    EXPECT_EQ(gray->pixels[2], 255);
+    EXPECT_EQ(gray->pixels[3], 255);
+  }
+  EXPECT_EQ(to_gray(image<std::uint16_t>("mono16", 2, 1, {7, 20}))->pixels, (std::vector<std::uint8_t>{7, 20}))
+      << "dark images are not stretched";
+}
+
 TEST(Gray, RowPaddingIsSkipped) {
   Image padded = image<std::uint8_t>("mono8", 2, 2, {1, 2, 99, 99, 3, 4, 99, 99});
   padded.step(4);
@@ -173,10 +201,10 @@ TEST(Confidence, IsAShareOfCertainty) {
 }
 
 TEST(BadImage, WrongEncodingIsNamed) {
-  Image message = image<std::uint8_t>("yuv422", 2, 2, {0, 0, 0, 0});
-  EXPECT_THAT(to_gray(message).reason, HasSubstr("'yuv422'"));
-  EXPECT_THAT(to_depth(message).reason, HasSubstr("'yuv422'"));
-  EXPECT_THAT(to_labels(message).reason, HasSubstr("'yuv422'"));
+  Image message = image<std::uint8_t>("bayer_rggb8", 2, 2, {0, 0, 0, 0});
+  EXPECT_THAT(to_gray(message).reason, HasSubstr("'bayer_rggb8'"));
+  EXPECT_THAT(to_depth(message).reason, HasSubstr("'bayer_rggb8'"));
+  EXPECT_THAT(to_labels(message).reason, HasSubstr("'bayer_rggb8'"));
   message.encoding("");
   EXPECT_FALSE(to_gray(message) || to_depth(message) || to_labels(message) || to_confidence(message));
 }

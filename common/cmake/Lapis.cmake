@@ -11,7 +11,7 @@ target_compile_options(lapis_warnings INTERFACE -Wall -Wextra -Wpedantic -Wshado
 
 if(CMAKE_UNITY_BUILD AND CMAKE_CXX_COMPILER_ID STREQUAL GNU)
   # It warns of types in anonymous namespaces of included files, which the sources of a unit are.
-  target_compile_options(lapis_warnings INTERFACE -Wno-subobject-linkage)
+  target_compile_options(lapis_warnings INTERFACE $<$<COMPILE_LANGUAGE:CXX>:-Wno-subobject-linkage>)
 endif()
 
 # lapis_library(<name> SOURCES <file>... [HEADERS <file>...] [LINK <target>...] [PRIVATE_LINK <target>...])

@@ -125,6 +125,7 @@ bool SlamComponent::prepare(const JoinedFrame& first) {
   disk_.begin(first.stamp, resumed_.has_value());
   name_map(first.stamp);
   slam_ = begin_map();
+  focal_length_.emplace(config_.method.noise, config_.method.features.scale_factor);
   for (const auto& [stamp, T_odom_base] : early_odometry_) slam_->add_odometry(stamp, T_odom_base);
   early_odometry_.clear();
   graph_version_ = 0;
@@ -193,6 +194,23 @@ void SlamComponent::track(const JoinedFrame& joined) {
   if (result.state == TrackingState::kTracking) ++frames_tracked_;
   publish(result);
   judge_clock(result);
+  if (result.is_keyframe) watch_focal_length();
+}
+
+/// Reports once that the key-frames contradict the focal length in the camera info.
+void SlamComponent::watch_focal_length() {
+  if (!focal_length_) return;
+  const Keyframe& newest = slam_->map().keyframes().back();
+  focal_length_->add(slam_->map(), newest.id);
+  const auto found = focal_length_->contradiction();
+  if (!found) return;
+  const double stated = newest.camera.fx;
+  const std::string text =
+      fmt::format("focal length seems to be {:.1f} px (+- {:.1f}), {} says {:.1f}", stated * found->ratio,
+                  stated * found->ratio * found->sigma, topics::kColorInfo.name, stated);
+  context_.status().value("focal_length", text);
+  spdlog::warn("{}: correct fx and fy there, by the same factor {:.3f}", text, found->ratio);
+  focal_length_.reset();
 }
 
 void SlamComponent::renew_calibrator() { calibrator_.emplace(depth_estimate_ != nullptr ? 1 : kViewsToContradict); }

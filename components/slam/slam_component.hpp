@@ -8,6 +8,7 @@
 #include "common/messages/geometry.hpp"
 #include "common/runtime/saved_map.hpp"
 #include "slam/conversions.hpp"
+#include "slam/core/calibration/focal_length.hpp"
 #include "slam/core/files/slam_file.hpp"
 #include "slam/core/rgbd_slam.hpp"
 #include "slam/depth_calibrator.hpp"
@@ -39,6 +40,7 @@ class SlamComponent {
   void accept_saved_map(const geometry::PinholeCamera& camera);
   void track(const JoinedFrame& joined);
   void renew_calibrator();
+  void watch_focal_length();
   bool calibrate_depth(const RgbdFrame& frame, const sensor_msgs::msg::CameraInfo& info);
   void keep_estimate();
   void use_estimate(const images::RgbdCalibration& cameras, const builtin_interfaces::msg::Time& since);
@@ -83,6 +85,7 @@ class SlamComponent {
   std::unique_ptr<RgbdSlam> slam_;                       // exists once the camera's mount is known
   std::deque<std::pair<time::Time, geometry::Pose>> early_odometry_;  // T_odom_base from before that
   std::optional<DepthCalibrator> calibrator_;
+  std::optional<FocalLengthWatch> focal_length_;  // until it has contradicted the camera info
   std::optional<SavedDepthCamera> depth_camera_;  // as estimated
   FrameContext frame_;                            // of the newest frame
   SlamClock clock_;

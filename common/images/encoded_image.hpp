@@ -24,5 +24,7 @@ bool is_truncated_jpeg(std::span<const std::uint8_t> bytes);
 /// Grey values of a JPEG or PNG, with the pixels in the stored order (orientation tags are ignored); nothing when the
 /// image is damaged.
 std::optional<geometry::GrayImage> decode_gray(std::span<const std::uint8_t> bytes);
+/// The same for colours.
+std::optional<geometry::ColorImage> decode_color(std::span<const std::uint8_t> bytes);
 
 }  // namespace lapis::images

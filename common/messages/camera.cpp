@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "common/images/encoded_image.hpp"
+
 namespace lapis::messages {
 namespace {
 
@@ -63,6 +65,17 @@ Converted<geometry::GrayImage> gray(const Image& image, Convert convert) {
   return map_pixels<std::uint8_t>(image, kBytesPerPixel, convert);
 }
 
+template <std::size_t kBytesPerPixel, class Convert>
+Converted<geometry::ColorImage> color(const Image& image, Convert convert) {
+  const auto problem = layout_problem(image, kBytesPerPixel);
+  if (!problem.empty()) return Converted<geometry::ColorImage>::refused("colour " + problem);
+  return map_pixels<geometry::Rgb8>(image, kBytesPerPixel, convert);
+}
+
+std::string not_a_color(const std::string& encoding) {
+  return "colour encoding '" + shown(encoding) + "' is not rgb8, bgr8, rgba8, bgra8 or mono8";
+}
+
 }  // namespace
 
 Converted<geometry::LensCamera> lens_camera(const sensor_msgs::msg::CameraInfo& message) {
@@ -116,6 +129,32 @@ std::string size_problem(const std::string& what, int width, int height, const g
   return what + " image is " + text(width, height) + ", camera info says " + text(camera.width, camera.height);
 }
 
+Converted<geometry::ColorImage> to_color(const Image& message) {
+  using Result = Converted<geometry::ColorImage>;
+  using geometry::Rgb8;
+  const std::string& encoding = message.encoding();
+  const auto of_rgb = [](const std::uint8_t* p) { return Rgb8{p[0], p[1], p[2]}; };
+  const auto of_bgr = [](const std::uint8_t* p) { return Rgb8{p[2], p[1], p[0]}; };
+  if (encoding == "rgb8") return color<3>(message, of_rgb);
+  if (encoding == "bgr8") return color<3>(message, of_bgr);
+  if (encoding == "rgba8") return color<4>(message, of_rgb);
+  if (encoding == "bgra8") return color<4>(message, of_bgr);
+  if (encoding == "mono8") return color<1>(message, [](const std::uint8_t* p) { return Rgb8{*p, *p, *p}; });
+  return Result::refused(not_a_color(encoding));
+}
+
+Converted<geometry::ColorImage> to_color(const sensor_msgs::msg::CompressedImage& message) {
+  using Result = Converted<geometry::ColorImage>;
+  const auto size = images::encoded_size(message.data());
+  if (!size) return Result::refused("compressed colour image is neither JPEG nor PNG");
+  if (size->width > kMostDecodedPixels / size->height) {
+    return Result::refused("compressed colour image has more than 2^25 pixels");
+  }
+  auto decoded = images::decode_color(message.data());
+  if (!decoded) return Result::refused("compressed colour image is damaged");
+  return std::move(*decoded);
+}
+
 Converted<geometry::GrayImage> to_gray(const Image& message) {
   using Result = Converted<geometry::GrayImage>;
   const std::string& encoding = message.encoding();
@@ -126,7 +165,7 @@ Converted<geometry::GrayImage> to_gray(const Image& message) {
   if (encoding == "bgr8") return gray<3>(message, of_bgr);
   if (encoding == "rgba8") return gray<4>(message, of_rgb);
   if (encoding == "bgra8") return gray<4>(message, of_bgr);
-  return Result::refused("colour encoding '" + shown(encoding) + "' is not rgb8, bgr8, rgba8, bgra8 or mono8");
+  return Result::refused(not_a_color(encoding));
 }
 
 Converted<geometry::DepthImage> to_depth(const Image& message) {
@@ -184,6 +223,15 @@ Converted<geometry::ConfidenceImage> to_confidence(const Image& message) {
     const auto share = read<float>(p);
     return static_cast<std::uint8_t>(share > 0.0f ? std::lround(std::min(share, 1.0f) * 255.0f) : 0);
   });
+}
+
+Image to_label_image(const geometry::LabelImage& labels, const std_msgs::msg::Header& header) {
+  const bool fits = std::all_of(labels.pixels.begin(), labels.pixels.end(), [](auto id) { return id < 255; });
+  if (!fits) return to_image(labels, "mono16", header);
+  geometry::Image<std::uint8_t> narrow(labels.width, labels.height);
+  std::transform(labels.pixels.begin(), labels.pixels.end(), narrow.pixels.begin(),
+                 [](auto id) { return static_cast<std::uint8_t>(id); });
+  return to_image(narrow, "mono8", header);
 }
 
 }  // namespace lapis::messages

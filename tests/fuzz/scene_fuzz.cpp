@@ -4,6 +4,7 @@
 #include <numeric>
 
 #include "check_scene.hpp"
+#include "common/mapping/file/label_list_file.hpp"
 #include "simulator/core/building/build_scene.hpp"
 #include "simulator/core/building/floor_plan.hpp"
 #include "simulator/core/scene/polygon.hpp"
@@ -67,7 +68,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   };
   attempt([&] { read_tour_yaml(file); });
-  attempt([&] { read_label_list(file); });
+  attempt([&] { lapis::mapping::read_label_list(file); });
   attempt([&] {
     const SceneSpec spec = normalised(read_scene_yaml(file));
     plan_walls(spec);

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+
+#include "common/config/schema.hpp"
+
+namespace lapis::segmenter {
+
+struct SegmenterConfig {
+  std::string model;
+  std::string color = "raw";
+  int threads = 1;
+};
+
+template <class Field>
+void describe(Field& field, SegmenterConfig& c) {
+  field("model", c.model, config::anything(),
+        "YAML file that names the network, what it takes and gives, and its classes (below)");
+  field("color", c.color, config::one_of({"raw", "compressed"}),
+        "which colour images are labelled: /camera/color/image_raw, or its JPEG or PNG on "
+        "/camera/color/image_raw/compressed");
+  field("threads", c.threads, config::in_range(1, 64), "number of threads that the network uses");
+}
+
+}  // namespace lapis::segmenter

@@ -91,11 +91,13 @@ std::string onnx_file(const ColorNetwork& network) {
 
 std::filesystem::path write_color_model(const std::filesystem::path& folder, const ColorNetwork& network) {
   const std::string bytes = onnx_file(network);
-  std::ofstream(folder / "network.onnx", std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  std::ofstream(folder / "network.onnx", std::ios::binary)
+      .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
   std::string labels, classes;
   for (std::size_t i = 0; i < network.colors.size(); ++i) {
     const std::string name = "color " + std::to_string(i);
-    labels += "  - {id: " + std::to_string(i + 1) + ", name: " + name + "}\n";
+    labels +=
+        "  - {id: " + std::to_string(static_cast<std::size_t>(network.first_label) + i) + ", name: " + name + "}\n";
     classes += "  " + std::to_string(i) + ": " + name + "\n";
   }
   std::ofstream(folder / "labels.yaml") << "labels:\n" << labels;

@@ -37,7 +37,9 @@ std::string varint(std::uint64_t number) {
   return bytes + static_cast<char>(number);
 }
 
-std::string key(int field, std::uint64_t wire_type) { return varint(static_cast<std::uint64_t>(field) * 8 + wire_type); }
+std::string key(int field, std::uint64_t wire_type) {
+  return varint(static_cast<std::uint64_t>(field) * 8 + wire_type);
+}
 
 std::string number_field(int field, std::uint64_t number) { return key(field, 0) + varint(number); }
 
@@ -95,16 +97,15 @@ void OnnxModel::weights(const std::string& name, const Shape& shape, const std::
   if (!values.empty()) std::memcpy(raw.data(), values.data(), raw.size());
   graph_ += bytes_field(graph::kInitializer, numbers_field(tensor::kDims, shape) +
                                                  number_field(tensor::kDataType, tensor::kFloat) +
-                                                 bytes_field(tensor::kName, name) +
-                                                 bytes_field(tensor::kRawData, raw));
+                                                 bytes_field(tensor::kName, name) + bytes_field(tensor::kRawData, raw));
 }
 
 void OnnxModel::node(const std::string& op, const std::vector<std::string>& inputs, const std::string& output,
                      const std::vector<Attribute>& attributes) {
   std::string bytes;
   for (const std::string& name : inputs) bytes += bytes_field(node::kInput, name);
-  bytes += bytes_field(node::kOutput, output) + bytes_field(node::kName, "make_" + output) +
-           bytes_field(node::kOpType, op);
+  bytes +=
+      bytes_field(node::kOutput, output) + bytes_field(node::kName, "make_" + output) + bytes_field(node::kOpType, op);
   for (const auto& [name, value] : attributes) {
     bytes += bytes_field(node::kAttribute, bytes_field(attribute::kName, name) + std::visit(AttributeValue(), value));
   }
@@ -112,8 +113,8 @@ void OnnxModel::node(const std::string& op, const std::vector<std::string>& inpu
 }
 
 std::string OnnxModel::bytes() const {
-  const std::string opset = bytes_field(opset_id::kDomain, "") +
-                            number_field(opset_id::kVersion, static_cast<std::uint64_t>(opset_));
+  const std::string opset =
+      bytes_field(opset_id::kDomain, "") + number_field(opset_id::kVersion, static_cast<std::uint64_t>(opset_));
   return number_field(model::kIrVersion, kNewestIr) +
          bytes_field(model::kGraph, bytes_field(graph::kName, "test") + graph_) +
          bytes_field(model::kOpsetImport, opset);

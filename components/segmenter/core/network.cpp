@@ -10,17 +10,19 @@
 namespace lapis::segmenter {
 namespace {
 
-/// What OpenCV says, in one line that can be read.
-std::string reason_of(const cv::Exception& error) {
+/// What OpenCV says, or the system, in one line that can be read.
+std::string reason_of(const std::exception& error) {
   constexpr std::size_t kLongest = 400;
-  std::string text = error.err.empty() ? error.what() : error.err;
+  const auto* of_opencv = dynamic_cast<const cv::Exception*>(&error);
+  std::string text = of_opencv != nullptr && !of_opencv->err.empty() ? of_opencv->err : error.what();
   std::replace(text.begin(), text.end(), '\n', ' ');
   return text.substr(0, kLongest);
 }
 
 /// Name of the output, as OpenCV knows it.
 std::string chosen_output(const cv::dnn::Net& net, const std::string& name, const std::filesystem::path& file) {
-  const auto names = net.getUnconnectedOutLayersNames();
+  auto names = net.getUnconnectedOutLayersNames();
+  std::sort(names.begin(), names.end());
   std::string known;
   for (const auto& one : names) known += (known.empty() ? "" : ", ") + one;
   if (name.empty() && names.size() == 1) return names[0];
@@ -47,7 +49,7 @@ Network::Network(const std::filesystem::path& file, const std::string& output) :
     net_->net = cv::dnn::readNetFromONNX(*bytes);
     net_->net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
     net_->net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-  } catch (const cv::Exception& problem) {
+  } catch (const std::exception& problem) {
     throw std::runtime_error(file.string() + ": OpenCV " + CV_VERSION +
                              " cannot read this network; export it with another opset, or simplify it "
                              "(components/segmenter/README.md): " +
@@ -69,7 +71,7 @@ Tensor Network::run(const Tensor& input) {
     Tensor output{std::vector<int>(result.size.p, result.size.p + result.dims), {}};
     output.values.assign(result.ptr<float>(), result.ptr<float>() + result.total());
     return output;
-  } catch (const cv::Exception& problem) {
+  } catch (const std::exception& problem) {
     throw std::runtime_error(file_.string() +
                              ": the network cannot take this input; see input.width, input.height and "
                              "input.layout: " +

@@ -11,7 +11,7 @@ inline constexpr dds::Topic<sensor_msgs::msg::Image> kColor{"/camera/color/image
                                                             "15 or 30 Hz", "rgb8, bgr8, rgba8, bgra8 or mono8"};
 inline constexpr dds::Topic<sensor_msgs::msg::CompressedImage> kCompressedColor{
     "/camera/color/image_raw/compressed", dds::kImage, "camera", "camera rate",
-    "JPEG or PNG; read instead of image_raw with slam.input.color, segmenter.color: compressed"};
+    "JPEG or PNG; read instead of image_raw with slam.input.color or segmenter.color: compressed"};
 inline constexpr dds::Topic<sensor_msgs::msg::Image> kDepth{"/camera/depth/image_raw", dds::kImage, "camera",
                                                             "camera rate", "16UC1 in mm or 32FC1 in m; 0 = none"};
 inline constexpr dds::Topic<sensor_msgs::msg::CameraInfo> kColorInfo{"/camera/color/camera_info", dds::kImageInfo,

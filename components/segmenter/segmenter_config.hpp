@@ -15,7 +15,7 @@ struct SegmenterConfig {
 template <class Field>
 void describe(Field& field, SegmenterConfig& c) {
   field("model", c.model, config::anything(),
-        "YAML file that names the network, what it takes and gives, and its classes (below)");
+        "YAML file that names the network, what it takes and gives, and its classes (components/segmenter/README.md)");
   field("color", c.color, config::one_of({"raw", "compressed"}),
         "which colour images are labelled: /camera/color/image_raw, or its JPEG or PNG on "
         "/camera/color/image_raw/compressed");

@@ -83,11 +83,11 @@ TEST(Decision, TheFirstOfEqualClassesWins) {
 }
 
 TEST(Decision, LargeLogitsDoNotOverflowAndWhatIsNotANumberIsUnlabelled) {
-  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInf = std::numeric_limits<float>::infinity();
+  constexpr float kNan = std::numeric_limits<float>::quiet_NaN(), kInfinity = std::numeric_limits<float>::infinity();
   const std::vector<std::vector<float>> pixels = {{1e30F, 0, 0, 0, 0},
-                                                  {0, -kInf, 50, -kInf, 0},
+                                                  {0, -kInfinity, 50, -kInfinity, 0},
                                                   {kNan, 0, 9, 0, 0},
-                                                  {0, 0, kInf, 0, 0},
+                                                  {0, 0, kInfinity, 0, 0},
                                                   {kNan, kNan, kNan, kNan, kNan}};
   Tensor scores{{1, 1, static_cast<int>(pixels.size()), kClasses}, {}};
   for (const auto& pixel : pixels) scores.values.insert(scores.values.end(), pixel.begin(), pixel.end());

@@ -100,12 +100,12 @@ std::filesystem::path write_color_model(const std::filesystem::path& folder, con
         "  - {id: " + std::to_string(static_cast<std::size_t>(network.first_label) + i) + ", name: " + name + "}\n";
     classes += "  " + std::to_string(i) + ": " + name + "\n";
   }
-  std::ofstream(folder / "labels.yaml") << "labels:\n" << labels;
+  std::ofstream(folder / "colors.yaml") << "labels:\n" << labels;
   const std::string layout = network.is_nhwc ? "NHWC" : "NCHW";
   const std::string values = network.ending == "ArgMax"    ? "labels"
                              : network.ending == "Softmax" ? "probabilities"
                                                            : "logits";
-  std::ofstream(folder / "model.yaml") << "network: network.onnx\nlabels: labels.yaml\ninput: {width: " << network.width
+  std::ofstream(folder / "model.yaml") << "network: network.onnx\nlabels: colors.yaml\ninput: {width: " << network.width
                                        << ", height: " << network.height << ", layout: " << layout
                                        << "}\noutput: {values: " << values << ", layout: " << layout
                                        << (network.has_second_output ? ", name: scores" : "") << "}\nclasses:\n"

@@ -26,7 +26,7 @@ struct ColorNetwork {
 /// Content of an ONNX file; the input is "image", the output "scores" (and "others").
 std::string onnx_file(const ColorNetwork& network);
 
-/// Writes network.onnx, model.yaml and labels.yaml: class i of the network is "color i".
+/// Writes network.onnx, model.yaml and colors.yaml: class i of the network is "color i".
 /// @return the model file
 std::filesystem::path write_color_model(const std::filesystem::path& folder, const ColorNetwork& network);
 

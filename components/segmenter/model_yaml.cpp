@@ -86,7 +86,7 @@ ClassTable classes(YamlEntry entry, const mapping::LabelList& labels, const std:
   std::map<int, std::uint16_t> table;
   for (const auto& [key, name] : entry.all_texts()) {
     const auto label = labels.id_of(name);
-    if (!label) entry.refuse(key + ": there is no class \"" + name + "\" in " + label_file.string());
+    if (!label) entry.refuse(key + ": " + label_file.string() + " has no class \"" + name + "\"");
     if (!table.emplace(class_index(entry, key), *label).second) entry.refuse(key + ": the same index twice");
   }
   if (table.empty())

@@ -12,8 +12,8 @@ from PIL import Image
 import chain
 
 DURATION_S = 3
-LEVELS = (40, 128, 215)  # of a channel; a class is a mixture, and the picture's own grey moves it by less than half a step
-GREY_SHARE = 0.3
+LEVELS = (32, 96, 160, 224)  # of a channel; a class is a mixture, and the picture's own grey moves it by less than half a step
+GREY_SHARE = 0.2
 UNLABELLED = 0
 
 

@@ -95,7 +95,7 @@ void SegmenterComponent::publish(const SegmentedImage& image) {
 
 void SegmenterComponent::report_cost() {
   if (recent_.images == 0) return;
-  const double images = static_cast<double>(recent_.images);
+  const auto images = static_cast<double>(recent_.images);
   const std::string text = fmt::format("{} images labelled, {:.1f} ms each ({:.1f} ms of CPU)", total_.images,
                                        1e3 * recent_.wall_s / images, 1e3 * recent_.cpu_s / images);
   spdlog::info(text);

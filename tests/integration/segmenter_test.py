@@ -11,7 +11,7 @@ from PIL import Image
 
 import chain
 
-DURATION_S = 3
+DURATION_S = 2
 LEVELS = (32, 96, 160, 224)  # of a channel; a class is a mixture, and the picture's own grey moves it by less than half a step
 GREY_SHARE = 0.2
 UNLABELLED = 0

@@ -65,9 +65,8 @@ Tensor Network::run(const Tensor& input) {
     // The const_cast is safe because setInput copies.
     const cv::Mat blob(input.shape, CV_32F, const_cast<float*>(input.values.data()));
     net_->net.setInput(blob);
-    const cv::Mat result = net_->net.forward(net_->output);
-    if (result.type() != CV_32F || !result.isContinuous())
-      throw std::runtime_error(file_.string() + ": output is no float");
+    cv::Mat result = net_->net.forward(net_->output);
+    if (result.type() != CV_32F) result.convertTo(result, CV_32F);  // indices of newer versions of OpenCV
     Tensor output{std::vector<int>(result.size.p, result.size.p + result.dims), {}};
     output.values.assign(result.ptr<float>(), result.ptr<float>() + result.total());
     return output;

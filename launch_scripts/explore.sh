@@ -7,7 +7,8 @@ source "$(dirname "$0")/lib.sh"
 usage() {
   cat <<'TEXT'
 usage: explore.sh [--scene NAME|DIR] [--method METHOD] [--duration S] [--seed N] [--out DIR] [--robot FILE]...
-                  [--world FILE]... [--then HOW] [--no-preset] [--freerun] [--restart] [--set KEY=VALUE]...
+                  [--world FILE]... [--then HOW] [--no-preset] [--segmenter MODEL] [--freerun] [--restart]
+                  [--set KEY=VALUE]...
 
 Lets the robot explore a simulated building until nothing reachable is left or the time is up, and leaves a run folder
 with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figures.
@@ -26,6 +27,7 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
   --robot FILE     robot, after config/robot.yaml (for example config/robot_wide.yaml); or a folder of such files
                    (config/robot_without_odometry)
   --world FILE     what wheels and camera are like (config/worlds, docs/buildings.md)
+  --segmenter MODEL  labels by a network (components/segmenter/README.md) instead of those of the scene
   --freerun        by the wall clock, frames may be lost; default: lock-step
   --restart        a process that dies or hangs is started again, at most three times each, but for the simulator; what
                    is lost with it: docs/architecture.md
@@ -50,7 +52,7 @@ add_config() {
 command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" afterwards="" has_preset=1 options=()
 while [ $# -gt 0 ]; do
   case $1 in
-    --scene | --method | --duration | --seed | --out | --robot | --world | --then | --set)
+    --scene | --method | --duration | --seed | --out | --robot | --world | --then | --segmenter | --set)
       [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;
   esac
   case $1 in
@@ -63,6 +65,7 @@ while [ $# -gt 0 ]; do
     --robot | --world) add_config "$2" && shift ;;
     --then) afterwards=$2 && options+=(--set "planner.then=$2" --set simulator.ends_when_explored=false) && shift ;;
     --no-preset) has_preset=0 ;;
+    --segmenter) options+=(--variant segmented --set "segmenter.model=$2") && shift ;;
     --freerun) options+=(--variant freerun) ;;
     --restart) options+=(--restart) ;;
     --set) options+=(--set "$2") && shift ;;

@@ -8,7 +8,7 @@ usage() {
   cat <<'TEXT'
 usage: replay.sh DATASET|--scene NAME [--out DIR] [--rate X] [--start S] [--duration S] [--labels FILE]
                  [--seed N] [--tour FILE] [--robot FILE]... [--world FILE]...
-                 [--restart] [--set KEY=VALUE]...
+                 [--segmenter MODEL] [--restart] [--set KEY=VALUE]...
 
 Plays DATASET (a folder in the layout of the TUM RGB-D benchmark, with camera.yaml; what lapis_simulator --export-tum
 wrote has the scene's ground truth, too), or drives a robot on a tour through
@@ -24,6 +24,7 @@ a simulated building, and leaves a run folder with trajectory, pose graph, seman
                    Default: lock-step, nothing is lost
   --start S        of a data set: skip S seconds;  --duration S  play S seconds
   --labels FILE    of a data set: CSV file class_id,class,... that names the labels
+  --segmenter MODEL  labels by a network (components/segmenter/README.md) instead of those of the data set or scene
   --restart        a process that dies or hangs is started again, as by explore.sh
   --set KEY=VALUE  configuration, for example semantic_mapper.resolution_m=0.1 or dds.socket_buffer_bytes=212992; it goes
                    to every process that knows KEY. --print-config of each process lists its keys
@@ -40,7 +41,7 @@ of_data_set=() of_scene=() # options given that the other kind of source does no
 command="${0##*/} $*" dataset="" scene="" rate="" out="" duration="" options=()
 while [ $# -gt 0 ]; do
   case $1 in
-    --out | --rate | --start | --duration | --labels | --scene | --seed | --tour | --robot | --world | --set)
+    --out | --rate | --start | --duration | --labels | --scene | --seed | --tour | --robot | --world | --segmenter | --set)
       [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;
   esac
   case $1 in
@@ -53,6 +54,7 @@ while [ $# -gt 0 ]; do
     --start) options+=(--set "sensor_replay.start_s=$2") of_data_set+=("$1") && shift ;;
     --labels) options+=(--set "sensor_replay.class_list=$2") of_data_set+=("$1") && shift ;;
     --seed | --tour) options+=(--set "simulator.${1#--}=$2") of_scene+=("$1") && shift ;;
+    --segmenter) options+=(--variant segmented --set "segmenter.model=$2") && shift ;;
     --restart) options+=(--restart) ;;
     --set) options+=(--set "$2") && shift ;;
     -*) die "unknown option $1 (see --help)" ;;

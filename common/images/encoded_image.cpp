@@ -33,6 +33,19 @@ std::optional<ImageSize> checked_size(std::uint32_t width, std::uint32_t height)
   return ImageSize{static_cast<int>(width), static_cast<int>(height)};
 }
 
+/// The image without gaps between its rows; empty when it is damaged.
+cv::Mat decode(Bytes bytes, int flags) {
+  if (!encoded_size(bytes) || is_truncated_jpeg(bytes) || bytes.size() > std::numeric_limits<int>::max()) return {};
+  try {
+    // The const_cast is safe because the decoder does not write to its input.
+    const cv::Mat coded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
+    const cv::Mat image = cv::imdecode(coded, flags | cv::IMREAD_IGNORE_ORIENTATION);
+    return image.isContinuous() ? image : cv::Mat();
+  } catch (const cv::Exception&) {
+    return {};
+  }
+}
+
 // Start of frame: 0xC0 to 0xCF except the markers of Huffman tables, JPEG extensions and arithmetic conditioning.
 bool is_frame_header(std::uint8_t marker) {
   return marker >= 0xC0 && marker <= 0xCF && marker != 0xC4 && marker != 0xC8 && marker != 0xCC;
@@ -52,19 +65,11 @@ std::optional<ImageSize> jpeg_size(Bytes bytes) {
 /// The decoded image if it has the pixels of an Image<Pixel>; nothing when it is damaged.
 template <class Pixel>
 std::optional<geometry::Image<Pixel>> decode(Bytes bytes, int flags) {
-  if (!encoded_size(bytes) || is_truncated_jpeg(bytes) || bytes.size() > std::numeric_limits<int>::max())
-    return std::nullopt;
-  try {
-    // The const_cast is safe because the decoder does not write to its input.
-    const cv::Mat coded(1, static_cast<int>(bytes.size()), CV_8UC1, const_cast<std::uint8_t*>(bytes.data()));
-    const cv::Mat image = cv::imdecode(coded, flags);
-    if (image.empty() || !image.isContinuous() || image.type() != cv::traits::Type<Pixel>::value) return std::nullopt;
-    geometry::Image<Pixel> out(image.cols, image.rows);
-    std::copy_n(image.ptr<Pixel>(), out.pixels.size(), out.pixels.begin());
-    return out;
-  } catch (const cv::Exception&) {
-    return std::nullopt;
-  }
+  const cv::Mat image = decode(bytes, flags);
+  if (image.empty() || image.type() != cv::traits::Type<Pixel>::value) return std::nullopt;
+  geometry::Image<Pixel> out(image.cols, image.rows);
+  std::copy_n(image.ptr<Pixel>(), out.pixels.size(), out.pixels.begin());
+  return out;
 }
 
 }  // namespace
@@ -86,11 +91,23 @@ bool is_truncated_jpeg(Bytes bytes) {
 }
 
 std::optional<geometry::GrayImage> decode_gray(Bytes bytes) {
-  return decode<std::uint8_t>(bytes, cv::IMREAD_GRAYSCALE | cv::IMREAD_IGNORE_ORIENTATION);
+  return decode<std::uint8_t>(bytes, cv::IMREAD_GRAYSCALE);
 }
 
 std::optional<geometry::Image<std::uint16_t>> decode_wide(Bytes bytes) {
   return decode<std::uint16_t>(bytes, cv::IMREAD_UNCHANGED);
+}
+
+std::optional<geometry::ColorImage> decode_color(Bytes bytes) {
+  const cv::Mat image = decode(bytes, cv::IMREAD_COLOR);
+  if (image.empty()) return std::nullopt;
+  geometry::ColorImage color(image.cols, image.rows);
+  const auto* bgr = image.ptr<cv::Vec3b>();
+  for (auto& pixel : color.pixels) {
+    pixel = {(*bgr)[2], (*bgr)[1], (*bgr)[0]};
+    ++bgr;
+  }
+  return color;
 }
 
 }  // namespace lapis::images

@@ -24,6 +24,8 @@ bool is_truncated_jpeg(std::span<const std::uint8_t> bytes);
 /// Grey values of a JPEG or PNG, with the pixels in the stored order (orientation tags are ignored); nothing when the
 /// image is damaged.
 std::optional<geometry::GrayImage> decode_gray(std::span<const std::uint8_t> bytes);
+/// The same for colours.
+std::optional<geometry::ColorImage> decode_color(std::span<const std::uint8_t> bytes);
 
 /// Values of a grey PNG with 16 bits per pixel; nothing when the image is damaged or of another kind.
 std::optional<geometry::Image<std::uint16_t>> decode_wide(std::span<const std::uint8_t> bytes);

@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "common/images/encoded_image.hpp"
+
 namespace lapis::messages {
 namespace {
 
@@ -79,6 +81,43 @@ Converted<geometry::GrayImage> gray_of_wide(const Image& image) {
   return out;
 }
 
+template <std::size_t kBytesPerPixel, class Convert>
+Converted<geometry::ColorImage> color(const Image& image, Convert convert) {
+  const auto problem = layout_problem(image, kBytesPerPixel);
+  if (!problem.empty()) return Converted<geometry::ColorImage>::refused("colour " + problem);
+  return map_pixels<geometry::Rgb8>(image, kBytesPerPixel, convert);
+}
+
+/// Colours of a yuv422 image (ITU-R BT.601, 16 to 235), in which two neighbours share Cb and Cr.
+Converted<geometry::ColorImage> color_of_yuv(const Image& image, bool has_chroma_first) {
+  const auto problem = layout_problem(image, 2);
+  if (!problem.empty() || image.width() % 2 != 0) {
+    return Converted<geometry::ColorImage>::refused("colour " + (problem.empty() ? "image has an odd width" : problem));
+  }
+  geometry::ColorImage out(static_cast<int>(image.width()), static_cast<int>(image.height()));
+  const auto channel = [](double value) { return static_cast<std::uint8_t>(std::clamp(value + 0.5, 0.0, 255.0)); };
+  auto* target = out.pixels.data();
+  const std::size_t luminance_at = has_chroma_first ? 1 : 0, chroma_at = 1 - luminance_at;
+  for (std::size_t row = 0; row < image.height(); ++row) {
+    const std::uint8_t* pair = image.data().data() + row * image.step();
+    for (std::size_t column = 0; column < image.width(); column += 2, pair += 4) {
+      const double cb = pair[chroma_at] - 128.0, cr = pair[chroma_at + 2] - 128.0;
+      for (const std::size_t at : {luminance_at, luminance_at + 2}) {
+        const double y = 255.0 / 219.0 * (pair[at] - 16.0);
+        *target++ = {channel(y + 1.596 * cr), channel(y - 0.392 * cb - 0.813 * cr), channel(y + 2.017 * cb)};
+      }
+    }
+  }
+  return out;
+}
+
+bool has_chroma_first(const std::string& encoding) { return encoding == "yuv422" || encoding == "uyvy"; }
+bool has_luminance_first(const std::string& encoding) { return encoding == "yuv422_yuy2" || encoding == "yuyv"; }
+
+std::string not_a_color(const std::string& encoding) {
+  return "colour encoding '" + shown(encoding) + "' is not rgb8, bgr8, rgba8, bgra8, mono8, mono16 or yuv422";
+}
+
 }  // namespace
 
 Converted<geometry::LensCamera> lens_camera(const sensor_msgs::msg::CameraInfo& message) {
@@ -132,23 +171,53 @@ std::string size_problem(const std::string& what, int width, int height, const g
   return what + " image is " + text(width, height) + ", camera info says " + text(camera.width, camera.height);
 }
 
+Converted<geometry::ColorImage> to_color(const Image& message) {
+  using Result = Converted<geometry::ColorImage>;
+  using geometry::Rgb8;
+  const std::string& encoding = message.encoding();
+  const auto of_rgb = [](const std::uint8_t* p) { return Rgb8{p[0], p[1], p[2]}; };
+  const auto of_bgr = [](const std::uint8_t* p) { return Rgb8{p[2], p[1], p[0]}; };
+  if (encoding == "rgb8") return color<3>(message, of_rgb);
+  if (encoding == "bgr8") return color<3>(message, of_bgr);
+  if (encoding == "rgba8") return color<4>(message, of_rgb);
+  if (encoding == "bgra8") return color<4>(message, of_bgr);
+  if (has_chroma_first(encoding)) return color_of_yuv(message, true);
+  if (has_luminance_first(encoding)) return color_of_yuv(message, false);
+  const auto gray = to_gray(message);
+  if (!gray) return Result::refused(gray.reason);
+  geometry::ColorImage out(gray->width, gray->height);
+  std::transform(gray->pixels.begin(), gray->pixels.end(), out.pixels.begin(), [](std::uint8_t value) {
+    return Rgb8{value, value, value};
+  });
+  return out;
+}
+
+Converted<geometry::ColorImage> to_color(const sensor_msgs::msg::CompressedImage& message) {
+  using Result = Converted<geometry::ColorImage>;
+  const auto size = images::encoded_size(message.data());
+  if (!size) return Result::refused("compressed colour image is neither JPEG nor PNG");
+  if (size->width > kMostDecodedPixels / size->height) {
+    return Result::refused("compressed colour image has more than 2^25 pixels");
+  }
+  auto decoded = images::decode_color(message.data());
+  if (!decoded) return Result::refused("compressed colour image is damaged");
+  return std::move(*decoded);
+}
+
 Converted<geometry::GrayImage> to_gray(const Image& message) {
   using Result = Converted<geometry::GrayImage>;
   const std::string& encoding = message.encoding();
   if (encoding == "mono8" || encoding == "8UC1") return gray<1>(message, [](const std::uint8_t* p) { return *p; });
   if (encoding == "mono16" || encoding == "16UC1") return gray_of_wide(message);
-  const bool has_chroma_first = encoding == "yuv422" || encoding == "uyvy";
-  if (has_chroma_first) return gray<2>(message, [](const std::uint8_t* p) { return p[1]; });
-  if (encoding == "yuv422_yuy2" || encoding == "yuyv")
-    return gray<2>(message, [](const std::uint8_t* p) { return *p; });
+  if (has_chroma_first(encoding)) return gray<2>(message, [](const std::uint8_t* p) { return p[1]; });
+  if (has_luminance_first(encoding)) return gray<2>(message, [](const std::uint8_t* p) { return *p; });
   const auto of_rgb = [](const std::uint8_t* p) { return luminance(p[0], p[1], p[2]); };
   const auto of_bgr = [](const std::uint8_t* p) { return luminance(p[2], p[1], p[0]); };
   if (encoding == "rgb8") return gray<3>(message, of_rgb);
   if (encoding == "bgr8") return gray<3>(message, of_bgr);
   if (encoding == "rgba8") return gray<4>(message, of_rgb);
   if (encoding == "bgra8") return gray<4>(message, of_bgr);
-  return Result::refused("colour encoding '" + shown(encoding) +
-                         "' is not rgb8, bgr8, rgba8, bgra8, mono8, mono16 or yuv422");
+  return Result::refused(not_a_color(encoding));
 }
 
 Converted<geometry::DepthImage> to_depth(const Image& message) {
@@ -206,6 +275,15 @@ Converted<geometry::ConfidenceImage> to_confidence(const Image& message) {
     const auto share = read<float>(p);
     return static_cast<std::uint8_t>(share > 0.0f ? std::lround(std::min(share, 1.0f) * 255.0f) : 0);
   });
+}
+
+Image to_label_image(const geometry::LabelImage& labels, const std_msgs::msg::Header& header) {
+  const bool fits = std::all_of(labels.pixels.begin(), labels.pixels.end(), [](auto id) { return id < 255; });
+  if (!fits) return to_image(labels, "mono16", header);
+  geometry::Image<std::uint8_t> narrow(labels.width, labels.height);
+  std::transform(labels.pixels.begin(), labels.pixels.end(), narrow.pixels.begin(),
+                 [](auto id) { return static_cast<std::uint8_t>(id); });
+  return to_image(narrow, "mono8", header);
 }
 
 }  // namespace lapis::messages

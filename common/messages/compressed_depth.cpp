@@ -5,6 +5,7 @@
 #include <span>
 
 #include "common/images/encoded_image.hpp"
+#include "common/messages/camera.hpp"
 
 namespace lapis::messages {
 namespace {
@@ -12,7 +13,6 @@ namespace {
 using sensor_msgs::msg::Image;
 
 constexpr std::size_t kHeaderBytes = 12;
-constexpr std::size_t kLargestPixels = std::size_t{1} << 24U;  // a few bytes may announce any number of pixels
 
 /// Parameters of the header, for depth in metres.
 struct InverseDepth {
@@ -77,8 +77,9 @@ Converted<Image> unpack_depth(const sensor_msgs::msg::CompressedImage& message) 
   const auto png = bytes.subspan(kHeaderBytes);
   const auto size = images::encoded_size(png);
   if (!size) return Result::refused("compressed depth image is not a PNG behind a header of 12 bytes");
-  const auto pixels = static_cast<std::size_t>(size->width) * static_cast<std::size_t>(size->height);
-  if (pixels > kLargestPixels) return Result::refused("compressed depth image is larger than 16 megapixels");
+  if (size->width > kMostDecodedPixels / size->height) {
+    return Result::refused("compressed depth image has more than 2^25 pixels");
+  }
   const auto values = images::decode_wide(png);
   if (!values) return Result::refused("compressed depth image is damaged");
   if (is_in_m) return depth_in_m(message.header(), *values, read_parameters(bytes));

@@ -63,7 +63,8 @@ class StampedInput {
   time::Match match(time::Time stamp, time::Duration tolerance, bool is_complete, Message*& found) {
     return buffer_.match(stamp, tolerance, is_complete, found);
   }
-  /// See StampBuffer::second, drop_until and expect_restart.
+  /// See StampBuffer::second, newest, drop_until and expect_restart.
+  std::optional<time::Time> newest() const { return buffer_.newest(); }
   std::optional<time::Time> second() const { return buffer_.second(); }
   std::size_t drop_until(time::Time stamp) { return buffer_.drop_until(stamp); }
   void expect_restart(time::Time stamp) { buffer_.expect_restart(stamp); }

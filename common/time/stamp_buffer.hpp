@@ -75,6 +75,8 @@ class StampBuffer {
   std::optional<Time> second() const {
     return entries_.size() < 2 ? std::nullopt : std::optional<Time>(entries_[1].first);
   }
+  /// Newest stamp that was stored since the source began or has restarted.
+  std::optional<Time> newest() const { return newest_; }
   /// Forgets everything up to and including `stamp`; returns the number of messages.
   std::size_t drop_until(Time stamp) {
     const std::size_t before = entries_.size();

@@ -28,8 +28,9 @@ constexpr const char* kFramesFile = "frames.lapis";
 constexpr std::size_t kFramesPerBeat = 1000;  // seconds of work while a map is rebuilt
 constexpr double kLongestSave_s = 300.0;
 constexpr double kLongestFlush_s = 600.0;
-constexpr std::size_t kWaitingFrames = 30;  // images wait here for slam's pose: one second at 30 Hz
-constexpr std::size_t kWaitingInfos = 64;   // on a network they are ahead of their images by half a second more
+constexpr std::size_t kWaitingFrames = 90;  // frames with a pose wait for labels: three seconds at 30 Hz
+constexpr std::size_t kWaitingImages = kWaitingFrames + 30;  // images wait for slam's pose, too: one second more
+constexpr std::size_t kWaitingInfos = kWaitingImages + 34;   // on a network they are ahead by half a second more
 
 bool has_pose(const lapis_msgs::msg::TrackedFrame& frame) {
   namespace Constants = lapis_msgs::msg::TrackedFrame_Constants;
@@ -74,9 +75,9 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
     : config_(completed(config)), context_(context), publisher_(config_, context),
       tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
       tolerance_(time::Duration::from_seconds(config.max_stamp_difference_s)),
-      depth_(runtime::depth_input(context, kWaitingFrames)),
-      labels_(context, topics::kLabels, "labels", kWaitingFrames),
-      confidence_(context, topics::kLabelConfidence, "label confidence", kWaitingFrames),
+      depth_(runtime::depth_input(context, kWaitingImages)),
+      labels_(context, topics::kLabels, "labels", kWaitingImages),
+      confidence_(context, topics::kLabelConfidence, "label confidence", kWaitingImages),
       info_(context, topics::kColorInfo, "camera info", kWaitingInfos), depth_camera_(context, static_transforms_),
       disk_({SemanticMapperComponent::kName,
              config.output_dir,
@@ -187,8 +188,9 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   if (depth_camera_.is_awaited() && !is_last_chance) return false;
   const auto known = tolerance_.of(stamp, tracked_.second());
   const auto tolerance = known.value_or(is_last_chance ? time::StampTolerance::kLargest : time::Duration{});
-  const bool no_labels_come = is_last_chance || !labels_.has_publisher();
-  const bool no_confidence_comes = is_last_chance || !confidence_.has_publisher();
+  const bool has_waited = (tracked_.newest().value_or(now) - now).seconds() > config_.label_wait_s;
+  const bool no_labels_come = is_last_chance || has_waited || !labels_.has_publisher();
+  const bool no_confidence_comes = is_last_chance || has_waited || !confidence_.has_publisher();
   const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
   const auto label_match = labels_.match(now, tolerance, no_labels_come, labels);
   const auto confidence_match = confidence_.match(now, tolerance, no_confidence_comes, confidence);

@@ -18,6 +18,7 @@ struct SemanticMapperComponentConfig {
   double kernel_length_voxels = 2.0;
   ObstacleConfig obstacles;
   double max_stamp_difference_s = 0.0;
+  double label_wait_s = 1.5;
   double frame_interval_s = 0.0;
   double tile_period_s = 0.5;
   double view_period_s = 1.0;
@@ -113,6 +114,10 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.5),
         "largest difference between the stamps of pose, depth, labels and camera info of a frame; 0: 0.6 of the "
         "camera's period, at most 0.12 s [s]");
+  field("label_wait_s", c.label_wait_s, config::in_range(0.0, 3.0),
+        "how much newer a frame of slam may be than one that still waits for its labels, where somebody publishes "
+        "labels; then the older one enters the map without them. At most 90 frames wait. In lock-step each frame has "
+        "its labels, or none come [s]");
   field("frame_interval_s", c.frame_interval_s, config::in_range(0.0, 60.0),
         "shortest time between integrated frames, by their time stamps; 0: every frame is integrated [s]");
   describe_output(field, c);

@@ -22,7 +22,7 @@ TumDatasetConfig dataset_config(const SensorReplayConfig& config) {
     throw std::runtime_error(
         "no data set given; call: lapis_sensor_replay DATASET (a folder with rgb.txt, depth.txt, camera.yaml)");
   }
-  return {config.dataset, config.class_list, config.max_stamp_difference_s};
+  return {config.dataset, config.class_list, config.max_stamp_difference_s, config.labels};
 }
 
 FrameRange selected(const TumDataset& dataset, const SensorReplayConfig& config) {

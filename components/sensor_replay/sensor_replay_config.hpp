@@ -9,6 +9,7 @@ namespace lapis::sensor_replay {
 struct SensorReplayConfig {
   std::string dataset;
   std::string class_list;
+  bool labels = true;
   double rate = 0.0;
   double start_s = 0.0;
   double duration_s = 0.0;
@@ -25,6 +26,9 @@ void describe(Field& field, SensorReplayConfig& c) {
   field("class_list", c.class_list, config::anything(),
         "CSV file with columns class_id,class,... that names the labels; empty: classes.csv of the data set, if it has "
         "one");
+  field("labels", c.labels, config::anything(),
+        "whether the label images of the data set are published; false: another process labels the images, such as "
+        "segmenter");
   field("rate", c.rate, config::in_range(0.0, 100.0),
         "speed of the replay relative to the recording; 0: lock-step, in which no frame is lost");
   field("start_s", c.start_s, config::in_range(0.0, 1e6), "time that is skipped at the beginning of the recording [s]");

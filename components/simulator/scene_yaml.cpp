@@ -8,10 +8,14 @@
 #include <stdexcept>
 #include <utility>
 
-#include "simulator/yaml_entry.hpp"
+#include "common/config/yaml_entry.hpp"
+#include "common/mapping/file/label_list_file.hpp"
 
 namespace lapis::simulator {
 namespace {
+
+using config::load_yaml;
+using config::YamlEntry;
 
 constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr std::size_t kMostItems = 10'000, kMostCorners = 200;
@@ -27,16 +31,6 @@ std::vector<Eigen::Vector2d> polygon(YamlEntry& entry, const std::string& key) {
   return corners;
 }
 
-geometry::Rgb8 color(YamlEntry& entry) {
-  std::array<std::uint8_t, 3> channels{};
-  const auto values = entry.numbers("color", 3);
-  for (std::size_t i = 0; i < 3; ++i) {
-    if (!(values[i] >= 0.0 && values[i] <= 255.0)) entry.refuse("color must be three numbers from 0 to 255");
-    channels[i] = static_cast<std::uint8_t>(values[i]);
-  }
-  return {channels[0], channels[1], channels[2]};
-}
-
 SurfaceSpec surface(YamlEntry& room, const std::string& key) {
   SurfaceSpec spec;
   if (!room.has(key)) return spec;
@@ -46,7 +40,7 @@ SurfaceSpec surface(YamlEntry& room, const std::string& key) {
   }
   YamlEntry entry = room.entry(key);
   spec.texture = entry.text("texture", "");
-  if (entry.has("color")) spec.color = color(entry);
+  if (entry.has("color")) spec.color = mapping::read_color(entry);
   if (entry.has("variant")) {
     const int variant = entry.whole_number("variant", 0);
     if (variant < 0) entry.refuse("variant must not be negative");
@@ -284,7 +278,7 @@ SceneSpec read_scene_yaml(const std::filesystem::path& file, const std::filesyst
   const bool names_labels = root.has("labels");
   const auto labels = file.parent_path() / root.text("labels", "../labels/mpcat40.yaml");
   const bool takes_usual = !names_labels && !usual_labels.empty() && !std::filesystem::exists(labels);
-  scene.labels = read_label_list(takes_usual ? usual_labels : labels);
+  scene.labels = mapping::read_label_list(takes_usual ? usual_labels : labels);
   scene.height_m = root.number("height", scene.height_m);
   scene.wall_thickness_m = root.number("wall_thickness", scene.wall_thickness_m);
   for (auto& entry : root.entries("rooms", "room")) scene.rooms.push_back(room(entry));
@@ -304,25 +298,6 @@ std::vector<Eigen::Vector2d> read_tour_yaml(const std::filesystem::path& file) {
   auto waypoints = polygon(root, "tour");
   root.done();
   return waypoints;
-}
-
-mapping::LabelList read_label_list(const std::filesystem::path& file) {
-  YamlEntry root(file, load_yaml(file), "label list");
-  std::vector<mapping::Label> labels;
-  for (auto& entry : root.entries("labels", "label")) {
-    const int id = entry.whole_number("id", 0);
-    if (id < 1 || id > 65535) entry.refuse("id must be a whole number from 1 to 65535");
-    const auto number = static_cast<std::uint16_t>(id);
-    labels.push_back({number, entry.text("name"), entry.has("color") ? color(entry) : mapping::default_color(number)});
-    entry.done();
-  }
-  root.done();
-  if (labels.empty()) root.refuse("it lists no labels");
-  try {
-    return mapping::LabelList(std::move(labels));
-  } catch (const std::runtime_error& error) {
-    throw std::runtime_error(file.string() + ": " + error.what());
-  }
 }
 
 }  // namespace lapis::simulator

@@ -18,8 +18,4 @@ SceneSpec read_scene_yaml(const std::filesystem::path& file, const std::filesyst
 /// @throws std::runtime_error naming file and line
 std::vector<Eigen::Vector2d> read_tour_yaml(const std::filesystem::path& file);
 
-/// Reads a list of classes: "labels: [{id: 1, name: wall, color: [r, g, b]}, ...]"; the colour may be left out.
-/// @throws std::runtime_error naming file and line
-mapping::LabelList read_label_list(const std::filesystem::path& file);
-
 }  // namespace lapis::simulator

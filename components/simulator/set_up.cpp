@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "common/mapping/file/label_list_file.hpp"
 #include "simulator/core/assets/text_scan.hpp"
 #include "simulator/core/generator/generate_building.hpp"
 #include "simulator/core/loaders/load_scene.hpp"
@@ -125,7 +126,7 @@ std::vector<std::string> bundled_scenes() {
 }
 
 SceneSpec generated_building(const BuildingName& name) {
-  return generate_building(name, read_label_list(usual_labels()));
+  return generate_building(name, mapping::read_label_list(usual_labels()));
 }
 
 Scene open_scene(const SimulatorConfig& config) {
@@ -133,7 +134,7 @@ Scene open_scene(const SimulatorConfig& config) {
   const fs::path file = find_scene(config.scene);
   if (file.extension() == ".yaml") return build(read_scene_yaml(file, usual_labels()), config);
   LoadOptions options;
-  options.labels = read_label_list(usual_labels());
+  options.labels = mapping::read_label_list(usual_labels());
   return load_scene(file, options);
 }
 

@@ -94,7 +94,7 @@ std::optional<int> SimulatorComponent::run_tool(const Config& config) { return r
 SimulatorComponent::SimulatorComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), world_(load_world(config, context)), start_(start_pose(world_, config)),
       tour_(plan_tour(world_, start_, config)),
-      camera_(context, {.has_labels = true, .has_ground_truth = true}, config.mode == "freerun"),
+      camera_(context, {.has_labels = config.labels, .has_ground_truth = true}, config.mode == "freerun"),
       collision_(context.advertise(topics::kCollision)) {
   if (!config_.output_dir.empty()) {
     files::require_writable_folder(config_.output_dir, "simulator.output_dir");

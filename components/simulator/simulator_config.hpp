@@ -52,6 +52,7 @@ struct SimulatorConfig {
   int wait_for_readers = 0;
   int render_threads = 1;
   bool imu = false;
+  bool labels = true;
   double planner_margin_m = 0.05;
   bool full_map = false;
   SceneConfig world;
@@ -160,6 +161,8 @@ void describe(Field& field, SimulatorConfig& c) {
   field("render_threads", c.render_threads, config::in_range(1, 64),
         "number of threads for rendering, light and ground truth; results do not depend on it");
   field("imu", c.imu, config::anything(), "whether the simulator publishes /imu, at 200 Hz");
+  field("labels", c.labels, config::anything(),
+        "whether the simulator publishes labels; false: another process labels the images, such as segmenter");
   field("planner_margin_m", c.planner_margin_m, config::in_range(0.0, 1.0),
         "clearance that a planner keeps (planner.grid.margin_m), for the ground truth of what such a robot can see "
         "(with_margin.lapis) [m]");

@@ -1,7 +1,6 @@
 #include "slam/frame_converter.hpp"
 
 #include "common/images/encoded_image.hpp"
-#include "common/messages/camera.hpp"
 #include "common/topics/camera.hpp"
 
 namespace lapis::slam {

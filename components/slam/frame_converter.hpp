@@ -1,17 +1,15 @@
 #pragma once
 
-#include <variant>
-
 #include "common/geometry/pinhole_camera.hpp"
 #include "common/images/rectifier.hpp"
+#include "common/messages/camera.hpp"
 #include "common/messages/converted.hpp"
 #include "idl/sensor_msgs.hpp"
 #include "slam/core/frame/frame.hpp"
 
 namespace lapis::slam {
 
-/// A colour image as received: raw or compressed.
-using ColorMessage = std::variant<sensor_msgs::msg::Image, sensor_msgs::msg::CompressedImage>;
+using messages::ColorMessage;
 
 /// Converts messages to frames: colour becomes grey values, and is rectified.
 class FrameConverter {

@@ -87,6 +87,16 @@ void append(std::vector<std::string>& arguments, const Settings& settings) {
   }
 }
 
+/// The system with the variants that were asked for, one after the other.
+System as_asked(System system, const Request& request) {
+  for (const auto& name : request.variants) {
+    const auto variant = system.variants.find(name);
+    if (variant == system.variants.end()) throw BadSetup("--variant " + name + ": " + system.name + " has none");
+    system = varied(system, variant->second);
+  }
+  return system;
+}
+
 }  // namespace
 
 void block_signals() {
@@ -95,7 +105,7 @@ void block_signals() {
 }
 
 Supervisor::Supervisor(System system, Request request)
-    : system_(std::move(system)), request_(std::move(request)),
+    : system_(as_asked(std::move(system), request)), request_(std::move(request)),
       title_(request_.command.substr(0, request_.command.find(' '))), folder_(request_.out),
       participant_(participant_options()),
       heartbeats_(participant_, topics::kHeartbeat, [this](const auto& heartbeat) { hear(heartbeat); }) {
@@ -119,11 +129,6 @@ void Supervisor::clear_folder() const {
 Settings Supervisor::all_settings() const {
   Settings settings = system_.settings;
   const auto add = [&](const Settings& more) { settings.insert(settings.end(), more.begin(), more.end()); };
-  for (const auto& name : request_.variants) {
-    const auto variant = system_.variants.find(name);
-    if (variant == system_.variants.end()) throw BadSetup("--variant " + name + ": " + system_.name + " has none");
-    add(variant->second.settings);
-  }
   if (request_.may_restart) add(system_.restart.settings);
   add(request_.settings);
   return settings;
@@ -172,10 +177,7 @@ void Supervisor::collect_arguments() {
 
 /// Longest time without a heartbeat that needs no announcement [s]: a number, or the value of a key.
 double Supervisor::usual_silence() const {
-  std::string text = system_.silence;
-  for (const auto& name : request_.variants) {
-    if (const auto& silence = system_.variants.at(name).silence; !silence.empty()) text = silence;
-  }
+  const std::string& text = system_.silence;
   for (const auto& process : processes_) {
     const auto value = process.configuration.values.find(text);
     if (value != process.configuration.values.end()) return std::stod(value->second);

@@ -69,7 +69,9 @@ Resume resume(const YAML::Node& node) {
 Variant variant(const YAML::Node& node) {
   Variant out;
   read_section(node, {{"silence_s", [&](const auto& n) { out.silence = text(n); }},
-                      {"settings", [&](const auto& n) { out.settings = settings(n); }}});
+                      {"settings", [&](const auto& n) { out.settings = settings(n); }},
+                      {"processes", [&](const auto& n) { out.processes = texts(n); }},
+                      {"stages", [&](const auto& n) { out.stages = texts(n); }}});
   return out;
 }
 

@@ -1,9 +1,12 @@
-// Scene files, tours and label lists. Some small buildings are built, too; it takes a thousand times as long.
+// Scene files, tours, label lists and model files. Some small buildings are built, too; it takes a thousand times as
+// long.
 
 #include <fstream>
 #include <numeric>
 
 #include "check_scene.hpp"
+#include "common/mapping/file/label_list_file.hpp"
+#include "segmenter/model_yaml.hpp"
 #include "simulator/core/building/build_scene.hpp"
 #include "simulator/core/building/floor_plan.hpp"
 #include "simulator/core/scene/polygon.hpp"
@@ -67,7 +70,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     }
   };
   attempt([&] { read_tour_yaml(file); });
-  attempt([&] { read_label_list(file); });
+  attempt([&] { lapis::mapping::read_label_list(file); });
+  attempt([&] { lapis::segmenter::read_model_file(file); });
   attempt([&] {
     const SceneSpec spec = normalised(read_scene_yaml(file));
     plan_walls(spec);

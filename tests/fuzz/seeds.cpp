@@ -128,7 +128,11 @@ void add_scene_files(Inputs& inputs) {
                        "lamps:\n  - {at: [1, 1], height: 2, intensity: 0.5}\nstress: true\n"),
       to_bytes(rooms + "pictures:\n  - {room: b, wall: 2, along: -0.6, size: [0.4, 0.3], motif: 4}\n"
                        "starts:\n  - {at: [1, 1], yaw_deg: 90}\ntour: [[1, 1], [3, 1]]\nheight: 3\n"
-                       "wall_thickness: 0.2\nname: x\nlabels: ../labels/mpcat40.yaml\n")};
+                       "wall_thickness: 0.2\nname: x\nlabels: ../labels/mpcat40.yaml\n"),
+      to_bytes(
+          std::string("network: a.onnx\nlabels: ../labels/mpcat40.yaml\n"
+                      "input: {width: 32, height: 24, layout: NHWC, channels: bgr, scale: 1, mean: [1, 2, 3], "
+                      "std: [4, 5, 6]}\noutput: {name: out, values: probabilities}\nclasses: {0: wall, 3: table}\n"))};
 }
 
 void add_maps(Seeds& seeds) {

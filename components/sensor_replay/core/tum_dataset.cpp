@@ -52,7 +52,7 @@ TumDataset::TumDataset(const TumDatasetConfig& config, const CameraReader& read_
   depth_rectifier_.emplace(camera_.depth_camera ? camera_.depth_camera->camera : lens);
   const fs::path truth = config.folder / "groundtruth.txt";
   if (fs::exists(truth)) trajectory_ = trajectory::read_trajectory(truth);
-  has_labels_ = fs::is_directory(config.folder / "label");
+  has_labels_ = config.takes_labels && fs::is_directory(config.folder / "label");
   if (!config.class_list.empty()) {
     class_list_ = read_class_list(config.class_list);
   } else if (fs::exists(config.folder / "classes.csv")) {

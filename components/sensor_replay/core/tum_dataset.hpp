@@ -23,6 +23,7 @@ struct TumDatasetConfig {
   std::filesystem::path folder;
   std::filesystem::path class_list;      ///< CSV "class_id,class,..."; empty = classes.csv of the folder, if it exists
   double max_stamp_difference_s = 0.02;  ///< between colour, depth and ground truth, 0 to 1 (TUM's tools: 0.02)
+  bool takes_labels = true;              ///< false: as if there were no folder label/
 };
 
 enum class ImagePart { kColor, kDepth, kLabel };

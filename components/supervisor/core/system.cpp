@@ -4,6 +4,14 @@
 
 namespace lapis::supervisor {
 
+System varied(System system, const Variant& variant) {
+  if (!variant.silence.empty()) system.silence = variant.silence;
+  if (!variant.processes.empty()) system.processes = variant.processes;
+  if (!variant.stages.empty()) system.stages = variant.stages;
+  system.settings.insert(system.settings.end(), variant.settings.begin(), variant.settings.end());
+  return system;
+}
+
 std::optional<std::string> find_problem(const System& system) {
   const auto& processes = system.processes;
   const auto is_process = [&](const std::string& name) {
@@ -23,6 +31,11 @@ std::optional<std::string> find_problem(const System& system) {
     if (!is_process(name)) return "restart.resume: " + name + " is not one of the processes";
   }
   if (system.silence.empty()) return "silence_s: give seconds, or the key of a value in seconds";
+  for (const auto& [name, variant] : system.variants) {
+    System as_variant = varied(system, variant);
+    as_variant.variants.clear();
+    if (const auto problem = find_problem(as_variant)) return "variants: " + name + ": " + *problem;
+  }
   return std::nullopt;
 }
 

@@ -31,8 +31,10 @@ struct RestartPolicy {
 
 /// A variant of the run, selected with --variant.
 struct Variant {
-  std::string silence;  ///< see System::silence; empty: the same as there
-  Settings settings;
+  std::string silence;  ///< see System::silence; empty: the same as there, and so for processes and stages
+  Settings settings;    ///< after those of the system
+  std::vector<std::string> processes;
+  std::vector<std::string> stages;
 };
 
 /// A run of several processes, as config/systems/<name>.yaml describes it. Programs are lapis_<process>.
@@ -53,6 +55,9 @@ struct System {
   std::map<std::string, Variant> variants;
   RestartPolicy restart;
 };
+
+/// The system as one of its variants.
+System varied(System system, const Variant& variant);
 
 /// The contradiction in the description, with the remedy; nothing when there is none.
 std::optional<std::string> find_problem(const System& system);

@@ -32,6 +32,7 @@ class Driven {
  public:
   explicit Driven(const LockstepConfig& lockstep, int socket_buffer_bytes = 4 << 20)
       : context_(options(socket_buffer_bytes)), color_(context_.advertise(topics::kColor)) {
+    image_.data().resize(kImageBytes);
     context_.subscribe(topics::kSlamOdometry, [this](auto& m) { odometry.push_back(m); });
     context_.subscribe(topics::kTrackedFrame, [this](auto& m) { frames.push_back(m); });
     driver_ = std::make_unique<LockstepDriver>(context_, lockstep, [this] {
@@ -52,10 +53,11 @@ class Driven {
   bool wait_for(LockstepDriver::State state, Seconds deadline = Seconds(15)) {
     return wait_until([&] { return driver_->state() == state; }, deadline);
   }
+  /// What the next images show.
+  void show(const sensor_msgs::msg::Image& image) { image_ = image; }
   /// Publishes the next image and releases its tick.
   void begin() {
     image_.header().stamp(messages::to_message(stamp(++ticks)));
-    image_.data().resize(kImageBytes);
     color_.publish(image_);
     driver_->begin(stamp(ticks), false);
   }

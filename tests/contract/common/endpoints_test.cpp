@@ -8,6 +8,7 @@
 
 #include "common/topics.hpp"
 #include "tests/support/child_process.hpp"
+#include "tests/support/color_network.hpp"
 #include "tests/support/endpoint_watcher.hpp"
 #include "tests/support/small_scene.hpp"
 #include "tests/support/topic_probe.hpp"
@@ -84,6 +85,14 @@ const std::vector<Process> kProcesses = {
               topics::kWheelOdometry),
       writers(topics::kSlamOdometry, topics::kTrackedFrame, topics::kTransforms, topics::kKeyframePath,
               topics::kPoseGraph, topics::kLandmarks, topics::kLandmarkState, topics::kSlamStatus)}},
+    {"segmenter",
+     "segmenter",
+     {"FOLDER/model.yaml"},
+     {readers(topics::kColor), writers(topics::kLabels, topics::kLabelConfidence, topics::kLabelInfo)}},
+    {"segmenter_of_compressed_images",
+     "segmenter",
+     {"FOLDER/model.yaml", "--set", "dds.color_transport=compressed"},
+     {readers(topics::kCompressedColor), writers(topics::kLabels, topics::kLabelConfidence, topics::kLabelInfo)}},
     {"semantic_mapper",
      "semantic_mapper",
      {},
@@ -120,12 +129,24 @@ const std::vector<Process> kProcesses = {
      "sensor_replay",
      {"DATASET", "--rate", "1", "--set", "sensor_replay.wait_for_readers=1"},
      kReplay},
+    {"replay_without_labels",
+     "sensor_replay",
+     {"DATASET", "--rate", "1", "--set", "sensor_replay.wait_for_readers=1", "--set", "sensor_replay.labels=false"},
+     {writers(topics::kColor, topics::kDepth, topics::kColorInfo, topics::kDepthInfo, topics::kStaticTransforms,
+              topics::kClock, topics::kGroundTruth)}},
     {"replay_in_lockstep", "sensor_replay", {"DATASET"}, {kReplay[0], writers(topics::kTick), readers(topics::kAck)}},
     {"simulator_with_a_run_folder",
      "simulator",
      {"FOLDER/scene.yaml", "--mode", "freerun", "--set", "simulator.output_dir=FOLDER"},
      joined(kSimulator, {readers(topics::kMapDescription)})},
     {"simulator_by_the_wall_clock", "simulator", {"FOLDER/scene.yaml", "--mode", "freerun"}, kSimulator},
+    {"simulator_without_labels",
+     "simulator",
+     {"FOLDER/scene.yaml", "--mode", "freerun", "--set", "simulator.labels=false"},
+     {writers(topics::kColor, topics::kDepth, topics::kColorInfo, topics::kDepthInfo, topics::kStaticTransforms,
+              topics::kClock, topics::kGroundTruth, topics::kWheelOdometry, topics::kTransforms, topics::kCollision),
+      readers(topics::kCommand), server(topics::kPause), server(topics::kRun), server(topics::kStep),
+      server(topics::kReset)}},
     {"simulator_in_lockstep_with_imu",
      "simulator",
      {"FOLDER/scene.yaml", "--set", "simulator.imu=true"},
@@ -163,6 +184,7 @@ class Endpoints : public ::testing::TestWithParam<Process> {
 TEST_P(Endpoints, AreThoseOfTheTopicTableAndNoOthers) {
   sensor_replay::test::write_dataset(folder_.path(), 2);
   write_small_scene(folder_.path());
+  write_color_model(folder_.path(), {.colors = {{200, 0, 0}, {0, 0, 200}}});
   TopicProbe probe;
   const EndpointWatcher watcher(probe.participant());
   const auto& graph = probe.collect(kRosGraph);

@@ -137,6 +137,52 @@ TEST_F(MapperContract, LabelsWithoutConfidenceLeaveNoTraceButSurfacesDo) {
   EXPECT_GT(unlabelled, 100u);
 }
 
+TEST_F(MapperContract, LabelsThatComeMoreThanASecondLateAreJoined) {
+  constexpr int kFrames = 36, kBurst = 4;  // 1.2 s at 30 Hz; fewer at once than the topics keep
+  std::vector<sensor_msgs::msg::Image> late;
+  for (int i = 0; i < kFrames; ++i) {
+    CameraFrame frame = feed.frame(i);
+    late.push_back(*frame.labels);
+    frame.labels.reset();
+    send(frame, i);
+    if (i % kBurst < kBurst - 1) continue;
+    feed.send({.color = {}, .depth = frame.depth, .labels = {}, .info = {}});  // when it is refused, all have come
+    ASSERT_TRUE(wait_for_count("depth dropped: stamp was there before", (i + 1) / kBurst)) << mapper.log();
+  }
+  EXPECT_FALSE(client.has_map()) << "frames wait for labels";
+  for (int i = 0; i < kFrames; ++i) {
+    feed.send({.color = {}, .depth = {}, .labels = late[static_cast<std::size_t>(i)], .info = {}});
+    ASSERT_TRUE(probe.wait_until([&] {
+      return !client.states.empty() && client.states.back().frames_integrated() > static_cast<std::uint64_t>(i);
+    })) << i
+        << mapper.log();
+  }
+  ASSERT_TRUE(probe.wait_until([&] { return client.has_map(); }));
+  EXPECT_EQ(client.states.back().frames_dropped(), 0u);
+  client.mirror.map()->for_each_observed([&](const auto&, const mapping::VoxelCounts& counts) {
+    for (const auto& hit : counts.hits) EXPECT_NE(hit.label, 0);
+  });
+}
+
+class ImpatientMapper : public MapperContract {
+ protected:
+  ImpatientMapper() : MapperContract({"semantic_mapper.label_wait_s=0.05"}) {}
+};
+
+TEST_F(ImpatientMapper, WhatWaitedLongEnoughEntersTheMapWithoutLabels) {
+  for (int i = 0; i < 4; ++i) {
+    CameraFrame frame = feed.frame(i);
+    frame.labels.reset();
+    send(frame, i);
+  }
+  ASSERT_TRUE(probe.wait_until([&] {
+    return !client.states.empty() &&
+           messages::from_message(client.states.back().header().stamp()) == CameraFeed::stamp(1);
+  })) << mapper.log();
+  feed.send({.color = {}, .depth = {}, .labels = feed.frame(0).labels, .info = {}});
+  EXPECT_TRUE(wait_for_count("labels dropped: older than what was processed", 1)) << mapper.log();
+}
+
 TEST_F(MapperContract, DuplicateAndBackwardStampsAreDropped) {
   for (int i = 0; i < 4; ++i) ASSERT_TRUE(map_frame(i)) << mapper.log();
   for (const int old : {3, 1}) {

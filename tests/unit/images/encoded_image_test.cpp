@@ -51,6 +51,20 @@ TEST(EncodedImage, SizeAndGreyValuesOfJpegAndPng) {
   }
 }
 
+TEST(EncodedImage, ColoursAreInTheOrderRedGreenBlue) {
+  const cv::Mat blue_green_red(2, 3, CV_8UC3, cv::Scalar(10, 20, 30));
+  Bytes png;
+  cv::imencode(".png", blue_green_red, png);
+  const auto color = decode_color(png);
+  ASSERT_TRUE(color);
+  EXPECT_EQ(color->width, 3);
+  EXPECT_EQ(color->pixels, std::vector<geometry::Rgb8>(6, {30, 20, 10}));
+  const auto gray = decode_color(encoded(".png", CV_8UC1));
+  ASSERT_TRUE(gray);
+  EXPECT_EQ((*gray)(5, 2), (geometry::Rgb8{12, 12, 12}));
+  EXPECT_FALSE(decode_color(Bytes(png.begin(), png.begin() + 40)));
+}
+
 TEST(EncodedImage, TruncatedFilesAreDamaged) {
   for (const char* extension : {".png", ".jpg"}) {
     const Bytes whole = encoded(extension, CV_8UC3);

@@ -150,6 +150,52 @@ TEST(Gray, WideValuesUseTheWholeRangeWhateverPartTheCameraUses) {
       << "dark images are not stretched";
 }
 
+TEST(Color, ChannelsAreThoseOfTheEncoding) {
+  using Bytes = std::vector<std::uint8_t>;
+  const std::vector<geometry::Rgb8> expected = {{1, 2, 3}, {200, 100, 0}};
+  const std::vector<std::pair<Image, std::vector<geometry::Rgb8>>> images = {
+      {image("rgb8", 2, 1, Bytes{1, 2, 3, 200, 100, 0}, 3), expected},
+      {image("bgr8", 2, 1, Bytes{3, 2, 1, 0, 100, 200}, 3), expected},
+      {image("rgba8", 2, 1, Bytes{1, 2, 3, 9, 200, 100, 0, 9}, 4), expected},
+      {image("bgra8", 2, 1, Bytes{3, 2, 1, 9, 0, 100, 200, 9}, 4), expected},
+      {image("mono8", 2, 1, Bytes{7, 8}), {{7, 7, 7}, {8, 8, 8}}}};
+  for (const auto& [message, pixels] : images) {
+    const auto color = to_color(message);
+    ASSERT_TRUE(color) << color.reason;
+    EXPECT_EQ(color->pixels, pixels) << message.encoding();
+  }
+  EXPECT_THAT(to_color(image("32FC1", 1, 1, Bytes{0, 0, 0, 0})).reason, HasSubstr("colour encoding '32FC1'"));
+  EXPECT_THAT(to_color(image("rgb8", 2, 1, Bytes{1, 2, 3}, 3)).reason, HasSubstr("step x height"));
+}
+
+TEST(Color, Yuv422IsThatOfBt601) {
+  using Bytes = std::vector<std::uint8_t>;
+  // White, black; pure red (81, 90, 240), twice.
+  const std::vector<geometry::Rgb8> expected = {{255, 255, 255}, {0, 0, 0}, {254, 0, 0}, {254, 0, 0}};
+  const auto is_near = [&](const Converted<geometry::ColorImage>& color) {
+    ASSERT_TRUE(color) << color.reason;
+    for (std::size_t i = 0; i < 4; ++i) {
+      EXPECT_NEAR(color->pixels[i].r, expected[i].r, 1) << i;
+      EXPECT_NEAR(color->pixels[i].g, expected[i].g, 1) << i;
+      EXPECT_NEAR(color->pixels[i].b, expected[i].b, 1) << i;
+    }
+  };
+  is_near(to_color(image("yuv422", 4, 1, Bytes{128, 235, 128, 16, 90, 81, 240, 81}, 2)));
+  is_near(to_color(image("yuv422_yuy2", 4, 1, Bytes{235, 128, 16, 128, 81, 90, 81, 240}, 2)));
+  EXPECT_THAT(to_color(image("yuv422", 1, 1, Bytes{128, 235}, 2)).reason, HasSubstr("odd width"));
+}
+
+TEST(Color, ACompressedImageThatAnnouncesTooManyPixelsIsNotDecoded) {
+  sensor_msgs::msg::CompressedImage message;
+  message.data(
+      {0x89, 'P', 'N', 'G', '\r', '\n', 0x1A, '\n', 0, 0, 0, 13, 'I', 'H', 'D', 'R', 0, 0, 0x20, 0, 0, 0, 0x10, 1});
+  EXPECT_THAT(to_color(message).reason, HasSubstr("more than 2^25 pixels"));  // 8192 x 4097
+  message.data()[22] = 0x0F;
+  EXPECT_THAT(to_color(message).reason, HasSubstr("is damaged"));
+  message.data({1, 2, 3});
+  EXPECT_THAT(to_color(message).reason, HasSubstr("neither JPEG nor PNG"));
+}
+
 TEST(Gray, RowPaddingIsSkipped) {
   Image padded = image<std::uint8_t>("mono8", 2, 2, {1, 2, 99, 99, 3, 4, 99, 99});
   padded.step(4);
@@ -191,6 +237,16 @@ TEST(Labels, LargestIdOfTheTypeMeansUnlabelled) {
   EXPECT_EQ(to_labels(image<std::uint16_t>("mono16", 3, 1, {255, 300, 65535}))->pixels,
             (std::vector<std::uint16_t>{255, 300, 0}));
   EXPECT_EQ(to_labels(image<std::uint16_t>("16UC1", 1, 1, {9}))->pixels, (std::vector<std::uint16_t>{9}));
+}
+
+TEST(Labels, AMessageOfLabelsGivesTheSameLabels) {
+  geometry::LabelImage labels(3, 2);
+  labels.pixels = {0, 1, 254, 3, 2, 0};
+  EXPECT_EQ(to_label_image(labels, {}).encoding(), "mono8");
+  EXPECT_EQ(to_labels(to_label_image(labels, {}))->pixels, labels.pixels);
+  labels(1, 1) = 255;  // would mean unlabelled in mono8
+  EXPECT_EQ(to_label_image(labels, {}).encoding(), "mono16");
+  EXPECT_EQ(to_labels(to_label_image(labels, {}))->pixels, labels.pixels);
 }
 
 TEST(Confidence, IsAShareOfCertainty) {

@@ -53,16 +53,31 @@ TEST_F(SystemFile, EverythingIsRead) {
   const System system = read(
       "processes: [mind, eye]\nsource: eye\nstages: [mind]\nsilence_s: 3\nshows: mind\n"
       "settings: {eye.names: [a, b], mind.on: true}\n"
-      "variants: {fast: {silence_s: 1, settings: {eye.rate_hz: 30}}}\n"
+      "variants: {fast: {silence_s: 1, settings: {eye.rate_hz: 30}},\n"
+      "           calm: {processes: [mind, ear, eye], stages: [mind, ear]}}\n"
       "restart: {times: 2, resume: {mind: [{file: x.map, settings: {mind.from: \"{run_folder}/x.map\"}}, {file: "
       "y}]}}\n");
   EXPECT_EQ(system.name, "small");
   EXPECT_THAT(system.settings, ElementsAre(Setting{"eye.names", "[a, b]"}, Setting{"mind.on", "true"}));
   EXPECT_EQ(system.variants.at("fast").silence, "1");
+  EXPECT_THAT(system.variants.at("calm").processes, ElementsAre("mind", "ear", "eye"));
   EXPECT_EQ(system.restart.times, 2);
   ASSERT_EQ(system.restart.resume.at("mind").size(), 2U);
   EXPECT_EQ(system.restart.resume.at("mind")[0].file, "x.map");
   EXPECT_EQ(system.restart.resume.at("mind")[1].file, "y");
+}
+
+TEST_F(SystemFile, AVariantChangesWhatItNames) {
+  const System system = read(
+      "processes: [mind, eye]\nsource: eye\nstages: [mind]\nsilence_s: 3\nsettings: {eye.on: true}\n"
+      "variants: {fast: {silence_s: 1}, calm: {processes: [mind, ear, eye], stages: [mind, ear], settings: {eye.on: "
+      "false}}}\n");
+  const System both = varied(varied(system, system.variants.at("fast")), system.variants.at("calm"));
+  EXPECT_EQ(both.silence, "1");
+  EXPECT_THAT(both.processes, ElementsAre("mind", "ear", "eye"));
+  EXPECT_THAT(both.stages, ElementsAre("mind", "ear"));
+  EXPECT_THAT(both.settings, ElementsAre(Setting{"eye.on", "true"}, Setting{"eye.on", "false"}));
+  EXPECT_EQ(varied(system, system.variants.at("fast")).processes, system.processes);
 }
 
 TEST_F(SystemFile, WhatItSaysWinsOverItsBase) {
@@ -85,6 +100,8 @@ TEST_F(SystemFile, WhatIsWrongIsNamedWithFileLineAndRemedy) {
   EXPECT_THAT(problem("processes: [a]\nsource: a\nsilence_s: 1\nstages: [b]\n"), HasSubstr("stages: b is not"));
   EXPECT_THAT(problem("restart: {resume: {a: {file: x}}}\n"), HasSubstr("line 1: give a list of files"));
   EXPECT_THAT(problem("processes: [\n"), HasSubstr("small.yaml: "));
+  EXPECT_THAT(problem("processes: [a]\nsource: a\nsilence_s: 1\nvariants: {calm: {stages: [b]}}\n"),
+              HasSubstr("variants: calm: stages: b is not"));
   EXPECT_THROW(read_system(folder_.path() / "none.yaml"), BadSetup);
 }
 

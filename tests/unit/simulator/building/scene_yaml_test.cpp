@@ -10,6 +10,7 @@
 #include <sstream>
 #include <tuple>
 
+#include "common/mapping/file/label_list_file.hpp"
 #include "simulator/core/building/build_scene.hpp"
 #include "simulator/core/building/floor_plan.hpp"
 #include "small_building.hpp"
@@ -181,7 +182,7 @@ TEST(LabelList, MistakesNameTheFile) {
                                        {"labels: []\n", "lists no labels"},
                                        {"labels:\n  - {id: 1, name: a, color: [300, 0, 0]}\n", "color must be"}}) {
     const auto file = folder.write(text);
-    const std::string error = test::error_of([&] { read_label_list(file); });
+    const std::string error = test::error_of([&] { mapping::read_label_list(file); });
     EXPECT_EQ(error.rfind(file.string(), 0), 0U) << error;
     EXPECT_NE(error.find(expected), std::string::npos) << error;
   }

@@ -8,6 +8,7 @@
 
 #include <Eigen/Geometry>
 
+#include "common/mapping/file/label_list_file.hpp"
 #include "simulator/core/building/floor_plan.hpp"
 #include "simulator/scene_yaml.hpp"
 
@@ -17,7 +18,7 @@ namespace fs = std::filesystem;
 
 fs::path source_folder() { return LAPIS_SOURCE_DIR; }
 
-mapping::LabelList indoor_labels() { return read_label_list(source_folder() / "config/labels/mpcat40.yaml"); }
+mapping::LabelList indoor_labels() { return mapping::read_label_list(source_folder() / "config/labels/mpcat40.yaml"); }
 
 SceneSpec two_rooms() {
   SceneSpec spec;

@@ -7,6 +7,7 @@
 #include <map>
 #include <numbers>
 
+#include "common/mapping/file/label_list_file.hpp"
 #include "simulator/core/building/build_scene.hpp"
 #include "simulator/core/generator/generate_building.hpp"
 #include "simulator/core/generator/layout.hpp"
@@ -26,7 +27,7 @@ constexpr std::uint64_t kUsualSeeds = 3;
 
 const mapping::LabelList& labels() {
   static const mapping::LabelList list =
-      read_label_list(std::filesystem::path(LAPIS_SOURCE_DIR) / "config/labels/mpcat40.yaml");
+      mapping::read_label_list(std::filesystem::path(LAPIS_SOURCE_DIR) / "config/labels/mpcat40.yaml");
   return list;
 }
 

@@ -1,17 +1,27 @@
-#include "simulator/yaml_entry.hpp"
+#include "common/config/yaml_entry.hpp"
 
+#include <charconv>
 #include <cmath>
+#include <optional>
 #include <stdexcept>
+#include <string_view>
 
-#include "simulator/core/assets/text_scan.hpp"
-
-namespace lapis::simulator {
+namespace lapis::config {
 namespace {
 
 [[noreturn]] void fail(const std::filesystem::path& file, const YAML::Mark& mark, const std::string& why) {
   // Marks of unreadable files are null (line -1).
   const std::string line = mark.line >= 0 ? ":" + std::to_string(mark.line + 1) : "";
   throw std::runtime_error(file.string() + line + ": " + why);
+}
+
+/// The number that the whole word stands for; a leading '+' is allowed.
+std::optional<double> number_of(std::string_view word) {
+  if (word.size() > 1 && word[0] == '+' && word[1] != '-') word.remove_prefix(1);
+  double value = 0.0;
+  const auto [end, error] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (error != std::errc() || end != word.data() + word.size()) return std::nullopt;
+  return value;
 }
 
 }  // namespace
@@ -54,7 +64,7 @@ bool YamlEntry::has(const std::string& key) { return node(key).IsDefined(); }
 double YamlEntry::to_number(const YAML::Node& value, const std::string& key) const {
   constexpr double kLargest = 1e9;
   if (value.IsScalar()) {
-    const auto number = lapis::simulator::to_number<double>(value.Scalar());
+    const auto number = number_of(value.Scalar());
     if (number && std::abs(*number) <= kLargest) return *number;
   }
   refuse_at(value, key + ": must be a number" + (value.IsScalar() ? ", not \"" + value.Scalar() + "\"" : ""));
@@ -148,4 +158,4 @@ void YamlEntry::refuse_at(const YAML::Node& at, const std::string& why) const {
   fail(file_, at.IsDefined() ? at.Mark() : node_.Mark(), why);
 }
 
-}  // namespace lapis::simulator
+}  // namespace lapis::config

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace lapis::simulator {
+namespace lapis::config {
 
 /// Loads a YAML file. @throws std::runtime_error naming file and line
 YAML::Node load_yaml(const std::filesystem::path& file);
@@ -54,4 +54,4 @@ class YamlEntry {
   std::set<std::string> asked_;
 };
 
-}  // namespace lapis::simulator
+}  // namespace lapis::config

@@ -11,7 +11,9 @@ usage: perturb.sh SEQUENCE... [--kinds KIND,...] [--out DIR] [--results FILE] [-
 Changes the images of each SEQUENCE (a folder in the layout of the TUM RGB-D benchmark, with camera.yaml and
 associations.txt, images rectified) as worse cameras would give them, plays what comes of it with replay.sh, and prints a
 table: share of the frames that were tracked, error of the trajectory (ATE, SE(3)), and CPU time of slam per frame, the
-latter two also as ratios to those of the sequence as it is. Each run is a row of FILE as soon as it has ended, with a key
+latter two also as ratios to those of the sequence as it is, and what slam says is wrong with the camera. Where
+lapis_tracking_benchmark is built (cmake --build --preset release --target slam_tracking_benchmark), it plays the images,
+too: error of OpenCV's plain chain of ORB, brute force and PnP, and the CPU time of a tracked frame as a ratio to its. Each run is a row of FILE as soon as it has ended, with a key
 (hash of the sources, the sequence's lists and the settings); what has a row of the same key is not repeated.
 
   --kinds KIND,...  default: all of

@@ -8,6 +8,7 @@ import json
 import math
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -18,12 +19,13 @@ try:
 
     from perturbations.kinds import KINDS, share_of_poor_shots
     from perturbations.sequence import SequenceError, read_sequence, write_sequence
-    from sources import REPOSITORY, hash_of_sources, problem_of_programs
+    from sources import REPOSITORY, hash_of_sources, problem_of_programs, programs
 except ModuleNotFoundError as missing:
     print(f"perturb.sh: no Python module {missing.name}; launch_scripts/setup.sh --dev installs what is needed", file=sys.stderr)
     sys.exit(2)
 
-COLUMNS = ("sequence", "kind", "key", "frames", "tracked_share", "ate_se3_rmse_m", "cpu_ms_per_frame.slam", "poor_share")
+COLUMNS = ("sequence", "kind", "key", "frames", "tracked_share", "ate_se3_rmse_m", "cpu_ms_per_frame.slam", "poor_share",
+           "named", "opencv_ate_m", "cpu_to_opencv")
 OWN_SOURCES = ("launch_scripts/replay.sh", "launch_scripts/perturbations")
 SEED = 1
 MOST_POOR = 0.1  # of the frames; with more, nobody asks that the camera is tracked
@@ -93,10 +95,31 @@ class Run:
         except (OSError, ValueError, KeyError, TypeError, ZeroDivisionError) as problem:
             print(f"perturb.sh: {self}: {self.folder}/metrics.json does not say what was tracked ({problem})", file=sys.stderr)
             return None
-        shutil.rmtree(self.data)
-        return {"sequence": self.sequence.name, "kind": self.kind, "key": self.key, "frames": metrics["frames_total"],
+        row = {"sequence": self.sequence.name, "kind": self.kind, "key": self.key, "frames": metrics["frames_total"],
                 "tracked_share": round(tracked, 4), "ate_se3_rmse_m": metrics.get("ate_se3_rmse_m"),
-                "cpu_ms_per_frame.slam": (metrics.get("cpu_ms_per_frame") or {}).get("slam"), "poor_share": round(poor, 4)}
+                "cpu_ms_per_frame.slam": (metrics.get("cpu_ms_per_frame") or {}).get("slam"), "poor_share": round(poor, 4),
+               "named": self.named(), **self.beside_opencv()}
+        shutil.rmtree(self.data)
+        return row
+
+    def named(self):
+        """What slam says is wrong with the camera."""
+        try:
+            log = (self.folder / "logs/slam.log").read_text(encoding="utf-8", errors="replace")
+        except OSError:
+            return ""
+        return "; ".join(re.findall(r"((?:depth|focal length) seems to be .*?)(?:,? \(edges|, /camera|: )", log))
+
+    def beside_opencv(self):
+        """Error of OpenCV's plain chain on the same images, and CPU of a tracked frame as a ratio to its own; empty where the
+        program is not built or cannot play them."""
+        program = programs() / "lapis_tracking_benchmark"
+        if not program.is_file():
+            return {}
+        result = subprocess.run([program, "--sequence", self.data], capture_output=True, text=True, check=False)
+        error = re.search(r"OpenCV ([\d.]+) cm$", result.stdout, re.MULTILINE)
+        cost = re.search(r"^slam, tracking frame .* ([\d.]+)$", result.stdout, re.MULTILINE)
+        return {"opencv_ate_m": round(float(error[1]) / 100, 4) if error else "", "cpu_to_opencv": cost[1] if cost else ""}
 
     def replay(self):
         """Status of replay.sh. Its interruption ends this script, and the other way round."""
@@ -180,17 +203,21 @@ def ratio(row, plain, column):
 
 def print_table(runs, rows):
     """Errors and cost beside those of the sequence as it is."""
-    print("| sequence | images | frames | tracked | ATE | ratio | slam, CPU per frame | ratio | |\n"
-          "| --- | --- | --- | --- | --- | --- | --- | --- | --- |")
+    print("| sequence | images | frames | tracked | ATE | ratio | OpenCV's chain | slam, CPU per frame | ratio | "
+          "tracking, to OpenCV's chain | slam says |\n"
+          "| --- | --- | --- | --- | --- | --- | --- | --- | --- | --- | --- |")
     plain = {run.sequence.name: run.row(rows) for run in runs if run.kind == "none"}
     for run in runs:
         if not (row := run.row(rows)):
             continue
         of_plain = plain.get(run.sequence.name) or {}
-        note = "too dark, too bright, or without depth" if float(row["poor_share"]) > MOST_POOR else ""
+        poor = "too dark, too bright, or without depth" if float(row["poor_share"]) > MOST_POOR else ""
+        note = "; ".join(text for text in (poor, row.get("named")) if text)
         print(f"| {run.sequence.name} | {run.kind} | {row['frames']} | {text_of(row, 'tracked_share', 100, '%')} | "
               f"{text_of(row, 'ate_se3_rmse_m', 100, 'cm')} | {ratio(row, of_plain, 'ate_se3_rmse_m')} | "
-              f"{text_of(row, 'cpu_ms_per_frame.slam', 1, 'ms')} | {ratio(row, of_plain, 'cpu_ms_per_frame.slam')} | {note} |")
+              f"{text_of(row, 'opencv_ate_m', 100, 'cm')} | "
+              f"{text_of(row, 'cpu_ms_per_frame.slam', 1, 'ms')} | {ratio(row, of_plain, 'cpu_ms_per_frame.slam')} | "
+              f"{row.get('cpu_to_opencv') or '-'} | {note} |")
 
 
 def main():

@@ -252,7 +252,17 @@ if status == 0:
     total = 0 if folder.name == "person" else 32
     (folder / "metrics.json").write_text(json.dumps({"frames_total": total, "frames_tracked": 24, "ate_se3_rmse_m": ate_m,
                                                      "cpu_ms_per_frame": {"slam": 5.0}}))
+    if folder.name == "depth_+3__":
+        (folder / "logs").mkdir()
+        (folder / "logs/slam.log").write_text("1 warning slam: focal length seems to be 5.1 px (+- 0.1), /camera/x says 5\\n"
+            "2 warning slam: depth seems to be of a camera with fx 7.0, 1 cm to the left (edges lie 3 px off): correct\\n")
 sys.exit(status)
+"""
+# In place of the benchmark.
+BENCHMARK = """#!/bin/sh
+case $2 in *gamma*) exit 1;; esac
+echo "slam, tracking frame                          219      6.28     12.85    0.14"
+echo "ATE (SE(3)): slam 0.37 cm over 268 of 268 frames, OpenCV 29.06 cm"
 """
 
 
@@ -262,6 +272,7 @@ class CommandTest(PretendedPrograms):
         for file in ("CMakeLists.txt", "CMakePresets.json"):
             (self.folder / file).write_text("of all\n")
         self.script("launch_scripts/replay.sh", REPLAY)
+        self.script("bin/lapis_tracking_benchmark", BENCHMARK)
         self.sequence = make_sequence(self.folder / "walk")
         self.rows = self.folder / "rows.csv"
 
@@ -279,9 +290,10 @@ class CommandTest(PretendedPrograms):
         result = self.run_it(self.sequence, "--kinds", "none, holes, gamma 0.4, depth +3 %, person", status=1)
         self.assertIn("walk, holes: replay.sh failed with status 1, log", result.stderr)
         self.assertIn("walk, person: ", result.stderr)
-        for row in ("| walk | none | 32 | 75.0 % | 2.00 cm | 1.00 | 5.0 ms | 1.00 |  |",
-                    "| walk | depth +3 % | 32 | 75.0 % | 3.00 cm | 1.50 | 5.0 ms | 1.00 |  |",
-                    "| walk | gamma 0.4 | 32 | 75.0 % | - | - | 5.0 ms | 1.00 |  |"):
+        for row in ("| walk | none | 32 | 75.0 % | 2.00 cm | 1.00 | 29.06 cm | 5.0 ms | 1.00 | 0.14 |  |",
+                    "| walk | depth +3 % | 32 | 75.0 % | 3.00 cm | 1.50 | 29.06 cm | 5.0 ms | 1.00 | 0.14 | focal length seems to be "
+                    "5.1 px (+- 0.1); depth seems to be of a camera with fx 7.0, 1 cm to the left |",
+                    "| walk | gamma 0.4 | 32 | 75.0 % | - | - | - | 5.0 ms | 1.00 | - |  |"):
             self.assertIn(row, result.stdout)
         self.assertNotIn("| walk | holes", result.stdout)
         self.assertEqual(len(self.played()), 5)

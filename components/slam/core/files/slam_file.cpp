@@ -18,7 +18,7 @@ using geometry::Matrix6d;
 using geometry::Pose;
 
 constexpr std::string_view kMagic = "LAPISLAM";
-constexpr std::uint32_t kFormatVersion = 4;
+constexpr std::uint32_t kFormatVersion = 5;
 constexpr std::uint32_t kFirstWithWheels = 2;  // older versions can still be read
 constexpr std::uint32_t kFirstWithIds = 3;
 constexpr std::uint32_t kFirstWithDepthCamera = 4;

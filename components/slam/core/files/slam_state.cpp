@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include <Eigen/Cholesky>
 
@@ -138,10 +139,24 @@ Fault find_fault(const SlamState& state) {
   });
 }
 
+// The part of each key-frame: that of its parent; a key-frame without a parent is the first one of a part.
+std::vector<KeyframeId> parts_of(const SlamState& state) {
+  std::vector<KeyframeId> parts(state.keyframes.size());
+  std::iota(parts.begin(), parts.end(), KeyframeId{0});
+  for (auto edge = state.edges.rbegin(); edge != state.edges.rend(); ++edge) {
+    const bool leads_on = edge->type != EdgeType::kLoopClosure && edge->from < edge->to;
+    if (leads_on) parts[static_cast<std::size_t>(edge->to)] = edge->from;
+  }
+  for (KeyframeId& part : parts) part = parts[static_cast<std::size_t>(part)];
+  return parts;
+}
+
 Map restore_map(const SlamState& state) {
   Map map;
+  const std::vector<KeyframeId> parts = parts_of(state);
   for (const LandmarkState& landmark : state.landmarks) map.add_landmark(landmark.p_map, landmark.finest_distance_m);
-  for (const Keyframe& keyframe : state.keyframes) {
+  for (Keyframe keyframe : state.keyframes) {
+    keyframe.sub_map = parts[static_cast<std::size_t>(keyframe.id)];
     const KeyframeId id = map.add_keyframe(keyframe);
     for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
       if (keyframe.landmarks[i] != kNoLandmark) map.add_observation(keyframe.landmarks[i], {id, static_cast<int>(i)});

@@ -241,10 +241,11 @@ void describe(Field& field, SubMapConfig& c) {
         "number of frames in a row, without odometry, that show enough but no place of the map, after which a sub-map "
         "begins; 0: never");
   field("evidence_m", c.evidence_m, config::in_range(0.5, 100),
-        "distance over which recognised places must agree on where a sub-map is, before slam joins it to the map; more "
-        "than the length of a room, because rooms are copies of each other [m]");
+        "distance over which key-frames must agree on where a sub-map is, before slam joins it to the map [m]");
+  field("room_m", c.room_m, config::in_range(0.5, 100),
+        "distance that must lie between what these key-frames show; more than in a room of which there are copies [m]");
   field("evidence_views", c.evidence_views, config::in_range(1, 20),
-        "number of views without common landmarks that must agree on where a sub-map is");
+        "number of these key-frames that share no landmarks");
 }
 
 template <class Field>

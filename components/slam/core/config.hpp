@@ -120,8 +120,9 @@ struct RelocalizationConfig {
 /// repeat themselves, so that one recognised place says little: a room may be the copy of another one.
 struct SubMapConfig {
   int after_frames = 30;    ///< lost frames in a row with enough features, before a sub-map begins; 0: never [0, 1000]
-  double evidence_m = 6.0;  ///< distance over which recognised places have to agree; more than a room [0.5, 100]
-  int evidence_views = 3;   ///< number of these places that share no landmarks [1, 20]
+  double evidence_m = 4.0;  ///< distance over which key-frames have to agree [0.5, 100]
+  double room_m = 6.0;      ///< distance between what they show; more than in a room that has copies [0.5, 100]
+  int evidence_views = 3;   ///< number of them that share no landmarks [1, 20]
 };
 
 /// Wheel odometry. The standard deviations of a random walk are those after 1 m or 1 rad; they grow with the square

@@ -82,7 +82,9 @@ class RgbdSlam::Implementation {
                     graph_.links(),
                     graph_.covariances(),
                     motion_.wheels(),
-                    saved_motion()};
+                    saved_motion(),
+                    {}};
+    for (const Keyframe& keyframe : map_.keyframes()) state.parts.push_back(keyframe.sub_map);
     state.landmarks.reserve(map_.landmarks().size());
     for (const Landmark& landmark : map_.landmarks()) {
       state.landmarks.push_back({landmark.p_map, landmark.finest_distance_m});
@@ -121,6 +123,7 @@ class RgbdSlam::Implementation {
     }
     if (has_pose(result) && map_.keyframe(result.keyframe_id).sub_map != kWholeMap) {
       result.state = TrackingState::kUnconnected;
+      result.source = PoseSource::kNone;
       result.reason = "in a sub-map, whose place in the map is not known yet";
     }
     result.graph_version = version_;

@@ -101,22 +101,25 @@ class Course {
   void drive_second_tour() {
     const double begin_s = rig_.robot().stamp.seconds();
     double end_s = begin_s + carry_.search_s;
-    simulator::TourFollower follower(setting_.world.nav_map(), plan_second_tour(), setting_.tour);
-    while (!follower.is_finished() && rig_.robot().stamp.seconds() < end_s) {
-      drive_on(follower);
+    std::optional<simulator::TourFollower> follower;
+    while (rig_.robot().stamp.seconds() < end_s) {
+      if (!follower) follower.emplace(setting_.world.nav_map(), plan_second_tour(), setting_.tour);
+      drive_on(*follower);
+      if (follower->is_finished() && !carry_.again) return;
+      if (follower->is_finished()) follower.reset();
       const auto found = find_found(slam_.frames(), trial_.set_down);
       if (found) end_s = std::min(end_s, slam_.frames()[*found].t_s + carry_.after_s);
     }
   }
 
-  // All rooms, beginning with the nearest.
+  // All rooms, beginning with the nearest; after a new place those that are known come next.
   simulator::Tour plan_second_tour() const {
     const Eigen::Vector2d here = rig_.robot().position;
     std::vector<Eigen::Vector2d> waypoints = setting_.world.scene().tour;
     const auto nearest = std::min_element(waypoints.begin(), waypoints.end(), [&](const auto& a, const auto& b) {
       return (a - here).squaredNorm() < (b - here).squaredNorm();
     });
-    std::rotate(waypoints.begin(), nearest, waypoints.end());
+    std::rotate(waypoints.begin(), nearest, carry_.to_new_place ? nearest + 1 : waypoints.end());
     return plan_tour(setting_.world.nav_map(), here, waypoints, setting_.tour);
   }
 

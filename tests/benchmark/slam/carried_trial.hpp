@@ -36,6 +36,7 @@ struct Carry {
   double earliest = 0.5, latest = 1.0;  ///< share of the tour after which it is lifted
   double in_air_s = 2.0;
   double search_s = 120.0, after_s = 30.0;  ///< longest drive afterwards, and drive from where it is found on
+  bool again = false;                       ///< the tour afterwards is driven again and again until then
 };
 
 /// Drives a tour through all rooms, on which the robot is lifted; meanwhile the camera sees nothing and the wheels

@@ -37,6 +37,7 @@ class SubMap : public ::testing::Test {
   static SlamConfig for_one_room() {
     SlamConfig config;
     config.sub_map.evidence_m = 1.0;
+    config.sub_map.room_m = 2.0;
     return config;
   }
   TrackingResult look(RgbdSlam& slam, int view) {

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
-#include <set>
 #include <utility>
 
 #include "slam/core/motion/motion_model.hpp"
@@ -56,6 +55,12 @@ std::optional<KeyframeId> nearest_keyframe(const LoopConfig& config, const Map& 
   return nearest;
 }
 
+Eigen::Vector3d middle_of(const Map& map, const std::vector<LandmarkId>& landmarks) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const LandmarkId id : landmarks) sum += map.landmark(id).p_map;
+  return sum / static_cast<double>(std::max<std::size_t>(1, landmarks.size()));
+}
+
 }  // namespace
 
 void MapJoiner::look(const Map& map, const LoopDetector& places, const Tracker& tracker, const Frame& frame,
@@ -88,11 +93,18 @@ bool MapJoiner::place(const Map& map, Sighting& sighting) const {
   sighting.younger = std::max(from.sub_map, to.sub_map);
   sighting.T_older_younger = leads_to_younger ? T_from_to : Pose(T_from_to.inverse());
   sighting.p_younger = (leads_to_younger ? to : from).T_map_camera.translation();
+  const Eigen::Vector3d middle = middle_of(map, sighting.landmarks);
+  sighting.shown_younger = leads_to_younger ? sighting.T_older_younger.inverse() * middle : middle;
   return true;
 }
 
+// One key-frame that says the same twice counts once.
 void MapJoiner::add(const Map& map, Sighting sighting) {
   if (!place(map, sighting)) return;
+  const auto is_said = [&](const Sighting& other) {
+    return other.edge.to == sighting.edge.to && other.is_against == sighting.is_against && agree(other, sighting);
+  };
+  if (std::any_of(sightings_.begin(), sightings_.end(), is_said)) return;
   if (sightings_.size() == kMostSightings) sightings_.erase(sightings_.begin());
   sightings_.push_back(std::move(sighting));
 }
@@ -101,7 +113,7 @@ void MapJoiner::add(const Map& map, Sighting sighting) {
 void MapJoiner::look_where_expected(const Map& map, const LoopDetector& places, const Tracker& tracker,
                                     const Frame& frame, KeyframeId id) {
   const auto lead = best_answer();
-  if (!lead || lead->keyframes < kLead) return;
+  if (!lead || lead->agreeing.size() < kLead) return;
   const Sighting& by = *lead->by;
   const KeyframeId part = map.keyframe(id).sub_map;
   if (part != by.older && part != by.younger) return;
@@ -131,15 +143,12 @@ bool MapJoiner::agree(const Sighting& a, const Sighting& b) const {
 }
 
 MapJoiner::Answer MapJoiner::answer_of(const Sighting& sighting) const {
-  Answer answer{&sighting, {}};
-  std::set<KeyframeId> agree_with_it, against_it;
+  Answer answer{&sighting, {}, 0};
   for (const Sighting& other : sightings_) {
     if (!agree(sighting, other)) continue;
+    if (other.is_against) ++answer.against;
     if (!other.is_against) answer.agreeing.push_back(&other);
-    (other.is_against ? against_it : agree_with_it).insert(other.edge.to);
   }
-  answer.keyframes = agree_with_it.size();
-  answer.against = against_it.size();
   return answer;
 }
 
@@ -149,7 +158,7 @@ std::optional<MapJoiner::Answer> MapJoiner::best_answer() const {
   for (const Sighting& sighting : sightings_) {
     if (sighting.is_against) continue;
     Answer answer = answer_of(sighting);
-    if (!best || answer.keyframes >= best->keyframes) best = std::move(answer);
+    if (!best || answer.agreeing.size() >= best->agreeing.size()) best = std::move(answer);
   }
   return best;
 }
@@ -160,7 +169,7 @@ std::size_t MapJoiner::rivals(const Answer& answer) const {
   for (const Sighting& other : sightings_) {
     const bool is_same_question = other.older == answer.by->older && other.younger == answer.by->younger;
     if (other.is_against || !is_same_question || agree(*answer.by, other)) continue;
-    most = std::max(most, answer_of(other).keyframes);
+    most = std::max(most, answer_of(other).agreeing.size());
   }
   return most;
 }
@@ -185,14 +194,18 @@ std::vector<const MapJoiner::Sighting*> MapJoiner::views(const Answer& answer) c
 std::optional<Junction> MapJoiner::junction() const {
   const auto answer = best_answer();
   if (!answer) return std::nullopt;
-  std::vector<Eigen::Vector3d> positions;
-  for (const Sighting* sighting : answer->agreeing) positions.push_back(sighting->p_younger);
-  if (extent_m(positions) < config_.sub_map.evidence_m) return std::nullopt;
+  std::vector<Eigen::Vector3d> cameras, shown;
+  for (const Sighting* sighting : answer->agreeing) {
+    cameras.push_back(sighting->p_younger);
+    shown.push_back(sighting->shown_younger);
+  }
+  const SubMapConfig& needed = config_.sub_map;
+  if (extent_m(cameras) < needed.evidence_m || extent_m(shown) < needed.room_m) return std::nullopt;
   const std::vector<const Sighting*> independent = views(*answer);
-  if (independent.size() < static_cast<std::size_t>(config_.sub_map.evidence_views)) return std::nullopt;
-  const auto agree_m = static_cast<double>(answer->keyframes);
+  if (independent.size() < static_cast<std::size_t>(needed.evidence_views)) return std::nullopt;
+  const auto agreeing = static_cast<double>(answer->agreeing.size());
   const auto others = static_cast<double>(std::max(rivals(*answer), answer->against));
-  if (agree_m - others <= config_.tracker.rival_sigmas * std::sqrt(agree_m + others)) return std::nullopt;
+  if (agreeing - others <= config_.tracker.rival_sigmas * std::sqrt(agreeing + others)) return std::nullopt;
   const Sighting& by = *answer->by;
   Junction found{by.younger, by.older, by.T_older_younger, by.edge, {}};
   for (const Sighting* view : independent) {

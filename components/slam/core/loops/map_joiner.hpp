@@ -14,7 +14,9 @@ namespace lapis::slam {
 /// Finds out where a sub-map is in another part of the map. New key-frames look for places of other parts, and each
 /// place that is recognised says where the parts are to each other. One place is not believed, because rooms are copies
 /// of each other, and nothing is known of the motion between the parts. What decides is how far many places agree:
-/// - over more than the length of a room (SubMapConfig::evidence_m), and in several views without common landmarks;
+/// - over a distance (SubMapConfig::evidence_m) along which the camera sees more than a room (SubMapConfig::room_m),
+/// and
+///   in several views without common landmarks;
 /// - in significantly more key-frames than agree on another answer, or see through walls of the other part, if this one
 ///   is right (TrackerConfig::rival_sigmas).
 class MapJoiner {
@@ -37,14 +39,14 @@ class MapJoiner {
     // What follows from the map as it is now:
     KeyframeId older = 0, younger = 0;  // names of the parts
     geometry::Pose T_older_younger = geometry::Pose::Identity();
-    Eigen::Vector3d p_younger = Eigen::Vector3d::Zero();  // where the key-frame of the younger part is in it
+    Eigen::Vector3d p_younger = Eigen::Vector3d::Zero();      // where the key-frame of the younger part is in it
+    Eigen::Vector3d shown_younger = Eigen::Vector3d::Zero();  // middle of the landmarks in it
   };
   /// Where two parts are to each other according to one sighting, and what else says so.
   struct Answer {
     const Sighting* by = nullptr;
     std::vector<const Sighting*> agreeing;  // in the order of time, `by` included
-    std::size_t keyframes = 0;              // that agree
-    std::size_t against = 0;                // that contradict it
+    std::size_t against = 0;                // number of those that contradict it
   };
   void follow(const Map& map);
   void add(const Map& map, Sighting sighting);

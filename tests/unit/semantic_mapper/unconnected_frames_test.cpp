@@ -10,17 +10,17 @@ namespace {
 
 using geometry::Pose;
 
-constexpr geometry::PinholeCamera kCamera{80, 45, 40, 40, 39.5, 22.0};
+constexpr geometry::PinholeCamera kCoarseCamera{80, 45, 40, 40, 39.5, 22.0};
 
 Pose keyframe_pose(std::uint64_t id) {
   return lapis::test::look({0.3 * static_cast<double>(id), 0.2, 1.0}, 0.2 * static_cast<double>(id), 0.1);
 }
 
 UnconnectedFrame frame_of(std::uint64_t id, std::int64_t stamp) {
-  const auto image = lapis::test::render(lapis::test::furnished_room(), kCamera, keyframe_pose(id));
+  const auto image = lapis::test::render(lapis::test::furnished_room(), kCoarseCamera, keyframe_pose(id));
   std::string error;
   return {time::Time{stamp}, id, Pose::Identity(),
-          mapping::CompactFrame::make(kCamera, image.depth, &image.labels, {1, 40}, error).value(), true};
+          mapping::CompactFrame::make(kCoarseCamera, image.depth, &image.labels, {1, 40}, error).value(), true};
 }
 
 TEST(UnconnectedFrames, WaitForTheirKeyframesAndComeInTheOrderOfTime) {

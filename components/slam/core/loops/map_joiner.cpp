@@ -65,11 +65,11 @@ Eigen::Vector3d middle_of(const Map& map, const std::vector<LandmarkId>& landmar
 
 void MapJoiner::look(const Map& map, const LoopDetector& places, const Tracker& tracker, const Frame& frame,
                      KeyframeId id) {
+  follow(map);
   const auto is_elsewhere = [&](const Keyframe& other) {
     return other.sub_map != map.keyframe(id).sub_map && has_seen(other);
   };
   if (std::none_of(map.keyframes().begin(), map.keyframes().end(), is_elsewhere)) return;
-  follow(map);
   look_where_expected(map, places, tracker, frame, id);
   for (const KeyframeId other :
        places.resembling(frame, [&](KeyframeId candidate) { return is_elsewhere(map.keyframe(candidate)); })) {

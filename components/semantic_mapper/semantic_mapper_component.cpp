@@ -212,7 +212,8 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
     if (match == Match::kWait) return false;
   }
   progress_.published = now;
-  if (!has_pose(tracked) && !(is_unconnected(tracked) && mapper_ != nullptr && tracked.session() == progress_.session)) {
+  if (!has_pose(tracked) &&
+      !(is_unconnected(tracked) && mapper_ != nullptr && tracked.session() == progress_.session)) {
     drop("slam has no pose");
   } else if (depth == nullptr) {
     drop("no depth image for a tracked frame");

@@ -251,9 +251,18 @@ TEST(SlamFile, AStateThatCannotBeIsRefusedByName) {
       {"motion: odometry", [](State& s) { s.motion->odometry[2].T_odom_base.translation().x() = kNaN; }},
       {"link 1: joins", [](State& s) { s.links[1].from = 8; }},
       {"parts of the map: their number", [](State& s) { s.parts.pop_back(); }},
-      {"parts of the map: that of key-frame 1", [](State& s) { s.parts = {0, 2, 2}; }},
-      {"parts of the map: that of key-frame 2", [](State& s) { s.parts = {0, 0, 1}; }},
-      {"parts of the map: an edge connects", [](State& s) { s.parts = {0, 0, 2}; }},
+      {"parts of the map: that of key-frame 1",
+       [](State& s) {
+         s.parts = {0, 2, 2};
+       }},
+      {"parts of the map: that of key-frame 2",
+       [](State& s) {
+         s.parts = {0, 0, 1};
+       }},
+      {"parts of the map: an edge connects",
+       [](State& s) {
+         s.parts = {0, 0, 2};
+       }},
   };
   for (const auto& [name, change] : faults) {
     const std::string error = refusal_of(change);

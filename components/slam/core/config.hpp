@@ -120,8 +120,8 @@ struct RelocalizationConfig {
 /// repeat themselves, so that one recognised place says little: a room may be the copy of another one.
 struct SubMapConfig {
   int after_frames = 30;    ///< lost frames in a row with enough features, before a sub-map begins; 0: never [0, 1000]
-  double evidence_m = 4.0;  ///< distance over which key-frames have to agree [0.5, 100]
-  double room_m = 6.0;      ///< distance between what they show; more than in a room that has copies [0.5, 100]
+  double evidence_m = 3.0;  ///< distance over which key-frames have to agree [0.5, 100]
+  double room_m = 7.0;      ///< distance between what they show; more than in a room that has copies [0.5, 100]
   int evidence_views = 3;   ///< number of them that share no landmarks [1, 20]
 };
 

@@ -1,6 +1,7 @@
 #include "slam/core/rgbd_slam.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -43,6 +44,15 @@ std::optional<std::string> find_fault(const RgbdFrame& frame, const NoiseConfig&
   const bool has_depth = std::any_of(pixels.begin(), pixels.end(), [&](float z) { return is_depth(noise, z); });
   if (!has_depth) return "no depth";
   return std::nullopt;
+}
+
+std::string reason_without_place(const MapJoiner::Evidence& evidence) {
+  if (evidence.keyframes == 0) return "in a sub-map, of which no place of the map is recognised yet";
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "in a sub-map: %zu key-frames over %.1f m, with views over %.1f m, agree on its place, %zu do not",
+                evidence.keyframes, evidence.span_m, evidence.shown_m, evidence.others);
+  return text;
 }
 
 }  // namespace
@@ -124,7 +134,7 @@ class RgbdSlam::Implementation {
     if (has_pose(result) && map_.keyframe(result.keyframe_id).sub_map != kWholeMap) {
       result.state = TrackingState::kUnconnected;
       result.source = PoseSource::kNone;
-      result.reason = "in a sub-map, whose place in the map is not known yet";
+      result.reason = reason_without_place(joiner_.evidence());
     }
     result.graph_version = version_;
     return result;

@@ -191,7 +191,8 @@ std::vector<const MapJoiner::Sighting*> MapJoiner::views(const Answer& answer) c
   return found;
 }
 
-std::optional<Junction> MapJoiner::junction() const {
+std::optional<Junction> MapJoiner::junction() {
+  evidence_ = {};
   const auto answer = best_answer();
   if (!answer) return std::nullopt;
   std::vector<Eigen::Vector3d> cameras, shown;
@@ -199,19 +200,24 @@ std::optional<Junction> MapJoiner::junction() const {
     cameras.push_back(sighting->p_younger);
     shown.push_back(sighting->shown_younger);
   }
-  const SubMapConfig& needed = config_.sub_map;
-  if (extent_m(cameras) < needed.evidence_m || extent_m(shown) < needed.room_m) return std::nullopt;
   const std::vector<const Sighting*> independent = views(*answer);
-  if (independent.size() < static_cast<std::size_t>(needed.evidence_views)) return std::nullopt;
-  const auto agreeing = static_cast<double>(answer->agreeing.size());
-  const auto others = static_cast<double>(std::max(rivals(*answer), answer->against));
-  if (agreeing - others <= config_.tracker.rival_sigmas * std::sqrt(agreeing + others)) return std::nullopt;
+  evidence_ = {answer->agreeing.size(), std::max(rivals(*answer), answer->against), independent.size(),
+               extent_m(cameras), extent_m(shown)};
+  if (!is_enough(evidence_)) return std::nullopt;
   const Sighting& by = *answer->by;
   Junction found{by.younger, by.older, by.T_older_younger, by.edge, {}};
   for (const Sighting* view : independent) {
     if (view != &by) found.loops.push_back(view->edge);
   }
   return found;
+}
+
+bool MapJoiner::is_enough(const Evidence& evidence) const {
+  const SubMapConfig& needed = config_.sub_map;
+  const auto agreeing = static_cast<double>(evidence.keyframes), others = static_cast<double>(evidence.others);
+  return evidence.span_m >= needed.evidence_m && evidence.shown_m >= needed.room_m &&
+         evidence.views >= static_cast<std::size_t>(needed.evidence_views) &&
+         agreeing - others > config_.tracker.rival_sigmas * std::sqrt(agreeing + others);
 }
 
 bool MapJoiner::is_large_enough(const Map& map, KeyframeId part) const {

@@ -26,7 +26,15 @@ class MapJoiner {
   /// Compares a new key-frame with the other parts of the map, if there are any.
   void look(const Map& map, const LoopDetector& places, const Tracker& tracker, const Frame& frame, KeyframeId id);
   /// The junction for which there was enough evidence at the last look, if any.
-  std::optional<Junction> junction() const;
+  std::optional<Junction> junction();
+  /// What spoke for the best answer when a junction was asked for last.
+  struct Evidence {
+    std::size_t keyframes = 0;           ///< that agree
+    std::size_t others = 0;              ///< that agree on another answer, or contradict this one
+    std::size_t views = 0;               ///< without common landmarks
+    double span_m = 0.0, shown_m = 0.0;  ///< distances between the key-frames, and between what they show
+  };
+  const Evidence& evidence() const { return evidence_; }
   /// Whether the key-frames of a part span the distance without which it cannot be joined.
   bool is_large_enough(const Map& map, KeyframeId part) const;
 
@@ -60,10 +68,12 @@ class MapJoiner {
   std::optional<Answer> best_answer() const;
   std::size_t rivals(const Answer& answer) const;
   std::vector<const Sighting*> views(const Answer& answer) const;
+  bool is_enough(const Evidence& evidence) const;
 
   SlamConfig config_;
   SurfaceTracker surfaces_;
   std::vector<Sighting> sightings_;
+  Evidence evidence_;
 };
 
 }  // namespace lapis::slam

@@ -90,6 +90,15 @@ messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& 
                        tracked.is_keyframe()};
 }
 
+messages::Converted<UnconnectedFrame> to_unconnected(const lapis_msgs::msg::TrackedFrame& tracked,
+                                                     mapping::CompactFrame frame) {
+  using Result = messages::Converted<UnconnectedFrame>;
+  const auto T_keyframe_camera = messages::from_message(tracked.pose_in_keyframe());
+  if (!T_keyframe_camera) return Result::refused("pose_in_keyframe: " + T_keyframe_camera.reason);
+  return UnconnectedFrame{messages::from_message(tracked.header().stamp()), tracked.keyframe_id(), *T_keyframe_camera,
+                          std::move(frame), tracked.is_keyframe()};
+}
+
 std::vector<KeyframePose> to_core(const lapis_msgs::msg::PoseGraph& graph) {
   std::vector<KeyframePose> poses;
   for (const auto& node : graph.nodes()) {

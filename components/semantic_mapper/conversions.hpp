@@ -16,6 +16,7 @@
 #include "semantic_mapper/core/export.hpp"
 #include "semantic_mapper/core/occupancy_grid.hpp"
 #include "semantic_mapper/core/semantic_mapper.hpp"
+#include "semantic_mapper/core/unconnected_frames.hpp"
 
 namespace lapis::semantic_mapper {
 
@@ -33,6 +34,9 @@ messages::Converted<mapping::CompactFrame> to_core(const SeenMessages& seen, con
 /// Adds the pose of a tracked frame to its compact frame; refused when the poses are not valid, or when odometry alone
 /// gave them and the message states no drift.
 messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& tracked, mapping::CompactFrame frame);
+/// The same for a frame in a sub-map of slam, which has no pose in the map yet.
+messages::Converted<UnconnectedFrame> to_unconnected(const lapis_msgs::msg::TrackedFrame& tracked,
+                                                     mapping::CompactFrame frame);
 /// Valid key-frame poses of a graph.
 std::vector<KeyframePose> to_core(const lapis_msgs::msg::PoseGraph& graph);
 

@@ -31,10 +31,16 @@ constexpr double kLongestFlush_s = 600.0;
 constexpr std::size_t kWaitingFrames = 90;  // frames with a pose wait for labels: three seconds at 30 Hz
 constexpr std::size_t kWaitingImages = kWaitingFrames + 30;  // images wait for slam's pose, too: one second more
 constexpr std::size_t kWaitingInfos = kWaitingImages + 34;   // on a network they are ahead by half a second more
+constexpr std::size_t kPlacedPerCycle = 5;    // frames of a sub-map that was joined; each takes milliseconds
+constexpr std::size_t kUnconnectedShare = 4;  // of the memory for stored frames, a fourth for those of sub-maps
 
 bool has_pose(const lapis_msgs::msg::TrackedFrame& frame) {
   namespace Constants = lapis_msgs::msg::TrackedFrame_Constants;
   return frame.state() == Constants::STATE_TRACKING || frame.state() == Constants::STATE_DEAD_RECKONING;
+}
+
+bool is_unconnected(const lapis_msgs::msg::TrackedFrame& frame) {
+  return frame.state() == lapis_msgs::msg::TrackedFrame_Constants::STATE_UNCONNECTED;
 }
 
 /// With what other sections say of the map.
@@ -43,6 +49,17 @@ SemanticMapperComponentConfig completed(SemanticMapperComponentConfig config) {
   config.map.band = {config.robot.obstacle_min_height_m, config.robot.obstacle_max_height_m};
   if (config.sensor_model.fusion == "bki") config.map.integration.kernel_length_voxels = config.kernel_length_voxels;
   return config;
+}
+
+/// Why a frame did not enter the map; empty when it did.
+std::string fault_of(IntegrationStatus status) {
+  switch (status) {
+    case IntegrationStatus::kIntegrated: break;
+    case IntegrationStatus::kInvalidPose: return "pose is not valid";
+    case IntegrationStatus::kTooFarAway: return "pose is more than 10 km from the map's origin";
+    case IntegrationStatus::kMapIsFull: return "map is full";
+  }
+  return "";
 }
 
 /// Number in the notes of a map file; 0 when there is no such note.
@@ -84,7 +101,8 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
              config.resume_from,
              {kMapFile, kOctreeFile, kPointsFile, kFramesFile},
              config.save_period_s},
-            context) {
+            context),
+      unconnected_((static_cast<std::size_t>(config.map.stored_frames.memory_mb) << 20) / kUnconnectedShare) {
   if (config_.map.re_anchor) {
     files::require_writable_folder(config_.map.stored_frames.spill_dir, "semantic_mapper.stored_frames.spill_dir");
   }
@@ -163,6 +181,7 @@ void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
   if (mapper_ == nullptr) return;
   if (graph_) follow_graph(*graph_);
   graph_.reset();
+  enter_placed_frames(cycle.is_final ? unconnected_.size() : kPlacedPerCycle);
   if (cycle.is_final) {
     flush();
   } else {
@@ -201,7 +220,8 @@ bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
   const bool is_whole = depth != nullptr && info != nullptr;
   if (!is_whole && !known && !is_last_chance) return false;  // the next tracked frame gives the tolerance
   progress_.published = now;
-  if (!has_pose(tracked)) {
+  if (!has_pose(tracked) &&
+      !(is_unconnected(tracked) && mapper_ != nullptr && tracked.session() == progress_.session)) {
     drop("slam has no pose");
   } else if (depth == nullptr) {
     drop("no depth image for a tracked frame");
@@ -223,37 +243,64 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
                                         const Image* confidence, const Info& info) {
   const time::Time stamp = messages::from_message(tracked.header().stamp());
   const bool is_first = mapper_ == nullptr || tracked.session() != progress_.session;
-  if (!is_first && (stamp - progress_.newest).seconds() < config_.frame_interval_s) return;
+  const time::Time before = std::max(progress_.newest, newest_kept_);
+  if (!is_first && (stamp - before).seconds() < config_.frame_interval_s) return;
   const auto seen_depth = depth_camera_.convert(depth, info);
   if (!seen_depth) return drop(seen_depth.reason);
   auto frame = to_core({*seen_depth, info, labels, confidence}, config_.frame, rectifier_);
   if (!frame) return drop(frame.reason);
   const auto above_list = frame->labels_out_of_list();
   if (above_list > 0) context_.status().count("pixels unlabelled: label not in the list", above_list);
+  if (is_unconnected(tracked)) return keep_unconnected(tracked, std::move(*frame));
   auto anchored = to_core(tracked, std::move(*frame));
   if (!anchored) return drop(anchored.reason);
   if (is_first) start_new_map(tracked.session(), stamp);
-  const auto& before = mapper_->newest_record();
-  if (is_first && before && before->stamp == stamp) {  // a rebuilt map has it: in lock-step, the tick in which its
+  const auto& record = mapper_->newest_record();
+  if (is_first && record && record->stamp == stamp) {  // a rebuilt map has it: in lock-step, the tick in which its
     progress_.newest = stamp;                          // process died comes again
     return;
   }
-  const auto packed = journal_ && !config_.map.re_anchor ? mapping::pack(anchored->frame) : std::vector<std::uint8_t>{};
-  const auto report = mapper_->integrate(std::move(*anchored));
-  switch (report.status) {
-    case IntegrationStatus::kIntegrated: break;
-    case IntegrationStatus::kInvalidPose: return drop("pose is not valid");
-    case IntegrationStatus::kTooFarAway: return drop("pose is more than 10 km from the map's origin");
-    case IntegrationStatus::kMapIsFull: return drop("map is full");
+  const auto report = enter(std::move(*anchored));
+  if (report) publisher_.add_obstacles(stamp, report->votes);
+}
+
+/// Puts a frame into the map, and into the journal; nothing when it is dropped.
+std::optional<IntegrationReport> SemanticMapperComponent::enter(AnchoredFrame frame) {
+  const time::Time stamp = frame.stamp;
+  const auto packed = journal_ && !config_.map.re_anchor ? mapping::pack(frame.frame) : std::vector<std::uint8_t>{};
+  auto report = mapper_->integrate(std::move(frame));
+  if (const std::string fault = fault_of(report.status); !fault.empty()) {
+    drop(fault);
+    return std::nullopt;
   }
   if (journal_)
     keep_newest_frame(config_.map.re_anchor ? mapper_->store().packed_frame(mapper_->store().size() - 1) : packed);
-  progress_.newest = stamp;
-  publisher_.add_obstacles(stamp, report.votes);
+  progress_.newest = std::max(progress_.newest, stamp);
   ++progress_.frames_integrated;
   context_.status().value("frames", progress_.frames_integrated);
   context_.status().value("stored_frames_mb", std::to_string(mapper_->frame_bytes() >> 20));
   report_store(mapper_->store());
+  return report;
+}
+
+/// Nobody knows yet where in the map the frame is.
+void SemanticMapperComponent::keep_unconnected(const Tracked& tracked, mapping::CompactFrame frame) {
+  auto unconnected = to_unconnected(tracked, std::move(frame));
+  if (!unconnected) return drop(unconnected.reason);
+  const std::size_t before = unconnected_.let_go();
+  unconnected_.add(*unconnected);
+  newest_kept_ = unconnected->stamp;
+  const std::size_t let_go = unconnected_.let_go() - before;
+  if (let_go > 0) context_.status().count("frames dropped: too many wait for their place in the map", let_go);
+}
+
+/// Frames of sub-maps that slam has joined to the map, the oldest first.
+void SemanticMapperComponent::enter_placed_frames(std::size_t most) {
+  for (std::size_t i = 0; i < most; ++i) {
+    auto frame = unconnected_.take_placed();
+    if (!frame) return;
+    enter(std::move(*frame));
+  }
 }
 
 /// Appends the newest frame to the journal; the status reports a failure until a later frame is kept.
@@ -271,6 +318,7 @@ void SemanticMapperComponent::keep_newest_frame(const std::optional<std::vector<
 /// Reports frames that are not whole in the map, because odometry alone gave their poses.
 void SemanticMapperComponent::report_drift() {
   context_.status().value("frames_waiting", static_cast<std::uint64_t>(mapper_->frames_waiting()));
+  context_.status().value("frames_unconnected", static_cast<std::uint64_t>(unconnected_.size()));
   context_.status().value("frames_in_part", static_cast<std::uint64_t>(mapper_->frames_in_part()));
 }
 
@@ -285,6 +333,8 @@ void SemanticMapperComponent::report_store(const FrameStore& store) {
 }
 
 void SemanticMapperComponent::log_drift() const {
+  if (unconnected_.size() > 0)
+    spdlog::warn("{} frames are not in the map: slam does not know where they are", unconnected_.size());
   if (mapper_->frames_waiting() + mapper_->frames_in_part() == 0) return;
   spdlog::warn("{} frames at poses by odometry alone wait for a correction, {} more stay in the map in part",
                mapper_->frames_waiting(), mapper_->frames_in_part());
@@ -312,6 +362,8 @@ void SemanticMapperComponent::end_map() {
     if (const auto problem = save()) spdlog::error("map not saved: {}; mapping continues", *problem);
   }
   mapper_.reset();
+  unconnected_.clear();
+  newest_kept_ = {};
   journal_.reset();
   forget_resumed();
 }
@@ -325,6 +377,7 @@ void SemanticMapperComponent::follow_clock(time::Duration step) {
   tolerance_.begin_anew();
   step = std::min(step, first - progress_.newest);
   progress_.newest = progress_.newest + step;
+  newest_kept_ = std::min(newest_kept_, progress_.newest);
   publisher_.follow_clock(step);
   disk_.note_save(progress_.newest);
 }
@@ -381,7 +434,10 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
 }
 
 void SemanticMapperComponent::follow_graph(const Graph& graph) {
-  if (graph.session() == progress_.session) mapper_->update_keyframe_poses(graph.version(), to_core(graph));
+  if (graph.session() != progress_.session) return;
+  const auto poses = to_core(graph);
+  mapper_->update_keyframe_poses(graph.version(), poses);
+  unconnected_.place(graph.version(), poses);
 }
 
 void SemanticMapperComponent::save_when_due() {
@@ -449,6 +505,7 @@ void SemanticMapperComponent::finish() {
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
   if (mapper_ == nullptr) return;
   if (graph_) follow_graph(*graph_);
+  enter_placed_frames(unconnected_.size());
   flush();
   log_drift();
   publisher_.finish(*mapper_, label_list_, progress_);

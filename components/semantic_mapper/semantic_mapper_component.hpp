@@ -45,6 +45,9 @@ class SemanticMapperComponent {
   bool next_frame(const runtime::Cycle& cycle);
   void integrate(const Tracked& tracked, const Image& depth, const Image* labels, const Image* confidence,
                  const Info& info);
+  std::optional<IntegrationReport> enter(AnchoredFrame frame);
+  void keep_unconnected(const Tracked& tracked, mapping::CompactFrame frame);
+  void enter_placed_frames(std::size_t most);
   void keep_newest_frame(const std::optional<std::vector<std::uint8_t>>& packed);
   void follow_graph(const Graph& graph);
   void report_store(const FrameStore& store);
@@ -93,6 +96,8 @@ class SemanticMapperComponent {
   std::optional<std::string> keep_problem_;  // why the newest frame is not in the journal
 
   std::unique_ptr<SemanticMapper> mapper_;  // exists once slam tracks
+  UnconnectedFrames unconnected_;           // of its session
+  time::Time newest_kept_;                  // newest of these
   MapProgress progress_;
 };
 

@@ -17,10 +17,10 @@ lapis_msgs::msg::TrackedFrame to_tracked_frame(const TrackingResult& result, con
   message.source(static_cast<std::uint8_t>(result.source));
   message.reason(result.reason);
   message.graph_version(result.graph_version);
-  if (!has_pose(result)) return message;
+  if (!has_pose(result) && result.state != TrackingState::kUnconnected) return message;
   message.is_keyframe(result.is_keyframe);
   message.keyframe_id(result.keyframe_id);
-  message.keyframe_pose(messages::to_message(result.T_map_keyframe));
+  if (has_pose(result)) message.keyframe_pose(messages::to_message(result.T_map_keyframe));
   message.pose_in_keyframe(messages::to_message(result.T_keyframe_camera));
   message.covariance(messages::to_row_major(result.covariance));
   message.drift_m(result.drift_m);

@@ -354,6 +354,7 @@ void SlamComponent::end_map() {
   last_pose_.reset();
   graph_stamp_.reset();
   reported_.reset();
+  sub_maps_ = {};
   waits_for_.clear();
 }
 
@@ -362,6 +363,7 @@ void SlamComponent::publish(TrackingResult result) {
   tracked_frame_.publish(to_tracked_frame(result, frame_, ids_));
   if (has_pose(result)) publish_odometry(result);
   publish_status(result);
+  report_sub_maps();
 }
 
 void SlamComponent::publish_odometry(const TrackingResult& result) {
@@ -444,6 +446,17 @@ void SlamComponent::publish_status(const TrackingResult& result) {
   message.places_doubted(static_cast<std::uint32_t>(slam_->places_doubted()));
   set_wheels(slam_->wheels(), message);
   status_.publish(message);
+}
+
+void SlamComponent::report_sub_maps() {
+  const SubMapSummary now = slam_->sub_maps();
+  context_.status().value("sub_maps_begun", now.begun);
+  context_.status().value("sub_maps_joined", now.joined);
+  context_.status().value("sub_maps_given_up", now.given_up);
+  if (now.begun > sub_maps_.begun) spdlog::warn("a sub-map begins: no place of the map is recognised");
+  if (now.joined > sub_maps_.joined) spdlog::info("a sub-map was joined to the map");
+  if (now.given_up > sub_maps_.given_up) spdlog::warn("a sub-map was given up: the camera was soon lost again");
+  sub_maps_ = now;
 }
 
 /// Until the first usable frame, nothing else would tell why there is no pose.

@@ -57,6 +57,7 @@ class SlamComponent {
   void publish_graph(bool is_final);
   void publish_landmarks(bool is_final);
   void publish_status(const TrackingResult& result);
+  void report_sub_maps();
   void report_waiting();
   void autosave();
   void note_save(const std::optional<std::string>& problem);
@@ -105,6 +106,7 @@ class SlamComponent {
   std::uint64_t saved_version_ = 0;  // of the graph, handed to the saver last
   time::Time saved_stamp_;           // of the frame then
   std::string save_problem_;         // of the newest save, if any
+  SubMapSummary sub_maps_;           // as reported last
   std::uint64_t frames_total_ = 0;
   std::uint64_t frames_tracked_ = 0;
   std::uint64_t frames_dropped_ = 0;

@@ -235,6 +235,19 @@ void describe(Field& field, RelocalizationConfig& c) {
 }
 
 template <class Field>
+void describe(Field& field, SubMapConfig& c) {
+  field("after_frames", c.after_frames, config::in_range(0, 1000),
+        "number of frames in a row, without odometry, that show enough but no place of the map, after which a sub-map "
+        "begins; 0: never");
+  field("evidence_m", c.evidence_m, config::in_range(0.5, 100),
+        "distance over which key-frames must agree on where a sub-map is, before slam joins it to the map [m]");
+  field("room_m", c.room_m, config::in_range(0.5, 100),
+        "distance that must lie between what these key-frames show; more than in a room of which there are copies [m]");
+  field("evidence_views", c.evidence_views, config::in_range(1, 20),
+        "number of these key-frames that share no landmarks");
+}
+
+template <class Field>
 void describe(Field& field, OdometryConfig& c) {
   field("distance_sigma", c.distance_sigma, config::in_range(0, 1),
         "standard deviation of odometry along a path of 1 m; it grows with the square root of the path [m]");
@@ -282,6 +295,7 @@ void describe(Field& field, SlamComponentConfig& c) {
   field("pose_graph", c.method.pose_graph);
   field("loop", c.method.loop);
   field("relocalization", c.method.relocalization);
+  field("sub_map", c.method.sub_map);
   field("odometry", c.method.odometry);
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.5),
         "largest difference between the stamps of colour, depth and camera info of a frame; 0: 0.6 of the camera's "

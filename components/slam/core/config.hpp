@@ -116,6 +116,15 @@ struct RelocalizationConfig {
   int evidence_views = 3;   ///< number of these views; they share no landmarks [1, 20]
 };
 
+/// Sub-maps: without odometry, mapping goes on where no place is recognised, and the parts are joined later. Buildings
+/// repeat themselves, so that one recognised place says little: a room may be the copy of another one.
+struct SubMapConfig {
+  int after_frames = 30;    ///< lost frames in a row with enough features, before a sub-map begins; 0: never [0, 1000]
+  double evidence_m = 3.0;  ///< distance over which key-frames have to agree [0.5, 100]
+  double room_m = 7.0;      ///< distance between what they show; more than in a room that has copies [0.5, 100]
+  int evidence_views = 3;   ///< number of them that share no landmarks [1, 20]
+};
+
 /// Wheel odometry. The standard deviations of a random walk are those after 1 m or 1 rad; they grow with the square
 /// root of path and turn. The defaults suit a robot with wheels on floors without steps; a robot that climbs needs a
 /// larger vertical_sigma and tilt_sigma.
@@ -145,6 +154,7 @@ struct SlamConfig {
   PoseGraphConfig pose_graph;
   LoopConfig loop;
   RelocalizationConfig relocalization;
+  SubMapConfig sub_map;
   OdometryConfig odometry;
 };
 

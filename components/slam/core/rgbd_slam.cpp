@@ -1,6 +1,7 @@
 #include "slam/core/rgbd_slam.hpp"
 
 #include <algorithm>
+#include <cstdio>
 #include <limits>
 #include <optional>
 #include <utility>
@@ -13,6 +14,7 @@
 #include "slam/core/graph/graph_marginals.hpp"
 #include "slam/core/graph/slam_graph.hpp"
 #include "slam/core/loops/loop_detector.hpp"
+#include "slam/core/loops/map_joiner.hpp"
 #include "slam/core/mapping/map_builder.hpp"
 #include "slam/core/motion/motion_model.hpp"
 
@@ -21,6 +23,8 @@ namespace {
 
 using geometry::Matrix6d;
 using geometry::Pose;
+
+constexpr const char* kGivenUp = "a sub-map was given up, because the camera was soon lost again";
 
 // Number of new key-frames after which the marginals of the graph are computed again.
 constexpr std::size_t kAnalysedTogether = 10;
@@ -42,16 +46,25 @@ std::optional<std::string> find_fault(const RgbdFrame& frame, const NoiseConfig&
   return std::nullopt;
 }
 
+std::string reason_without_place(const MapJoiner::Evidence& evidence) {
+  if (evidence.keyframes == 0) return "in a sub-map, of which no place of the map is recognised yet";
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "in a sub-map: %zu key-frames over %.1f m, with views over %.1f m, agree on its place, %zu do not",
+                evidence.keyframes, evidence.span_m, evidence.shown_m, evidence.others);
+  return text;
+}
+
 }  // namespace
 
 class RgbdSlam::Implementation {
  public:
   Implementation(const SlamConfig& config, const Pose& T_map_first_camera, const Pose& T_base_camera)
       : config_(config), T_map_first_camera_(T_map_first_camera), extractor_(config.features), front_end_(config),
-        motion_(config, T_base_camera), builder_(config), loops_(config) {}
+        motion_(config, T_base_camera), builder_(config), loops_(config), joiner_(config) {}
 
   Implementation(const SlamConfig& config, const Pose& T_base_camera, SlamState state)
-      : Implementation(config, Pose::Identity(), T_base_camera) {
+      : Implementation(config, T_base_camera, T_base_camera) {
     map_ = restore_map(state);
     graph_ = SlamGraph(std::move(state.edges), std::move(state.links), std::move(state.covariances));
     loops_.restore(map_);
@@ -79,7 +92,9 @@ class RgbdSlam::Implementation {
                     graph_.links(),
                     graph_.covariances(),
                     motion_.wheels(),
-                    saved_motion()};
+                    saved_motion(),
+                    {}};
+    for (const Keyframe& keyframe : map_.keyframes()) state.parts.push_back(keyframe.sub_map);
     state.landmarks.reserve(map_.landmarks().size());
     for (const Landmark& landmark : map_.landmarks()) {
       state.landmarks.push_back({landmark.p_map, landmark.finest_distance_m});
@@ -101,10 +116,12 @@ class RgbdSlam::Implementation {
     const Frame frame = make_frame(input, extractor_, config_.noise);
     FrameOutcome outcome = map_.empty() ? front_end_.begin(known(), frame) : front_end_.locate(known(), frame);
     TrackingResult& result = outcome.result;
+    if (outcome.begins_part && !map_.empty() && !leave_part()) return without_vision(input.stamp, kGivenUp);
     if (outcome.wants_keyframe) {
-      const KeyframeId id =
-          map_.empty() ? builder_.begin(model(), frame, T_map_first_camera_) : builder_.extend(model(), frame, outcome);
+      const KeyframeId id = outcome.begins_part ? builder_.begin(model(), frame, T_map_first_camera_)
+                                                : builder_.extend(model(), frame, outcome);
       close_loops(frame, id);
+      join_parts(frame, id);
       front_end_.enter_keyframe(map_, id);
       ++version_;
       become_keyframe(id, result);
@@ -113,6 +130,11 @@ class RgbdSlam::Implementation {
     if (outcome.ends_drift) request_optimization();
     if (outcome.seen || result.is_keyframe) {
       motion_.update(map_, input.stamp, {result.keyframe_id, result.T_keyframe_camera, result.covariance});
+    }
+    if (has_pose(result) && map_.keyframe(result.keyframe_id).sub_map != kWholeMap) {
+      result.state = TrackingState::kUnconnected;
+      result.source = PoseSource::kNone;
+      result.reason = reason_without_place(joiner_.evidence());
     }
     result.graph_version = version_;
     return result;
@@ -131,7 +153,8 @@ class RgbdSlam::Implementation {
   }
 
   std::optional<Pose> odometry_at(time::Time stamp) const { return motion_.odometry_at(stamp); }
-  PoseGraphSnapshot pose_graph() const { return graph_.snapshot(map_, version_); }
+  PoseGraphSnapshot pose_graph() const { return without_sub_maps(graph_.snapshot(map_, version_), map_); }
+  SubMapSummary sub_maps() const { return sub_maps_; }
   LoopSummary loops() const {
     return {graph_.count(EdgeType::kLoopClosure), last_loop_, loops_.revisits(), graph_.loops_removed()};
   }
@@ -162,6 +185,32 @@ class RgbdSlam::Implementation {
     request_optimization();
   }
 
+  // Leaves the part in which the camera was lost for a new sub-map. False when that part was a sub-map too small to be
+  // ever joined: it is given up, and the camera is lost in the map as before it.
+  bool leave_part() {
+    motion_.forget();
+    const KeyframeId part = front_end_.sub_map(map_);
+    if (part == kWholeMap || joiner_.is_large_enough(map_, part)) {
+      ++sub_maps_.begun;
+      return true;
+    }
+    ++sub_maps_.given_up;
+    map_.clear(part);
+    front_end_.give_up(map_);
+    return false;
+  }
+
+  // A junction waits for the optimisation under way, which does not know it.
+  void join_parts(const Frame& frame, KeyframeId id) {
+    joiner_.look(map_, loops_, front_end_.tracker(), frame, id);
+    const auto junction = optimization_.is_busy() ? std::nullopt : joiner_.junction();
+    if (!junction) return;
+    graph_.join(*junction, map_);
+    ++sub_maps_.joined;
+    last_loop_ = frame.input->stamp;
+    request_optimization();
+  }
+
   void request_optimization() {
     must_optimize_ = true;
     optimize();
@@ -172,15 +221,16 @@ class RgbdSlam::Implementation {
   void optimize() {
     if (!must_optimize_ || optimization_.is_busy()) return;
     must_optimize_ = false;
-    optimization_.start(due(), [graph = pose_graph()] { return correct_graph(graph); });
+    optimization_.start(due(), [graph = graph_.snapshot(map_, version_)] { return correct_graph(graph); });
   }
 
   // Between optimisations, too, the covariances of the newest key-frames follow from all edges.
   void analyse() {
     if (optimization_.is_busy() || analysis_.is_busy()) return;
     if (map_.keyframes().size() < graph_.analysed() + kAnalysedTogether) return;
-    analysis_.start(due(),
-                    [graph = pose_graph(), weights = graph_.weights()] { return graph_marginals(graph, weights); });
+    analysis_.start(due(), [graph = graph_.snapshot(map_, version_), weights = graph_.weights()] {
+      return graph_marginals(graph, weights);
+    });
   }
 
   // An analysis under way was started before the optimisation under way, and is due no later.
@@ -214,6 +264,8 @@ class RgbdSlam::Implementation {
   SlamGraph graph_;
   MapBuilder builder_;
   LoopDetector loops_;
+  MapJoiner joiner_;
+  SubMapSummary sub_maps_;
   DueResult<GraphCorrection> optimization_;
   DueResult<GraphMarginals> analysis_;
   std::optional<time::Time> last_loop_;
@@ -239,6 +291,7 @@ TrackingResult RgbdSlam::skip(time::Time stamp, const std::string& reason) const
 }
 void RgbdSlam::settle() { implementation_->settle(); }
 LoopSummary RgbdSlam::loops() const { return implementation_->loops(); }
+SubMapSummary RgbdSlam::sub_maps() const { return implementation_->sub_maps(); }
 PoseGraphSnapshot RgbdSlam::pose_graph() const { return implementation_->pose_graph(); }
 SlamState RgbdSlam::state() const { return implementation_->state(); }
 std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(); }

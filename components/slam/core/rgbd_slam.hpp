@@ -27,6 +27,12 @@ struct LoopSummary {
   std::size_t removed = 0;         ///< loops that were closed, and later found to be wrong
 };
 
+/// What became of the sub-maps.
+struct SubMapSummary {
+  std::size_t begun = 0, joined = 0;
+  std::size_t given_up = 0;  ///< too small for a junction when the camera was lost again
+};
+
 /// RGB-D SLAM: features and surfaces aligned with a local map, local bundle adjustment, loop closure, pose graph.
 /// Deterministic: the same frames give the same bits, although the graph is optimised in another thread.
 class RgbdSlam {
@@ -54,8 +60,11 @@ class RgbdSlam {
   TrackingResult skip(time::Time stamp, const std::string& reason) const;
   /// Waits for optimisations under way and applies them, so that the map is the final one.
   void settle();
+  /// Of the map; a sub-map is not in it until it has been joined.
   PoseGraphSnapshot pose_graph() const;
   LoopSummary loops() const;
+  /// Since the start of this process.
+  SubMapSummary sub_maps() const;
   /// What has to be saved to continue later. The large parts are shared with the map, not copied.
   SlamState state() const;
   /// Grows with every new key-frame and every change of a key-frame's pose.

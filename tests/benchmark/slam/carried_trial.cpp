@@ -40,9 +40,10 @@ std::optional<std::size_t> find_found(const std::vector<WatchedFrame>& frames, s
 // One trial as it goes on.
 class Course {
  public:
-  Course(const TourSetting& setting, const SlamConfig& config)
-      : setting_(setting), dice_(setting.simulation.seed), rig_(setting.world, setting.simulation, setting.start),
-        slam_(config, T_base_camera(setting.simulation.mount)) {}
+  Course(const TourSetting& setting, const SlamConfig& config, const Carry& carry)
+      : setting_(setting), carry_(carry), dice_(setting.simulation.seed),
+        rig_(setting.world, setting.simulation, setting.start), slam_(config, T_base_camera(setting.simulation.mount)) {
+  }
 
   CarriedTrial run() {
     drive_first_tour();
@@ -58,18 +59,16 @@ class Course {
 
  private:
   void drive_first_tour() {
-    constexpr double kEarliest = 0.5;  // share of the tour
     simulator::Tour tour =
         plan_tour(setting_.world.nav_map(), setting_.start.position, setting_.world.scene().tour, setting_.tour);
     const double whole_s = setting_.longest_s > 0.0 ? std::min(setting_.longest_s, tour.duration_s) : tour.duration_s;
-    const double end_s = whole_s * dice_.between(kEarliest, 1.0);
+    const double end_s = whole_s * dice_.between(carry_.earliest, carry_.latest);
     simulator::TourFollower follower(setting_.world.nav_map(), std::move(tour), setting_.tour);
     while (!follower.is_finished() && rig_.robot().stamp.seconds() < end_s) drive_on(follower);
   }
 
   void hang() {
-    constexpr double kInAir_s = 2.0;
-    const double end_s = rig_.robot().stamp.seconds() + kInAir_s;
+    const double end_s = rig_.robot().stamp.seconds() + carry_.in_air_s;
     while (rig_.robot().stamp.seconds() < end_s) {
       tell(rig_.hang());
       slam_.process(rig_.see_cover(false), rig_.T_world_camera());
@@ -83,42 +82,44 @@ class Course {
     rig_.set_down(trial_.place);
   }
 
-  // Where the robot has been, or beside, but not near.
+  // Not near, and where the robot has been, or beside; or where it has not been.
   Eigen::Vector2d draw_place(const Eigen::Vector2d& from) {
-    constexpr double kLeast_m = 3.0, kBeside_m = 0.5;
+    constexpr double kLeast_m = 3.0, kBeside_m = 0.5, kNew_m = 4.0;
+    const double away_m = carry_.to_new_place ? kNew_m : kBeside_m;
     const simulator::NavMap& map = setting_.world.nav_map();
     std::vector<Eigen::Vector2d> places;
     for (const simulator::Cell cell : simulator::open_cells(map, setting_.simulation.robot.radius_m)) {
       const Eigen::Vector2d p = map.grid().center(cell);
       const bool was_passed = std::any_of(passed_.begin(), passed_.end(),
-                                          [&](const Eigen::Vector2d& q) { return (p - q).norm() < kBeside_m; });
-      if ((p - from).norm() >= kLeast_m && was_passed) places.push_back(p);
+                                          [&](const Eigen::Vector2d& q) { return (p - q).norm() < away_m; });
+      if ((p - from).norm() >= kLeast_m && was_passed != carry_.to_new_place) places.push_back(p);
     }
-    if (places.empty()) throw std::runtime_error("the robot has been nowhere else that is 3 m away");
+    if (places.empty()) throw std::runtime_error("there is no place to set the robot down");
     return places[static_cast<std::size_t>(dice_.between(0.0, static_cast<double>(places.size())))];
   }
 
-  // Until 30 s after it is found, or for 120 s.
   void drive_second_tour() {
-    constexpr double kLongest_s = 120.0, kAfter_s = 30.0;
     const double begin_s = rig_.robot().stamp.seconds();
-    double end_s = begin_s + kLongest_s;
-    simulator::TourFollower follower(setting_.world.nav_map(), plan_second_tour(), setting_.tour);
-    while (!follower.is_finished() && rig_.robot().stamp.seconds() < end_s) {
-      drive_on(follower);
+    double end_s = begin_s + carry_.search_s;
+    std::optional<simulator::TourFollower> follower;
+    while (rig_.robot().stamp.seconds() < end_s) {
+      if (!follower) follower.emplace(setting_.world.nav_map(), plan_second_tour(), setting_.tour);
+      drive_on(*follower);
+      if (follower->is_finished() && !carry_.again) return;
+      if (follower->is_finished()) follower.reset();
       const auto found = find_found(slam_.frames(), trial_.set_down);
-      if (found) end_s = std::min(end_s, slam_.frames()[*found].t_s + kAfter_s);
+      if (found) end_s = std::min(end_s, slam_.frames()[*found].t_s + carry_.after_s);
     }
   }
 
-  // All rooms, beginning with the nearest.
+  // All rooms, beginning with the nearest; after a new place those that are known come next.
   simulator::Tour plan_second_tour() const {
     const Eigen::Vector2d here = rig_.robot().position;
     std::vector<Eigen::Vector2d> waypoints = setting_.world.scene().tour;
     const auto nearest = std::min_element(waypoints.begin(), waypoints.end(), [&](const auto& a, const auto& b) {
       return (a - here).squaredNorm() < (b - here).squaredNorm();
     });
-    std::rotate(waypoints.begin(), nearest, waypoints.end());
+    std::rotate(waypoints.begin(), nearest, carry_.to_new_place ? nearest + 1 : waypoints.end());
     return plan_tour(setting_.world.nav_map(), here, waypoints, setting_.tour);
   }
 
@@ -130,10 +131,12 @@ class Course {
   }
 
   void tell(const std::vector<simulator::OdometrySample>& readings) {
+    if (!carry_.with_odometry) return;
     for (const auto& reading : readings) slam_.add_odometry(reading.stamp, pose_of(reading));
   }
 
   const TourSetting& setting_;
+  const Carry& carry_;
   Dice dice_;
   TrialRig rig_;
   WatchedSlam slam_;
@@ -165,8 +168,8 @@ void judge_wrong_poses(const CarriedTrial& trial, CarriedVerdict& verdict) {
 
 }  // namespace
 
-CarriedTrial drive_carried(const TourSetting& setting, const SlamConfig& config) {
-  return Course(setting, config).run();
+CarriedTrial drive_carried(const TourSetting& setting, const SlamConfig& config, const Carry& carry) {
+  return Course(setting, config, carry).run();
 }
 
 CarriedVerdict judge(const CarriedTrial& trial) {
@@ -186,6 +189,38 @@ CarriedVerdict judge(const CarriedTrial& trial) {
   }
   judge_wrong_poses(trial, verdict);
   verdict.is_wrong = verdict.wrong_return_s > kWrongFor_s || trial.map.wrong_loops > 0;
+  return verdict;
+}
+
+ElsewhereVerdict judge_elsewhere(const CarriedTrial& trial) {
+  constexpr double kBeside_m = 0.5, kWrongFor_s = 2.0;
+  const auto& frames = trial.frames;
+  const double set_down_s = frames[trial.set_down].t_s;
+  const auto was_here = [&](const WatchedFrame& frame) {
+    return std::any_of(frames.begin(), frames.begin() + static_cast<std::ptrdiff_t>(trial.lifted), [&](const auto& f) {
+      return (f.truth.translation() - frame.truth.translation()).norm() < kBeside_m;
+    });
+  };
+  ElsewhereVerdict verdict;
+  double driven_m = 0.0;
+  for (std::size_t i = trial.set_down; i < frames.size(); ++i) {
+    const double step_m = (frames[i].truth.translation() - frames[i - 1].truth.translation()).norm();
+    if (i > trial.set_down) driven_m += step_m;
+    if (i > trial.set_down && was_here(frames[i])) verdict.known_m += step_m;
+    if (!verdict.has_begun && frames[i].state == TrackingState::kUnconnected) {
+      verdict.has_begun = true;
+      verdict.begun_s = frames[i].t_s - set_down_s;
+    }
+    if (frames[i].source == PoseSource::kNone) continue;
+    verdict.joined_s = frames[i].t_s - set_down_s;
+    verdict.joined_m = driven_m;
+    verdict.joined = frames[i].error;
+    break;
+  }
+  CarriedVerdict poses;
+  judge_wrong_poses(trial, poses);
+  verdict.is_found = find_found(frames, trial.set_down).has_value();
+  verdict.is_wrong = poses.wrong_return_s > kWrongFor_s || trial.map.wrong_loops > 0 || trial.map.far_keyframes > 0;
   return verdict;
 }
 

@@ -10,7 +10,7 @@
 
 namespace lapis::slam::benchmark {
 
-/// A robot that is lifted on its tour, and set down at another place that it has been to.
+/// A robot that is lifted on its tour, and set down at another place.
 struct CarriedTrial {
   std::vector<WatchedFrame> frames;
   WatchedMap map;
@@ -29,10 +29,20 @@ struct TourSetting {
   double longest_s = 0.0;  ///< it is cut there; 0: nowhere
 };
 
-/// Drives a tour through all rooms; somewhere in its second half the robot is lifted for 2 s, in which the camera sees
-/// nothing and the wheels stand still. Then a tour through all rooms again, until it has been found for long.
+/// When the robot is lifted, and where to.
+struct Carry {
+  bool with_odometry = true;
+  bool to_new_place = false;            ///< it has not been near; else it has been there, or beside
+  double earliest = 0.5, latest = 1.0;  ///< share of the tour after which it is lifted
+  double in_air_s = 2.0;
+  double search_s = 120.0, after_s = 30.0;  ///< longest drive afterwards, and drive from where it is found on
+  bool again = false;                       ///< the tour afterwards is driven again and again until then
+};
+
+/// Drives a tour through all rooms, on which the robot is lifted; meanwhile the camera sees nothing and the wheels
+/// stand still. Then a tour through all rooms again, until it has been found for long.
 /// @throws std::runtime_error with one line that says why the trial cannot be driven
-CarriedTrial drive_carried(const TourSetting& setting, const SlamConfig& config);
+CarriedTrial drive_carried(const TourSetting& setting, const SlamConfig& config, const Carry& carry = {});
 
 struct CarriedVerdict {
   bool is_found = false;
@@ -49,5 +59,19 @@ struct CarriedVerdict {
 /// Found: vision or surfaces give a pose within 0.3 m and 10 degrees of the truth, and for 2 s from there every frame
 /// has one.
 CarriedVerdict judge(const CarriedTrial& trial);
+
+/// Of a robot that was carried to a new place without odometry.
+struct ElsewhereVerdict {
+  bool has_begun = false;                                     ///< mapping has gone on in a sub-map
+  double begun_s = std::numeric_limits<double>::infinity();   ///< after the set-down
+  double joined_s = std::numeric_limits<double>::infinity();  ///< first frame with a pose in the map
+  double joined_m = std::numeric_limits<double>::infinity();  ///< path driven until then
+  double known_m = 0.0;                                       ///< ... of which where it had been before it was lifted
+  PoseError joined;                                           ///< of the first pose
+  bool is_found = false;
+  bool is_wrong = false;  ///< it was joined at a wrong place, or the map has a wrong loop or misplaced key-frames
+};
+
+ElsewhereVerdict judge_elsewhere(const CarriedTrial& trial);
 
 }  // namespace lapis::slam::benchmark

@@ -34,6 +34,7 @@ const char* name_of(TrackingState state) {
     case TrackingState::kTracking: return "tracking";
     case TrackingState::kDeadReckoning: return "dead reckoning";
     case TrackingState::kLost: return "lost";
+    case TrackingState::kUnconnected: return "sub-map";
   }
   return "";
 }

@@ -82,7 +82,7 @@ void place_query(benchmark::State& state) {
     index.add(id, seen_again(places[id % kPlaces]));
   }
   const auto query = seen_again(places[7]);
-  for (auto _ : state) benchmark::DoNotOptimize(index.query(query, index.size(), 3));
+  for (auto _ : state) benchmark::DoNotOptimize(index.query(query, 3, [](KeyframeId) { return true; }));
 }
 
 // Laps of 200 key-frames, each with an edge of vision and one of odometry to the one before, and every tenth with a

@@ -48,6 +48,7 @@ const char* word_for(const WatchedFrame& frame) {
     case PoseSource::kOdometry: return "odometry";
     case PoseSource::kNone: break;
   }
+  if (frame.state == TrackingState::kUnconnected) return "sub-map";
   return frame.state == TrackingState::kInitializing ? "initializing" : "lost";
 }
 
@@ -67,11 +68,12 @@ const WatchedFrame& WatchedSlam::process(const RgbdFrame& frame, const Pose& T_s
   watched.matches = result.matches;
   watched.inliers = result.inliers;
   watched.reason = result.reason;
-  if (watched.source == PoseSource::kNone) return watched;
   const Pose T_map_camera = result.T_map_keyframe * result.T_keyframe_camera;
-  if (!T_map_start_) T_map_start_ = T_map_camera * T_start_camera.inverse();
+  if (!T_map_start_ && has_pose(result)) T_map_start_ = T_map_camera * T_start_camera.inverse();
+  if (!T_map_start_) return watched;
   const Pose T_map_true = *T_map_start_ * T_start_camera;
   truth_[frame.stamp.nanoseconds] = T_map_true;
+  if (!has_pose(result)) return watched;
   watched.error = difference(T_map_camera, T_map_true);
   watched.sigma_m = largest_sigma(result.map_covariance, 0);
   watched.sigma_rad = largest_sigma(result.map_covariance, 3);
@@ -87,6 +89,8 @@ WatchedMap WatchedSlam::finish() {
   map.keyframes = graph.nodes.size();
   map.loops = slam_.loops().closures;
   map.removed = slam_.loops().removed;
+  map.unconnected = slam_.keyframe_count() - graph.nodes.size();
+  map.parts = slam_.sub_maps();
   std::vector<Eigen::Vector3d> actual, estimated;
   std::map<std::uint64_t, const PoseGraphNode*> nodes;
   for (const PoseGraphNode& node : graph.nodes) {

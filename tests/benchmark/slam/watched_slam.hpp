@@ -28,12 +28,14 @@ struct WatchedFrame {
 
 /// Whether vision or surfaces hold the pose.
 bool is_held(const WatchedFrame& frame);
-/// The source in a word; without one "lost", or "initializing".
+/// The source in a word; without one "sub-map", "lost", or "initializing".
 const char* word_for(const WatchedFrame& frame);
 
 /// What is left at the end, all optimisations applied.
 struct WatchedMap {
   std::size_t keyframes = 0, loops = 0, removed = 0;
+  std::size_t unconnected = 0;  ///< key-frames of sub-maps that were not joined
+  SubMapSummary parts;
   std::size_t wrong_loops = 0;       ///< edges that is_wrong
   std::size_t far_keyframes = 0;     ///< more than 1 m from the truth, map frame
   double ate_m = 0.0;                ///< RMS of the key-frames' positions after alignment (SE(3)); NaN without any

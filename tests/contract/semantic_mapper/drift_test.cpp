@@ -44,6 +44,14 @@ class BlindMapper : public MapperContract {
     frame.keyframe_pose().position().x(frame.keyframe_pose().position().x() + kDrift_m);
     return frame;
   }
+  /// In a sub-map: nobody knows where in the map its key-frame is.
+  static TrackedFrame unconnected(bool is_keyframe) {
+    TrackedFrame frame = on_keyframe(kDrifting, is_keyframe, 1);
+    frame.state(lapis_msgs::msg::TrackedFrame_Constants::STATE_UNCONNECTED);
+    frame.source(lapis_msgs::msg::TrackedFrame_Constants::SOURCE_NONE);
+    frame.keyframe_pose({});
+    return frame;
+  }
   /// At one time, what the slow motion shows at another.
   void send_frame(int at, int shown, TrackedFrame frame) {
     frame.header().stamp(messages::to_message(CameraFeed::stamp(at)));
@@ -74,10 +82,10 @@ class BlindMapper : public MapperContract {
   static std::ptrdiff_t count(const OccupancyGrid& grid, int value) {
     return std::count(grid.data().begin(), grid.data().end(), value);
   }
-  bool wait_for_waiting(double frames) {
+  bool wait_for_waiting(double frames, const char* which = "frames_waiting") {
     return probe.wait_until([&] {
       const auto values = newest_values(diagnostics, "semantic_mapper");
-      return values.contains("frames_waiting") && sum_of(values, "frames_waiting") == frames;
+      return values.contains(which) && sum_of(values, which) == frames;
     });
   }
 
@@ -121,6 +129,30 @@ TEST_F(BlindMapper, FramesWaitAsAProvisionalAreaAndComeInWholeWithTheCorrection)
   EXPECT_EQ(corrected, *client.mirror.map()) << "as of frames that vision held all the time";
   EXPECT_NE(corrected, before);
   EXPECT_TRUE(areas.back().data().empty());
+}
+
+TEST_F(BlindMapper, FramesOfASubMapEnterTheMapWhenTheGraphListsTheirKeyframe) {
+  ASSERT_TRUE(probe.wait_until([&] {
+    return graph.matched() > 0 && !client.descriptions.empty() && client.descriptions.back().labels.size() > 0;
+  })) << mapper.log();
+  send_frame(0, 0, on_keyframe(kHeld, true, 1));
+  ASSERT_TRUE(has_mapped(0, 1)) << mapper.log();
+  const mapping::VoxelMap before = *client.mirror.map();
+  send_frame(15, 31, unconnected(true));
+  send_frame(30, 62, unconnected(false));
+  ASSERT_TRUE(wait_for_waiting(2, "frames_unconnected")) << mapper.log();
+  EXPECT_EQ(*client.mirror.map(), before);
+
+  publish_graph(2, on_keyframe(kDrifting, true, 1), false);
+  ASSERT_TRUE(probe.wait_until([&] { return client.has_map() && *client.mirror.map() != before; })) << mapper.log();
+  ASSERT_TRUE(wait_for_waiting(0, "frames_unconnected")) << mapper.log();
+  const mapping::VoxelMap joined = *client.mirror.map();
+
+  send_frame(45, 0, on_keyframe(kHeld, true, 2));
+  send_frame(46, 31, on_keyframe(kDrifting, true, 2));
+  send_frame(47, 62, on_keyframe(kDrifting, false, 2));
+  ASSERT_TRUE(has_mapped(47, 2)) << mapper.log();
+  EXPECT_EQ(joined, *client.mirror.map()) << "as of frames that had a pose in the map all the time";
 }
 
 TEST_F(BlindMapper, ANewSessionForgetsTheFramesThatWait) {

@@ -415,6 +415,43 @@ TEST_F(SlamFaults, CoveredCameraIsLostAtOnceAndFindsItsMapAgain) {
   }
 }
 
+// Carried elsewhere while covered, without odometry: mapping goes on, and nobody is told a pose that is not known.
+TEST_F(SlamFaults, CarriedWhileCoveredItGoesOnInASubMap) {
+  const auto& graphs = probe.collect(topics::kPoseGraph);
+  const auto& status = probe.collect(topics::kSlamStatus);
+  const auto turned = geometry::make_pose(
+      Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitY())));
+  ASSERT_NE(odometry_at(CameraFeed::stamp(kFirstFrames - 1)), nullptr);
+  const auto poses = odometry.size();
+  int index = kFirstFrames;
+  for (; index < kFirstFrames + 10; ++index) {
+    auto covered = feed.frame(index);
+    std::fill(covered.color->data().begin(), covered.color->data().end(), std::uint8_t{0});
+    ASSERT_TRUE(answers(covered, index)) << slam.log();
+    EXPECT_EQ(frames.back().state(), kLost);
+  }
+  const int last = index + 60;
+  for (; index < last && frames.back().state() == kLost; ++index) {
+    ASSERT_TRUE(answers(feed.frame(CameraFeed::stamp(index), slow_motion(index) * turned), index)) << slam.log();
+  }
+  const auto& begun = frames.back();
+  ASSERT_EQ(begun.state(), lapis_msgs::msg::TrackedFrame_Constants::STATE_UNCONNECTED) << slam.log();
+  EXPECT_EQ(begun.source(), lapis_msgs::msg::TrackedFrame_Constants::SOURCE_NONE);
+  EXPECT_EQ(begun.session(), frames.front().session());
+  EXPECT_TRUE(begun.is_keyframe());
+  EXPECT_FALSE(messages::from_message(begun.keyframe_pose()));
+  EXPECT_TRUE(messages::from_message(begun.pose_in_keyframe()));
+  const auto first_of_it = begun.keyframe_id();
+  const auto version = begun.graph_version();
+  for (const int end = index + 20; index < end; ++index) {
+    ASSERT_TRUE(answers(feed.frame(CameraFeed::stamp(index), slow_motion(index) * turned), index)) << slam.log();
+  }
+  ASSERT_TRUE(probe.wait_until([&] { return !graphs.empty() && graphs.back().version() >= version; })) << slam.log();
+  for (const auto& node : graphs.back().nodes()) EXPECT_LT(node.id(), first_of_it);
+  EXPECT_EQ(status.back().state(), lapis_msgs::msg::TrackedFrame_Constants::STATE_UNCONNECTED);
+  EXPECT_EQ(odometry.size(), poses) << "no pose is made up";
+}
+
 // 180 degrees per second at 30 Hz, once around. What is published is right; where nothing is known nothing is
 // published.
 TEST_F(SlamFaults, FastSpinNeverGivesAWrongPose) {

@@ -67,6 +67,17 @@ TEST(SlamConversions, LostFrameHasNoPoseThatCouldBeRead) {
   EXPECT_FALSE(messages::from_message(message.pose_in_keyframe()));
 }
 
+TEST(SlamConversions, AFrameInASubMapHasAPoseInItsKeyframeAlone) {
+  std::mt19937 engine(2);
+  auto result = tracking_result(engine);
+  result.state = TrackingState::kUnconnected;
+  const auto message = to_tracked_frame(result, context_of(engine), kIds);
+  EXPECT_EQ(message.state(), lapis_msgs::msg::TrackedFrame_Constants::STATE_UNCONNECTED);
+  EXPECT_EQ(message.keyframe_id(), 3u);
+  EXPECT_FALSE(messages::from_message(message.keyframe_pose()));
+  EXPECT_TRUE(messages::from_message(message.pose_in_keyframe()));
+}
+
 // Independent of the closed form: samples of the right perturbation at the camera, seen as changes of base_link's
 // position and of its rotation about axes parallel to the map.
 TEST(SlamConversions, OdometryCovarianceEqualsMonteCarlo) {

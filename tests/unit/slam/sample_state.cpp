@@ -75,6 +75,7 @@ SlamFile sample_file(unsigned seed, std::size_t keyframes, int features) {
     const auto first = static_cast<LandmarkId>(id * static_cast<std::size_t>(features) / 2);
     state.keyframes.push_back(sampler.keyframe(id, features, first));
     state.covariances.push_back(sampler.information());
+    state.parts.push_back(kWholeMap);
     if (id == 0) continue;
     state.edges.push_back({id - 1, id, EdgeType::kOdometry, sampler.pose(), sampler.information()});
     state.edges.push_back({id - 1, id, EdgeType::kWheelOdometry, sampler.pose(), sampler.information()});

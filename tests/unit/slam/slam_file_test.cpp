@@ -111,6 +111,14 @@ Bytes older_version(std::uint8_t version, std::string_view first_missing) {
   return bytes;
 }
 
+TEST(SlamFile, AMapOfTheFourthVersionHasNoSubMaps) {
+  std::string error;
+  const auto read = decode_slam_file(older_version(4, "PART"), error);
+  ASSERT_TRUE(read) << error;
+  EXPECT_TRUE(read->state.parts.empty());
+  EXPECT_TRUE(read->depth_camera);
+}
+
 TEST(SlamFile, AMapOfTheThirdVersionHasNoDepthCamera) {
   std::string error;
   const auto read = decode_slam_file(older_version(3, "DEPC"), error);
@@ -242,6 +250,19 @@ TEST(SlamFile, AStateThatCannotBeIsRefusedByName) {
       {"motion: covariance", [](State& s) { s.motion->camera.covariance(1, 1) = kNaN; }},
       {"motion: odometry", [](State& s) { s.motion->odometry[2].T_odom_base.translation().x() = kNaN; }},
       {"link 1: joins", [](State& s) { s.links[1].from = 8; }},
+      {"parts of the map: their number", [](State& s) { s.parts.pop_back(); }},
+      {"parts of the map: that of key-frame 1",
+       [](State& s) {
+         s.parts = {0, 2, 2};
+       }},
+      {"parts of the map: that of key-frame 2",
+       [](State& s) {
+         s.parts = {0, 0, 1};
+       }},
+      {"parts of the map: an edge connects",
+       [](State& s) {
+         s.parts = {0, 0, 2};
+       }},
   };
   for (const auto& [name, change] : faults) {
     const std::string error = refusal_of(change);
@@ -263,7 +284,7 @@ TEST(SlamFile, ErrorsNameFileVersionAndSection) {
 
   Bytes bytes = encode_slam_file(test::sample_file(1, 2));
   bytes.back() ^= 1U;
-  EXPECT_EQ(refusal(bytes), "is damaged: its section DEPC has another checksum than when it was written");
+  EXPECT_EQ(refusal(bytes), "is damaged: its section PART has another checksum than when it was written");
   SlamFile timeless = test::sample_file(1, 1);
   timeless.session = -1;
   EXPECT_EQ(refusal(encode_slam_file(timeless)), "has a session out of range");
@@ -277,7 +298,7 @@ TEST(SlamFile, ErrorsNameFileVersionAndSection) {
   strange.depth_camera->camera.distortion.resize(6);
   EXPECT_EQ(refusal(encode_slam_file(strange)), "has a depth camera that cannot be");
   bytes[8] = 9;
-  EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1 to 4");
+  EXPECT_EQ(refusal(bytes), "has format version 9, this program reads 1 to 5");
 }
 
 TEST(SlamFile, OldFileStaysWholeWhenThereIsNoSpace) {

@@ -18,10 +18,11 @@ using geometry::Matrix6d;
 using geometry::Pose;
 
 constexpr std::string_view kMagic = "LAPISLAM";
-constexpr std::uint32_t kFormatVersion = 4;
+constexpr std::uint32_t kFormatVersion = 5;
 constexpr std::uint32_t kFirstWithWheels = 2;  // older versions can still be read
 constexpr std::uint32_t kFirstWithIds = 3;
 constexpr std::uint32_t kFirstWithDepthCamera = 4;
+constexpr std::uint32_t kFirstWithSubMaps = 5;
 constexpr std::size_t kTagSize = 4;
 constexpr double kUnit16 = 32767.0;  // stands for a component of 1
 
@@ -95,6 +96,7 @@ void sections(auto& section, Is<SlamFile> auto& file, std::uint32_t version) {
   section("NAME", file.epoch, file.keyframe_ids.stretches);
   section("ODOM", state.motion);
   if (version >= kFirstWithDepthCamera) section("DEPC", file.depth_camera);
+  if (version >= kFirstWithSubMaps) section("PART", state.parts);
 }
 
 class Encoder {

@@ -70,6 +70,21 @@ Fault find_landmark_fault(const LandmarkState& landmark) {
   return std::nullopt;
 }
 
+// Each part of the map is named by its first key-frame, and edges are within a part.
+Fault find_part_fault(const SlamState& state) {
+  const auto& parts = state.parts;
+  if (parts.empty()) return std::nullopt;
+  if (parts.size() != state.keyframes.size()) return "their number is not that of the key-frames";
+  const auto part = [&](KeyframeId id) { return parts[static_cast<std::size_t>(id)]; };
+  for (KeyframeId id = 0; id < parts.size(); ++id) {
+    if (part(id) > id || part(part(id)) != part(id)) return "that of key-frame " + std::to_string(id) + " has no name";
+  }
+  const bool are_apart = std::all_of(state.edges.begin(), state.edges.end(),
+                                     [&](const PoseGraphEdge& edge) { return part(edge.from) == part(edge.to); });
+  if (!are_apart) return "an edge connects two of them";
+  return std::nullopt;
+}
+
 // Fault of an edge or a link.
 template <class Relation>
 Fault find_relation_fault(const Relation& relation, std::size_t keyframes) {
@@ -130,6 +145,7 @@ Fault find_fault(const SlamState& state) {
   if (auto fault = first_fault(state.landmarks, "landmark", find_landmark_fault)) return fault;
   const auto check_edge = [&](const PoseGraphEdge& e) { return find_edge_fault(e, keyframes); };
   if (auto fault = first_fault(state.edges, "edge", check_edge)) return fault;
+  if (auto fault = find_part_fault(state)) return "parts of the map: " + *fault;
   const auto check_link = [&](const KeyframeLink& l) { return find_relation_fault(l, keyframes); };
   if (auto fault = first_fault(state.links, "link", check_link)) return fault;
   return first_fault(state.covariances, "covariance", [](const Matrix6d& m) -> Fault {
@@ -141,7 +157,8 @@ Fault find_fault(const SlamState& state) {
 Map restore_map(const SlamState& state) {
   Map map;
   for (const LandmarkState& landmark : state.landmarks) map.add_landmark(landmark.p_map, landmark.finest_distance_m);
-  for (const Keyframe& keyframe : state.keyframes) {
+  for (Keyframe keyframe : state.keyframes) {
+    if (!state.parts.empty()) keyframe.sub_map = state.parts[static_cast<std::size_t>(keyframe.id)];
     const KeyframeId id = map.add_keyframe(keyframe);
     for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
       if (keyframe.landmarks[i] != kNoLandmark) map.add_observation(keyframe.landmarks[i], {id, static_cast<int>(i)});

@@ -43,6 +43,7 @@ struct SlamState {
   std::vector<geometry::Matrix6d> covariances;  ///< of each key-frame's pose, as TrackingResult::map_covariance
   WheelCalibration wheels;                      ///< motions = 0: nothing was learnt
   std::optional<SavedMotion> motion;            ///< of the same run; nothing in a later one, or before the first pose
+  std::vector<KeyframeId> parts;                ///< Keyframe::sub_map of each key-frame; empty: there are no sub-maps
 };
 
 /// Returns what is wrong with a state that did not come from RgbdSlam itself: ids that point nowhere, numbers that are

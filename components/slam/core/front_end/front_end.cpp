@@ -44,6 +44,14 @@ RelativeCamera fuse(const Map& map, const RelativeCamera& seen, const std::optio
   return {seen.reference, seen.T_reference_camera * geometry::se3_exp(together * odometry * difference), together};
 }
 
+// The newest key-frame that is in no sub-map.
+KeyframeId newest_of_map(const Map& map) {
+  const auto& keyframes = map.keyframes();
+  return std::find_if(keyframes.rbegin(), keyframes.rend(),
+                      [](const Keyframe& keyframe) { return keyframe.sub_map == kWholeMap; })
+      ->id;
+}
+
 }  // namespace
 
 FrameOutcome FrontEnd::begin(const Known& known, const Frame& frame) {
@@ -51,15 +59,13 @@ FrameOutcome FrontEnd::begin(const Known& known, const Frame& frame) {
   // pose.
   const time::Time stamp = frame.input->stamp;
   const bool has_odometry = known.motion.odometry_at(stamp).has_value();
-  const int alone = std::min(config_.tracker.min_first_features, config_.features.max_features / 2);
-  const int least = config_.tracker.min_matches;
-  const int needed = has_odometry ? least : std::max(least, alone);
+  const int needed = features_to_begin(has_odometry);
   const bool has_features = frame.features_with_depth >= needed;
   FrameOutcome outcome;
   if (has_features || (has_odometry && shows_surfaces(frame))) {
     outcome.result.state = TrackingState::kTracking;
     outcome.result.source = has_features ? PoseSource::kVision : PoseSource::kSurfaces;
-    outcome.wants_keyframe = true;
+    outcome.wants_keyframe = outcome.begins_part = true;
     held_stamp_ = stamp;
   } else {
     outcome.result = without_vision(
@@ -72,10 +78,16 @@ FrameOutcome FrontEnd::begin(const Known& known, const Frame& frame) {
   return outcome;
 }
 
+int FrontEnd::features_to_begin(bool has_odometry) const {
+  const int alone = std::min(config_.tracker.min_first_features, config_.features.max_features / 2);
+  const int least = config_.tracker.min_matches;
+  return has_odometry ? least : std::max(least, alone);
+}
+
 FrameOutcome FrontEnd::locate(const Known& known, const Frame& frame) {
   TrackOutcome seen = find_pose(known, frame);
   if (!seen.is_tracked) return continue_without_features(known, frame, seen.reason);
-  blind_frames_ = 0;
+  blind_frames_ = unknown_frames_ = 0;
   is_placed_ = true;
   ++frames_since_keyframe_;
   const bool wants_keyframe = needs_keyframe_at(known.map, seen);
@@ -106,10 +118,15 @@ void FrontEnd::enter_keyframe(const Map& map, KeyframeId id) {
   renew(map);
 }
 
+void FrontEnd::give_up(const Map& map) {
+  held_stamp_.reset();
+  enter_keyframe(map, newest_of_map(map));
+}
+
 void FrontEnd::resume(const Map& map, KeyframeId reference, std::optional<time::Time> held_stamp, bool leads_on) {
   is_placed_ = leads_on;
   held_stamp_ = held_stamp;
-  reference_ = reference;
+  reference_ = leads_on || map.keyframe(reference).sub_map == kWholeMap ? reference : newest_of_map(map);
   renew(map);
 }
 
@@ -127,7 +144,7 @@ TrackOutcome FrontEnd::find_pose(const Known& known, const Frame& frame) {
                      ? std::max(kForgets * surprise_px_, tracker_.surprise_px(known.map, frame, outcome, *predicted))
                      : kUnknownSurprise_px;
   if (!outcome.is_tracked) {
-    TrackOutcome found = relocalizer_.search(known.map, known.places, tracker_, frame);
+    TrackOutcome found = relocalizer_.search(known.map, sub_map(known.map), known.places, tracker_, frame);
     if (!found.is_tracked) return outcome;
     outcome = std::move(found);
   }
@@ -167,6 +184,7 @@ FrameOutcome FrontEnd::hold(const Known& known, const Frame& frame, TrackOutcome
 FrameOutcome FrontEnd::continue_without_features(const Known& known, const Frame& frame, const std::string& reason) {
   const bool could_start = frame.features_with_depth >= config_.tracker.min_matches;
   blind_frames_ = could_start ? blind_frames_ + 1 : 0;
+  if (is_somewhere_new(known, frame)) return begin(known, frame);
   const auto reckoned = known.motion.dead_reckon(frame.input->stamp);
   if (!reckoned) return continue_blind(known, frame, reason, false);
   ++frames_since_keyframe_;
@@ -183,6 +201,17 @@ FrameOutcome FrontEnd::continue_without_features(const Known& known, const Frame
   if (begins_anew) blind_frames_ = 0;
   const bool wants_keyframe = begins_anew || has_moved(aligned.alignment.T_reference_camera);
   return hold(known, frame, std::move(aligned), PoseSource::kSurfaces, wants_keyframe);
+}
+
+// Whether the camera has long seen enough to begin with, but no place of the map, and odometry does not lead on either.
+// A resumed map waits until its place is found.
+bool FrontEnd::is_somewhere_new(const Known& known, const Frame& frame) {
+  const bool is_unknown = is_placed_ && !awaits_confirmation_ && !known.motion.odometry_at(frame.input->stamp) &&
+                          frame.features_with_depth >= features_to_begin(false);
+  unknown_frames_ = is_unknown ? unknown_frames_ + 1 : 0;
+  if (config_.sub_map.after_frames == 0 || unknown_frames_ < config_.sub_map.after_frames) return false;
+  unknown_frames_ = 0;
+  return true;
 }
 
 // Result by odometry alone. When there is enough to see, the map continues at the pose of odometry. Surfaces that no

@@ -31,7 +31,8 @@ struct FrameOutcome {
   TrackingResult result;             ///< valid unless the frame becomes a key-frame; without the graph's version
   std::optional<TrackOutcome> seen;  ///< by vision or surfaces; none if odometry alone gives the pose, or nothing does
   bool wants_keyframe = false;
-  bool ends_drift = false;  ///< a key-frame here closes a cycle, a part of which odometry alone connects
+  bool ends_drift = false;   ///< a key-frame here closes a cycle, a part of which odometry alone connects
+  bool begins_part = false;  ///< the key-frame is the first one of the map, or of a sub-map
 };
 
 /// Finds the pose of each frame by the best source that has one (vision, surfaces, odometry), and decides which frames
@@ -50,6 +51,8 @@ class FrontEnd {
 
   /// The frame has become this key-frame, which is the reference of the next frames.
   void enter_keyframe(const Map& map, KeyframeId id);
+  /// The sub-map in which the camera was is given up: it is lost in the map again.
+  void give_up(const Map& map);
   /// The map has changed.
   void renew(const Map& map) { tracker_.set_reference(map, reference_); }
   /// The map is a saved one. Unless it is of this run and odometry `leads_on` from the newest pose by vision or
@@ -61,6 +64,8 @@ class FrontEnd {
   std::optional<time::Time> held_stamp() const { return held_stamp_; }
   /// Compares frames with any key-frame.
   const Tracker& tracker() const { return tracker_; }
+  /// Part of the map in which the camera is, or was.
+  KeyframeId sub_map(const Map& map) const { return map.keyframe(reference_).sub_map; }
   /// Number of recognised places that were not believed because odometry contradicted them.
   std::size_t places_doubted() const { return relocalizer_.doubted(); }
 
@@ -71,6 +76,8 @@ class FrontEnd {
   double search_radius_px() const;
   FrameOutcome hold(const Known& known, const Frame& frame, TrackOutcome seen, PoseSource source, bool wants_keyframe);
   FrameOutcome continue_without_features(const Known& known, const Frame& frame, const std::string& reason);
+  int features_to_begin(bool has_odometry) const;
+  bool is_somewhere_new(const Known& known, const Frame& frame);
   FrameOutcome continue_blind(const Known& known, const Frame& frame, const std::string& reason, bool is_new_view);
 
   TrackingResult result_of(const Known& known, const Frame& frame, const TrackOutcome& seen) const;
@@ -89,6 +96,7 @@ class FrontEnd {
   KeyframeId reference_ = 0;
   int frames_since_keyframe_ = 0;
   int blind_frames_ = 0;                      // in a row, with enough features but no pose by vision
+  int unknown_frames_ = 0;                    // in a row, without odometry, that show enough but no place of the map
   int contradictions_ = 0;                    // frames in a row that contradict odometry
   int fits_ = 0;                              // frames in a row whose surfaces fit
   std::optional<time::Time> held_stamp_;      // of the newest pose by vision or surfaces

@@ -9,8 +9,9 @@ namespace lapis::slam {
 
 /// kTracking: the pose is by vision, by surfaces where features are too few, or by odometry where the map continues at
 /// its pose. kDeadReckoning: neither vision nor surfaces have a pose, and wheel odometry propagates the last one.
-/// kLost: there is no pose.
-enum class TrackingState : std::uint8_t { kInitializing, kTracking, kDeadReckoning, kLost };
+/// kLost: there is no pose. kUnconnected: tracked in a sub-map, whose place in the map is not known, so that there is
+/// no pose in the map.
+enum class TrackingState : std::uint8_t { kInitializing, kTracking, kDeadReckoning, kLost, kUnconnected };
 
 /// Source of a pose, from the best (kVision) to the worst.
 enum class PoseSource : std::uint8_t { kNone, kVision, kSurfaces, kOdometry };
@@ -23,8 +24,9 @@ struct TrackingResult {
   bool is_keyframe = false;
   std::uint64_t keyframe_id = 0;  ///< reference key-frame; the frame itself when is_keyframe
   std::uint64_t graph_version = 0;
-  geometry::Pose T_map_keyframe = geometry::Pose::Identity();     ///< valid only when tracking or dead reckoning
-  geometry::Pose T_keyframe_camera = geometry::Pose::Identity();  ///< valid as T_map_keyframe; never corrected later
+  geometry::Pose T_map_keyframe = geometry::Pose::Identity();  ///< valid only when has_pose()
+  /// Valid when has_pose(), or unconnected; never corrected later.
+  geometry::Pose T_keyframe_camera = geometry::Pose::Identity();
   /// Covariance of T_keyframe_camera, right perturbation (translation, rotation) [m^2, rad^2]; zero for a key-frame.
   geometry::Matrix6d covariance = geometry::Matrix6d::Zero();
   /// Covariance of T_map_keyframe * T_keyframe_camera: `covariance` compounded with that of the key-frame in the map.
@@ -38,7 +40,7 @@ struct TrackingResult {
   double drift_m = 0.0, drift_rad = 0.0;
 };
 
-/// True when the result says where the camera is.
+/// True when the result says where the camera is in the map.
 inline bool has_pose(const TrackingResult& result) {
   return result.state == TrackingState::kTracking || result.state == TrackingState::kDeadReckoning;
 }

@@ -12,13 +12,35 @@ using geometry::Pose;
 
 namespace {
 
-constexpr double kLeastWeight = 0.5;  // of a loop closure that is kept
+constexpr double kLeastWeight = 0.5;    // of a loop closure that is kept
+constexpr double kAnywhere_m = 1000.0;  // sigma of a pose of which nothing is known
+constexpr double kAnywhere_rad = 3.0;
+
+Matrix6d anywhere() {
+  geometry::Vector6d sigma;
+  sigma << Eigen::Vector3d::Constant(kAnywhere_m), Eigen::Vector3d::Constant(kAnywhere_rad);
+  return sigma.cwiseAbs2().asDiagonal();
+}
+
+// The same edge, seen from its other end.
+PoseGraphEdge reversed(const PoseGraphEdge& edge) {
+  const Matrix6d move = geometry::adjoint(edge.T_from_to);
+  const Matrix6d covariance = move * edge.information.inverse() * move.transpose();
+  return {edge.to, edge.from, edge.type, edge.T_from_to.inverse(), covariance.inverse()};
+}
 
 }  // namespace
 
+PoseGraphSnapshot without_sub_maps(PoseGraphSnapshot graph, const Map& map) {
+  const auto is_outside = [&](std::uint64_t id) { return map.keyframe(id).sub_map != kWholeMap; };
+  std::erase_if(graph.nodes, [&](const PoseGraphNode& node) { return is_outside(node.id); });
+  std::erase_if(graph.edges, [&](const PoseGraphEdge& edge) { return is_outside(edge.from); });
+  return graph;
+}
+
 SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink> links,
                      std::vector<Matrix6d> covariances)
-    : edges_(std::move(edges)), links_(std::move(links)), parents_(covariances.size()),
+    : edges_(std::move(edges)), links_(std::move(links)), parents_(covariances.size(), Parent{0, anywhere()}),
       covariances_(std::move(covariances)) {
   // The first edge to a key-frame that is no loop closure is the one from its parent.
   std::vector<bool> has_parent(parents_.size(), false);
@@ -44,8 +66,46 @@ SlamGraph::SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink>
 }
 
 void SlamGraph::add_root() {
-  parents_.emplace_back();
-  covariances_.emplace_back(Matrix6d::Zero());
+  const Matrix6d covariance = parents_.empty() ? Matrix6d(Matrix6d::Zero()) : anywhere();
+  parents_.push_back({0, covariance, false, false});
+  covariances_.push_back(covariance);
+}
+
+void SlamGraph::join(const Junction& junction, Map& map) {
+  const bool leads_in = map.keyframe(junction.place.to).sub_map == junction.sub_map;
+  std::vector<KeyframeId> moved;
+  for (const Keyframe& keyframe : map.keyframes()) {
+    if (keyframe.sub_map == junction.sub_map) moved.push_back(keyframe.id);
+  }
+  map.join(junction.sub_map, junction.into, junction.T_into_sub_map);
+  const PoseGraphEdge edge = parent_edge(map, leads_in ? junction.place : reversed(junction.place), junction.sub_map);
+  Parent& root = parents_[static_cast<std::size_t>(edge.to)];
+  root.id = edge.from;
+  root.covariance = edge.information.inverse();
+  edges_.push_back(edge);
+  edges_.insert(edges_.end(), junction.loops.begin(), junction.loops.end());
+  for (const KeyframeId id : moved) covariances_[static_cast<std::size_t>(id)] = by_parent(map, id);
+}
+
+// The edge from an older key-frame of the other part to the root of the sub-map: along the place that connects the two,
+// and the edges to parents on both sides.
+PoseGraphEdge SlamGraph::parent_edge(const Map& map, const PoseGraphEdge& place, KeyframeId root) const {
+  KeyframeId parent = place.from;
+  while (parent > root) parent = parents_[static_cast<std::size_t>(parent)].id;
+  const Pose T_map_root = map.keyframe(root).T_map_camera;
+  const Pose T_to_root = map.keyframe(place.to).T_map_camera.inverse() * T_map_root;
+  const Matrix6d to_place =
+      compound_covariance(chain_covariance(map, parent, place.from), place.T_from_to, place.information.inverse());
+  const Matrix6d covariance = compound_covariance(to_place, T_to_root, chain_covariance(map, place.to, root));
+  return {parent, root, EdgeType::kCovisibility, map.keyframe(parent).T_map_camera.inverse() * T_map_root,
+          covariance.inverse()};
+}
+
+// Covariance of a key-frame's pose in the map, by the edge to its parent.
+Matrix6d SlamGraph::by_parent(const Map& map, KeyframeId id) const {
+  const Parent& parent = parents_[static_cast<std::size_t>(id)];
+  const Pose T_parent_keyframe = map.keyframe(parent.id).T_map_camera.inverse() * map.keyframe(id).T_map_camera;
+  return compound_covariance(covariance(parent.id), T_parent_keyframe, parent.covariance);
 }
 
 void SlamGraph::add_keyframe(const PoseGraphEdge& edge, const Matrix6d& covariance) {
@@ -137,11 +197,7 @@ void SlamGraph::learn(const Map& map, const GraphMarginals& marginals) {
   with_newest_ = marginals.with_newest;
   for (std::size_t i = 1; i < covariances_.size(); ++i) {
     const bool is_known = i < marginals.covariances.size() && marginals.covariances[i];
-    const Parent& parent = parents_[i];
-    const Pose T_parent_keyframe =
-        map.keyframe(parent.id).T_map_camera.inverse() * map.keyframe(static_cast<KeyframeId>(i)).T_map_camera;
-    covariances_[i] = is_known ? *marginals.covariances[i]
-                               : compound_covariance(covariance(parent.id), T_parent_keyframe, parent.covariance);
+    covariances_[i] = is_known ? *marginals.covariances[i] : by_parent(map, i);
   }
 }
 

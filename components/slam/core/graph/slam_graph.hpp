@@ -12,8 +12,20 @@
 
 namespace lapis::slam {
 
-/// Edges between the key-frames of a map, and the covariances of their poses. Every key-frame but the first has a
-/// parent, the older key-frame relative to which its pose was found, so the graph is connected.
+/// Where a sub-map is in another part of the map.
+struct Junction {
+  KeyframeId sub_map = 0, into = 0;  ///< names of the parts; `into` is older
+  geometry::Pose T_into_sub_map = geometry::Pose::Identity();
+  PoseGraphEdge place;               ///< between the parts, the one by which they are joined
+  std::vector<PoseGraphEdge> loops;  ///< others, which agree with it
+};
+
+/// The part of a graph that the map consists of, without sub-maps and what connects them.
+PoseGraphSnapshot without_sub_maps(PoseGraphSnapshot graph, const Map& map);
+
+/// Edges between the key-frames of a map, and the covariances of their poses. Every key-frame but the first of a part
+/// of the map has a parent, the older key-frame relative to which its pose was found, so each part is connected. The
+/// covariance of a pose relative to another part is larger than any building.
 class SlamGraph {
  public:
   SlamGraph() = default;
@@ -21,8 +33,10 @@ class SlamGraph {
   SlamGraph(std::vector<PoseGraphEdge> edges, std::vector<KeyframeLink> links,
             std::vector<geometry::Matrix6d> covariances);
 
-  /// Adds the first key-frame, whose pose is the gauge.
+  /// Adds the first key-frame of a part of the map; the pose of the very first is the gauge.
   void add_root();
+  /// Moves a sub-map into another part of the map, and gives its first key-frame a parent there.
+  void join(const Junction& junction, Map& map);
   /// Adds the next key-frame with the edge to its parent. `covariance` is that of its pose relative to the parent
   /// (right perturbation), by this edge and others beside it.
   void add_keyframe(const PoseGraphEdge& edge, const geometry::Matrix6d& covariance);
@@ -67,6 +81,7 @@ class SlamGraph {
   const std::vector<KeyframeLink>& links() const { return links_; }
   /// Covariance of the key-frame's pose in the map.
   const geometry::Matrix6d& covariance(KeyframeId id) const { return covariances_[static_cast<std::size_t>(id)]; }
+  /// Of all parts of the map.
   PoseGraphSnapshot snapshot(const Map& map, std::uint64_t version) const;
 
  private:
@@ -77,6 +92,8 @@ class SlamGraph {
     bool has_child = false;  // a younger key-frame by vision or surfaces
   };
   void hold_circle(const PoseGraphEdge& edge);
+  PoseGraphEdge parent_edge(const Map& map, const PoseGraphEdge& place, KeyframeId root) const;
+  geometry::Matrix6d by_parent(const Map& map, KeyframeId id) const;
   geometry::Matrix6d covariance_to_newest_analysed(const Map& map, KeyframeId from) const;
 
   std::vector<PoseGraphEdge> edges_;

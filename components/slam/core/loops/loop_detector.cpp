@@ -35,10 +35,11 @@ bool is_plausible(const geometry::Vector6d& error, const Matrix6d& covariance) {
   return error.dot(covariance.inverse() * error) <= more * more * kPlausible;
 }
 
-std::vector<KeyframeId> LoopDetector::resembling(const Frame& frame) const {
+std::vector<KeyframeId> LoopDetector::resembling(const Frame& frame,
+                                                 const std::function<bool(KeyframeId)>& is_wanted) const {
   std::vector<KeyframeId> found;
   const auto most = static_cast<std::size_t>(config_.loop.candidates);
-  for (const auto& candidate : index_.query(frame.features, index_.size(), most)) found.push_back(candidate.keyframe);
+  for (const auto& candidate : index_.query(frame.features, most, is_wanted)) found.push_back(candidate.keyframe);
   return found;
 }
 
@@ -74,6 +75,7 @@ std::vector<LoopDetector::Candidate> LoopDetector::candidates(const Map& map, co
   const auto is_new = [&](KeyframeId other) {
     return std::find(covisible.begin(), covisible.end(), other) == covisible.end();
   };
+  const auto is_here = [&](KeyframeId other) { return map.keyframe(other).sub_map == map.keyframe(id).sub_map; };
   const Pose T_map_camera = map.keyframe(id).T_map_camera;
   double nearest = 1.0;
   std::optional<KeyframeId> beside;
@@ -81,31 +83,38 @@ std::vector<LoopDetector::Candidate> LoopDetector::candidates(const Map& map, co
     const Pose T = map.keyframe(other).T_map_camera.inverse() * T_map_camera;
     const double distance =
         T.translation().norm() / config_.loop.near_m + geometry::rotation_angle(T.linear()) / config_.loop.near_rad;
-    if (distance >= nearest || !is_new(other)) continue;
+    if (distance >= nearest || !is_here(other) || !is_new(other)) continue;
     nearest = distance;
     beside = other;
   }
   if (beside) found.push_back({*beside, T_map_camera});
-  for (const auto& candidate :
-       index_.query(frame.features, id - gap, static_cast<std::size_t>(config_.loop.candidates))) {
-    if (is_new(candidate.keyframe)) found.push_back({candidate.keyframe, std::nullopt});
+  for (const KeyframeId other : resembling(frame, [&](KeyframeId k) { return k < id - gap && is_here(k); })) {
+    if (is_new(other)) found.push_back({other, std::nullopt});
   }
   return found;
+}
+
+std::optional<LoopDetector::Sighting> LoopDetector::compare(const Map& map, const Tracker& tracker, const Frame& frame,
+                                                            KeyframeId id, const Candidate& candidate) const {
+  TrackOutcome outcome = tracker.recognize(map, frame, candidate.keyframe, candidate.T_map_camera);
+  if (!outcome.is_tracked || outcome.alignment.inliers < config_.loop.min_inliers) return std::nullopt;
+  const PoseGraphEdge edge{candidate.keyframe, id, EdgeType::kLoopClosure, outcome.alignment.T_reference_camera,
+                           edge_information(config_.pose_graph, kLoopShare * outcome.alignment.information)};
+  const Matrix6d covariance = edge.information.inverse();
+  if (largest_sigma(covariance, 0) > config_.loop.max_sigma_m) return std::nullopt;
+  if (largest_sigma(covariance, 3) > config_.loop.max_sigma_rad) return std::nullopt;
+  return Sighting{edge, std::move(outcome.inliers)};
 }
 
 std::optional<PoseGraphEdge> LoopDetector::verify(const Map& map, const SlamGraph& graph, const Tracker& tracker,
                                                   const Frame& frame, KeyframeId id) const {
   for (const Candidate& candidate : candidates(map, frame, id)) {
-    const TrackOutcome outcome = tracker.recognize(map, frame, candidate.keyframe, candidate.T_map_camera);
-    if (!outcome.is_tracked || outcome.alignment.inliers < config_.loop.min_inliers) continue;
-    PoseGraphEdge edge{candidate.keyframe, id, EdgeType::kLoopClosure, outcome.alignment.T_reference_camera,
-                       edge_information(config_.pose_graph, kLoopShare * outcome.alignment.information)};
-    const Matrix6d covariance = edge.information.inverse();
-    if (largest_sigma(covariance, 0) > config_.loop.max_sigma_m) continue;
-    if (largest_sigma(covariance, 3) > config_.loop.max_sigma_rad) continue;
+    const auto sighting = compare(map, tracker, frame, id, candidate);
+    if (!sighting) continue;
+    const PoseGraphEdge& edge = sighting->edge;
     const Pose T_from_to = map.keyframe(edge.from).T_map_camera.inverse() * map.keyframe(id).T_map_camera;
     const geometry::Vector6d error = geometry::se3_log(T_from_to.inverse() * edge.T_from_to);
-    const Matrix6d expected = graph.relative_covariance(map, edge.from, id) + covariance;
+    const Matrix6d expected = graph.relative_covariance(map, edge.from, id) + edge.information.inverse();
     if (!is_plausible(error, expected)) continue;
     return edge;
   }

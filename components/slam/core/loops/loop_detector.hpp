@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -29,8 +30,23 @@ class LoopDetector {
 
   /// Remembers the key-frames of a saved map.
   void restore(const Map& map);
-  /// The key-frames that are most similar to a frame, for relocalisation; best first.
-  std::vector<KeyframeId> resembling(const Frame& frame) const;
+  /// Those of the wanted key-frames that are most similar to a frame; best first.
+  std::vector<KeyframeId> resembling(const Frame& frame, const std::function<bool(KeyframeId)>& is_wanted) const;
+  /// An older key-frame that may show the same place.
+  struct Candidate {
+    KeyframeId keyframe = 0;
+    std::optional<geometry::Pose>
+        T_map_camera;  ///< pose of the frame in its part of the map; none: it only looks alike
+  };
+  /// A candidate that shows the same place: the edge from it to the new key-frame, and the landmarks seen again.
+  struct Sighting {
+    PoseGraphEdge edge;
+    std::vector<Match> matches;
+  };
+  /// Compares a frame, key-frame `id`, with a candidate; nothing when it does not determine the pose well. Whether the
+  /// pose fits the map is not asked.
+  std::optional<Sighting> compare(const Map& map, const Tracker& tracker, const Frame& frame, KeyframeId id,
+                                  const Candidate& candidate) const;
   /// Call it when the key-frame is in the map and the graph: it looks for older key-frames that show the same place,
   /// and remembers the new one. Returns the edges that close loops: none, or those of a pair of key-frames that agree.
   std::vector<PoseGraphEdge> add(const Map& map, const SlamGraph& graph, const Tracker& tracker, const Frame& frame,
@@ -39,10 +55,6 @@ class LoopDetector {
   const std::vector<Revisit>& revisits() const { return revisits_; }
 
  private:
-  struct Candidate {
-    KeyframeId keyframe = 0;
-    std::optional<geometry::Pose> T_map_camera;  // pose of the frame according to the map; none: by appearance alone
-  };
   std::vector<Candidate> candidates(const Map& map, const Frame& frame, KeyframeId id) const;
   std::optional<PoseGraphEdge> verify(const Map& map, const SlamGraph& graph, const Tracker& tracker,
                                       const Frame& frame, KeyframeId id) const;

@@ -42,8 +42,8 @@ void PlaceIndex::add(KeyframeId id, std::span<const Feature> features) {
   norms_.push_back(std::sqrt(static_cast<double>(std::max<std::size_t>(count, 1))));
 }
 
-std::vector<PlaceIndex::Candidate> PlaceIndex::query(std::span<const Feature> features, KeyframeId before,
-                                                     std::size_t most) const {
+std::vector<PlaceIndex::Candidate> PlaceIndex::query(std::span<const Feature> features, std::size_t most,
+                                                     const std::function<bool(KeyframeId)>& is_wanted) const {
   std::vector<double> scores(norms_.size(), 0.0);
   const auto keyframes = static_cast<double>(norms_.size());
   const auto common = std::max(kCommonWord, static_cast<std::size_t>(kCommonShare * keyframes));
@@ -56,9 +56,9 @@ std::vector<PlaceIndex::Candidate> PlaceIndex::query(std::span<const Feature> fe
     }
   }
   std::vector<Candidate> ranked;
-  for (KeyframeId id = 0; id < std::min<KeyframeId>(before, scores.size()); ++id) {
+  for (KeyframeId id = 0; id < scores.size(); ++id) {
     const double score = scores[static_cast<std::size_t>(id)];
-    if (score > 0.0) ranked.push_back({id, score / norms_[static_cast<std::size_t>(id)]});
+    if (score > 0.0 && is_wanted(id)) ranked.push_back({id, score / norms_[static_cast<std::size_t>(id)]});
   }
   std::sort(ranked.begin(), ranked.end(), [](const Candidate& a, const Candidate& b) {
     return a.score != b.score ? a.score > b.score : a.keyframe > b.keyframe;

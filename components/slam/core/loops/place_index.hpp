@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -24,9 +25,10 @@ class PlaceIndex {
   PlaceIndex();
   /// Adds a key-frame; ids come in ascending order. Features without depth do not count: they show no landmark.
   void add(KeyframeId id, std::span<const Feature> features);
-  /// The most similar key-frames with ids below `before`, best first, at most `most`. Of key-frames that are neighbours
-  /// in time, only the best one.
-  std::vector<Candidate> query(std::span<const Feature> features, KeyframeId before, std::size_t most) const;
+  /// The most similar of the wanted key-frames, best first, at most `most`. Of key-frames that are neighbours in time,
+  /// only the best one.
+  std::vector<Candidate> query(std::span<const Feature> features, std::size_t most,
+                               const std::function<bool(KeyframeId)>& is_wanted) const;
 
   std::size_t size() const { return norms_.size(); }
 

@@ -13,7 +13,7 @@ namespace lapis::slam {
 using geometry::Matrix6d;
 using geometry::Pose;
 
-TrackOutcome Relocalizer::search(const Map& map, const LoopDetector& places, const Tracker& tracker,
+TrackOutcome Relocalizer::search(const Map& map, KeyframeId sub_map, const LoopDetector& places, const Tracker& tracker,
                                  const Frame& frame) const {
   constexpr double kAsGood = 0.7;
   constexpr Reach kSame{1.0, 0.5};
@@ -21,7 +21,8 @@ TrackOutcome Relocalizer::search(const Map& map, const LoopDetector& places, con
     return Pose(map.keyframe(outcome.reference).T_map_camera * outcome.alignment.T_reference_camera);
   };
   std::vector<TrackOutcome> found;
-  for (const KeyframeId id : places.resembling(frame)) {
+  const auto is_here = [&](KeyframeId id) { return map.keyframe(id).sub_map == sub_map; };
+  for (const KeyframeId id : places.resembling(frame, is_here)) {
     TrackOutcome outcome = tracker.recognize(map, frame, id);
     if (outcome.is_tracked && outcome.alignment.inliers >= config_.min_inliers) found.push_back(std::move(outcome));
   }

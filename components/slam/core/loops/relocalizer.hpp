@@ -23,9 +23,10 @@ class Relocalizer {
   explicit Relocalizer(const SlamConfig& config)
       : config_(config.relocalization), graph_(config.pose_graph), surfaces_(config) {}
 
-  /// Searches the whole map for the frame, and returns the best match among the key-frames that resemble it. Not
-  /// tracked when places that are apart from each other fit about as well.
-  TrackOutcome search(const Map& map, const LoopDetector& places, const Tracker& tracker, const Frame& frame) const;
+  /// Searches a part of the map (Keyframe::sub_map) for the frame, and returns the best match among the key-frames that
+  /// resemble it. Not tracked when places that are apart from each other fit about as well.
+  TrackOutcome search(const Map& map, KeyframeId sub_map, const LoopDetector& places, const Tracker& tracker,
+                      const Frame& frame) const;
   /// What a pose is judged with.
   struct Situation {
     const Map& map;

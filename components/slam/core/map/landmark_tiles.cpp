@@ -36,10 +36,12 @@ void append_observers(const Landmark& landmark, LandmarkTile& tile) {
 
 }  // namespace
 
-LandmarkTiles::Sent LandmarkTiles::as_now(const Landmark& landmark) {
+LandmarkTiles::Sent LandmarkTiles::as_now(const Map& map, const Landmark& landmark) {
   Sent now;
+  if (landmark.observations.empty()) return now;
+  if (map.keyframe(landmark.observations.front().keyframe).sub_map != kWholeMap) return now;
   const double farthest_m = landmark.p_map.cwiseAbs().maxCoeff<Eigen::PropagateNaN>();
-  now.is_in_tile = !landmark.observations.empty() && farthest_m <= mapping::kMaxLandmarkCoordinate_m;
+  now.is_in_tile = farthest_m <= mapping::kMaxLandmarkCoordinate_m;
   if (!now.is_in_tile) return now;
   now.p_map = landmark.p_map.cast<float>();
   for (const Observation& observation : landmark.observations)
@@ -59,7 +61,7 @@ LandmarkTiles::Members LandmarkTiles::follow(const Map& map) {
   sent_.resize(map.landmarks().size());
   for (std::size_t id = 0; id < sent_.size(); ++id) {
     Sent& sent = sent_[id];
-    Sent now = as_now(map.landmarks()[id]);
+    Sent now = as_now(map, map.landmarks()[id]);
     if (is_same(sent, now)) continue;
     if (sent.is_in_tile) members[sent.tile];
     if (now.is_in_tile) {

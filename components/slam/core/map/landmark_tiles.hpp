@@ -27,7 +27,8 @@ class LandmarkTiles {
   /// differ from those returned before, ascending. The map never has fewer landmarks than at the previous call. A tile
   /// that has lost its last landmark is returned empty and continues to exist. Afterwards every landmark with
   /// observations is in exactly one tile: that of the position that was sent for it, which is at most `tolerance_m`
-  /// from its present one. Positions that are not finite or beyond mapping::kMaxLandmarkCoordinate_m are left out.
+  /// from its present one. Positions that are not finite or beyond mapping::kMaxLandmarkCoordinate_m are left out, and
+  /// so are the landmarks of sub-maps, until these are joined to the map.
   std::vector<mapping::LandmarkTile> update(const Map& map, std::uint64_t graph_version);
   /// State after the last update; the caller sets its session and epoch.
   mapping::LandmarkState state() const;
@@ -43,7 +44,7 @@ class LandmarkTiles {
   // Landmarks of each tile, ascending.
   using Members = std::unordered_map<mapping::TileIndex, std::vector<LandmarkId>, mapping::GridIndexHash>;
 
-  static Sent as_now(const Landmark& landmark);
+  static Sent as_now(const Map& map, const Landmark& landmark);
   bool is_same(const Sent& a, const Sent& b) const;
   Members follow(const Map& map);
   mapping::LandmarkTile make_tile(const Map& map, const mapping::TileIndex& index,

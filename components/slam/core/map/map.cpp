@@ -58,6 +58,29 @@ void Map::move(const std::vector<geometry::Pose>& moves) {
   }
 }
 
+void Map::join(KeyframeId sub_map, KeyframeId into, const geometry::Pose& T_into_sub_map) {
+  std::vector<geometry::Pose> moves(keyframes_.size(), geometry::Pose::Identity());
+  for (Keyframe& keyframe : keyframes_) {
+    if (keyframe.sub_map != sub_map) continue;
+    moves[static_cast<std::size_t>(keyframe.id)] = T_into_sub_map;
+    keyframe.sub_map = into;
+  }
+  move(moves);
+}
+
+void Map::clear(KeyframeId sub_map) {
+  for (Keyframe& keyframe : keyframes_) {
+    if (keyframe.sub_map != sub_map) continue;
+    for (std::size_t i = 0; i < keyframe.landmarks.size(); ++i) {
+      if (keyframe.landmarks[i] == kNoLandmark) continue;
+      remove_observation(keyframe.landmarks[i], {keyframe.id, static_cast<int>(i)});
+    }
+    keyframe.features = {};
+    keyframe.landmarks.clear();
+    keyframe.surface = {};
+  }
+}
+
 std::vector<KeyframeId> Map::covisible(KeyframeId id, std::size_t most) const {
   std::vector<std::size_t> shared(keyframes_.size(), 0);
   for (const LandmarkId landmark : keyframe(id).landmarks) {

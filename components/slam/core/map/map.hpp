@@ -15,6 +15,9 @@ namespace lapis::slam {
 using KeyframeId = std::uint64_t;
 using LandmarkId = std::uint32_t;
 inline constexpr LandmarkId kNoLandmark = std::numeric_limits<LandmarkId>::max();
+/// A part of the map is named by its first key-frame. All parts but this one are sub-maps: nobody knows yet where they
+/// are in the map, and their poses and positions are in a frame of their own.
+inline constexpr KeyframeId kWholeMap = 0;
 
 /// Feature `feature` of key-frame `keyframe` shows the landmark.
 struct Observation {
@@ -39,6 +42,7 @@ struct Keyframe {
   SharedArray<Feature> features;
   std::vector<LandmarkId> landmarks;   ///< of each feature, or kNoLandmark
   SharedArray<SurfaceSample> surface;  ///< in this key-frame's optical frame
+  KeyframeId sub_map = kWholeMap;      ///< its part of the map
 };
 
 /// Key-frames, landmarks and their observations. A key-frame's id is its index; key-frames are never removed.
@@ -64,6 +68,10 @@ class Map {
   /// landmark by that of the key-frame that saw it first.
   void move(const std::vector<geometry::Pose>& moves);
   void set_position(LandmarkId id, const Eigen::Vector3d& p_map) { landmarks_[id].p_map = p_map; }
+  /// Makes a sub-map one with another part: its key-frames and landmarks are moved into that one's frame.
+  void join(KeyframeId sub_map, KeyframeId into, const geometry::Pose& T_into_sub_map);
+  /// Takes what they have seen from the key-frames of a sub-map. They keep their ids and poses.
+  void clear(KeyframeId sub_map);
 
   /// Key-frames that share landmarks with `id`, at most `most`: most shared first, then the newest. Without `id`
   /// itself.

@@ -15,7 +15,7 @@ using geometry::Matrix6d;
 using geometry::Pose;
 
 KeyframeId MapBuilder::begin(const Model& model, const Frame& frame, const Pose& T_map_camera) const {
-  const KeyframeId id = add_keyframe(model.map, frame, T_map_camera);
+  const KeyframeId id = add_keyframe(model.map, model.map.keyframes().size(), frame, T_map_camera);
   model.graph.add_root();
   add_landmarks(model.map, id);
   return id;
@@ -25,23 +25,26 @@ KeyframeId MapBuilder::extend(const Model& model, const Frame& frame, const Fram
   auto& [map, graph, motion] = model;
   const TrackingResult& result = outcome.result;
   const KeyframeId previous = map.keyframes().back().id;
-  const KeyframeId id = add_keyframe(map, frame, result.T_map_keyframe * result.T_keyframe_camera);
+  const KeyframeId sub_map = map.keyframe(result.keyframe_id).sub_map;
+  const KeyframeId id = add_keyframe(map, sub_map, frame, result.T_map_keyframe * result.T_keyframe_camera);
   const PoseGraphEdge edge = parent_edge(outcome, id);
   graph.add_keyframe(edge, edge.type == EdgeType::kSurface ? result.covariance : Matrix6d(edge.information.inverse()));
   if (outcome.seen) {
     const TrackOutcome& seen = *outcome.seen;
     for (const Match& match : seen.inliers) map.add_observation(match.landmark, {id, match.feature});
     graph.add_link({seen.reference, id, seen.alignment.T_reference_camera, seen.alignment.surface_information});
-    if (previous >= saved_keyframes_) add_odometry_edge(model, previous, id, seen);
+    const bool has_path = previous >= saved_keyframes_ && map.keyframe(previous).sub_map == sub_map;
+    if (has_path) add_odometry_edge(model, previous, id, seen);
   }
   add_landmarks(map, id);
   graph.follow(map, adjust_local_map(config_, graph.links(), map));
   return id;
 }
 
-KeyframeId MapBuilder::add_keyframe(Map& map, const Frame& frame, const Pose& T_map_camera) const {
+KeyframeId MapBuilder::add_keyframe(Map& map, KeyframeId sub_map, const Frame& frame, const Pose& T_map_camera) const {
   const RgbdFrame& input = *frame.input;
   Keyframe keyframe;
+  keyframe.sub_map = sub_map;
   keyframe.stamp = input.stamp;
   keyframe.camera = input.camera;
   keyframe.T_map_camera = geometry::make_pose(T_map_camera.translation(), Eigen::Quaterniond(T_map_camera.linear()));

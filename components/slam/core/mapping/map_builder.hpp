@@ -26,7 +26,7 @@ class MapBuilder {
   explicit MapBuilder(const SlamConfig& config, std::size_t saved_keyframes = 0)
       : config_(config), saved_keyframes_(saved_keyframes) {}
 
-  /// Adds the first key-frame.
+  /// Adds the first key-frame of the map, or of a sub-map.
   KeyframeId begin(const Model& model, const Frame& frame, const geometry::Pose& T_map_camera) const;
   /// Adds a key-frame at the pose that the front end has found for the frame.
   KeyframeId extend(const Model& model, const Frame& frame, const FrameOutcome& outcome);
@@ -34,7 +34,7 @@ class MapBuilder {
   std::size_t slip_count() const { return slips_; }
 
  private:
-  KeyframeId add_keyframe(Map& map, const Frame& frame, const geometry::Pose& T_map_camera) const;
+  KeyframeId add_keyframe(Map& map, KeyframeId sub_map, const Frame& frame, const geometry::Pose& T_map_camera) const;
   void add_landmarks(Map& map, KeyframeId id) const;
   PoseGraphEdge parent_edge(const FrameOutcome& outcome, KeyframeId id) const;
   void add_odometry_edge(const Model& model, KeyframeId from, KeyframeId to, const TrackOutcome& seen);

@@ -33,6 +33,8 @@ class MotionModel {
   bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base) { return odometry_.add(stamp, T_odom_base); }
   /// Continues from a pose and odometry that were saved in the same run.
   void resume(time::Time stamp, const RelativeCamera& camera, std::span<const OdometryReading> odometry);
+  /// The pose that was found last says nothing about those to come.
+  void forget() { last_.reset(); }
   /// Call it when the pose of a frame was found.
   void update(const Map& map, time::Time stamp, const RelativeCamera& camera);
   /// T_map_camera that was found last, and its stamp; nothing before the first update.

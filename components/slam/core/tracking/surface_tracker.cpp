@@ -76,6 +76,7 @@ std::vector<KeyframeId> SurfaceTracker::near_keyframes(const Map& map, KeyframeI
   ids.erase(std::unique(ids.begin(), ids.end()), ids.end());
   std::vector<Candidate> near;
   for (const KeyframeId id : ids) {
+    if (map.keyframe(id).sub_map != map.keyframe(reference).sub_map) continue;
     const Pose T = map.keyframe(id).T_map_camera.inverse() * T_map_camera;
     const double away_m = T.translation().norm(), turned_rad = geometry::rotation_angle(T.linear());
     if (away_m > kMostAway_m || turned_rad > kMostTurned_rad) continue;

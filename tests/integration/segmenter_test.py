@@ -1,4 +1,4 @@
-#!/usr/bin/env python3
+#!/usr/bin/python3
 """The chain maps by the labels of a network what it maps by those of the data set, to the byte."""
 import csv
 import itertools

@@ -19,7 +19,6 @@ diagnostic_msgs::msg::KeyValue key_value(const std::string& key, const std::stri
   return pair;
 }
 
-constexpr double kFollowPeriod_s = 0.2;
 constexpr double kWatchPeriod_s = 0.25;
 constexpr std::chrono::milliseconds kLongestSilence{1500};  // of a required topic
 
@@ -43,8 +42,10 @@ Context::Context(const ContextOptions& options)
   }
   lockstep_ = std::make_unique<LockstepParticipant>(*this);
   executor_.set_cycle([this] { lockstep_->after_handlers(); });
-  every(kFollowPeriod_s, [this] { follow_sensor_writers(); });
-  every(kWatchPeriod_s, [this] { watch_required_topics(); });
+  every(kWatchPeriod_s, [this] {
+    follow_sensor_writers();
+    watch_required_topics();
+  });
   every(1.0, [this] { publish_diagnostics(); });
   every(Heart::kPeriod_s, [this] { heart_.beat(); });
 }

@@ -1,6 +1,7 @@
 // Prints docs/topics.md from the topic table.
 #include <iostream>
 #include <string>
+#include <utility>
 
 #include "common/topics.hpp"
 
@@ -40,4 +41,10 @@ int main() {
               << lapis::idl::ServiceSupport<Service>::kRosName << " | " << service.from << " | " << service.meaning
               << " |\n";
   });
+  std::cout
+      << "\n`--remap from:=to` gives any of these, and the frames that processes name by themselves, another name. "
+         "The frames:\n";
+  const char* separator = "";
+  for (const char* frame : lapis::topics::kFrames) std::cout << std::exchange(separator, ", ") << "`" << frame << "`";
+  std::cout << ".\n";
 }

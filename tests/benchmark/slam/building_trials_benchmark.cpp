@@ -134,17 +134,20 @@ class Building {
     const Carry carry{false, true, 0.5, 0.7, 3.0, 120.0, 10.0, true};
     const CarriedTrial course = drive(trial, carry);
     const ElsewhereVerdict verdict = judge_elsewhere(course);
-    tally.count(verdict.is_found, verdict.is_wrong);
     print_elsewhere(scene_, trial, course, verdict);
-    print_course(options_, course.map, course.frames, course.frames[course.lifted].t_s,
-                 !verdict.is_found || verdict.is_wrong);
+    note(course, verdict, tally);
   }
 
   void carry(int trial, Tally& tally) {
     const CarriedTrial course = drive(trial, {});
     const CarriedVerdict verdict = judge(course);
-    tally.count(verdict.is_found, verdict.is_wrong);
     print_carried(scene_, trial, course, verdict);
+    note(course, verdict, tally);
+  }
+
+  template <class Verdict>
+  void note(const CarriedTrial& course, const Verdict& verdict, Tally& tally) {
+    tally.count(verdict.is_found, verdict.is_wrong);
     print_course(options_, course.map, course.frames, course.frames[course.lifted].t_s,
                  !verdict.is_found || verdict.is_wrong);
   }

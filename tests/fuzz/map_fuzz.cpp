@@ -7,7 +7,7 @@
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
 #include "common/mapping/file/map_file.hpp"
-#include "common/mapping/wire/zstd_codec.hpp"
+#include "common/files/zstd_codec.hpp"
 
 namespace {
 
@@ -23,7 +23,7 @@ void decode(std::span<const std::uint8_t> bytes) {
 }
 
 std::vector<std::uint8_t> with_right_header(std::span<const std::uint8_t> content) {
-  const auto payload = mapping::zstd_compress(content, 1);
+  const auto payload = files::zstd_compress(content, 1);
   files::ByteWriter checked, out;
   checked.u64(payload.size());
   checked.raw(payload);

@@ -5,7 +5,7 @@
 
 #include "common/mapping/file/map_file.hpp"
 #include "common/mapping/wire/frame_codec.hpp"
-#include "common/mapping/wire/zstd_codec.hpp"
+#include "common/files/zstd_codec.hpp"
 #include "fuzz_files.hpp"
 #include "semantic_mapper/core/export.hpp"
 #include "semantic_mapper/core/frame_journal.hpp"
@@ -140,7 +140,7 @@ void add_maps(Seeds& seeds) {
   const mapping::MapFile map{mapping::test::random_map(1), {}, mapping::LabelList::from_names({{1, "wall"}}), {}};
   const mapping::BeliefReader reader(map.sensor_model);
   const Bytes file = mapping::encode_map(map);
-  seeds["map"] = {file, mapping::zstd_decompress(std::span(file).subspan(kMapHeader), kMaxContent).value()};
+  seeds["map"] = {file, files::zstd_decompress(std::span(file).subspan(kMapHeader), kMaxContent).value()};
   seeds["octree"] = {semantic_mapper::encode_octree(map.map, reader, map.labels).file,
                      semantic_mapper::encode_binary_octree(map.map, reader)};
 }

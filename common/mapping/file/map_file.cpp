@@ -9,7 +9,7 @@
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
 #include "common/mapping/wire/block_codec.hpp"
-#include "common/mapping/wire/zstd_codec.hpp"
+#include "common/files/zstd_codec.hpp"
 
 namespace lapis::mapping {
 namespace {
@@ -234,7 +234,7 @@ std::optional<Payload> check_header(std::span<const std::uint8_t> bytes, std::st
 
 std::vector<std::uint8_t> encode_map(const MapFile& file) {
   files::ByteWriter checked;
-  const std::vector<std::uint8_t> payload = zstd_compress(encode_content(file), kFileCompressionLevel);
+  const std::vector<std::uint8_t> payload = files::zstd_compress(encode_content(file), kFileCompressionLevel);
   checked.u64(payload.size());
   checked.raw(payload);
   files::ByteWriter out;
@@ -249,7 +249,7 @@ std::optional<MapFile> decode_map(std::span<const std::uint8_t> bytes, std::stri
   const auto payload = check_header(bytes, error);
   if (!payload) return std::nullopt;
   try {
-    ZstdReader content(payload->bytes);
+    files::ZstdReader content(payload->bytes);
     auto file = decode_content(content, payload->format_version, max_map_bytes);
     if (!file) error = "is damaged: the content is malformed";
     return file;

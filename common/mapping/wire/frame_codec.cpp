@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "common/mapping/wire/zstd_codec.hpp"
+#include "common/files/zstd_codec.hpp"
 
 namespace lapis::mapping {
 namespace {
@@ -42,10 +42,10 @@ std::span<std::uint8_t> scratch(std::size_t size) {
 }
 
 std::optional<std::span<const std::uint8_t>> unpacked(std::span<const std::uint8_t> bytes, std::size_t header_size) {
-  const auto size = zstd_content_size(bytes);
+  const auto size = files::zstd_content_size(bytes);
   if (!size || *size < header_size) return std::nullopt;
   const std::span<std::uint8_t> plain = scratch(*size);
-  if (!zstd_decompress_into(bytes, plain)) return std::nullopt;
+  if (!files::zstd_decompress_into(bytes, plain)) return std::nullopt;
   return plain;
 }
 
@@ -121,7 +121,7 @@ std::vector<std::uint8_t> pack(const CompactFrame& frame) {
   write_differences(frame.depth_mm_.data(), count, values);
   if (header.has_labels) write_differences(frame.labels_.data(), count, values + 2 * count);
   if (header.has_confidence) std::copy_n(frame.confidence_.data(), count, values + 4 * count);
-  return zstd_compress(plain, kFrameCompressionLevel);
+  return files::zstd_compress(plain, kFrameCompressionLevel);
 }
 
 std::optional<CompactFrame> unpack_frame(std::span<const std::uint8_t> bytes) {
@@ -158,7 +158,7 @@ std::vector<std::uint8_t> pack(const FrameVotes& votes) {
   columns.write(votes.hits, &HitVote::offset);
   columns.write(votes.hits, &HitVote::label);
   columns.write(votes.hits, &HitVote::weight);
-  return zstd_compress(plain, kFrameCompressionLevel);
+  return files::zstd_compress(plain, kFrameCompressionLevel);
 }
 
 std::optional<FrameVotes> unpack_votes(std::span<const std::uint8_t> bytes) {

@@ -5,7 +5,7 @@
 #include <stdexcept>
 
 #include "common/mapping/wire/block_codec.hpp"
-#include "common/mapping/wire/zstd_codec.hpp"
+#include "common/files/zstd_codec.hpp"
 
 namespace lapis::mapping {
 namespace {
@@ -77,7 +77,7 @@ std::optional<std::vector<std::uint8_t>> encode_tile(const VoxelMap& map, const 
   out.u8(static_cast<std::uint8_t>(blocks_per_edge));
   out.u8(is_large ? kCompressed : 0);
   out.f64(map.resolution_m());
-  out.raw(is_large ? zstd_compress(body.bytes(), kTileCompressionLevel) : body.bytes());
+  out.raw(is_large ? files::zstd_compress(body.bytes(), kTileCompressionLevel) : body.bytes());
   if (out.bytes().size() > kMaxTileBytes) return std::nullopt;
   return out.take();
 }
@@ -95,7 +95,7 @@ std::optional<DecodedTile> decode_tile(std::span<const std::uint8_t> bytes, cons
                        tile.resolution_m <= kMaxResolution_m;
   if (!in.is_good() || !is_known || !is_sane || !is_within_reach(index, tile)) return std::nullopt;
   if (flags & kCompressed) {
-    const auto body = zstd_decompress(in.raw(in.remaining()), kMaxBodyBytes);
+    const auto body = files::zstd_decompress(in.raw(in.remaining()), kMaxBodyBytes);
     if (!body) return std::nullopt;
     files::ByteReader unpacked(*body);
     read_blocks(unpacked, index, tile);

@@ -17,7 +17,7 @@
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
 #include "common/mapping/wire/frame_codec.hpp"
-#include "common/mapping/wire/zstd_codec.hpp"
+#include "common/files/zstd_codec.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {
@@ -40,7 +40,7 @@ std::string find_fault(const FrameRecord& record, std::span<const std::uint8_t> 
   for (const geometry::Pose& T : {record.T_keyframe_camera, record.T_map_keyframe, record.T_map_previous})
     if (!geometry::is_valid(T)) return "its pose is not valid";
   if (!is_sigma(record.drift.position_m) || !is_sigma(record.drift.rotation_rad)) return "its drift is no sigma";
-  const auto size = mapping::zstd_content_size(packed);
+  const auto size = files::zstd_content_size(packed);
   if (!size) return "its samples are not packed";
   if (*size > kMaxSampleBytes) return "its samples take more than 256 MB";
   return "";

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "common/mapping/wire/frame_codec.hpp"
-#include "common/mapping/wire/zstd_codec.hpp"
+#include "common/files/zstd_codec.hpp"
 #include "tests/support/synthetic_room.hpp"
 
 namespace lapis::mapping {
@@ -156,7 +156,7 @@ TEST(FrameCodec, DamagedBytesGiveNothing) {
 TEST(FrameCodec, AHeaderThatNoFrameHasGivesNothing) {
   std::string error;
   const auto frame = CompactFrame::make(kCamera, {kCamera.width, kCamera.height, 1.0f}, nullptr, {}, error);
-  const auto plain = zstd_decompress(pack(*frame), 10000).value();
+  const auto plain = files::zstd_decompress(pack(*frame), 10000).value();
   const std::size_t samples = static_cast<std::size_t>(frame->columns()) * static_cast<std::size_t>(frame->rows());
   const std::size_t stride_at = plain.size() - 2 * samples - 8;  // two flags of 2 bytes follow the stride, then depth
   ASSERT_EQ(plain[stride_at], frame->stride());
@@ -164,7 +164,7 @@ TEST(FrameCodec, AHeaderThatNoFrameHasGivesNothing) {
     for (const std::size_t at : {stride_at, std::size_t{0}}) {  // the stride, the width of the camera
       auto spoilt = plain;
       std::fill_n(spoilt.begin() + static_cast<std::ptrdiff_t>(at), 4, byte);
-      EXPECT_FALSE(unpack_frame(zstd_compress(spoilt, 1))) << int{byte} << " at " << at;
+      EXPECT_FALSE(unpack_frame(files::zstd_compress(spoilt, 1))) << int{byte} << " at " << at;
     }
   }
 }

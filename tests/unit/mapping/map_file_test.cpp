@@ -17,7 +17,7 @@
 #include "common/files/atomic_file.hpp"
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
-#include "common/mapping/wire/zstd_codec.hpp"
+#include "common/files/zstd_codec.hpp"
 #include "tests/unit/mapping/random_votes.hpp"
 
 namespace lapis::mapping {
@@ -115,10 +115,10 @@ std::vector<std::uint8_t> file_of(std::span<const std::uint8_t> payload, std::ui
 TEST_F(MapFileTest, AFileOfTheFormerVersionSaysNothingOfFrames) {
   MapFile file{VoxelMap(0.1), {}, LabelList::from_names({{1, "wall"}}), {{"source", "before"}}};
   const std::vector<std::uint8_t> good = encode_map(file);
-  std::vector<std::uint8_t> content = *zstd_decompress(std::span(good).subspan(24), 1 << 20);
+  std::vector<std::uint8_t> content = *files::zstd_decompress(std::span(good).subspan(24), 1 << 20);
   content.erase(content.end() - 2);  // whether the settings of frames are known; the last byte: no blocks
   std::string error;
-  const auto loaded = decode_map(file_of(zstd_compress(content, 1), 2), error);
+  const auto loaded = decode_map(file_of(files::zstd_compress(content, 1), 2), error);
   ASSERT_TRUE(loaded) << error;
   expect_equal(*loaded, file);
 }
@@ -153,7 +153,7 @@ std::vector<std::uint8_t> zeros_after(const std::vector<std::uint8_t>& begin, st
 TEST_F(MapFileTest, MaliciousContentWithGoodChecksumNeverCrashes) {
   // Damages the content below zstd and checksum, as a writer with a bug would.
   const std::vector<std::uint8_t> good = encode_map(example(2, 2));
-  const auto content = zstd_decompress(std::span(good).subspan(24), 1 << 24);
+  const auto content = files::zstd_decompress(std::span(good).subspan(24), 1 << 24);
   ASSERT_TRUE(content);
   std::mt19937 random(5);
   for (int trial = 0; trial < 3000; ++trial) {
@@ -162,7 +162,7 @@ TEST_F(MapFileTest, MaliciousContentWithGoodChecksumNeverCrashes) {
       bad[random() % (trial % 2 ? bad.size() : 150)] = static_cast<std::uint8_t>(random());
     if (trial % 5 == 0) bad.resize(random() % bad.size());
     std::string error;
-    const bool is_loaded = decode_map(file_of(zstd_compress(bad, 1)), error).has_value();
+    const bool is_loaded = decode_map(file_of(files::zstd_compress(bad, 1)), error).has_value();
     EXPECT_NE(is_loaded, !error.empty());
   }
 }
@@ -177,7 +177,7 @@ long peak_rss_mb() {
 TEST_F(MapFileTest, AFewBytesThatClaimGigabytesTakeNoMemory) {
   constexpr std::size_t kClaimed = std::size_t{2} << 30;
   const std::vector<std::uint8_t> good = encode_map(example(1, 0));
-  std::vector<std::uint8_t> content = *zstd_decompress(std::span(good).subspan(24), 1 << 24);
+  std::vector<std::uint8_t> content = *files::zstd_decompress(std::span(good).subspan(24), 1 << 24);
   content.back() = 0xff;  // the number of blocks: very many, all of zeros
   content.insert(content.end(), {0xff, 0xff, 0xff, 0x7f});
   const std::vector<std::uint8_t> bomb = file_of(zeros_after(content, kClaimed));

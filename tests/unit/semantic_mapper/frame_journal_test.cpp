@@ -17,7 +17,7 @@
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
 #include "common/mapping/wire/frame_codec.hpp"
-#include "common/mapping/wire/zstd_codec.hpp"
+#include "common/files/zstd_codec.hpp"
 #include "tests/support/full_disk.hpp"
 #include "tests/support/synthetic_room.hpp"
 #include "tests/support/temporary_folder.hpp"
@@ -271,10 +271,10 @@ TEST_F(FrameJournalFile, ImpossibleContentWithARightChecksumEndsIt) {
   expect_end_before("nothing", {});
   expect_end_before("no samples", with_samples({}));
   expect_end_before("samples that are not packed", with_samples({1, 2, 3, 4, 5, 6, 7, 8, 9}));
-  expect_end_before("samples of no frame", with_samples(mapping::zstd_compress(Bytes(100), 1)));
+  expect_end_before("samples of no frame", with_samples(files::zstd_compress(Bytes(100), 1)));
   // The first bytes of a zstd frame of 256 MB and one byte.
   const Bytes huge{0x28, 0xb5, 0x2f, 0xfd, 0xe0, 0x01, 0x00, 0x00, 0x10, 0x00, 0x00, 0x00, 0x00};
-  ASSERT_EQ(mapping::zstd_content_size(huge), (std::size_t{256} << 20) + 1);
+  ASSERT_EQ(files::zstd_content_size(huge), (std::size_t{256} << 20) + 1);
   expect_end_before("samples that claim 256 MB and a byte", with_samples(huge));
 }
 

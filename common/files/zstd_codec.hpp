@@ -9,7 +9,7 @@
 
 struct ZSTD_DCtx_s;
 
-namespace lapis::mapping {
+namespace lapis::files {
 
 /// One zstd frame that records its content size. The same input and library version give the same bytes.
 std::vector<std::uint8_t> zstd_compress(std::span<const std::uint8_t> bytes, int level);
@@ -49,4 +49,4 @@ class ZstdReader {
   bool is_whole_ = false;
 };
 
-}  // namespace lapis::mapping
+}  // namespace lapis::files

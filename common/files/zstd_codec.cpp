@@ -1,4 +1,4 @@
-#include "common/mapping/wire/zstd_codec.hpp"
+#include "common/files/zstd_codec.hpp"
 
 #include <memory>
 #include <stdexcept>
@@ -6,7 +6,7 @@
 
 #include <zstd.h>
 
-namespace lapis::mapping {
+namespace lapis::files {
 namespace {
 
 constexpr std::size_t kPieceBytes = std::size_t{1} << 20;
@@ -84,4 +84,4 @@ void ZstdReader::unpack(std::size_t size) {
 
 bool ZstdReader::is_at_end() { return peek(1).empty() && is_whole_ && frame_.empty(); }
 
-}  // namespace lapis::mapping
+}  // namespace lapis::files

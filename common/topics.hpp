@@ -85,6 +85,7 @@ void for_each_service(Visitor&& visit) {
   visit(kStopExploring);
   visit(kPauseExploring);
   visit(kReturnHome);
+  visit(kSnapshot);
 }
 
 }  // namespace lapis::topics

@@ -7,7 +7,7 @@ source "$(dirname "$0")/lib.sh"
 usage() {
   cat <<'TEXT'
 usage: explore.sh [--scene NAME|DIR] [--method METHOD] [--duration S] [--seed N] [--out DIR] [--robot FILE]...
-                  [--world FILE]... [--then HOW] [--no-preset] [--segmenter MODEL] [--freerun] [--restart]
+                  [--world FILE]... [--then HOW] [--no-preset] [--segmenter MODEL] [--record BAG] [--freerun] [--restart]
                   [--set KEY=VALUE]...
 
 Lets the robot explore a simulated building until nothing reachable is left or the time is up, and leaves a run folder
@@ -28,6 +28,7 @@ with trajectory, pose graph, semantic map, decisions.csv, metrics.json and figur
                    (config/robot_without_odometry)
   --world FILE     what wheels and camera are like (config/worlds, docs/buildings.md)
   --segmenter MODEL  labels by a network (components/segmenter/README.md) instead of those of the scene
+  --record BAG     all topics into a bag of rosbag2, a new folder (components/recorder/README.md)
   --freerun        by the wall clock, frames may be lost; default: lock-step
   --restart        a process that dies or hangs is started again, at most three times each, but for the simulator; what
                    is lost with it: docs/architecture.md
@@ -49,10 +50,10 @@ add_config() {
 }
 
 [ -n "${ROS_DISCOVERY_SERVER:-}" ] || export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
-command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" afterwards="" has_preset=1 options=()
+command="${0##*/} $*" scene=apartment method=lapis duration=300 seed=1 out="" afterwards="" has_preset=1 options=() recording=()
 while [ $# -gt 0 ]; do
   case $1 in
-    --scene | --method | --duration | --seed | --out | --robot | --world | --then | --segmenter | --set)
+    --scene | --method | --duration | --seed | --out | --robot | --world | --then | --segmenter | --record | --set)
       [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;
   esac
   case $1 in
@@ -66,6 +67,7 @@ while [ $# -gt 0 ]; do
     --then) afterwards=$2 && options+=(--set "planner.then=$2" --set simulator.ends_when_explored=false) && shift ;;
     --no-preset) has_preset=0 ;;
     --segmenter) options+=(--variant segmented --set "segmenter.model=$2") && shift ;;
+    --record) recording=(--variant recorded --set "recorder.output=$(realpath -m "$2")") && shift ;;
     --freerun) options+=(--variant freerun) ;;
     --restart) options+=(--restart) ;;
     --set) options+=(--set "$2") && shift ;;
@@ -81,4 +83,4 @@ done
 out=${out:-$repository/out/$(basename "$scene" .yaml)_${method}_$seed}
 echo "explores $scene by method $method with seed $seed; logs: $out/logs"
 run_system explore "$command" --out "$out" --set "simulator.scene=$scene" --set "planner.method=$method" \
-  --set "simulator.seed=$seed" --set "simulator.duration_s=$duration" "${options[@]}"
+  --set "simulator.seed=$seed" --set "simulator.duration_s=$duration" "${options[@]}" "${recording[@]}"

@@ -3,7 +3,7 @@
 
 repository=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 bin=${LAPIS_BIN:-$repository/build/release/bin}
-programs=(simulator sensor_replay slam segmenter semantic_mapper planner controller evaluator supervisor)
+programs=(simulator sensor_replay recorder slam segmenter semantic_mapper planner controller evaluator supervisor)
 
 # die TEXT: bad set-up.
 die() {

@@ -8,9 +8,10 @@ usage() {
   cat <<'TEXT'
 usage: replay.sh DATASET|--scene NAME [--out DIR] [--rate X] [--start S] [--duration S] [--labels FILE]
                  [--seed N] [--tour FILE] [--robot FILE]... [--world FILE]...
-                 [--segmenter MODEL] [--restart] [--set KEY=VALUE]...
+                 [--segmenter MODEL] [--record BAG] [--restart] [--set KEY=VALUE]...
 
-Plays DATASET (a folder in the layout of the TUM RGB-D benchmark, with camera.yaml; what lapis_simulator --export-tum
+Plays DATASET (a folder in the layout of the TUM RGB-D benchmark, with camera.yaml, or a bag of rosbag2: its folder, or a
+.mcap or .db3; what lapis_simulator --export-tum
 wrote has the scene's ground truth, too), or drives a robot on a tour through
 a simulated building, and leaves a run folder with trajectory, pose graph, semantic map, metrics.json and figures.
 
@@ -25,6 +26,7 @@ a simulated building, and leaves a run folder with trajectory, pose graph, seman
   --start S        of a data set: skip S seconds;  --duration S  play S seconds
   --labels FILE    of a data set: CSV file class_id,class,... that names the labels
   --segmenter MODEL  labels by a network (components/segmenter/README.md) instead of those of the data set or scene
+  --record BAG     all topics into a bag of rosbag2, a new folder (components/recorder/README.md)
   --restart        a process that dies or hangs is started again, as by explore.sh
   --set KEY=VALUE  configuration, for example semantic_mapper.resolution_m=0.1 or dds.socket_buffer_bytes=212992; it goes
                    to every process that knows KEY. --print-config of each process lists its keys
@@ -38,10 +40,10 @@ TEXT
 
 of_data_set=() of_scene=() # options given that the other kind of source does not know
 [ -n "${ROS_DISCOVERY_SERVER:-}" ] || export ROS_AUTOMATIC_DISCOVERY_RANGE=${ROS_AUTOMATIC_DISCOVERY_RANGE:-LOCALHOST}
-command="${0##*/} $*" dataset="" scene="" rate="" out="" duration="" options=()
+command="${0##*/} $*" dataset="" scene="" rate="" out="" duration="" options=() recording=()
 while [ $# -gt 0 ]; do
   case $1 in
-    --out | --rate | --start | --duration | --labels | --scene | --seed | --tour | --robot | --world | --segmenter | --set)
+    --out | --rate | --start | --duration | --labels | --scene | --seed | --tour | --robot | --world | --segmenter | --record | --set)
       [ $# -gt 1 ] || die "$1 needs a value (see --help)" ;;
   esac
   case $1 in
@@ -55,6 +57,7 @@ while [ $# -gt 0 ]; do
     --labels) options+=(--set "sensor_replay.class_list=$2") of_data_set+=("$1") && shift ;;
     --seed | --tour) options+=(--set "simulator.${1#--}=$2") of_scene+=("$1") && shift ;;
     --segmenter) options+=(--variant segmented --set "segmenter.model=$2") && shift ;;
+    --record) recording=(--variant recorded --set "recorder.output=$(realpath -m "$2")") && shift ;;
     --restart) options+=(--restart) ;;
     --set) options+=(--set "$2") && shift ;;
     -*) die "unknown option $1 (see --help)" ;;
@@ -67,7 +70,7 @@ done
 [ -z "$scene" ] || [ ${#of_data_set[@]} -eq 0 ] || die "${of_data_set[0]} is of data sets, and a scene is given"
 [ -n "$scene" ] || [ ${#of_scene[@]} -eq 0 ] || die "${of_scene[0]} is of scenes, and a data set is given"
 [ -z "$scene" ] || [ -z "$rate" ] || [ "$rate" = 1 ] || die "--rate $rate: a scene runs by the wall clock (1) or in lock-step"
-[ -n "$scene" ] || [ -d "$dataset" ] || die "$dataset: no such folder (wanted is a TUM RGB-D data set)"
+[ -n "$scene" ] || [ -e "$dataset" ] || die "$dataset: no such folder or file (wanted is a TUM RGB-D data set or a bag)"
 require_build
 
 out=${out:-$repository/out/$(basename "${dataset:-$scene}" .yaml)}
@@ -80,4 +83,4 @@ else
 fi
 [ -z "$rate" ] || first+=(--variant freerun)
 [ -z "$duration" ] || first+=(--set "$source.duration_s=$duration")
-run_system "$system" "$command" --out "$out" "${first[@]}" "${options[@]}"
+run_system "$system" "$command" --out "$out" "${first[@]}" "${options[@]}" "${recording[@]}"

@@ -6,7 +6,6 @@
 #include <fastdds/dds/core/condition/WaitSet.hpp>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
-#include <fastdds/dds/domain/DomainParticipantListener.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
 #include <fastdds/dds/publisher/DataWriterListener.hpp>
 #include <fastdds/dds/publisher/Publisher.hpp>
@@ -245,27 +244,6 @@ class SignatureFilter : private fdds::IContentFilter, public fdds::IContentFilte
     return kReturnOk;
   }
   FilterResult delete_content_filter(const char*, fdds::IContentFilter*) final { return kReturnOk; }
-};
-
-/// Reports the participants that discovery finds.
-class ParticipantListener : public fdds::DomainParticipantListener {
- public:
-  /// Called from threads of DDS.
-  virtual void found(const rtps::GUID_t& participant, const std::vector<unsigned char>& user_data) = 0;
-
- private:
-#ifdef LAPIS_FASTDDS_3
-  void on_participant_discovery(fdds::DomainParticipant*, rtps::ParticipantDiscoveryStatus status,
-                                const fdds::ParticipantBuiltinTopicData& info, bool&) final {
-    if (status == rtps::ParticipantDiscoveryStatus::DISCOVERED_PARTICIPANT) found(info.guid, info.user_data.getValue());
-  }
-#else
-  void on_participant_discovery(fdds::DomainParticipant*, rtps::ParticipantDiscoveryInfo&& discovered) final {
-    using Info = rtps::ParticipantDiscoveryInfo;
-    const auto& info = discovered.info;
-    if (discovered.status == Info::DISCOVERED_PARTICIPANT) found(info.m_guid, info.m_userData.getValue());
-  }
-#endif
 };
 
 inline DdsDuration duration(std::int64_t nanoseconds) {

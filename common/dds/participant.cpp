@@ -8,6 +8,7 @@
 #include <stdexcept>
 
 #include "common/dds/endpoint_qos.hpp"
+#include "common/dds/participant_listener.hpp"
 #include "common/dds/shared_memory.hpp"
 #include "common/dds/type_support.hpp"
 #include "idl/rmw_dds_common.hpp"
@@ -103,21 +104,30 @@ rmw_dds_common::msg::Gid to_message(const Gid& gid) {
 
 }  // namespace
 
-class Participant::Listener : public compat::ParticipantListener {
+class Participant::Listener : public ParticipantListener {
  public:
-  explicit Listener(Peers& peers) : peers_(peers) {}
-  void found(const compat::rtps::GUID_t& participant, const std::vector<unsigned char>& user_data) override {
-    peers_.add(to_gid(participant), {user_data.begin(), user_data.end()});
+  Listener(Peers& peers, Endpoints* endpoints) : peers_(peers), endpoints_(endpoints) {}
+  void found(const FoundParticipant& participant) override { peers_.add(participant.gid, participant.user_data); }
+  void lost(const Gid& participant) override {
+    if (endpoints_ != nullptr) endpoints_->remove_participant(participant);
+  }
+  void found(Endpoint endpoint) override {
+    if (endpoints_ != nullptr) endpoints_->add(std::move(endpoint));
+  }
+  void lost_endpoint(const Gid& endpoint) override {
+    if (endpoints_ != nullptr) endpoints_->remove(endpoint);
   }
 
  private:
   Peers& peers_;
+  Endpoints* endpoints_;  // null: nobody wants to know
 };
 
 Participant::Participant(const ParticipantOptions& options)
     : options_(options), link_(options.link.value_or(link_of(options.discovery, options.transport))),
       pace_(compat::kHasFlowControllers ? link_.large : LargeSettings{}), peers_(options.discovery.run),
-      guard_(std::make_shared<PacketGuard>(options.discovery)), listener_(std::make_unique<Listener>(peers_)) {
+      guard_(std::make_shared<PacketGuard>(options.discovery)),
+      listener_(std::make_unique<Listener>(peers_, options.watches_endpoints ? &endpoints_ : nullptr)) {
   compat::fdds::DomainParticipantQos qos;
   qos.name("/");  // the enclave, which is also the name that rmw_fastrtps gives its participants
   std::string user_data = "enclave=/;";

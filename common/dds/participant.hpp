@@ -7,6 +7,7 @@
 
 #include "common/dds/compat.hpp"
 #include "common/dds/discovery.hpp"
+#include "common/dds/endpoints.hpp"
 #include "common/dds/gid.hpp"
 #include "common/dds/link.hpp"
 #include "common/dds/names.hpp"
@@ -25,6 +26,7 @@ struct ParticipantOptions {
   SensorQos sensor_qos = SensorQos::kAuto;
   int socket_buffer_bytes = 4 << 20;
   std::optional<LinkSettings> link;  ///< none: link_of(discovery, transport)
+  bool watches_endpoints = false;    ///< keeps what discovery announces of all readers and writers
 };
 
 /// One DDS participant, which is also one ROS 2 node: its endpoints appear in `ros2 node info`.
@@ -50,6 +52,8 @@ class Participant {
   Gid gid() const;
   /// The other participants of the domain.
   Peers& peers() { return peers_; }
+  /// The readers and writers of the domain, its own ones included; empty unless the options ask for them.
+  const Endpoints& endpoints() const { return endpoints_; }
   /// What has been kept away from Fast DDS.
   const PacketGuard& guard() const { return *guard_; }
   /// A line for the log: another run has been found in the domain, what follows, and the remedy.
@@ -82,6 +86,7 @@ class Participant {
   LinkSettings link_;
   Pace pace_;
   Peers peers_;
+  Endpoints endpoints_;
   std::shared_ptr<PacketGuard> guard_;
   std::unique_ptr<Listener> listener_;
   std::unique_ptr<compat::fdds::DomainParticipant, Deleter> participant_;  // after what its threads use

@@ -58,6 +58,17 @@ void Context::every(double period_s, std::function<void()> action) {
   executor_.every(period, std::move(action));
 }
 
+void Context::add(std::unique_ptr<dds::Source> source) {
+  executor_.add(*source);
+  sources_.push_back(std::move(source));
+}
+
+void Context::add(std::unique_ptr<dds::Writer> writer) { writers_.push_back(std::move(writer)); }
+
+dds::Participant& Context::add_participant(const dds::ParticipantOptions& options) {
+  return *more_participants_.emplace_back(std::make_unique<dds::Participant>(options));
+}
+
 std::string Context::frame(const std::string& id) const { return participant_.names().full(id); }
 
 bool Context::is_free() const { return lockstep_->is_free(); }

@@ -70,6 +70,12 @@ class Context {
     sources_.push_back(std::move(subscription));
     return reference;
   }
+  /// A source or a writer that the component has made itself; it is counted in lock-step like others.
+  void add(std::unique_ptr<dds::Source> source);
+  void add(std::unique_ptr<dds::Writer> writer);
+  /// Another participant, for endpoints of the component that cannot use participant(): one participant knows one type
+  /// support for each type. Whoever adds it announces its graph.
+  dds::Participant& add_participant(const dds::ParticipantOptions& options);
   template <class Service>
   void serve(const dds::ServiceTopic<Service>& service, typename dds::ServiceServer<Service>::Handler handler) {
     auto server = std::make_unique<dds::ServiceServer<Service>>(participant_, service, std::move(handler));
@@ -134,6 +140,7 @@ class Context {
   ContextOptions options_;
   time::Clock clock_;
   dds::Participant participant_;
+  std::vector<std::unique_ptr<dds::Participant>> more_participants_;  // they outlive their endpoints
   dds::Executor executor_;
   Status status_;
   Heart heart_;

@@ -23,4 +23,7 @@ inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kPauseExploring{"/pla
 inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kReturnHome{"/planner/return_home", "planner",
                                                                        "drive to where exploration began"};
 
+inline constexpr dds::ServiceTopic<std_srvs::srv::Trigger> kSnapshot{"/recorder/snapshot", "recorder",
+                                                                     "write the last seconds as a bag", false, true};
+
 }  // namespace lapis::topics

@@ -4,23 +4,21 @@
 #include <memory>
 #include <optional>
 
-#include "common/runtime/camera_publisher.hpp"
 #include "common/runtime/context.hpp"
 #include "common/runtime/lockstep_driver.hpp"
 #include "common/runtime/run_component.hpp"
-#include "sensor_replay/conversions.hpp"
-#include "sensor_replay/core/frame_prefetcher.hpp"
-#include "sensor_replay/core/tum_dataset.hpp"
+#include "sensor_replay/recording.hpp"
 #include "sensor_replay/sensor_replay_config.hpp"
 
 namespace lapis::sensor_replay {
 
-/// Plays a recorded data set on the topics of a camera, in lock-step with its subscribers or by the wall clock.
+/// Plays a recorded data set or a bag on the topics of a camera, in lock-step with its subscribers or by the wall
+/// clock.
 class SensorReplayComponent {
  public:
   using Config = SensorReplayConfig;
   static constexpr const char* kName = "sensor_replay";
-  static constexpr const char* kSummary = "Plays a TUM RGB-D data set on the camera topics.";
+  static constexpr const char* kSummary = "Plays a TUM RGB-D data set, or a bag of rosbag2, on the camera topics.";
 
   static void add_options(CLI::App& app, Config& config);
   static std::optional<int> run_tool(const Config& config);
@@ -33,20 +31,15 @@ class SensorReplayComponent {
 
   void work();
   void play_by_wall_clock();
-  bool publish_next();
-  void count(const SkippedFrame& skipped);
-  void count(const ImageProblem& problem);
+  void play_when_due();
+  Recording::Step publish_next();
   void report_progress(bool is_last);
 
   const Config config_;
   runtime::Context& context_;
-  TumDataset dataset_;
-  FrameRange range_;
-  FramePrefetcher frames_;
-  runtime::CameraPublisher camera_;
+  std::unique_ptr<Recording> recording_;
   std::unique_ptr<runtime::LockstepDriver> driver_;
-  std::optional<messages::CameraMessages> last_;
-  time::Time stamp_;
+  std::optional<time::Time> first_stamp_;  // by the wall clock
   std::size_t played_ = 0;
   bool has_ended_ = false;
   double longest_tick_s_ = 0.0;               // of the ticks with a frame

@@ -22,7 +22,9 @@ struct SensorReplayConfig {
 template <class Field>
 void describe(Field& field, SensorReplayConfig& c) {
   field("dataset", c.dataset, config::anything(),
-        "folder of the data set in the layout of the TUM RGB-D benchmark, with camera.yaml");
+        "folder of the data set in the layout of the TUM RGB-D benchmark, with camera.yaml; or bag of rosbag2: its "
+        "folder, "
+        "or a .mcap or .db3");
   field("class_list", c.class_list, config::anything(),
         "CSV file with columns class_id,class,... that names the labels; empty: classes.csv of the data set, if it has "
         "one");

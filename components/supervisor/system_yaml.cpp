@@ -71,7 +71,8 @@ Variant variant(const YAML::Node& node) {
   read_section(node, {{"silence_s", [&](const auto& n) { out.silence = text(n); }},
                       {"settings", [&](const auto& n) { out.settings = settings(n); }},
                       {"processes", [&](const auto& n) { out.processes = texts(n); }},
-                      {"stages", [&](const auto& n) { out.stages = texts(n); }}});
+                      {"stages", [&](const auto& n) { out.stages = texts(n); }},
+                      {"adds", [&](const auto& n) { out.adds = texts(n); }}});
   return out;
 }
 

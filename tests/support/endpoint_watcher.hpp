@@ -6,26 +6,12 @@
 #include <vector>
 
 #include "common/dds/participant.hpp"
+#include "common/dds/participant_listener.hpp"
 
 namespace lapis::test {
 
-/// A writer or reader as DDS discovery announces it to others. History depth is not part of that.
-struct SeenEndpoint {
-  bool is_writer = false;
-  std::string topic;  ///< DDS name, "rt/slam/odometry"
-  std::string type;   ///< DDS name, "nav_msgs::msg::dds_::Odometry_"
-  bool is_reliable = false;
-  bool is_latched = false;  ///< TRANSIENT_LOCAL
-  bool is_keyed = false;
-  std::string user_data;
-  dds::Gid gid{};
-};
-
-struct SeenParticipant {
-  std::string name;
-  std::string user_data;
-  dds::Gid gid{};
-};
+using SeenEndpoint = dds::Endpoint;
+using SeenParticipant = dds::FoundParticipant;
 
 /// Watches, through a participant of the test, the discovery of others. Create it before they start.
 class EndpointWatcher {

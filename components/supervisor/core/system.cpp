@@ -8,6 +8,9 @@ System varied(System system, const Variant& variant) {
   if (!variant.silence.empty()) system.silence = variant.silence;
   if (!variant.processes.empty()) system.processes = variant.processes;
   if (!variant.stages.empty()) system.stages = variant.stages;
+  system.processes.insert(system.processes.end() - (system.processes.empty() ? 0 : 1), variant.adds.begin(),
+                          variant.adds.end());
+  system.stages.insert(system.stages.end(), variant.adds.begin(), variant.adds.end());
   system.settings.insert(system.settings.end(), variant.settings.begin(), variant.settings.end());
   return system;
 }

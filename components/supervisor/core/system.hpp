@@ -35,6 +35,7 @@ struct Variant {
   Settings settings;    ///< after those of the system
   std::vector<std::string> processes;
   std::vector<std::string> stages;
+  std::vector<std::string> adds;  ///< processes before the source, which are stages, too, after all others
 };
 
 /// A run of several processes, as config/systems/<name>.yaml describes it. Programs are lapis_<process>.

@@ -80,6 +80,15 @@ TEST_F(SystemFile, AVariantChangesWhatItNames) {
   EXPECT_EQ(varied(system, system.variants.at("fast")).processes, system.processes);
 }
 
+TEST_F(SystemFile, AVariantAddsProcessesBeforeTheSource) {
+  const System system = read(
+      "processes: [mind, eye]\nsource: eye\nstages: [mind]\nsilence_s: 3\n"
+      "variants: {calm: {processes: [ear, mind, eye], stages: [ear, mind]}, written: {adds: [pen]}}\n");
+  const System both = varied(varied(system, system.variants.at("calm")), system.variants.at("written"));
+  EXPECT_THAT(both.processes, ElementsAre("ear", "mind", "pen", "eye"));
+  EXPECT_THAT(both.stages, ElementsAre("ear", "mind", "pen"));
+}
+
 TEST_F(SystemFile, WhatItSaysWinsOverItsBase) {
   std::ofstream(folder_.path() / "base.yaml") << "silence_s: 3\nreport: a.txt\nconfiguration: [robot.yaml]\n";
   const System system = read("base: base.yaml\nprocesses: [eye]\nsource: eye\nreport: b.txt\n");

@@ -6,8 +6,8 @@
 
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
-#include "common/mapping/file/map_file.hpp"
 #include "common/files/zstd_codec.hpp"
+#include "common/mapping/file/map_file.hpp"
 
 namespace {
 

@@ -7,8 +7,8 @@
 #include "seeds.hpp"
 
 // The names that CMakeLists.txt gives to LLVMFuzzerTestOneInput of each fuzzer.
-#define LAPIS_FUZZERS(use)                                                                                  \
-  use(catalog) use(frames) use(gltf) use(hm3d) use(house) use(image) use(map) use(obj) use(octree) use(ply) \
+#define LAPIS_FUZZERS(use)                                                                                           \
+  use(bag) use(catalog) use(frames) use(gltf) use(hm3d) use(house) use(image) use(map) use(obj) use(octree) use(ply) \
       use(pose_graph) use(replica) use(scene) use(situation) use(slam) use(text) use(trajectory) use(zip)
 #define LAPIS_DECLARE(name) int fuzz_##name(const std::uint8_t* data, std::size_t size);
 extern "C" {

@@ -3,7 +3,7 @@
 set -euo pipefail
 root="$(cd "$(dirname "${BASH_SOURCE[0]}")/../.." && pwd)"
 build="$root/build/fuzz"
-fuzzers=(catalog frames gltf hm3d house image map message obj octree ply pose_graph replica scene situation slam text trajectory zip)
+fuzzers=(bag catalog frames gltf hm3d house image map message obj octree ply pose_graph replica scene situation slam text trajectory zip)
 
 if [[ "${1:-}" == --help || "${1:-}" == -h ]]; then
   echo "usage: tests/fuzz/run.sh [SECONDS [NAME...]]   seconds for each fuzzer (600); names of: ${fuzzers[*]}"

@@ -3,9 +3,10 @@
 #include <opencv2/core.hpp>
 #include <opencv2/imgcodecs.hpp>
 
+#include "common/bags/bag_writer.hpp"
+#include "common/files/zstd_codec.hpp"
 #include "common/mapping/file/map_file.hpp"
 #include "common/mapping/wire/frame_codec.hpp"
-#include "common/files/zstd_codec.hpp"
 #include "fuzz_files.hpp"
 #include "semantic_mapper/core/export.hpp"
 #include "semantic_mapper/core/frame_journal.hpp"
@@ -145,6 +146,29 @@ void add_maps(Seeds& seeds) {
                      semantic_mapper::encode_binary_octree(map.map, reader)};
 }
 
+// Small chunks, so that a file has several.
+void add_bags(Inputs& inputs) {
+  for (const auto& [storage, level] :
+       {std::pair{bags::Storage::kMcap, 1}, {bags::Storage::kMcap, 0}, {bags::Storage::kSqlite3, 0}}) {
+    const test::TemporaryFolder folder;
+    bags::BagWriter writer(folder.path() / "bag", {.storage = storage,
+                                                   .mcap = {.compression_level = level, .chunk_bytes = 64},
+                                                   .split_bytes = 0,
+                                                   .split_s = 0.0});
+    writer.add_channel({.topic = "/a",
+                        .type = "std_msgs/msg/String",
+                        .encoding = "cdr",
+                        .schema_encoding = "ros2msg",
+                        .schema = "string data\n",
+                        .type_hash = "",
+                        .offered_qos = ""});
+    for (int i = 0; i < 4; ++i) writer.write({0, 0, 1000 - i, 1000, Bytes(20, static_cast<std::uint8_t>(i))});
+    writer.close();
+    inputs.push_back(test::read_file(folder.path() / "bag" / writer.files().front().name));
+    inputs.push_back(test::read_file(folder.path() / "bag" / "metadata.yaml"));
+  }
+}
+
 void add_frames(Inputs& inputs) {
   const geometry::PinholeCamera camera{6, 4, 5, 5, 2.5, 1.5};
   const geometry::DepthImage depth(camera.width, camera.height, 1.5f);
@@ -186,6 +210,7 @@ Seeds seeds() {
   add_poses(seeds);
   add_maps(seeds);
   add_frames(seeds["frames"]);
+  add_bags(seeds["bag"]);
   return seeds;
 }
 

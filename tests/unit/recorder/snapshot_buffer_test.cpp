@@ -48,7 +48,8 @@ TEST(SnapshotBuffer, KeepsTheLastLatchedMessageHoweverOld) {
     ASSERT_EQ(taken.size(), snapshot == 0 ? 4U : 1U);
     EXPECT_EQ(taken[0].channel, kLatched);
     EXPECT_EQ(taken[0].data.size(), 2U);
-    if (snapshot == 0) EXPECT_THAT(times(taken), ElementsAre(500, 500, 550, 600));
+    if (snapshot > 0) continue;
+    EXPECT_THAT(times(taken), ElementsAre(500, 500, 550, 600));
   }
 }
 

@@ -17,6 +17,8 @@ namespace {
 constexpr double kDiscoveryPeriod_s = 0.1;
 constexpr double kReportPeriod_s = 1.0;
 constexpr std::uint64_t kMega = 1'000'000;
+/// Samples that wait in a reader while this process has other work; large ones are images.
+constexpr int kDepth = 1000, kLargeDepth = 200;
 /// Of topics that are not in the table.
 constexpr dds::Qos kForeign{.depth = 100, .sensor = true};
 
@@ -126,8 +128,10 @@ void RecorderComponent::record(const std::string& topic, const std::string& dds_
                     .messages = 0,
                     .in_bag = {}};
   const std::size_t index = recorded_.size();
+  dds::Qos patient = qos;  // bursts wait here, not in the writer, which may drop them
+  patient.reader_depth = qos.large ? kLargeDepth : kDepth;
   auto source = std::make_unique<dds::RawSubscription>(
-      participant_, dds::topic_dds_name(topic), dds_type, hash, qos,
+      participant_, dds::topic_dds_name(topic), dds_type, hash, patient,
       [this, index](const auto& bytes, const auto& info) { store(index, bytes, info); });
   recorded.source = source.get();
   recorded_.push_back(std::move(recorded));

@@ -8,8 +8,8 @@
 #include "common/files/atomic_file.hpp"
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
-#include "common/mapping/wire/block_codec.hpp"
 #include "common/files/zstd_codec.hpp"
+#include "common/mapping/wire/block_codec.hpp"
 
 namespace lapis::mapping {
 namespace {
@@ -162,7 +162,7 @@ std::pair<BlockIndex, VoxelBlock> read_indexed_block(files::ByteReader& in) {
 /// Result of `read` on the next bytes. `read` is repeated with more bytes while they do not suffice; returns nothing
 /// when kMaxRecordBytes or the rest of the content do not suffice.
 template <class Read>
-auto read_record(ZstdReader& content, Read&& read)
+auto read_record(files::ZstdReader& content, Read&& read)
     -> std::optional<decltype(read(std::declval<files::ByteReader&>()))> {
   for (std::size_t size = kUsualRecordBytes; size <= kMaxRecordBytes; size *= 4) {
     const auto bytes = content.peek(size);
@@ -178,7 +178,8 @@ auto read_record(ZstdReader& content, Read&& read)
 }
 
 /// Throws std::runtime_error for values out of range.
-std::optional<MapFile> decode_content(ZstdReader& content, std::uint32_t format_version, std::size_t max_map_bytes) {
+std::optional<MapFile> decode_content(files::ZstdReader& content, std::uint32_t format_version,
+                                      std::size_t max_map_bytes) {
   auto head = read_record(content, [&](files::ByteReader& in) { return read_head(in, format_version); });
   if (!head) return std::nullopt;
   auto& [file, blocks] = *head;

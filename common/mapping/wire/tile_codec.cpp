@@ -4,8 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "common/mapping/wire/block_codec.hpp"
 #include "common/files/zstd_codec.hpp"
+#include "common/mapping/wire/block_codec.hpp"
 
 namespace lapis::mapping {
 namespace {

@@ -16,8 +16,8 @@
 #include "common/files/atomic_file.hpp"
 #include "common/files/byte_stream.hpp"
 #include "common/files/crc32.hpp"
-#include "common/mapping/wire/frame_codec.hpp"
 #include "common/files/zstd_codec.hpp"
+#include "common/mapping/wire/frame_codec.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {

@@ -10,7 +10,7 @@
 #include "common/files/atomic_file.hpp"
 #include "common/files/zstd_codec.hpp"
 #include "sample_messages.hpp"
-#include "support/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lapis::bags {
 namespace {

@@ -9,7 +9,7 @@
 #include "common/bags/mcap_writer.hpp"
 #include "common/files/crc32.hpp"
 #include "sample_messages.hpp"
-#include "support/temporary_folder.hpp"
+#include "tests/support/temporary_folder.hpp"
 
 namespace lapis::bags {
 namespace {

@@ -5,7 +5,7 @@
 
 #include "common/bags/bag_reader.hpp"
 #include "sample_messages.hpp"
-#include "support/test_data.hpp"
+#include "tests/support/test_data.hpp"
 
 namespace lapis::bags {
 namespace {

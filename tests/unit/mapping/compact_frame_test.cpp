@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
-#include "common/mapping/wire/frame_codec.hpp"
 #include "common/files/zstd_codec.hpp"
+#include "common/mapping/wire/frame_codec.hpp"
 #include "tests/support/synthetic_room.hpp"
 
 namespace lapis::mapping {

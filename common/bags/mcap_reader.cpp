@@ -41,7 +41,7 @@ McapReader::McapReader(const std::filesystem::path& path) : file_(path) {
   if (!read_summary()) scan();
   if (!is_closed()) {
     contents_.notes.push_back(path.filename().string() +
-                              " was not closed (was its recorder killed?): what is whole in it is read");
+                              " was not closed (did its writer die?): what is whole in it is read");
   }
   finish_channels();
   std::stable_sort(blocks_.begin(), blocks_.end(),

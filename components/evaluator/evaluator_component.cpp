@@ -25,8 +25,9 @@
 namespace lapis::evaluator {
 namespace {
 
-constexpr std::size_t kWaitingFrames = 30;
-constexpr std::size_t kWaitingInfos = 64;  // on a network they are ahead of their images by half a second
+constexpr std::size_t kWaitingFrames = 90;                   // for their labels: three seconds at 30 Hz
+constexpr std::size_t kWaitingImages = kWaitingFrames + 30;  // images wait for slam's pose, too: one second more
+constexpr std::size_t kWaitingInfos = kWaitingImages + 34;   // on a network they are ahead by half a second more
 constexpr std::chrono::seconds kProgressPeriod(2);
 constexpr double kLongestJudging_s = 900.0;  // to compare maps, write files and draw figures
 
@@ -64,10 +65,10 @@ KeyframePoses keyframes_of(const lapis_msgs::msg::PoseGraph& graph) {
 
 EvaluatorComponent::EvaluatorComponent(const Config& config, runtime::Context& context)
     : config_(config), context_(context), tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
-      odometry_(context, topics::kSlamOdometry, "slam odometry", kWaitingFrames),
-      truth_(context, topics::kGroundTruth, "ground truth", kWaitingFrames),
-      depth_(runtime::depth_input(context, kWaitingFrames)),
-      labels_(context, topics::kLabels, "labels", kWaitingFrames),
+      odometry_(context, topics::kSlamOdometry, "slam odometry", kWaitingImages),
+      truth_(context, topics::kGroundTruth, "ground truth", kWaitingImages),
+      depth_(runtime::depth_input(context, kWaitingImages)),
+      labels_(context, topics::kLabels, "labels", kWaitingImages),
       info_(context, topics::kColorInfo, "camera info", kWaitingInfos), depth_camera_(context, static_transforms_),
       maps_(truth_folder(config)) {
   if (config_.output_dir.empty()) {
@@ -195,13 +196,16 @@ std::optional<EvaluatorComponent::Partners> EvaluatorComponent::partners_of(cons
   const auto tolerance = time::Duration::from_seconds(config_.max_stamp_difference_s);
   const auto is_over = [&](const auto& input) { return cycle.inputs_complete || !input.has_publisher(); };
   if (depth_camera_.is_awaited() && !cycle.inputs_complete && !tracked_.is_full()) return std::nullopt;
+  const auto waited = tracked_.newest().value_or(stamp) - stamp;
+  const bool no_labels_come =
+      is_over(labels_) || tracked_.is_full() || !waits_for_labels_ || waited.seconds() > config_.label_wait_s;
   Partners found;
   // slam's messages of one frame have the same stamp; for a frame without a pose, slam publishes no odometry.
   const bool no_odometry_comes = tier_of(tracked) == PoseTier::kNone || is_over(odometry_) || tracked_.is_full();
   const bool is_complete = odometry_.match(stamp, {}, no_odometry_comes, found.odometry) != Match::kWait &&
                            truth_.match(stamp, tolerance, is_over(truth_), found.truth) != Match::kWait &&
                            depth_.match(stamp, tolerance, is_over(depth_), found.depth) != Match::kWait &&
-                           labels_.match(stamp, tolerance, is_over(labels_), found.labels) != Match::kWait &&
+                           labels_.match(stamp, tolerance, no_labels_come, found.labels) != Match::kWait &&
                            info_.match(stamp, tolerance, is_over(info_), found.info) != Match::kWait;
   return is_complete ? std::optional(found) : std::nullopt;
 }
@@ -348,6 +352,9 @@ void EvaluatorComponent::write_files(const RunMetrics& m) const {
 }
 
 void EvaluatorComponent::finish() {
+  waits_for_labels_ = false;
+  while (next_frame({})) {
+  }
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
   if (record_.is_empty()) {
     spdlog::warn("no frame came; nothing is written");

@@ -93,6 +93,7 @@ class EvaluatorComponent {
   MapJudge maps_;
   std::vector<TimelineRow> timeline_;
   std::optional<time::Time> timeline_stamp_;
+  bool waits_for_labels_ = true;
   bool has_ended_ = false;  // lock-step has announced that no input follows
   std::optional<std::chrono::steady_clock::time_point> began_;
   std::chrono::steady_clock::time_point newest_;

@@ -10,6 +10,7 @@ struct EvaluatorConfig {
   std::string output_dir;
   std::string ground_truth_dir;
   double max_stamp_difference_s = 0.016;
+  double label_wait_s = 1.5;
   double timeline_period_s = 1.0;
   bool figures = true;
 };
@@ -30,6 +31,9 @@ void describe(Field& field, EvaluatorConfig& c) {
   field("max_stamp_difference_s", c.max_stamp_difference_s, config::in_range(0.0, 0.1),
         "largest difference between the stamps of pose, true pose, depth, labels and camera info of a frame that the "
         "evaluator joins [s]");
+  field("label_wait_s", c.label_wait_s, config::in_range(0.0, 3.0),
+        "how much newer a frame of slam may be than one that still waits for its labels, where somebody publishes "
+        "labels; then the older one is evaluated without them. At most 90 frames wait [s]");
   field("timeline_period_s", c.timeline_period_s, config::in_range(0.1, 3600.0),
         "shortest time between rows of timeline.csv, by the frames' time stamps [s]");
   field("figures", c.figures, config::anything(),

@@ -88,7 +88,7 @@ void SegmenterComponent::publish(const SegmentedImage& image) {
     cost->cpu_s += image.cpu_s;
   }
   context_.status().set(runtime::Status::Level::kOk, "labels images");
-  context_.status().value("images", total_.images);
+  context_.status().value("frames", total_.images);
   context_.status().value("wall_ms", fmt::format("{:.1f}", 1e3 * image.wall_s));
   context_.status().value("cpu_ms", fmt::format("{:.1f}", 1e3 * image.cpu_s));
 }

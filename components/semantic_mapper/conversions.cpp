@@ -52,21 +52,23 @@ struct RectifiedImages {
 
 }  // namespace
 
-messages::Converted<mapping::CompactFrame> to_core(const SeenMessages& seen, const mapping::CompactFrameConfig& config,
-                                                   images::KeptRectifier& rectifier) {
-  using Result = messages::Converted<mapping::CompactFrame>;
-  const auto camera = messages::lens_camera(seen.info);
-  if (!camera) return Result::refused(camera.reason);
-  const RectifiedImages images{*camera, rectifier};
+messages::Converted<mapping::CompactFrame> to_core(const geometry::DepthImage& depth, const geometry::LensCamera& color,
+                                                   const mapping::CompactFrameConfig& config) {
+  std::string problem;
+  auto frame = mapping::CompactFrame::make(color.pinhole, depth, nullptr, config, problem);
+  if (!frame) return messages::Converted<mapping::CompactFrame>::refused(problem);
+  return std::move(*frame);
+}
+
+std::string set_labels(mapping::CompactFrame& frame, const LabelMessages& seen, const geometry::LensCamera& color,
+                       const mapping::CompactFrameConfig& config, images::KeptRectifier& rectifier) {
+  const RectifiedImages images{color, rectifier};
   std::optional<geometry::LabelImage> labels;
   std::optional<geometry::ConfidenceImage> confidence;
   std::string problem = images.take("label", seen.labels, messages::to_labels, labels);
   if (problem.empty()) problem = images.take("confidence", seen.confidence, messages::to_confidence, confidence);
-  if (!problem.empty()) return Result::refused(problem);
-  auto frame = mapping::CompactFrame::make(camera->pinhole, seen.depth, labels ? &*labels : nullptr, config, problem,
-                                           confidence ? &*confidence : nullptr);
-  if (!frame) return Result::refused(problem);
-  return std::move(*frame);
+  if (!problem.empty() || !labels) return problem;
+  return frame.set_labels(*labels, confidence ? &*confidence : nullptr, config.max_label);
 }
 
 messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& tracked, mapping::CompactFrame frame) {

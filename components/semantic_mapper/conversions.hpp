@@ -4,6 +4,7 @@
 #include <string>
 
 #include "common/geometry/image.hpp"
+#include "common/geometry/pinhole_camera.hpp"
 #include "common/images/rectifier.hpp"
 #include "common/mapping/model/label_list.hpp"
 #include "common/mapping/wire/map_mirror.hpp"
@@ -20,17 +21,18 @@
 
 namespace lapis::semantic_mapper {
 
-/// Images of one instant in the view of the colour camera.
-struct SeenMessages {
-  const geometry::DepthImage& depth;  ///< [m], rectified
-  const sensor_msgs::msg::CameraInfo& info;
-  const sensor_msgs::msg::Image* labels = nullptr;      ///< as the lens shows it, as all that follow; null: none
+/// Labels of one instant in the view of the colour camera, as its lens shows it.
+struct LabelMessages {
+  const sensor_msgs::msg::Image* labels = nullptr;      ///< null: none
   const sensor_msgs::msg::Image* confidence = nullptr;  ///< of the labels; null: none
 };
-/// Compact frame, in which labels and confidence are rectified, too; refused with a reason when the images do not fit
-/// each other or the camera info.
-messages::Converted<mapping::CompactFrame> to_core(const SeenMessages& seen, const mapping::CompactFrameConfig& config,
-                                                   images::KeptRectifier& rectifier);
+/// Compact frame without labels; refused with a reason when the depth [m], which is rectified, does not fit the camera.
+messages::Converted<mapping::CompactFrame> to_core(const geometry::DepthImage& depth, const geometry::LensCamera& color,
+                                                   const mapping::CompactFrameConfig& config);
+/// Gives the frame what these messages say, rectified. Returns the problem when they do not fit the camera, or an empty
+/// text. The rectifier is kept for the next frame.
+std::string set_labels(mapping::CompactFrame& frame, const LabelMessages& seen, const geometry::LensCamera& color,
+                       const mapping::CompactFrameConfig& config, images::KeptRectifier& rectifier);
 /// Adds the pose of a tracked frame to its compact frame; refused when the poses are not valid, or when odometry alone
 /// gave them and the message states no drift.
 messages::Converted<AnchoredFrame> to_core(const lapis_msgs::msg::TrackedFrame& tracked, mapping::CompactFrame frame);

@@ -16,7 +16,6 @@
 #include "common/topics/camera.hpp"
 #include "common/topics/services.hpp"
 #include "common/topics/slam.hpp"
-#include "common/topics/transforms.hpp"
 
 namespace lapis::semantic_mapper {
 namespace {
@@ -28,16 +27,8 @@ constexpr const char* kFramesFile = "frames.lapis";
 constexpr std::size_t kFramesPerBeat = 1000;  // seconds of work while a map is rebuilt
 constexpr double kLongestSave_s = 300.0;
 constexpr double kLongestFlush_s = 600.0;
-constexpr std::size_t kWaitingFrames = 90;  // frames with a pose wait for labels: three seconds at 30 Hz
-constexpr std::size_t kWaitingImages = kWaitingFrames + 30;  // images wait for slam's pose, too: one second more
-constexpr std::size_t kWaitingInfos = kWaitingImages + 34;   // on a network they are ahead by half a second more
 constexpr std::size_t kPlacedPerCycle = 5;    // frames of a sub-map that was joined; each takes milliseconds
 constexpr std::size_t kUnconnectedShare = 4;  // of the memory for stored frames, a fourth for those of sub-maps
-
-bool has_pose(const lapis_msgs::msg::TrackedFrame& frame) {
-  namespace Constants = lapis_msgs::msg::TrackedFrame_Constants;
-  return frame.state() == Constants::STATE_TRACKING || frame.state() == Constants::STATE_DEAD_RECKONING;
-}
 
 bool is_unconnected(const lapis_msgs::msg::TrackedFrame& frame) {
   return frame.state() == lapis_msgs::msg::TrackedFrame_Constants::STATE_UNCONNECTED;
@@ -90,12 +81,7 @@ config::Rules SemanticMapperComponent::rules(const Config& config) {
 
 SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::Context& context)
     : config_(completed(config)), context_(context), publisher_(config_, context),
-      tracked_(context, topics::kTrackedFrame, "slam frame", kWaitingFrames),
-      tolerance_(time::Duration::from_seconds(config.max_stamp_difference_s)),
-      depth_(runtime::depth_input(context, kWaitingImages)),
-      labels_(context, topics::kLabels, "labels", kWaitingImages),
-      confidence_(context, topics::kLabelConfidence, "label confidence", kWaitingImages),
-      info_(context, topics::kColorInfo, "camera info", kWaitingInfos), depth_camera_(context, static_transforms_),
+      input_(config_, context, [this](const std::string& reason) { drop(reason); }),
       disk_({SemanticMapperComponent::kName,
              config.output_dir,
              config.resume_from,
@@ -108,13 +94,9 @@ SemanticMapperComponent::SemanticMapperComponent(const Config& config, runtime::
   }
   load_map();
   context.subscribe(topics::kLabelInfo, [this](const auto& m) { set_labels(m); });
-  context.subscribe(topics::kStaticTransforms, [this](const auto& m) { static_transforms_.add(m); });
-  depth_camera_.follow(context, topics::kDepthEstimate);
   context.subscribe(topics::kPoseGraph, [this](Graph& m) { graph_ = std::move(m); });
   context.serve(topics::kSaveMap, [this](const auto&) { return save_on_request(); });
-  depth_.require();
-  info_.require();
-  tracked_.on_clock_set([this](time::Duration step) { follow_clock(step); });
+  input_.on_clock_set([this](time::Duration step, time::Time first) { follow_clock(step, first); });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
   publisher_.describe(label_list_, progress_);
 }
@@ -175,8 +157,10 @@ void SemanticMapperComponent::set_labels(const vision_msgs::msg::LabelInfo& mess
 }
 
 void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
-  while (next_frame(cycle)) {
-  }
+  input_.collect(cycle);
+  take_frames(cycle.inputs_complete);
+  for (SeenFrame& seen : input_.waiting()) see_obstacles(seen);
+  progress_.published = input_.published();
   publisher_.describe(label_list_, progress_);
   if (mapper_ == nullptr) return;
   if (graph_) follow_graph(*graph_);
@@ -192,76 +176,39 @@ void SemanticMapperComponent::work(const runtime::Cycle& cycle) {
   save_when_due();
 }
 
-/// Joins and integrates the oldest tracked frame; false when its partners may still come.
-bool SemanticMapperComponent::next_frame(const runtime::Cycle& cycle) {
-  using time::Match;
-  if (tracked_.empty()) return false;
-  auto& [stamp, tracked] = tracked_.front();
-  const time::Time now = stamp;
-  Image* depth = nullptr;
-  Image* labels = nullptr;
-  Image* confidence = nullptr;
-  Info* info = nullptr;
-  // Labels are optional: a slow segmentation costs frames their labels, but does not cost the map its frames.
-  const bool is_last_chance = cycle.inputs_complete || tracked_.is_full();
-  if (depth_camera_.is_awaited() && !is_last_chance) return false;
-  const auto known = tolerance_.of(stamp, tracked_.second());
-  const auto tolerance = known.value_or(is_last_chance ? time::StampTolerance::kLargest : time::Duration{});
-  const bool has_waited = (tracked_.newest().value_or(now) - now).seconds() > config_.label_wait_s;
-  const bool no_labels_come = is_last_chance || has_waited || !labels_.has_publisher();
-  const bool no_confidence_comes = is_last_chance || has_waited || !confidence_.has_publisher();
-  const auto depth_match = depth_.match(now, tolerance, cycle.inputs_complete, depth);
-  const auto label_match = labels_.match(now, tolerance, no_labels_come, labels);
-  const auto confidence_match = confidence_.match(now, tolerance, no_confidence_comes, confidence);
-  const auto info_match = info_.match(now, tolerance, cycle.inputs_complete, info);
-  for (const Match match : {depth_match, label_match, confidence_match, info_match}) {
-    if (match == Match::kWait) return false;
-  }
-  const bool is_whole = depth != nullptr && info != nullptr;
-  if (!is_whole && !known && !is_last_chance) return false;  // the next tracked frame gives the tolerance
-  progress_.published = now;
-  if (!has_pose(tracked) &&
-      !(is_unconnected(tracked) && mapper_ != nullptr && tracked.session() == progress_.session)) {
-    drop("slam has no pose");
-  } else if (depth == nullptr) {
-    drop("no depth image for a tracked frame");
-  } else if (info == nullptr) {
-    drop("no camera info for a tracked frame");
-  } else {
-    integrate(tracked, *depth, labels, confidence, *info);
-  }
-  tolerance_.note(now);
-  tracked_.drop_until(now);
-  depth_.drop_until(now - tolerance);
-  labels_.drop_until(now - tolerance);
-  confidence_.drop_until(now - tolerance);
-  info_.drop_until(now - tolerance);
-  return true;
+void SemanticMapperComponent::take_frames(bool is_last_chance) {
+  while (auto seen = input_.take(is_last_chance)) integrate(std::move(*seen));
 }
 
-void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& depth, const Image* labels,
-                                        const Image* confidence, const Info& info) {
-  const time::Time stamp = messages::from_message(tracked.header().stamp());
-  const bool is_first = mapper_ == nullptr || tracked.session() != progress_.session;
-  const time::Time before = std::max(progress_.newest, newest_kept_);
-  if (!is_first && (stamp - before).seconds() < config_.frame_interval_s) return;
-  const auto seen_depth = depth_camera_.convert(depth, info);
-  if (!seen_depth) return drop(seen_depth.reason);
-  auto frame = to_core({*seen_depth, info, labels, confidence}, config_.frame, rectifier_);
-  if (!frame) return drop(frame.reason);
-  const auto above_list = frame->labels_out_of_list();
-  if (above_list > 0) context_.status().count("pixels unlabelled: label not in the list", above_list);
-  if (is_unconnected(tracked)) return keep_unconnected(tracked, std::move(*frame));
-  auto anchored = to_core(tracked, std::move(*frame));
+bool SemanticMapperComponent::is_of_other_map(const Tracked& tracked) const {
+  return mapper_ == nullptr || tracked.session() != progress_.session;
+}
+
+void SemanticMapperComponent::integrate(SeenFrame seen) {
+  if (is_unconnected(seen.tracked)) return keep_unconnected(seen.tracked, std::move(seen.samples));
+  auto anchored = to_core(seen.tracked, std::move(seen.samples));
   if (!anchored) return drop(anchored.reason);
-  if (is_first) start_new_map(tracked.session(), stamp);
+  if (is_of_other_map(seen.tracked)) start_new_map(seen.tracked.session(), seen.stamp);
   const auto& record = mapper_->newest_record();
-  if (is_first && record && record->stamp == stamp) {  // a rebuilt map has it: in lock-step, the tick in which its
-    progress_.newest = stamp;                          // process died comes again
+  if (record && record->stamp == seen.stamp) {  // a rebuilt map has it: in lock-step, the tick in which its process
+    progress_.newest = seen.stamp;              // died comes again
     return;
   }
   const auto report = enter(std::move(*anchored));
-  if (report) publisher_.add_obstacles(stamp, report->votes);
+  if (report && !seen.is_in_obstacles) publisher_.add_obstacles(seen.stamp, report->votes);
+}
+
+/// Obstacles need no labels, so those of a frame that waits for its labels are seen at once, as they will be in its
+/// votes.
+void SemanticMapperComponent::see_obstacles(SeenFrame& seen) {
+  if (seen.is_in_obstacles || is_unconnected(seen.tracked)) return;
+  const auto anchored = to_core(seen.tracked, seen.samples);
+  if (!anchored) return;  // reported when its labels are there
+  if (is_of_other_map(seen.tracked)) start_new_map(seen.tracked.session(), seen.stamp);
+  const auto report = mapper_->look(*anchored);
+  if (report.status != IntegrationStatus::kIntegrated) return;
+  publisher_.add_obstacles(seen.stamp, report.votes);
+  seen.is_in_obstacles = true;
 }
 
 /// Puts a frame into the map, and into the journal; nothing when it is dropped.
@@ -285,11 +232,11 @@ std::optional<IntegrationReport> SemanticMapperComponent::enter(AnchoredFrame fr
 
 /// Nobody knows yet where in the map the frame is.
 void SemanticMapperComponent::keep_unconnected(const Tracked& tracked, mapping::CompactFrame frame) {
+  if (is_of_other_map(tracked)) return drop("slam has no pose");
   auto unconnected = to_unconnected(tracked, std::move(frame));
   if (!unconnected) return drop(unconnected.reason);
   const std::size_t before = unconnected_.let_go();
   unconnected_.add(*unconnected);
-  newest_kept_ = unconnected->stamp;
   const std::size_t let_go = unconnected_.let_go() - before;
   if (let_go > 0) context_.status().count("frames dropped: too many wait for their place in the map", let_go);
 }
@@ -363,21 +310,16 @@ void SemanticMapperComponent::end_map() {
   }
   mapper_.reset();
   unconnected_.clear();
-  newest_kept_ = {};
   journal_.reset();
   forget_resumed();
 }
 
 /// Continues when the stamps of frames have jumped; whether the map is still right is for slam to say. The step is
 /// known to the jitter of delays only, and time must not go back.
-void SemanticMapperComponent::follow_clock(time::Duration step) {
-  const time::Time first = tracked_.front().first;
-  for (auto* images : {&depth_, &labels_, &confidence_}) images->expect_restart(first);
-  info_.expect_restart(first);
-  tolerance_.begin_anew();
+void SemanticMapperComponent::follow_clock(time::Duration step, time::Time first) {
+  take_frames(true);  // by the stamps of before
   step = std::min(step, first - progress_.newest);
   progress_.newest = progress_.newest + step;
-  newest_kept_ = std::min(newest_kept_, progress_.newest);
   publisher_.follow_clock(step);
   disk_.note_save(progress_.newest);
 }
@@ -427,6 +369,7 @@ void SemanticMapperComponent::start_new_map(std::int64_t session, time::Time sta
   disk_.begin(stamp, resumed_ || rebuilt_from_);
   begin_journal(session);
   progress_.session = session;
+  progress_.newest = stamp;
   if (rebuilt_from_ && graph_) follow_graph(*graph_);  // as the earlier process had done
   resumed_.reset();
   rebuilt_from_.reset();
@@ -501,6 +444,7 @@ std::optional<std::string> SemanticMapperComponent::write_files() {
 }
 
 void SemanticMapperComponent::finish() {
+  take_frames(true);
   spdlog::info("{} frames integrated, {} dropped", progress_.frames_integrated, progress_.frames_dropped);
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
   if (mapper_ == nullptr) return;

@@ -4,17 +4,11 @@
 #include <optional>
 #include <string>
 
-#include "common/images/rectifier.hpp"
 #include "common/mapping/file/map_file.hpp"
-#include "common/messages/geometry.hpp"
-#include "common/runtime/depth_camera.hpp"
-#include "common/runtime/depth_input.hpp"
 #include "common/runtime/saved_map.hpp"
-#include "common/runtime/stamped_input.hpp"
-#include "common/time/stamp_tolerance.hpp"
 #include "idl/std_srvs.hpp"
-#include "semantic_mapper/conversions.hpp"
 #include "semantic_mapper/core/frame_journal.hpp"
+#include "semantic_mapper/frame_input.hpp"
 #include "semantic_mapper/map_publisher.hpp"
 #include "semantic_mapper/semantic_mapper_config.hpp"
 
@@ -33,8 +27,6 @@ class SemanticMapperComponent {
   void finish();
 
  private:
-  using Image = sensor_msgs::msg::Image;
-  using Info = sensor_msgs::msg::CameraInfo;
   using Tracked = lapis_msgs::msg::TrackedFrame;
   using Graph = lapis_msgs::msg::PoseGraph;
 
@@ -42,9 +34,10 @@ class SemanticMapperComponent {
   void rebuild_map();
   void set_labels(const vision_msgs::msg::LabelInfo& message);
   void work(const runtime::Cycle& cycle);
-  bool next_frame(const runtime::Cycle& cycle);
-  void integrate(const Tracked& tracked, const Image& depth, const Image* labels, const Image* confidence,
-                 const Info& info);
+  void take_frames(bool is_last_chance);
+  void integrate(SeenFrame seen);
+  void see_obstacles(SeenFrame& seen);
+  bool is_of_other_map(const Tracked& tracked) const;
   std::optional<IntegrationReport> enter(AnchoredFrame frame);
   void keep_unconnected(const Tracked& tracked, mapping::CompactFrame frame);
   void enter_placed_frames(std::size_t most);
@@ -56,7 +49,7 @@ class SemanticMapperComponent {
   void drop(const std::string& reason);
   void start_new_map(std::int64_t session, time::Time stamp);
   void end_map();
-  void follow_clock(time::Duration step);
+  void follow_clock(time::Duration step, time::Time first);
   void forget_resumed();
   std::unique_ptr<SemanticMapper> begin_map(std::int64_t session);
   void begin_journal(std::int64_t session);
@@ -72,16 +65,8 @@ class SemanticMapperComponent {
   runtime::Context& context_;
   MapPublisher publisher_;
 
-  runtime::StampedInput<Tracked> tracked_;
-  time::StampTolerance tolerance_;
-  runtime::StampedInput<Image> depth_;
-  runtime::StampedInput<Image> labels_;
-  runtime::StampedInput<Image> confidence_;
-  runtime::StampedInput<Info> info_;  // of colour, to which labels and poses belong
-  messages::StaticTransforms static_transforms_;
-  runtime::DepthCamera depth_camera_;
-  images::KeptRectifier rectifier_;  // of labels
-  std::optional<Graph> graph_;       // newest one, not applied yet
+  FrameInput input_;
+  std::optional<Graph> graph_;  // newest one, not applied yet
   mapping::LabelList label_list_;
 
   runtime::SavedMap disk_;
@@ -97,7 +82,6 @@ class SemanticMapperComponent {
 
   std::unique_ptr<SemanticMapper> mapper_;  // exists once slam tracks
   UnconnectedFrames unconnected_;           // of its session
-  time::Time newest_kept_;                  // newest of these
   MapProgress progress_;
 };
 

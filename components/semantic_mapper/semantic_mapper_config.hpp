@@ -116,8 +116,8 @@ void describe(Field& field, SemanticMapperComponentConfig& c) {
         "camera's period, at most 0.12 s [s]");
   field("label_wait_s", c.label_wait_s, config::in_range(0.0, 3.0),
         "how much newer a frame of slam may be than one that still waits for its labels, where somebody publishes "
-        "labels; then the older one enters the map without them. At most 90 frames wait. In lock-step each frame has "
-        "its labels, or none come [s]");
+        "labels; then the older one enters the map without them. Obstacles do not wait. At most 90 frames wait. In "
+        "lock-step each frame has its labels, or none come [s]");
   field("frame_interval_s", c.frame_interval_s, config::in_range(0.0, 60.0),
         "shortest time between integrated frames, by their time stamps; 0: every frame is integrated [s]");
   describe_output(field, c);

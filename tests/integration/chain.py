@@ -92,6 +92,20 @@ def recording():
     return made
 
 
+def color_model(folder, size, colors, names, labels):
+    """A model file for the segmenter in a new folder. Its network finds the nearest of the `colors` (rgb each) in images of
+    `size` (width, height); `names`: of their indices, in the label list `labels`."""
+    folder.mkdir()
+    width, height = size
+    subprocess.run([BIN / "lapis_color_network", folder / "network.onnx", str(width), str(height),
+                    *(str(value) for color in colors for value in color)], check=True)
+    model = folder / "model.yaml"
+    model.write_text("\n".join(
+        ["network: network.onnx", f"labels: {labels}", f"input: {{width: {width}, height: {height}}}",
+         "output: {values: labels}", "classes:", *(f"  {index}: {name}" for index, name in names.items()), ""]))
+    return model
+
+
 class Process:
     """A program whose output can be waited for. It is killed at the end of a `with` block and with the test."""
 

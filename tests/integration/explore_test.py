@@ -2,12 +2,16 @@
 """explore.sh: in a flat of two rooms, and, as a test of its own that takes minutes, in a bundled building. Without the
 furniture package, so that it is the same everywhere."""
 import collections
+import contextlib
 import csv
 import json
 import math
+import os
 import re
+import signal
 import struct
 import subprocess
+import time
 
 import chain
 
@@ -167,6 +171,55 @@ class ExploreTest(ExploreCase):
             self.assertEqual(run.wait(), 2, run.output())
             self.assertIn("planner.method", run.output())
             self.assert_no_orphan(run)
+
+
+class SegmentedExploreTest(ExploreCase):
+    """Labels by a network: here the nearest of three colours."""
+
+    def model(self):
+        return chain.color_model(self.folder / "model", (160, 90), ((200, 190, 170), (120, 80, 50), (40, 40, 40)),
+                                 {0: "wall", 1: "floor", 2: "door"}, chain.REPOSITORY / "config/labels/mpcat40.yaml")
+
+    def assert_labels(self, folder):
+        """The map's points have the classes of the network."""
+        head, _, body = (folder / "map.ply").read_bytes().partition(b"end_header\n")
+        self.assertIn(b"property ushort label", head)
+        labels = collections.Counter(vertex[6] for vertex in struct.iter_unpack("<fffBBBHf", body))
+        self.assertGreater(sum(labels[i] for i in (1, 2, 4)), 100)
+        self.assertLessEqual(set(labels), {0, 1, 2, 4})
+
+    def test_in_lock_step_every_image_is_labelled(self):
+        folder = self.explore("run", "--scene", self.write_flat(), "--duration", "5", "--segmenter", self.model())
+        self.assert_labels(folder)
+        self.assertGreater(chain.metrics_of(folder)["decisions"], 0)
+        log = (folder / "logs/segmenter.log").read_text()
+        images = int(re.findall(r"(\d+) images labelled", log)[-1])
+        self.assertGreaterEqual(images, chain.metrics_of(folder)["frames_total"])
+        self.assertNotRegex(log, "dropped: (?!stamp was there before)|replaced")  # a tick may come again
+        self.assertGreater(chain.metrics_of(folder)["cpu_ms_per_frame"]["segmenter"], 0.0)
+
+    # A network that takes a second per image: it gets its CPU for a tenth of each second only.
+    def test_by_the_wall_clock_the_robot_drives_although_labels_come_late(self):
+        out = self.folder / "run"
+        with explore(out, "--scene", self.write_flat(), "--duration", "20", "--freerun", "--segmenter", self.model()) as run:
+            while run.is_alive():
+                self.pause_segmenter(run.run, 0.9)
+                time.sleep(0.1)
+            self.assertEqual(run.wait(), 0, run.output())
+            self.assert_no_orphan(run)
+        self.assert_labels(out)
+        metrics = chain.metrics_of(out)
+        self.assertGreater(metrics["path_length_m"], 2.0)
+        late = re.findall(r"stands still: no map", (out / "logs/controller.log").read_text())
+        print(f"figure: {metrics['path_length_m']:.1f} m driven, {len(late)} stops because the map was old")
+
+    def pause_segmenter(self, run, seconds):
+        for pid, program in chain.processes_of(run).items():
+            if program == "lapis_segmenter":
+                with contextlib.suppress(ProcessLookupError):
+                    os.kill(pid, signal.SIGSTOP)
+                    time.sleep(seconds)
+                    os.kill(pid, signal.SIGCONT)
 
 
 if __name__ == "__main__":

@@ -4,7 +4,6 @@ import csv
 import itertools
 import re
 import shutil
-import subprocess
 
 import numpy
 from PIL import Image
@@ -40,20 +39,14 @@ class SegmenterTest(chain.ChainTest):
 
     def model(self, source, ids, colors):
         """A model file whose network finds these colours."""
-        folder = self.folder / "model"
-        folder.mkdir()
-        width, height = (int(re.search(rf"^{key}: (\d+)", (source / "camera.yaml").read_text(), re.M)[1])
-                         for key in ("width", "height"))
-        subprocess.run([chain.BIN / "lapis_color_network", folder / "network.onnx", str(width), str(height),
-                        *map(str, colors.flatten())], check=True)
+        size = [int(re.search(rf"^{key}: (\d+)", (source / "camera.yaml").read_text(), re.M)[1])
+                for key in ("width", "height")]
         names = self.classes(source)
-        list_of_labels = [f"  - {{id: {i}, name: {name}}}" for i, name in names.items() if i != UNLABELLED]
-        (folder / "labels.yaml").write_text("\n".join(["labels:", *list_of_labels, ""]))
-        table = [f"  {index}: {names[i]}" for index, i in enumerate(ids) if i != UNLABELLED]
-        (folder / "model.yaml").write_text("\n".join(
-            ["network: network.onnx", "labels: labels.yaml", f"input: {{width: {width}, height: {height}}}",
-             "output: {values: labels}", "classes:", *table, ""]))
-        return folder / "model.yaml"
+        labels = self.folder / "labels.yaml"
+        labels.write_text("\n".join(
+            ["labels:", *(f"  - {{id: {i}, name: {name}}}" for i, name in names.items() if i != UNLABELLED), ""]))
+        return chain.color_model(self.folder / "model", size, colors,
+                                 {index: names[i] for index, i in enumerate(ids) if i != UNLABELLED}, labels)
 
     def test_labels_of_a_network_make_the_map_of_the_same_labels(self):
         source, ids, colors = self.coloured(chain.recording())
@@ -64,7 +57,7 @@ class SegmenterTest(chain.ChainTest):
         self.assert_same_run(by_data_set, by_network, ("trajectory_estimate.txt", "map.ply", "reference_map.lapis"))
         log = (by_network / "logs/segmenter.log").read_text()
         print("figure: cost of the network:", re.findall(r"\d+ images labelled, .*", log)[-1])
-        self.assertNotIn("dropped", log)
+        self.assertNotRegex(log, "dropped: (?!stamp was there before)")  # a tick may come again
 
 
 if __name__ == "__main__":

@@ -8,6 +8,12 @@ namespace lapis::mapping {
 namespace {
 
 constexpr int kLargestLabel = 65534;  // 65535 is not a class
+constexpr const char* kOtherConfidence = "confidence size differs from depth size";
+
+template <class Pixel>
+bool has_size_of(const geometry::PinholeCamera& camera, const geometry::Image<Pixel>& image) {
+  return image.width == camera.width && image.height == camera.height;
+}
 
 /// Every stride-th pixel of a row.
 template <class Pixel>
@@ -47,36 +53,45 @@ std::optional<CompactFrame> CompactFrame::make(const geometry::PinholeCamera& ca
     error = "camera intrinsics are not valid";
   else if (config.stride < 1 || config.stride > 16)
     error = "stride is outside [1, 16]";
-  else if (depth.width != camera.width || depth.height != camera.height)
+  else if (!has_size_of(camera, depth))
     error = "depth size differs from the camera's";
-  else if (labels && (labels->width != depth.width || labels->height != depth.height))
-    error = "label size differs from depth size";
-  else if (confidence && (confidence->width != depth.width || confidence->height != depth.height))
-    error = "confidence size differs from depth size";
+  else if (confidence && !has_size_of(camera, *confidence))
+    error = kOtherConfidence;
   if (!error.empty()) return std::nullopt;
 
   CompactFrame frame;
   frame.camera_ = camera;
   frame.stride_ = config.stride;
   const auto columns = static_cast<std::size_t>(frame.columns());
-  const auto largest = static_cast<std::uint16_t>(std::clamp(config.max_label, 0, kLargestLabel));
   frame.depth_mm_.resize(columns * static_cast<std::size_t>(frame.rows()));
-  if (labels) frame.labels_.resize(frame.depth_mm_.size());
-  if (labels && confidence) frame.confidence_.resize(frame.depth_mm_.size());
   std::vector<float> depth_row(columns);
-  std::vector<std::uint16_t> label_row(columns);
-  std::vector<std::uint8_t> confidence_row(columns);
   for (int row = 0; row < frame.rows(); ++row) {
     const std::size_t begin = static_cast<std::size_t>(row) * columns;
-    const int image_row = row * config.stride;
-    to_millimetres(sample_row(depth, image_row, config.stride, depth_row), columns, &frame.depth_mm_[begin]);
-    if (!labels) continue;
-    frame.labels_out_of_list_ +=
-        keep_listed(sample_row(*labels, image_row, config.stride, label_row), columns, largest, &frame.labels_[begin]);
-    if (!confidence) continue;
-    std::copy_n(sample_row(*confidence, image_row, config.stride, confidence_row), columns, &frame.confidence_[begin]);
+    to_millimetres(sample_row(depth, row * config.stride, config.stride, depth_row), columns, &frame.depth_mm_[begin]);
   }
-  return frame;
+  if (labels) error = frame.set_labels(*labels, confidence, config.max_label);
+  return error.empty() ? std::optional(std::move(frame)) : std::nullopt;
+}
+
+std::string CompactFrame::set_labels(const geometry::LabelImage& labels, const geometry::ConfidenceImage* confidence,
+                                     int max_label) {
+  if (!has_size_of(camera_, labels)) return "label size differs from depth size";
+  if (confidence && !has_size_of(camera_, *confidence)) return kOtherConfidence;
+  const auto columns = static_cast<std::size_t>(this->columns());
+  const auto largest = static_cast<std::uint16_t>(std::clamp(max_label, 0, kLargestLabel));
+  labels_.resize(depth_mm_.size());
+  if (confidence) confidence_.resize(depth_mm_.size());
+  std::vector<std::uint16_t> label_row(columns);
+  std::vector<std::uint8_t> confidence_row(columns);
+  for (int row = 0; row < rows(); ++row) {
+    const std::size_t begin = static_cast<std::size_t>(row) * columns;
+    const int image_row = row * stride_;
+    labels_out_of_list_ +=
+        keep_listed(sample_row(labels, image_row, stride_, label_row), columns, largest, &labels_[begin]);
+    if (!confidence) continue;
+    std::copy_n(sample_row(*confidence, image_row, stride_, confidence_row), columns, &confidence_[begin]);
+  }
+  return "";
 }
 
 double CompactFrame::median_depth_m() const {

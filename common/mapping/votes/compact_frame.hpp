@@ -39,6 +39,11 @@ class CompactFrame {
   static std::optional<CompactFrame> make(const geometry::PinholeCamera& camera, const geometry::DepthImage& depth,
                                           const geometry::LabelImage* labels, const CompactFrameConfig& config,
                                           std::string& error, const geometry::ConfidenceImage* confidence = nullptr);
+  /// Gives a frame that was made without labels those that make() would have given it; images of the size of the
+  /// camera's. Returns the problem and leaves the frame as it is when sizes differ; otherwise an empty text.
+  /// @param max_label see CompactFrameConfig
+  std::string set_labels(const geometry::LabelImage& labels, const geometry::ConfidenceImage* confidence,
+                         int max_label);
 
   const geometry::PinholeCamera& camera() const { return camera_; }
   int stride() const { return stride_; }

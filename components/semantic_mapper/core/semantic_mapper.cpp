@@ -74,13 +74,31 @@ const MapStakes* SemanticMapper::stakes() {
   return &*stakes_;
 }
 
+IntegrationStatus SemanticMapper::status_of(const AnchoredFrame& frame) const {
+  if (!geometry::is_valid(frame.T_map_keyframe) || !geometry::is_valid(frame.T_keyframe_camera))
+    return IntegrationStatus::kInvalidPose;
+  if (!is_near(frame.T_map_keyframe) || !is_near(frame.T_keyframe_camera)) return IntegrationStatus::kTooFarAway;
+  const bool is_full = frames_before_ + frames_integrated_ >= kMaxFrames;
+  return is_full ? IntegrationStatus::kMapIsFull : IntegrationStatus::kIntegrated;
+}
+
+bool SemanticMapper::brings_newer_keyframe(const AnchoredFrame& frame) const {
+  return frame.graph_version >= graph_version_ || !keyframe_poses_.contains(frame.keyframe_id);
+}
+
+IntegrationReport SemanticMapper::look(const AnchoredFrame& input) const {
+  const auto status = status_of(input);
+  if (status != IntegrationStatus::kIntegrated) return {status, {}};
+  const Pose& T_map_keyframe =
+      brings_newer_keyframe(input) ? input.T_map_keyframe : keyframe_poses_.at(input.keyframe_id);
+  return {status, votes_of(input.frame, T_map_keyframe * input.T_keyframe_camera)};
+}
+
 IntegrationReport SemanticMapper::integrate(AnchoredFrame input) {
-  if (!geometry::is_valid(input.T_map_keyframe) || !geometry::is_valid(input.T_keyframe_camera))
-    return {IntegrationStatus::kInvalidPose, {}};
-  if (!is_near(input.T_map_keyframe) || !is_near(input.T_keyframe_camera)) return {IntegrationStatus::kTooFarAway, {}};
-  if (frames_before_ + frames_integrated_ >= kMaxFrames) return {IntegrationStatus::kMapIsFull, {}};
-  const bool is_newer = input.graph_version >= graph_version_, is_known = keyframe_poses_.contains(input.keyframe_id);
-  if (is_newer || !is_known) move_keyframe(input.keyframe_id, input.T_map_keyframe);
+  const auto status = status_of(input);
+  if (status != IntegrationStatus::kIntegrated) return {status, {}};
+  const bool is_known = keyframe_poses_.contains(input.keyframe_id);
+  if (brings_newer_keyframe(input)) move_keyframe(input.keyframe_id, input.T_map_keyframe);
   known_since_.try_emplace(input.keyframe_id, input.graph_version);
   // The graph reports this, too, but later.
   if (!is_known && input.is_keyframe) is_drifting_[input.keyframe_id] = !input.drift.is_none();

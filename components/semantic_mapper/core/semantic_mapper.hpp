@@ -119,6 +119,9 @@ class SemanticMapper {
   /// too, when its voxels are not of config.resolution_m.
   SemanticMapper(const MapperConfig& config, mapping::VoxelMap base);
 
+  /// What integrate() would report of the frame now, if it had no drift; the map stays as it is. Labels only decide
+  /// what the hits of the votes are for, so a frame without them gives the same misses, and hits in the same voxels.
+  IntegrationReport look(const AnchoredFrame& input) const;
   /// Puts a frame into the map at its key-frame's newest known pose.
   IntegrationReport integrate(AnchoredFrame input);
   /// How the newest frame entered the map; nothing before the first.
@@ -199,6 +202,8 @@ class SemanticMapper {
     geometry::Pose T_anchor_orphan = geometry::Pose::Identity();
   };
 
+  IntegrationStatus status_of(const AnchoredFrame& frame) const;
+  bool brings_newer_keyframe(const AnchoredFrame& frame) const;
   mapping::FrameVotes votes_of(const mapping::CompactFrame& samples, const geometry::Pose& T_map_camera,
                                const mapping::Drift& drift = {}) const;
   void store(StoredFrame frame, const mapping::CompactFrame& samples, const mapping::FrameVotes& votes);

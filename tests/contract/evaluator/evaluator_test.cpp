@@ -136,6 +136,49 @@ TEST_F(EvaluatorContract, WritesTheRunFolderWhenItIsStopped) {
   }
 }
 
+/// Number of hits for a class and for none in the reference map.
+std::pair<std::uint64_t, std::uint64_t> hits_of(const mapping::MapFile& file) {
+  std::pair<std::uint64_t, std::uint64_t> labelled_and_not{};
+  file.map.for_each_observed([&](const auto&, const mapping::VoxelCounts& counts) {
+    for (const auto& hit : counts.hits)
+      (hit.label != 0 ? labelled_and_not.first : labelled_and_not.second) += hit.count;
+  });
+  return labelled_and_not;
+}
+
+// A slow network: the labels of a frame come more than a second after it, at 30 Hz.
+TEST_F(EvaluatorContract, LabelsThatComeLateAreInTheReferenceAndNoFrameIsLost) {
+  constexpr int kFrames = 45, kLate = 36, kLost = 40;  // the last labels never come
+  describe_map();
+  std::vector<sensor_msgs::msg::Image> late;
+  for (int i = 0; i < kFrames; ++i) {
+    CameraFrame frame = feed.frame(i);
+    late.push_back(*frame.labels);
+    frame.labels.reset();
+    send(frame, i);
+    feed.send({.color = {}, .depth = frame.depth, .labels = {}, .info = {}});  // when it is refused, all have come
+    ASSERT_TRUE(probe.wait_until([&] {
+      return sum_of(newest_values(diagnostics, "evaluator"), "depth dropped: stamp was there before") == i + 1;
+    })) << i
+        << evaluator.log();
+    if (i < kLate) continue;
+    const auto of_then = static_cast<std::size_t>(i - kLate);
+    feed.send({.color = {}, .depth = {}, .labels = late[of_then], .info = {}});
+    ASSERT_TRUE(has_recorded(i - kLate + 1)) << i << evaluator.log();
+  }
+  for (int i = kFrames - kLate; i < kLost; ++i) {
+    feed.send({.color = {}, .depth = {}, .labels = late[static_cast<std::size_t>(i)], .info = {}});
+    ASSERT_TRUE(has_recorded(i + 1)) << i << evaluator.log();
+  }
+  EXPECT_EQ(evaluator.stop(SIGTERM, Seconds(20)), 0) << evaluator.log();
+  EXPECT_THAT(read(std::filesystem::path(folder) / "metrics.json"),
+              HasSubstr("\"frames_total\": " + std::to_string(kFrames)));
+  const auto [labelled, unlabelled] = hits_of(reference_map());
+  EXPECT_GT(unlabelled, 0U) << "frames without labels are in the reference, too";
+  EXPECT_NEAR(static_cast<double>(unlabelled) / static_cast<double>(labelled + unlabelled),
+              static_cast<double>(kFrames - kLost) / kFrames, 0.02);
+}
+
 TEST_F(EvaluatorContract, TheReferenceIsBuiltAsTheMapIs) {
   describe_map(0.2);
   for (int i = 0; i < 4; ++i) send(feed.frame(i), i);

@@ -117,7 +117,7 @@ TEST_F(SegmenterContract, LabelsHaveStampFrameAndSizeOfTheirImage) {
   const auto list = messages::from_message(label_info[0]);
   ASSERT_TRUE(list) << list.reason;
   EXPECT_EQ(list->name(2), "color 1");
-  EXPECT_TRUE(wait_for_count("images", 5));
+  EXPECT_TRUE(wait_for_count("frames", 5));
   EXPECT_GT(sum_of(newest_values(diagnostics, "segmenter"), "wall_ms"), 0.0);
   EXPECT_GT(sum_of(newest_values(diagnostics, "segmenter"), "cpu_ms"), 0.0);
   TopicProbe late("late");

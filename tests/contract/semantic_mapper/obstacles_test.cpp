@@ -95,6 +95,77 @@ TEST_F(Obstacles, GridsComeFifteenTimesASecondOfStampsAndToLateJoiners) {
   EXPECT_EQ(seen.back(), grids.back());
 }
 
+/// Each frame gives one grid.
+struct SeenObstacles {
+  SeenObstacles() : run({"semantic_mapper.obstacle_period_s=0.03"}) {}
+
+  /// Waits for the grid of a frame.
+  bool has_grid(int index) {
+    return run.probe.wait_until([&] {
+      return !grids.empty() && messages::from_message(grids.back().header().stamp()) == CameraFeed::stamp(index);
+    });
+  }
+
+  MapperRun run;
+  const std::vector<OccupancyGrid>& grids = run.probe.collect(topics::kObstacles);
+};
+
+TEST(ObstaclesOfFrames, DoNotWaitForLabelsAndAreTheSame) {
+  constexpr int kFrames = 36, kSteps = 12;  // 1.2 s; every third frame, so that the camera sees something new
+  const auto send_bare = [](MapperRun& run, int index) {
+    CameraFrame frame = run.feed.frame(index);
+    const auto labels = *frame.labels;
+    frame.labels.reset();
+    run.send(frame, index);
+    return labels;
+  };
+  std::vector<OccupancyGrid> expected;
+  {
+    SeenObstacles at_once;
+    ASSERT_TRUE(at_once.run.is_ready()) << at_once.run.mapper.log();
+    for (int i = 0; i < kFrames; i += kFrames / kSteps) {
+      at_once.run.send(at_once.run.feed.frame(i), i);
+      ASSERT_TRUE(at_once.has_grid(i)) << i << at_once.run.mapper.log();
+    }
+    expected = at_once.grids;
+  }
+  SeenObstacles late;
+  MapperRun& run = late.run;
+  ASSERT_TRUE(run.is_ready()) << run.mapper.log();
+  std::vector<sensor_msgs::msg::Image> labels;
+  for (int i = 0; i < kFrames; i += kFrames / kSteps) {
+    labels.push_back(send_bare(run, i));
+    ASSERT_TRUE(late.has_grid(i)) << i << run.mapper.log();
+  }
+  EXPECT_FALSE(run.client.has_map()) << "frames wait for labels";
+  ASSERT_EQ(late.grids.size(), expected.size());
+  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_EQ(late.grids[i], expected[i]) << i;
+  for (const auto& image : labels) run.feed.send({.color = {}, .depth = {}, .labels = image, .info = {}});
+  ASSERT_TRUE(run.probe.wait_until([&] {
+    return !run.client.states.empty() && run.client.states.back().frames_integrated() == labels.size() &&
+           run.client.has_map();
+  })) << run.mapper.log();
+  run.client.mirror.map()->for_each_observed([&](const auto&, const mapping::VoxelCounts& counts) {
+    for (const auto& hit : counts.hits) EXPECT_NE(hit.label, 0);
+  });
+  EXPECT_EQ(late.grids.size(), expected.size()) << "labels change nothing in them";
+}
+
+// The frames of before need not wait for labels any longer, and slam's new map is driven in at once.
+TEST(ObstaclesOfFrames, OfANewSessionDoNotWaitForItsLabels) {
+  SeenObstacles late;
+  MapperRun& run = late.run;
+  ASSERT_TRUE(run.is_ready()) << run.mapper.log();
+  for (const int i : {0, 3, 6}) {
+    CameraFrame frame = run.feed.frame(i);
+    frame.labels.reset();
+    run.send(frame, i, i < 6 ? 1 : 2);
+    ASSERT_TRUE(late.has_grid(i)) << i << run.mapper.log();
+  }
+  EXPECT_EQ(run.mapper.stop(SIGTERM), 0) << run.mapper.log();
+  EXPECT_THAT(run.mapper.log(), ::testing::HasSubstr("3 frames integrated, 0 dropped"));
+}
+
 // A robot that slam does not track goes by odometry, and its controller stands still without a map.
 TEST_F(Obstacles, GridsContinueWhileSlamDoesNotTrack) {
   ASSERT_TRUE(map_frame(0)) << mapper.log();

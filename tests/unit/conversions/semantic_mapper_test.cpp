@@ -5,6 +5,7 @@
 
 #include <cstring>
 
+#include "common/messages/camera.hpp"
 #include "common/messages/geometry.hpp"
 #include "common/messages/time.hpp"
 
@@ -54,10 +55,16 @@ lapis_msgs::msg::TrackedFrame tracked_frame() {
 messages::Converted<mapping::CompactFrame> compact(const sensor_msgs::msg::CameraInfo& info,
                                                    const sensor_msgs::msg::Image* labels = nullptr,
                                                    const sensor_msgs::msg::Image* confidence = nullptr) {
+  using Result = messages::Converted<mapping::CompactFrame>;
   images::KeptRectifier rectifier;
   mapping::CompactFrameConfig every_pixel;
   every_pixel.stride = 1;
-  return to_core({geometry::DepthImage(8, 6, 1.0F), info, labels, confidence}, every_pixel, rectifier);
+  const auto camera = messages::lens_camera(info);
+  if (!camera) return Result::refused(camera.reason);
+  auto frame = to_core(geometry::DepthImage(8, 6, 1.0F), *camera, every_pixel);
+  if (!frame) return frame;
+  const std::string problem = set_labels(*frame, {labels, confidence}, *camera, every_pixel, rectifier);
+  return problem.empty() ? std::move(frame) : Result::refused(problem);
 }
 mapping::CompactFrame compact_frame() { return *compact(camera_info(8, 6)); }
 

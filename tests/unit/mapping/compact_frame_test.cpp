@@ -86,6 +86,30 @@ TEST(CompactFrame, KeepsTheSampledConfidenceOfLabels) {
   EXPECT_TRUE(CompactFrame::make(kCamera, depth, nullptr, {5, 40}, error, &confidence)->confidence().empty());
 }
 
+TEST(CompactFrame, LabelsThatComeLaterAreThoseOfAFrameThatHadThemAtOnce) {
+  std::mt19937 random(2);
+  geometry::DepthImage depth(kCamera.width, kCamera.height);
+  geometry::LabelImage labels(kCamera.width, kCamera.height);
+  geometry::ConfidenceImage confidence(kCamera.width, kCamera.height);
+  for (float& d : depth.pixels) d = static_cast<float>(random() % 9000) * 1e-3f;
+  for (std::uint16_t& l : labels.pixels) l = static_cast<std::uint16_t>(random() % 50);
+  for (std::uint8_t& c : confidence.pixels) c = static_cast<std::uint8_t>(random() % 256);
+  std::string error;
+  for (const auto* given : {static_cast<const geometry::ConfidenceImage*>(nullptr),
+                            static_cast<const geometry::ConfidenceImage*>(&confidence)}) {
+    const auto at_once = CompactFrame::make(kCamera, depth, &labels, {3, 40}, error, given).value();
+    auto later = CompactFrame::make(kCamera, depth, nullptr, {3, 40}, error).value();
+    EXPECT_EQ(later.set_labels(labels, given, 40), "");
+    EXPECT_EQ(pack(later), pack(at_once));
+    EXPECT_EQ(later.labels_out_of_list(), at_once.labels_out_of_list());
+  }
+  auto frame = CompactFrame::make(kCamera, depth, nullptr, {}, error).value();
+  EXPECT_NE(frame.set_labels(geometry::LabelImage(8, 8), nullptr, 40).find("label size"), std::string::npos);
+  const geometry::ConfidenceImage small(8, 8);
+  EXPECT_NE(frame.set_labels(labels, &small, 40).find("confidence size"), std::string::npos);
+  EXPECT_FALSE(frame.has_labels());
+}
+
 TEST(CompactFrame, NamesWhatDisagrees) {
   const geometry::DepthImage depth(kCamera.width, kCamera.height, 1.0f), small(8, 8, 1.0f);
   const geometry::LabelImage small_labels(8, 8);

@@ -110,6 +110,61 @@ std::vector<KeyframePose> drive_with_corrections(SemanticMapper& mapper, unsigne
   return last;
 }
 
+/// Voxels with hits, and those with misses.
+std::pair<std::set<mapping::VoxelIndex>, std::set<mapping::VoxelIndex>> seen_voxels(const mapping::FrameVotes& votes) {
+  std::pair<std::set<mapping::VoxelIndex>, std::set<mapping::VoxelIndex>> seen;
+  for (const mapping::BlockVotes& block : votes.blocks) {
+    for (const mapping::HitVote& hit : votes.hits_of(block)) seen.first.insert(voxel_at(block.block, hit.offset));
+    for (int offset = 0; offset < mapping::kBlockVoxels; ++offset) {
+      const auto i = static_cast<std::size_t>(offset);
+      if (block.misses[i / 64] >> i % 64 & 1) seen.second.insert(voxel_at(block.block, offset));
+    }
+  }
+  return seen;
+}
+
+// Obstacles are taken from frames whose labels are still to come.
+TEST(SemanticMapper, ALookAtAFrameWithoutLabelsSeesWhatItsVotesWillBe) {
+  std::mt19937 random(5);
+  for (const double kernel_length_voxels : {0.0, 2.0}) {
+    MapperConfig config;
+    config.resolution_m = 0.1;
+    config.integration.kernel_length_voxels = kernel_length_voxels;
+    config.integration.depth_noise_per_m = 0.02;  // hits of far surfaces weigh little
+    SemanticMapper mapper(config);
+    std::uint64_t version = 1;
+    for (std::size_t i = 0; i < tour().frames.size(); i += 3) {
+      if (i % 2 == 1) mapper.update_keyframe_poses(++version, corrected(random, 0.05));
+      AnchoredFrame bare = tour().frames[i];
+      const auto image =
+          lapis::test::render(lapis::test::furnished_room(), kCamera, bare.T_map_keyframe * bare.T_keyframe_camera);
+      geometry::ConfidenceImage confidence(kCamera.width, kCamera.height);
+      for (std::uint8_t& c : confidence.pixels) c = static_cast<std::uint8_t>(random() % 256);
+      std::string error;
+      AnchoredFrame labelled = bare;
+      bare.frame = mapping::CompactFrame::make(kCamera, image.depth, nullptr, {1, 40}, error).value();
+      labelled.frame =
+          mapping::CompactFrame::make(kCamera, image.depth, &image.labels, {1, 40}, error, &confidence).value();
+      const mapping::VoxelMap before = mapper.map();
+      const auto looked = mapper.look(bare);
+      EXPECT_EQ(mapper.map(), before);
+      const auto report = mapper.integrate(labelled);
+      EXPECT_EQ(looked.status, IntegrationStatus::kIntegrated);
+      EXPECT_EQ(seen_voxels(looked.votes), seen_voxels(report.votes));
+      EXPECT_NE(looked.votes, report.votes) << "labels count in the map";
+    }
+  }
+}
+
+TEST(SemanticMapper, ALookRefusesWhatIntegrationRefuses) {
+  SemanticMapper mapper(MapperConfig{});
+  AnchoredFrame frame = tour().frames[0];
+  frame.T_keyframe_camera.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(mapper.look(frame).status, IntegrationStatus::kInvalidPose);
+  frame.T_keyframe_camera.translation().x() = 20'000.0;
+  EXPECT_EQ(mapper.look(frame).status, IntegrationStatus::kTooFarAway);
+}
+
 TEST(SemanticMapper, EqualsBuildFromRecordsAtEveryInstantAndFromScratchAfterFlush) {
   for (unsigned seed = 0; seed < 100; ++seed) {
     MapperConfig config;

@@ -1,7 +1,6 @@
 #include "slam/core/tracking/tracker.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -52,6 +51,8 @@ TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optio
   const int features = static_cast<int>(frame.features.size());
   best.reason = shortage(features, config_.tracker.min_inliers, "features");
   if (features < config_.tracker.min_inliers) return best;
+  best.reason = "nothing tells where the camera may be";
+  if (!predicted) return best;
   const auto merit = [](const TrackOutcome& outcome, bool expected) {
     return std::tuple(outcome.is_tracked && expected, outcome.is_tracked, outcome.inliers.size());
   };
@@ -64,13 +65,10 @@ TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optio
     }
     return is_best_expected && best.inliers.size() >= static_cast<std::size_t>(config_.tracker.min_matches);
   };
-  if (predicted) {
-    const std::array wider{config_.matcher.search_radius_px, config_.matcher.wide_search_radius_px};
-    if (is_convincing(track_projected(map, frame, local_, *predicted, radius_px))) return best;
-    for (const double wider_px : wider) {
-      if (wider_px <= radius_px) continue;
-      if (is_convincing(track_projected(map, frame, local_, *predicted, wider_px))) return best;
-    }
+  if (is_convincing(track_projected(map, frame, local_, *predicted, radius_px))) return best;
+  for (const double wider_px : {config_.matcher.search_radius_px, config_.matcher.wide_search_radius_px}) {
+    if (wider_px <= radius_px) continue;
+    if (is_convincing(track_projected(map, frame, local_, *predicted, wider_px))) return best;
   }
   is_convincing(track_brute_force(map, frame, local_));
   return best;

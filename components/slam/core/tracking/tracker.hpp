@@ -33,6 +33,7 @@ class Tracker {
   void set_reference(const Map& map, KeyframeId reference);
   /// Tries, in this order, until one is convincing: projection with the predicted pose, within `radius_px` and in two
   /// wider searches; brute force with the reference key-frame. A pose that `is_expected` is not is the last resort.
+  /// Without a prediction nothing is tried: see `recognize`.
   TrackOutcome track(const Map& map, const Frame& frame, const std::optional<geometry::Pose>& predicted,
                      double radius_px, const std::function<bool(const TrackOutcome&)>& is_expected) const;
   /// Root-mean-square distance of the inliers from where `T_map_camera` has them, at the finest pyramid level [px].

@@ -76,7 +76,10 @@ class Course {
     const double whole_s = setting_.longest_s > 0.0 ? std::min(setting_.longest_s, tour.duration_s) : tour.duration_s;
     const double end_s = whole_s * dice_.between(carry_.earliest, carry_.latest);
     simulator::TourFollower follower(setting_.world.nav_map(), std::move(tour), setting_.tour);
-    while (!follower.is_finished() && rig_.robot().stamp.seconds() < end_s) drive_on(follower);
+    while (!follower.is_finished() && rig_.robot().stamp.seconds() < end_s) {
+      drive_on(follower);
+      passed_.push_back(rig_.robot().position);
+    }
   }
 
   void hang() {
@@ -125,21 +128,34 @@ class Course {
     }
   }
 
-  // All rooms, beginning with the nearest; after a new place those that are known come next.
+  // All rooms, beginning with the nearest; after a new place beginning with the nearest of those that are known.
   simulator::Tour plan_second_tour() const {
     const Eigen::Vector2d here = rig_.robot().position;
     std::vector<Eigen::Vector2d> waypoints = setting_.world.scene().tour;
-    const auto nearest = std::min_element(waypoints.begin(), waypoints.end(), [&](const auto& a, const auto& b) {
-      return (a - here).squaredNorm() < (b - here).squaredNorm();
-    });
-    std::rotate(waypoints.begin(), nearest, carry_.to_new_place ? nearest + 1 : waypoints.end());
+    const auto nearest = [&](auto begin, auto end) {
+      return std::min_element(begin, end, [&](const auto& a, const auto& b) {
+        return (a - here).squaredNorm() < (b - here).squaredNorm();
+      });
+    };
+    if (carry_.to_new_place) {
+      const auto known = std::stable_partition(waypoints.begin(), waypoints.end(),
+                                               [&](const Eigen::Vector2d& waypoint) { return was_passed(waypoint); });
+      if (known != waypoints.begin()) std::rotate(waypoints.begin(), nearest(waypoints.begin(), known), known);
+    } else {
+      std::rotate(waypoints.begin(), nearest(waypoints.begin(), waypoints.end()), waypoints.end());
+    }
     return plan_tour(setting_.world.nav_map(), here, waypoints, setting_.tour);
+  }
+
+  bool was_passed(const Eigen::Vector2d& waypoint) const {
+    constexpr double kWithin_m = 0.5;
+    return std::any_of(passed_.begin(), passed_.end(),
+                       [&](const Eigen::Vector2d& p) { return (p - waypoint).norm() < kWithin_m; });
   }
 
   void drive_on(simulator::TourFollower& follower) {
     tell(rig_.advance(follower.command(rig_.robot())));
     if (const auto problem = follower.stalled(); !problem.empty()) throw std::runtime_error(problem);
-    passed_.push_back(rig_.robot().position);
     slam_.process(rig_.see(), rig_.T_world_camera());
   }
 
@@ -154,7 +170,7 @@ class Course {
   TrialRig rig_;
   WatchedSlam slam_;
   CarriedTrial trial_;
-  std::vector<Eigen::Vector2d> passed_;  // by the robot, at every frame
+  std::vector<Eigen::Vector2d> passed_;  // by the robot before it was lifted, at every frame
 };
 
 double path_m(const std::vector<WatchedFrame>& frames, std::size_t begin, std::size_t end) {

@@ -53,10 +53,14 @@ class Tracker {
     std::vector<SurfaceSample> surface;  // in the reference key-frame's optical frame
   };
 
+  /// The key-frame and its most covisible ones.
+  std::vector<KeyframeId> nearby(const Map& map, KeyframeId keyframe) const;
   LocalMap local_map(const Map& map, KeyframeId reference) const;
   TrackOutcome track_projected(const Map& map, const Frame& frame, const LocalMap& local,
                                const geometry::Pose& predicted, double radius_px) const;
-  TrackOutcome track_brute_force(const Map& map, const Frame& frame, const LocalMap& local) const;
+  /// `gather` is asked for the local map when the key-frame is recognised.
+  TrackOutcome track_brute_force(const Map& map, const Frame& frame, KeyframeId keyframe,
+                                 const std::function<LocalMap()>& gather) const;
   std::vector<PointConstraint> constraints(const Map& map, const Frame& frame, KeyframeId reference,
                                            const std::vector<Match>& matches) const;
   /// `window_px2`: area in which the pixel of a wrong match can lie [px^2].

@@ -71,13 +71,13 @@ void print_elsewhere(const std::string& scene, int trial, const CarriedTrial& co
   const WatchedMap& map = course.map;
   std::printf(
       "elsewhere %-12s %4d | lifted %6.1f s, set down %5.1f m off | sub-map after %5.1f s | joined after %6.1f s, "
-      "%5.1f m "
-      "(known %5.1f m), off by %6.2f m %4.0f dg | sub-maps %zu, joined %zu, given up %zu | loops %3zu, wrong %zu; "
-      "key-frames %zu, far %zu, unconnected %zu | %s%s%s\n",
+      "%5.1f m (known %5.1f m, seen again over %4.1f m), off by %6.2f m %4.0f dg | sub-maps %zu, joined %zu, given up "
+      "%zu | loops %3zu, wrong %zu; key-frames %zu, far %zu, unconnected %zu | CPU lost %4.1f ms, tracked %4.1f ms | "
+      "%s%s%s\n",
       scene.c_str(), trial, course.frames[course.lifted].t_s, course.carried_m, v.begun_s, v.joined_s, v.joined_m,
-      v.known_m, v.joined.m, v.joined.rad * kDegrees, map.parts.begun, map.parts.joined, map.parts.given_up, map.loops,
-      map.wrong_loops, map.keyframes, map.far_keyframes, map.unconnected, v.has_begun ? "" : "AT ONCE, ",
-      v.is_found ? "found" : "NOT FOUND", v.is_wrong ? ", WRONG" : "");
+      v.known_m, v.seen_m, v.joined.m, v.joined.rad * kDegrees, map.parts.begun, map.parts.joined, map.parts.given_up,
+      map.loops, map.wrong_loops, map.keyframes, map.far_keyframes, map.unconnected, v.lost_ms, v.tracked_ms,
+      v.has_begun ? "" : "AT ONCE, ", v.is_found ? "found" : "NOT FOUND", v.is_wrong ? ", WRONG" : "");
 }
 
 void print_heading(const std::string& scene, int trial, const HeadingTrial& t, const HeadingVerdict& v) {
@@ -131,7 +131,7 @@ class Building {
   }
 
   void carry_elsewhere(int trial, Tally& tally) {
-    const Carry carry{false, true, 0.5, 0.7, 3.0, 120.0, 10.0, true};
+    const Carry carry{false, true, 0.5, 0.7, 3.0, 120.0, 3.0, true, 2.0};
     const CarriedTrial course = drive(trial, carry);
     const ElsewhereVerdict verdict = judge_elsewhere(course);
     print_elsewhere(scene_, trial, course, verdict);
@@ -204,12 +204,24 @@ Tally run_kind(const std::string& kind, const Options& options) {
   return tally;
 }
 
+// Wilson's interval (95 %) of a share, in percent.
+std::string interval(int count, int of) {
+  constexpr double kQuantile = 1.96;
+  const double n = of, p = count / n, z2 = kQuantile * kQuantile;
+  const double middle = (p + z2 / (2.0 * n)) / (1.0 + z2 / n);
+  const double half = kQuantile * std::sqrt(p * (1.0 - p) / n + z2 / (4.0 * n * n)) / (1.0 + z2 / n);
+  char text[48];
+  std::snprintf(text, sizeof text, "%.1f to %.1f %%", 100.0 * (middle - half), 100.0 * (middle + half));
+  return text;
+}
+
 int run(const Options& options) {
   bool is_good = true;
   for (const std::string& kind : options.kinds) {
     const Tally tally = run_kind(kind, options);
-    std::printf("%s: %d of %d passed, wrong %d, failed to run %d\n", kind.c_str(), tally.passed, tally.trials,
-                tally.wrong, tally.failed_to_run);
+    std::printf("%s: %d of %d passed (%s), wrong %d (%s), failed to run %d\n", kind.c_str(), tally.passed, tally.trials,
+                interval(tally.passed, tally.trials).c_str(), tally.wrong, interval(tally.wrong, tally.trials).c_str(),
+                tally.failed_to_run);
     is_good = is_good && tally.failed_to_run == 0 && tally.wrong == 0;
   }
   return is_good ? 0 : 1;

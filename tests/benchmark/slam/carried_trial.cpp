@@ -6,6 +6,7 @@
 #include <optional>
 #include <stdexcept>
 
+#include "evaluator/core/statistics.hpp"
 #include "simulator/core/robot/starts.hpp"
 #include "simulator/core/robot/tour_follower.hpp"
 #include "tests/benchmark/slam/dice.hpp"
@@ -37,6 +38,17 @@ std::optional<std::size_t> find_found(const std::vector<WatchedFrame>& frames, s
   return std::nullopt;
 }
 
+// Wrong poses by vision or surfaces once it had been lost: places that it is not at.
+double wrong_return_s(const std::vector<WatchedFrame>& frames, std::size_t begin) {
+  double wrong_s = 0.0;
+  bool was_lost = false;
+  for (std::size_t i = begin; i < frames.size(); ++i) {
+    was_lost = was_lost || frames[i].source == PoseSource::kNone;
+    if (was_lost && is_held(frames[i]) && frames[i].error.m > kWrong_m) wrong_s += frames[i].t_s - frames[i - 1].t_s;
+  }
+  return wrong_s;
+}
+
 // One trial as it goes on.
 class Course {
  public:
@@ -64,7 +76,10 @@ class Course {
     const double whole_s = setting_.longest_s > 0.0 ? std::min(setting_.longest_s, tour.duration_s) : tour.duration_s;
     const double end_s = whole_s * dice_.between(carry_.earliest, carry_.latest);
     simulator::TourFollower follower(setting_.world.nav_map(), std::move(tour), setting_.tour);
-    while (!follower.is_finished() && rig_.robot().stamp.seconds() < end_s) drive_on(follower);
+    while (!follower.is_finished() && rig_.robot().stamp.seconds() < end_s) {
+      drive_on(follower);
+      passed_.push_back(rig_.robot().position);
+    }
   }
 
   void hang() {
@@ -109,24 +124,38 @@ class Course {
       if (follower->is_finished()) follower.reset();
       const auto found = find_found(slam_.frames(), trial_.set_down);
       if (found) end_s = std::min(end_s, slam_.frames()[*found].t_s + carry_.after_s);
+      if (wrong_return_s(slam_.frames(), trial_.set_down) > carry_.wrong_s) return;
     }
   }
 
-  // All rooms, beginning with the nearest; after a new place those that are known come next.
+  // All rooms, beginning with the nearest; after a new place beginning with the nearest of those that are known.
   simulator::Tour plan_second_tour() const {
     const Eigen::Vector2d here = rig_.robot().position;
     std::vector<Eigen::Vector2d> waypoints = setting_.world.scene().tour;
-    const auto nearest = std::min_element(waypoints.begin(), waypoints.end(), [&](const auto& a, const auto& b) {
-      return (a - here).squaredNorm() < (b - here).squaredNorm();
-    });
-    std::rotate(waypoints.begin(), nearest, carry_.to_new_place ? nearest + 1 : waypoints.end());
+    const auto nearest = [&](auto begin, auto end) {
+      return std::min_element(begin, end, [&](const auto& a, const auto& b) {
+        return (a - here).squaredNorm() < (b - here).squaredNorm();
+      });
+    };
+    if (carry_.to_new_place) {
+      const auto known = std::stable_partition(waypoints.begin(), waypoints.end(),
+                                               [&](const Eigen::Vector2d& waypoint) { return was_passed(waypoint); });
+      if (known != waypoints.begin()) std::rotate(waypoints.begin(), nearest(waypoints.begin(), known), known);
+    } else {
+      std::rotate(waypoints.begin(), nearest(waypoints.begin(), waypoints.end()), waypoints.end());
+    }
     return plan_tour(setting_.world.nav_map(), here, waypoints, setting_.tour);
+  }
+
+  bool was_passed(const Eigen::Vector2d& waypoint) const {
+    constexpr double kWithin_m = 0.5;
+    return std::any_of(passed_.begin(), passed_.end(),
+                       [&](const Eigen::Vector2d& p) { return (p - waypoint).norm() < kWithin_m; });
   }
 
   void drive_on(simulator::TourFollower& follower) {
     tell(rig_.advance(follower.command(rig_.robot())));
     if (const auto problem = follower.stalled(); !problem.empty()) throw std::runtime_error(problem);
-    passed_.push_back(rig_.robot().position);
     slam_.process(rig_.see(), rig_.T_world_camera());
   }
 
@@ -141,7 +170,7 @@ class Course {
   TrialRig rig_;
   WatchedSlam slam_;
   CarriedTrial trial_;
-  std::vector<Eigen::Vector2d> passed_;  // by the robot, at every frame
+  std::vector<Eigen::Vector2d> passed_;  // by the robot before it was lifted, at every frame
 };
 
 double path_m(const std::vector<WatchedFrame>& frames, std::size_t begin, std::size_t end) {
@@ -153,17 +182,46 @@ double path_m(const std::vector<WatchedFrame>& frames, std::size_t begin, std::s
 }
 
 void judge_wrong_poses(const CarriedTrial& trial, CarriedVerdict& verdict) {
-  bool was_lost = false;
+  verdict.wrong_return_s = wrong_return_s(trial.frames, trial.set_down);
   for (std::size_t i = trial.set_down; i < trial.frames.size(); ++i) {
     const WatchedFrame& frame = trial.frames[i];
     const double period_s = frame.t_s - trial.frames[i - 1].t_s;
-    was_lost = was_lost || frame.source == PoseSource::kNone;
     if (frame.source == PoseSource::kNone || frame.error.m <= kWrong_m) continue;
     if (frame.source == PoseSource::kVision) verdict.wrong_vision_s += period_s;
     if (frame.source == PoseSource::kSurfaces) verdict.wrong_surfaces_s += period_s;
     if (frame.source == PoseSource::kOdometry) verdict.wrong_odometry_s += period_s;
-    if (was_lost && is_held(frame)) verdict.wrong_return_s += period_s;
   }
+}
+
+// Whether the camera shows what it showed before it was lifted: within 1 m and 30 degrees of where it was then.
+bool shows_old_place(const CarriedTrial& trial, const WatchedFrame& frame) {
+  constexpr double kWithin_m = 1.0, kWithin_rad = 30.0 * std::numbers::pi / 180.0;
+  const auto lifted = trial.frames.begin() + static_cast<std::ptrdiff_t>(trial.lifted);
+  return std::any_of(trial.frames.begin(), lifted, [&](const WatchedFrame& old) {
+    if (!old.is_keyframe) return false;
+    const PoseError apart = difference(old.truth, frame.truth);
+    return apart.m < kWithin_m && apart.rad < kWithin_rad;
+  });
+}
+
+double extent_m(const std::vector<Eigen::Vector3d>& positions) {
+  double most_m = 0.0;
+  for (const Eigen::Vector3d& a : positions) {
+    for (const Eigen::Vector3d& b : positions) most_m = std::max(most_m, (a - b).norm());
+  }
+  return most_m;
+}
+
+void judge_cpu(const CarriedTrial& trial, ElsewhereVerdict& verdict) {
+  std::vector<double> tracked_ms, lost_ms;
+  for (std::size_t i = 0; i < trial.frames.size(); ++i) {
+    const WatchedFrame& frame = trial.frames[i];
+    const bool is_covered = i >= trial.lifted && i < trial.set_down;
+    if (frame.source == PoseSource::kVision && !frame.is_keyframe) tracked_ms.push_back(frame.cpu_ms);
+    if (frame.state == TrackingState::kLost && !is_covered) lost_ms.push_back(frame.cpu_ms);
+  }
+  verdict.tracked_ms = evaluator::quantile(tracked_ms, 0.5).value_or(NAN);
+  verdict.lost_ms = evaluator::quantile(lost_ms, 0.5).value_or(NAN);
 }
 
 }  // namespace
@@ -202,11 +260,13 @@ ElsewhereVerdict judge_elsewhere(const CarriedTrial& trial) {
     });
   };
   ElsewhereVerdict verdict;
+  std::vector<Eigen::Vector3d> seen;
   double driven_m = 0.0;
   for (std::size_t i = trial.set_down; i < frames.size(); ++i) {
     const double step_m = (frames[i].truth.translation() - frames[i - 1].truth.translation()).norm();
     if (i > trial.set_down) driven_m += step_m;
     if (i > trial.set_down && was_here(frames[i])) verdict.known_m += step_m;
+    if (shows_old_place(trial, frames[i])) seen.push_back(frames[i].truth.translation());
     if (!verdict.has_begun && frames[i].state == TrackingState::kUnconnected) {
       verdict.has_begun = true;
       verdict.begun_s = frames[i].t_s - set_down_s;
@@ -217,10 +277,11 @@ ElsewhereVerdict judge_elsewhere(const CarriedTrial& trial) {
     verdict.joined = frames[i].error;
     break;
   }
-  CarriedVerdict poses;
-  judge_wrong_poses(trial, poses);
+  verdict.seen_m = extent_m(seen);
+  judge_cpu(trial, verdict);
   verdict.is_found = find_found(frames, trial.set_down).has_value();
-  verdict.is_wrong = poses.wrong_return_s > kWrongFor_s || trial.map.wrong_loops > 0 || trial.map.far_keyframes > 0;
+  verdict.is_wrong =
+      wrong_return_s(frames, trial.set_down) > kWrongFor_s || trial.map.wrong_loops > 0 || trial.map.far_keyframes > 0;
   return verdict;
 }
 

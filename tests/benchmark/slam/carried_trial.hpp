@@ -37,6 +37,7 @@ struct Carry {
   double in_air_s = 2.0;
   double search_s = 120.0, after_s = 30.0;  ///< longest drive afterwards, and drive from where it is found on
   bool again = false;                       ///< the tour afterwards is driven again and again until then
+  double wrong_s = std::numeric_limits<double>::infinity();  ///< it ends after so long with wrong poses once lost
 };
 
 /// Drives a tour through all rooms, on which the robot is lifted; meanwhile the camera sees nothing and the wheels
@@ -67,7 +68,9 @@ struct ElsewhereVerdict {
   double joined_s = std::numeric_limits<double>::infinity();  ///< first frame with a pose in the map
   double joined_m = std::numeric_limits<double>::infinity();  ///< path driven until then
   double known_m = 0.0;                                       ///< ... of which where it had been before it was lifted
-  PoseError joined;                                           ///< of the first pose
+  double seen_m = 0.0;  ///< extent of the places at which, until then or the end, it saw what it had seen before
+  PoseError joined;     ///< of the first pose
+  double tracked_ms = 0.0, lost_ms = 0.0;  ///< median CPU of a frame: tracked, no key-frame; lost, not covered
   bool is_found = false;
   bool is_wrong = false;  ///< it was joined at a wrong place, or the map has a wrong loop or misplaced key-frames
 };

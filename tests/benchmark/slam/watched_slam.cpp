@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 
 #include "evaluator/core/trajectory/ate.hpp"
 #include "slam/core/motion/covariance.hpp"
@@ -26,6 +27,12 @@ double rms_aligned_m(const std::vector<Eigen::Vector3d>& actual, const std::vect
   double squares = 0.0;
   for (std::size_t i = 0; i < actual.size(); ++i) squares += (actual[i] - T * estimated[i]).squaredNorm();
   return std::sqrt(squares / static_cast<double>(actual.size()));
+}
+
+double thread_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &t);
+  return 1e3 * static_cast<double>(t.tv_sec) + 1e-6 * static_cast<double>(t.tv_nsec);
 }
 
 std::string error_of(const WatchedFrame& frame) {
@@ -58,8 +65,10 @@ WatchedSlam::WatchedSlam(const SlamConfig& config, const Pose& T_base_camera)
 void WatchedSlam::add_odometry(time::Time stamp, const Pose& T_odom_base) { slam_.add_odometry(stamp, T_odom_base); }
 
 const WatchedFrame& WatchedSlam::process(const RgbdFrame& frame, const Pose& T_start_camera) {
+  const double begin_ms = thread_ms();
   const TrackingResult result = slam_.process(frame);
   WatchedFrame& watched = frames_.emplace_back();
+  watched.cpu_ms = thread_ms() - begin_ms;
   watched.t_s = frame.stamp.seconds();
   watched.state = result.state;
   watched.source = has_pose(result) ? result.source : PoseSource::kNone;

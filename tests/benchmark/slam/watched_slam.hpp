@@ -23,6 +23,7 @@ struct WatchedFrame {
   double sigma_m = 0.0, sigma_rad = 0.0;              ///< of the pose in the map, along the least known direction
   std::uint32_t matches = 0, inliers = 0;
   std::uint64_t reference = 0;
+  double cpu_ms = 0.0;  ///< of the calling thread
   std::string reason;
 };
 

@@ -7,6 +7,7 @@
 #include <fstream>
 #include <set>
 #include <utility>
+#include <vector>
 
 #include "common/files/atomic_file.hpp"
 #include "common/messages/geometry.hpp"
@@ -59,6 +60,7 @@ class Slam {
     return true;
   }
   CameraFrame frame(int index) const { return feed_.frame(index); }
+  CameraFrame frame(int index, const geometry::Pose& pose) const { return feed_.frame(CameraFeed::stamp(index), pose); }
   void send(const CameraFrame& frame) { feed_.send(frame); }
   bool wait_until(const std::function<bool()>& condition) { return probe_.wait_until(condition); }
   double count(const std::string& what) const { return sum_of(newest_values(diagnostics_, "slam"), what); }
@@ -153,6 +155,37 @@ TEST_F(SavedMap, IsResumedInANewSessionOfTheSameFrame) {
   ASSERT_EQ(run.slam().stop(SIGTERM), 0) << run.log();
   EXPECT_FALSE(fs::exists(folder_.path() / "slam.1.lapis")) << "the new file holds all of the old one";
   EXPECT_FALSE(fs::exists(folder_.path() / "pose_graph.1.g2o"));
+}
+
+// Tracked, covered, and elsewhere until mapping goes on there.
+TEST_F(SavedMap, WithASubMapIsTheSameInTwoRuns) {
+  constexpr int kCovered = 10, kElsewhere = 30;
+  constexpr auto kUnconnected = lapis_msgs::msg::TrackedFrame_Constants::STATE_UNCONNECTED;
+  const auto turned = geometry::make_pose(
+      Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitY())));
+  std::vector<std::vector<std::uint8_t>> saved;
+  for (int i = 0; i < 2; ++i) {
+    const TemporaryFolder folder;
+    Slam run(folder.path(), {"slam.autosave_period_s=0", "slam.sub_map.after_frames=8"});
+    ASSERT_TRUE(run.is_ready()) << run.log();
+    ASSERT_TRUE(run.are_tracked(0, kSavedFrames)) << run.log();
+    int index = kSavedFrames;
+    for (; index < kSavedFrames + kCovered; ++index) {
+      auto covered = run.frame(index);
+      std::fill(covered.color->data().begin(), covered.color->data().end(), std::uint8_t{0});
+      ASSERT_TRUE(run.answers(covered, index)) << run.log();
+    }
+    for (; index < kSavedFrames + kCovered + kElsewhere; ++index) {
+      ASSERT_TRUE(run.answers(run.frame(index, slow_motion(index) * turned), index)) << run.log();
+    }
+    EXPECT_EQ(run.frames.back().state(), kUnconnected) << run.frames.back().reason();
+    ASSERT_EQ(run.slam().stop(SIGTERM), 0) << run.log();
+    std::string error;
+    const auto bytes = files::read_file((folder.path() / "slam.lapis").string(), error);
+    ASSERT_TRUE(bytes) << error;
+    saved.push_back(*bytes);
+  }
+  EXPECT_TRUE(saved[0] == saved[1]);
 }
 
 TEST_F(SavedMap, IsSetAsideByANewMap) {

@@ -32,10 +32,14 @@ class RelocalizerTest : public ::testing::Test {
     outcome.alignment.information(0, 0) = 1.0 / (sigma_m * sigma_m) / SlamConfig{}.pose_graph.information_share;
     return outcome;
   }
-  bool believes(double seconds, const TrackOutcome& outcome) {
+  Relocalizer::Verdict judge(double seconds, const TrackOutcome& outcome) {
     input_.stamp = stamp(seconds);
-    return relocalizer_.believes({map_, graph_, motion_, frame_, is_odometry_refuted_}, outcome);
+    return relocalizer_.judge({map_, graph_, motion_, places_, tracker_, frame_, 0, is_odometry_refuted_}, outcome);
   }
+  bool believes(double seconds, const TrackOutcome& outcome) {
+    return judge(seconds, outcome) == Relocalizer::Verdict::kBelieved;
+  }
+  int needed() const { return config_.relocalization.confirmations; }
   static SlamConfig features_alone() {
     SlamConfig config;
     config.surface.enabled = false;
@@ -49,6 +53,8 @@ class RelocalizerTest : public ::testing::Test {
   SlamGraph graph_;
   bool is_odometry_refuted_ = false;
   MotionModel motion_{config_, Pose::Identity()};
+  LoopDetector places_{config_};
+  Tracker tracker_{config_};
   Relocalizer relocalizer_{config_};
 };
 
@@ -71,9 +77,32 @@ TEST_F(RelocalizerTest, SoonAfterwardsACertainPlaceWithinReachIsBelievedAtOnce) 
   EXPECT_FALSE(believes(1.5, found(1.5, 0.1))) << "uncertain by 10 cm";
 }
 
-TEST_F(RelocalizerTest, ElsewhereACertainPlaceHasToBeFoundAgain) {
-  for (int i = 0; i < config_.relocalization.confirmations; ++i) EXPECT_FALSE(believes(5.0 + 0.1 * i, found(4.0)));
-  EXPECT_TRUE(believes(5.0 + 0.1 * config_.relocalization.confirmations, found(4.0)));
+// Until the camera can have been carried to a copy, 3 m away, the place nearest to the last pose is the right one.
+TEST_F(RelocalizerTest, LaterACertainPlaceNearTheLastPoseHasToBeFoundAgain) {
+  for (int i = 0; i < needed(); ++i) EXPECT_EQ(judge(2.5, found(1.4)), Relocalizer::Verdict::kAwaitsMore);
+  EXPECT_TRUE(believes(2.5, found(1.4)));
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(judge(2.5, found(1.6)), Relocalizer::Verdict::kNotHere);
+}
+
+TEST_F(RelocalizerTest, LongAfterTheLastPoseOnlyACameraThatHasNotMovedIsFound) {
+  for (int i = 0; i < needed(); ++i) EXPECT_EQ(judge(60.0 + 0.1 * i, found(0.6)), Relocalizer::Verdict::kAwaitsMore);
+  EXPECT_TRUE(believes(60.0 + 0.1 * needed(), found(0.6)));
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(judge(61.0 + 0.1 * i, found(0.7)), Relocalizer::Verdict::kNotHere);
+}
+
+// As in a map that was resumed: nothing is known but the key-frame beside which the camera was.
+TEST_F(RelocalizerTest, WithoutALastPoseTheCameraIsFoundBesideItsKeyframe) {
+  motion_.forget();
+  for (int i = 0; i < needed(); ++i) EXPECT_EQ(judge(0.1 * i, found(0.6)), Relocalizer::Verdict::kAwaitsMore);
+  EXPECT_TRUE(believes(0.1 * needed(), found(0.6)));
+  for (int i = 0; i < 10; ++i) EXPECT_EQ(judge(1.0 + 0.1 * i, found(4.0)), Relocalizer::Verdict::kNotHere);
+}
+
+TEST_F(RelocalizerTest, WithoutSubMapsAPlaceAnywhereHasToBeFoundAgain) {
+  config_.sub_map.after_frames = 0;
+  relocalizer_ = Relocalizer(config_);
+  for (int i = 0; i < needed(); ++i) EXPECT_FALSE(believes(5.0 + 0.1 * i, found(4.0)));
+  EXPECT_TRUE(believes(5.0 + 0.1 * needed(), found(4.0)));
 }
 
 // Without odometry nothing else says that it is the place, and not one with the same poster.
@@ -95,7 +124,9 @@ TEST_F(RelocalizerTest, APlaceWhoseSurfacesDifferIsNeverBelieved) {
     for (int i = 0; i < 10; ++i) {
       RgbdFrame input = is_there ? there : elsewhere;
       input.stamp = stamp(5.0 + 0.1 * i);
-      is_believed |= relocalizer.believes({map, graph_, motion_, Frame{&input, {}, {}, 0}}, found(0.0));
+      const Frame frame{&input, {}, {}, 0};
+      is_believed |= relocalizer.judge({map, graph_, motion_, places_, tracker_, frame}, found(0.0)) ==
+                     Relocalizer::Verdict::kBelieved;
     }
     EXPECT_EQ(is_believed, is_there);
   }
@@ -115,9 +146,8 @@ TEST_F(RelocalizerTest, OdometryThatLeadsElsewhereMakesAPlaceAwaitConfirmation) 
 TEST_F(RelocalizerTest, OdometryThatBeganAnewContradictsNothing) {
   for (int i = 0; i <= 10; ++i) ASSERT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose::Identity()));
   for (int i = 110; i <= 140; ++i) ASSERT_TRUE(motion_.add_odometry(stamp(0.1 * i), Pose::Identity()));
-  const int needed = config_.relocalization.confirmations;
-  for (int i = 0; i < needed; ++i) ASSERT_FALSE(believes(12.0 + 0.1 * i, found(0.3)));
-  EXPECT_TRUE(believes(12.0 + 0.1 * needed, found(0.3)));
+  for (int i = 0; i < needed(); ++i) ASSERT_FALSE(believes(12.0 + 0.1 * i, found(0.3)));
+  EXPECT_TRUE(believes(12.0 + 0.1 * needed(), found(0.3)));
 }
 
 // The robot drives 8 m in 8 s by odometry alone; vision finds it 5 m beside, again and again.
@@ -163,9 +193,8 @@ TEST_F(ContradictedPlaceTest, PlacesThatDoNotAgreeAreNoEvidence) {
 }
 
 TEST_F(ContradictedPlaceTest, WhatSlipExplainsOnlyHasToBeFoundAgain) {
-  const int needed = config_.relocalization.confirmations;
-  for (int i = 0; i < needed; ++i) ASSERT_FALSE(believes(6.0 + 0.1 * i, found(4.9 + 0.1 * i)));
-  EXPECT_TRUE(believes(6.0 + 0.1 * needed, found(4.9 + 0.1 * needed)));
+  for (int i = 0; i < needed(); ++i) ASSERT_FALSE(believes(6.0 + 0.1 * i, found(4.9 + 0.1 * i)));
+  EXPECT_TRUE(believes(6.0 + 0.1 * needed(), found(4.9 + 0.1 * needed())));
 }
 
 TEST_F(ContradictedPlaceTest, SlipDoesNotExplainTheNextRoom) {

@@ -15,6 +15,7 @@ using geometry::Pose;
 
 constexpr int kRound = 150;                 // frames in which the camera has looked around
 constexpr int kSeen = 40, kElsewhere = 85;  // frames before it is covered, and view from which it goes on
+constexpr int kLast = kSeen - 1;            // view before it is covered
 constexpr int kCovered = 10;
 constexpr int kAfter = 8;  // frames until a sub-map begins
 
@@ -164,10 +165,10 @@ TEST_F(SubMap, IsGivenUpWhenTheCameraIsSoonLostAgain) {
     EXPECT_EQ(look(slam, kElsewhere + 42).state, TrackingState::kLost) << i;
   }
   EXPECT_EQ(slam.sub_maps().given_up, 1U);
-  for (int i = 0; i < SlamConfig{}.relocalization.confirmations; ++i) look(slam, 10 + i);
-  const TrackingResult back = look(slam, 12);
+  for (int i = 0; i < SlamConfig{}.relocalization.confirmations; ++i) look(slam, kLast - i);
+  const TrackingResult back = look(slam, kLast);
   ASSERT_EQ(back.state, TrackingState::kTracking) << back.reason;
-  EXPECT_LT(error_m(back.T_map_keyframe * back.T_keyframe_camera, 12), 0.03);
+  EXPECT_LT(error_m(back.T_map_keyframe * back.T_keyframe_camera, kLast), 0.03);
 }
 
 TEST_F(SubMap, OfASavedMapIsJoinedInALaterRun) {
@@ -181,13 +182,40 @@ TEST_F(SubMap, OfASavedMapIsJoinedInALaterRun) {
   RgbdSlam after(for_one_room(), Pose::Identity(), std::move(state));
   EXPECT_EQ(after.pose_graph().nodes.size(), before.pose_graph().nodes.size());
   EXPECT_EQ(after.keyframe_count(), before.keyframe_count());
-  for (view = 0; view < kRound && after.sub_maps().joined == 0; ++view) {
+  for (view = kLast; view < kRound && after.sub_maps().joined == 0; ++view) {
     const TrackingResult result = look(after, view);
     if (!has_pose(result)) continue;
     EXPECT_LT(error_m(result.T_map_keyframe * result.T_keyframe_camera, view), 0.03) << view;
   }
   EXPECT_EQ(after.sub_maps().joined, 1U);
   EXPECT_EQ(after.pose_graph().nodes.size(), after.keyframe_count());
+}
+
+// What it sees it has seen before, but it may be a copy: many places have to agree.
+TEST_F(SubMap, BeginsWhereAPlaceIsRecognisedThatIsOutOfReach) {
+  RgbdSlam slam(for_one_room(), look_around(0));
+  for (int view = 0; view < kSeen; ++view) look(slam, view);
+  cover(slam, kCovered);
+  for (int i = 1; i < kAfter; ++i) {
+    const TrackingResult result = look(slam, 0);
+    EXPECT_EQ(result.state, TrackingState::kLost) << i;
+    EXPECT_EQ(result.reason, "a recognised place is not where the camera was, and may be a copy");
+  }
+  EXPECT_EQ(look(slam, 0).state, TrackingState::kUnconnected);
+  EXPECT_TRUE(look_until_joined(slam, 1));
+}
+
+TEST_F(SubMap, DoesNotBeginWhereTheCameraIsBackWhereItWas) {
+  RgbdSlam slam(for_one_room(), look_around(0));
+  for (int view = 0; view < kSeen; ++view) look(slam, view);
+  cover(slam, 60 * 15);
+  for (int i = 0; i < SlamConfig{}.relocalization.confirmations; ++i) {
+    const TrackingResult result = look(slam, kLast);
+    EXPECT_EQ(result.reason, "a recognised place awaits confirmation");
+  }
+  const TrackingResult back = look(slam, kLast);
+  EXPECT_EQ(back.state, TrackingState::kTracking) << back.reason;
+  EXPECT_LT(error_m(back.T_map_keyframe * back.T_keyframe_camera, kLast), 0.03);
 }
 
 TEST_F(SubMap, DoesNotBeginWithoutItsKey) {

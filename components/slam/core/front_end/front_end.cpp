@@ -136,7 +136,8 @@ TrackOutcome FrontEnd::find_pose(const Known& known, const Frame& frame) {
   constexpr double kForgets = 0.8;
   awaits_confirmation_ = false;
   const auto predicted = known.motion.predict(known.map, frame.input->stamp);
-  const Relocalizer::Situation now{known.map, known.graph, known.motion, frame, is_contradicted()};
+  const Relocalizer::Situation now{known.map, known.graph, known.motion, known.places,
+                                   tracker_,  frame,       reference_,   is_contradicted()};
   TrackOutcome outcome =
       tracker_.track(known.map, frame, predicted, search_radius_px(),
                      [&](const TrackOutcome& found) { return relocalizer_.motion_leads_to(now, found); });
@@ -144,14 +145,17 @@ TrackOutcome FrontEnd::find_pose(const Known& known, const Frame& frame) {
                      ? std::max(kForgets * surprise_px_, tracker_.surprise_px(known.map, frame, outcome, *predicted))
                      : kUnknownSurprise_px;
   if (!outcome.is_tracked) {
-    TrackOutcome found = relocalizer_.search(known.map, sub_map(known.map), known.places, tracker_, frame);
-    if (!found.is_tracked) return outcome;
+    if (static_cast<int>(frame.features.size()) < config_.tracker.min_inliers) return outcome;
+    TrackOutcome found = relocalizer_.search(now);
+    if (!found.is_tracked) return predicted ? outcome : found;
     outcome = std::move(found);
   }
-  if (relocalizer_.believes(now, outcome)) return outcome;
+  const Relocalizer::Verdict verdict = relocalizer_.judge(now, outcome);
+  if (verdict == Relocalizer::Verdict::kBelieved) return outcome;
   outcome.is_tracked = false;
-  outcome.reason = "a recognised place awaits confirmation";
-  awaits_confirmation_ = true;
+  awaits_confirmation_ = verdict == Relocalizer::Verdict::kAwaitsMore;
+  outcome.reason = awaits_confirmation_ ? "a recognised place awaits confirmation"
+                                        : "a recognised place is not where the camera was, and may be a copy";
   return outcome;
 }
 
@@ -203,12 +207,15 @@ FrameOutcome FrontEnd::continue_without_features(const Known& known, const Frame
   return hold(known, frame, std::move(aligned), PoseSource::kSurfaces, wants_keyframe);
 }
 
-// Whether the camera has long seen enough to begin with, but no place of the map, and odometry does not lead on either.
-// A resumed map waits until its place is found.
+// Whether the camera has long seen enough to begin with, but no place of the map that recovery believes, and odometry
+// does not lead on either.
 bool FrontEnd::is_somewhere_new(const Known& known, const Frame& frame) {
-  const bool is_unknown = is_placed_ && !awaits_confirmation_ && !known.motion.odometry_at(frame.input->stamp) &&
-                          frame.features_with_depth >= features_to_begin(false);
-  unknown_frames_ = is_unknown ? unknown_frames_ + 1 : 0;
+  const bool can_begin = frame.features_with_depth >= features_to_begin(false);
+  if (!can_begin || known.motion.odometry_at(frame.input->stamp)) {
+    unknown_frames_ = 0;
+  } else if (!awaits_confirmation_) {
+    ++unknown_frames_;
+  }
   if (config_.sub_map.after_frames == 0 || unknown_frames_ < config_.sub_map.after_frames) return false;
   unknown_frames_ = 0;
   return true;

@@ -1,7 +1,6 @@
 #include "slam/core/tracking/tracker.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -29,15 +28,19 @@ std::string doubt(const Support& support) {
 
 void Tracker::set_reference(const Map& map, KeyframeId reference) { local_ = local_map(map, reference); }
 
+std::vector<KeyframeId> Tracker::nearby(const Map& map, KeyframeId reference) const {
+  std::vector<KeyframeId> all = map.covisible(reference, static_cast<std::size_t>(config_.tracker.local_keyframes - 1));
+  all.insert(all.begin(), reference);
+  return all;
+}
+
 Tracker::LocalMap Tracker::local_map(const Map& map, KeyframeId reference) const {
-  std::vector<KeyframeId> nearby =
-      map.covisible(reference, static_cast<std::size_t>(config_.tracker.local_keyframes - 1));
-  nearby.insert(nearby.begin(), reference);
-  LocalMap local{reference, map.landmarks_of(nearby), {}};
+  std::vector<KeyframeId> all = nearby(map, reference);
+  LocalMap local{reference, map.landmarks_of(all), {}};
   if (!config_.surface.enabled) return local;
   const Pose T_reference_map = map.keyframe(reference).T_map_camera.inverse();
-  nearby.resize(std::min(nearby.size(), static_cast<std::size_t>(config_.surface.keyframes)));
-  for (const KeyframeId id : nearby) {
+  all.resize(std::min(all.size(), static_cast<std::size_t>(config_.surface.keyframes)));
+  for (const KeyframeId id : all) {
     const Pose T_reference_other = T_reference_map * map.keyframe(id).T_map_camera;
     for (const SurfaceSample& sample : map.keyframe(id).surface) {
       local.surface.push_back({T_reference_other * sample.point, T_reference_other.linear() * sample.normal});
@@ -52,6 +55,8 @@ TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optio
   const int features = static_cast<int>(frame.features.size());
   best.reason = shortage(features, config_.tracker.min_inliers, "features");
   if (features < config_.tracker.min_inliers) return best;
+  best.reason = "nothing tells where the camera may be";
+  if (!predicted) return best;
   const auto merit = [](const TrackOutcome& outcome, bool expected) {
     return std::tuple(outcome.is_tracked && expected, outcome.is_tracked, outcome.inliers.size());
   };
@@ -64,15 +69,12 @@ TrackOutcome Tracker::track(const Map& map, const Frame& frame, const std::optio
     }
     return is_best_expected && best.inliers.size() >= static_cast<std::size_t>(config_.tracker.min_matches);
   };
-  if (predicted) {
-    const std::array wider{config_.matcher.search_radius_px, config_.matcher.wide_search_radius_px};
-    if (is_convincing(track_projected(map, frame, local_, *predicted, radius_px))) return best;
-    for (const double wider_px : wider) {
-      if (wider_px <= radius_px) continue;
-      if (is_convincing(track_projected(map, frame, local_, *predicted, wider_px))) return best;
-    }
+  if (is_convincing(track_projected(map, frame, local_, *predicted, radius_px))) return best;
+  for (const double wider_px : {config_.matcher.search_radius_px, config_.matcher.wide_search_radius_px}) {
+    if (wider_px <= radius_px) continue;
+    if (is_convincing(track_projected(map, frame, local_, *predicted, wider_px))) return best;
   }
-  is_convincing(track_brute_force(map, frame, local_));
+  is_convincing(track_brute_force(map, frame, local_.reference, [this] { return local_; }));
   return best;
 }
 
@@ -92,10 +94,9 @@ double Tracker::surprise_px(const Map& map, const Frame& frame, const TrackOutco
 
 TrackOutcome Tracker::recognize(const Map& map, const Frame& frame, KeyframeId keyframe,
                                 const std::optional<Pose>& T_map_camera) const {
-  LocalMap local = local_map(map, keyframe);
-  local.surface.clear();
-  if (!T_map_camera) return track_brute_force(map, frame, local);
-  return track_projected(map, frame, local, *T_map_camera, config_.matcher.wide_search_radius_px);
+  const auto landmarks = [&] { return LocalMap{keyframe, map.landmarks_of(nearby(map, keyframe)), {}}; };
+  if (!T_map_camera) return track_brute_force(map, frame, keyframe, landmarks);
+  return track_projected(map, frame, landmarks(), *T_map_camera, config_.matcher.wide_search_radius_px);
 }
 
 TrackOutcome Tracker::track_projected(const Map& map, const Frame& frame, const LocalMap& local, const Pose& predicted,
@@ -117,21 +118,22 @@ TrackOutcome Tracker::track_projected(const Map& map, const Frame& frame, const 
   return outcome;
 }
 
-TrackOutcome Tracker::track_brute_force(const Map& map, const Frame& frame, const LocalMap& local) const {
+TrackOutcome Tracker::track_brute_force(const Map& map, const Frame& frame, KeyframeId keyframe,
+                                        const std::function<LocalMap()>& gather) const {
   TrackOutcome outcome;
-  const Keyframe& reference = map.keyframe(local.reference);
+  const Keyframe& reference = map.keyframe(keyframe);
   const geometry::PinholeCamera& camera = frame.input->camera;
   const auto matches = match_brute_force(config_.matcher, reference, frame);
   outcome.matches = static_cast<int>(matches.size());
   outcome.reason = shortage(outcome.matches, config_.tracker.min_inliers, "matches");
   if (outcome.matches < config_.tracker.min_inliers) return outcome;
-  const auto points = constraints(map, frame, local.reference, matches);
+  const auto points = constraints(map, frame, keyframe, matches);
   const auto solved = solve_pose(config_.tracker, camera, witnesses(config_.tracker, points));
   outcome.reason = "no pose explains " + std::to_string(config_.tracker.min_inliers) + " matches";
   if (!solved) return outcome;
   // The pose is good enough to find the rest of the local map by projection. These matches were sought near it; the
   // first ones were not.
-  outcome = track_projected(map, frame, local, reference.T_map_camera * solved->T_reference_camera,
+  outcome = track_projected(map, frame, gather(), reference.T_map_camera * solved->T_reference_camera,
                             config_.matcher.search_radius_px);
   if (!outcome.is_tracked) return outcome;
   outcome.reason = fault_of(outcome.alignment, camera, points, static_cast<double>(camera.width) * camera.height);

@@ -33,6 +33,7 @@ class Tracker {
   void set_reference(const Map& map, KeyframeId reference);
   /// Tries, in this order, until one is convincing: projection with the predicted pose, within `radius_px` and in two
   /// wider searches; brute force with the reference key-frame. A pose that `is_expected` is not is the last resort.
+  /// Without a prediction nothing is tried: see `recognize`.
   TrackOutcome track(const Map& map, const Frame& frame, const std::optional<geometry::Pose>& predicted,
                      double radius_px, const std::function<bool(const TrackOutcome&)>& is_expected) const;
   /// Root-mean-square distance of the inliers from where `T_map_camera` has them, at the finest pyramid level [px].
@@ -52,10 +53,14 @@ class Tracker {
     std::vector<SurfaceSample> surface;  // in the reference key-frame's optical frame
   };
 
+  /// The key-frame and its most covisible ones.
+  std::vector<KeyframeId> nearby(const Map& map, KeyframeId keyframe) const;
   LocalMap local_map(const Map& map, KeyframeId reference) const;
   TrackOutcome track_projected(const Map& map, const Frame& frame, const LocalMap& local,
                                const geometry::Pose& predicted, double radius_px) const;
-  TrackOutcome track_brute_force(const Map& map, const Frame& frame, const LocalMap& local) const;
+  /// `gather` is asked for the local map when the key-frame is recognised.
+  TrackOutcome track_brute_force(const Map& map, const Frame& frame, KeyframeId keyframe,
+                                 const std::function<LocalMap()>& gather) const;
   std::vector<PointConstraint> constraints(const Map& map, const Frame& frame, KeyframeId reference,
                                            const std::vector<Match>& matches) const;
   /// `window_px2`: area in which the pixel of a wrong match can lie [px^2].

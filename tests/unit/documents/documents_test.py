@@ -12,7 +12,7 @@ import yaml
 
 REPOSITORY = pathlib.Path(sys.argv.pop(1))
 BIN = pathlib.Path(sys.argv.pop(1))
-COMPONENTS = ["sensor_replay", "simulator", "slam", "segmenter", "semantic_mapper", "evaluator", "planner", "controller"]
+COMPONENTS = ["sensor_replay", "recorder", "simulator", "slam", "segmenter", "semantic_mapper", "evaluator", "planner", "controller"]
 KNOW_THE_ROBOT = ["simulator", "semantic_mapper", "planner", "controller"]
 
 

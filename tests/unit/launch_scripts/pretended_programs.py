@@ -8,7 +8,7 @@ import unittest
 from pathlib import Path
 
 REPOSITORY = Path(sys.argv.pop(1))
-PROGRAMS = ("simulator", "sensor_replay", "slam", "segmenter", "semantic_mapper", "planner", "controller", "evaluator")
+PROGRAMS = ("simulator", "sensor_replay", "recorder", "slam", "segmenter", "semantic_mapper", "planner", "controller", "evaluator")
 # In place of the supervisor: notes what it was asked for, does what the test has told it to, and leaves metrics.
 SUPERVISOR = """#!/usr/bin/env python3
 import json, os, pathlib, signal, sys

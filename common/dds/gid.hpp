@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <array>
 #include <compare>
 #include <cstddef>
@@ -22,10 +21,6 @@ inline Gid to_gid(const compat::rtps::GUID_t& guid) {
   for (std::size_t i = 0; i < 12; ++i) gid[i] = guid.guidPrefix.value[i];
   for (std::size_t i = 0; i < 4; ++i) gid[12 + i] = guid.entityId.value[i];
   return gid;
-}
-
-inline bool are_of_one_participant(const Gid& a, const Gid& b) {
-  return std::equal(a.begin(), a.begin() + kGidPrefixBytes, b.begin());
 }
 
 /// The bytes in hexadecimal, separated by dots, as ROS 2 prints them.

@@ -84,7 +84,6 @@ Reader::Taken Reader::take(void* sample, compat::fdds::SampleInfo& info) {
   if (!qos_.keyed) newest_[writer] = newest;
   if (welcome == Welcome::kRefused) return Taken::kRefused;
   heard_ = std::chrono::steady_clock::now();
-  newest_writer_ = writer;
   return info.valid_data ? Taken::kSample : Taken::kKeyEnded;
 }
 

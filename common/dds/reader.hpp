@@ -52,8 +52,6 @@ class Reader : private compat::fdds::DataReaderListener {
   const std::string& dds_name() const { return dds_name_; }
   /// When the newest accepted sample was taken; nothing before the first one. Only for the thread of the wait set.
   std::optional<std::chrono::steady_clock::time_point> heard() const { return heard_; }
-  /// Writer of that sample. Only for the thread of the wait set.
-  const std::optional<Gid>& newest_writer() const { return newest_writer_; }
   /// True when writers give a late joiner their last samples.
   bool is_latched() const { return qos_.latched; }
   Gid gid() const { return gid_; }
@@ -86,7 +84,6 @@ class Reader : private compat::fdds::DataReaderListener {
   std::map<Gid, std::uint64_t> reached_;  // largest number taken, be it refused
   std::uint64_t missed_ = 0;
   std::optional<std::chrono::steady_clock::time_point> heard_;
-  std::optional<Gid> newest_writer_;
   std::atomic<std::uint64_t> incompatible_{0};
   std::atomic<bool> has_best_effort_writer_{false};  // that is not heard
   mutable std::mutex mutex_;                         // guards writers_ and refused_, which DDS threads change

@@ -39,7 +39,8 @@ bool StreamOwner::is_matched(const Gid& writer) const {
 
 bool StreamOwner::is_participant_matched(const Gid& participant) const {
   return std::any_of(writers_.begin(), writers_.end(), [&](const auto& entry) {
-    return entry.second.is_matched && are_of_one_participant(participant, entry.first);
+    return entry.second.is_matched &&
+           std::equal(participant.begin(), participant.begin() + kGidPrefixBytes, entry.first.begin());
   });
 }
 

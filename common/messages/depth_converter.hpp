@@ -31,7 +31,6 @@ class DepthConverter {
   /// transforms of depth, until these or the camera of colour change. Returns why it cannot be used, or an empty text.
   std::string set_estimate(const sensor_msgs::msg::CameraInfo& info);
   bool has_estimate() const { return !estimates_.empty(); }
-  void forget_estimates() { estimates_.clear(); }
   /// By what the newest image was converted.
   const images::RgbdCalibration* used() const { return registration_ ? &registration_->calibration() : nullptr; }
   /// Depth [m] of the size of the colour camera, along the axis of that camera without its lens distortion; refused

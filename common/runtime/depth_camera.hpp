@@ -27,13 +27,6 @@ class DepthCamera {
       context.status().count(std::string(name) + " dropped: " + problem);
     });
   }
-  /// A process has begun to publish `frames` anew. When it is not the one that has published the estimates, they count
-  /// no more, because nobody keeps them right any longer.
-  void begin_anew(const dds::Source& frames) {
-    if (estimates_ == nullptr || !estimates_->newest_writer() || !frames.newest_writer()) return;
-    if (!dds::are_of_one_participant(*estimates_->newest_writer(), *frames.newest_writer()))
-      converter_.forget_estimates();
-  }
   /// True while the calibration may still come: somebody publishes it, and nothing has arrived.
   bool is_awaited() const {
     if (estimates_ != nullptr && estimates_->matched() > 0 && !converter_.has_estimate()) return true;

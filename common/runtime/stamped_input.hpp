@@ -51,7 +51,6 @@ class StampedInput {
   /// See Context::require.
   void require() { context_.require(source_); }
   bool has_publisher() const { return source_.matched() > 0; }
-  const dds::Source& source() const { return source_; }
   /// Number of messages that were lost before they could be taken.
   std::uint64_t missed() const { return source_.missed(); }
   /// True when the next message would displace the oldest.

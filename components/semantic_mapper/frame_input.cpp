@@ -57,7 +57,6 @@ bool FrameInput::collect_oldest(const runtime::Cycle& cycle) {
   namespace Constants = lapis_msgs::msg::TrackedFrame_Constants;
   if (tracked_.empty()) return false;
   const auto& [stamp, tracked] = tracked_.front();
-  if (newest_ && tracked.session() != session_) depth_camera_.begin_anew(tracked_.source());
   const bool is_last_chance = cycle.inputs_complete || tracked_.is_full();
   if (depth_camera_.is_awaited() && !is_last_chance) return false;
   const auto known = tolerance_.of(stamp, tracked_.second());

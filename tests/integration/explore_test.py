@@ -173,7 +173,7 @@ class ExploreTest(ExploreCase):
             self.assert_no_orphan(run)
 
 
-class SegmentedExploreTest(ExploreCase):
+class SegmentedExploreCase(ExploreCase):
     """Labels by a network: here the nearest of three colours."""
 
     def model(self):
@@ -188,6 +188,8 @@ class SegmentedExploreTest(ExploreCase):
         self.assertGreater(sum(labels[i] for i in (1, 2, 4)), 100)
         self.assertLessEqual(set(labels), {0, 1, 2, 4})
 
+
+class SegmentedExploreTest(SegmentedExploreCase):
     def test_in_lock_step_every_image_is_labelled(self):
         folder = self.explore("run", "--scene", self.write_flat(), "--duration", "5", "--segmenter", self.model())
         self.assert_labels(folder)
@@ -198,6 +200,8 @@ class SegmentedExploreTest(ExploreCase):
         self.assertNotRegex(log, "dropped: (?!stamp was there before)|replaced")  # a tick may come again
         self.assertGreater(chain.metrics_of(folder)["cpu_ms_per_frame"]["segmenter"], 0.0)
 
+
+class LongSegmentedExploreTest(SegmentedExploreCase):
     # A network that takes a second per image: it gets its CPU for a tenth of each second only.
     def test_by_the_wall_clock_the_robot_drives_although_labels_come_late(self):
         out = self.folder / "run"

@@ -7,7 +7,7 @@ struct FeatureConfig {
   int max_features = 600;     ///< features per frame, all levels together [100, 5000]
   int levels = 4;             ///< pyramid levels [1, 12]
   double scale_factor = 1.3;  ///< size ratio of neighbouring levels [1.05, 2]
-  int fast_threshold = 10;    ///< least FAST contrast, grey levels [1, 100]
+  int fast_threshold = 10;    ///< FAST contrast, grey levels; less where corners are few [1, 100]
   /// Least ratio of the smaller to the larger eigenvalue of a corner's structure tensor [0, 1]; below it is an edge.
   double min_corner_share = 0.2;
 };

@@ -2,12 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <random>
 #include <set>
 #include <tuple>
 
 #include <gtest/gtest.h>
 
+#include "slam/core/frame/pixel_noise.hpp"
 #include "tests/unit/slam/synthetic_room.hpp"
 
 namespace lapis::slam {
@@ -132,6 +134,85 @@ TEST(FeatureExtractor, LeavesOutMostOfWhatNoiseMakesOfEdges) {
   EXPECT_GT(all.sides, 100);
   EXPECT_LT(fixed.sides, 0.3 * all.sides);
   EXPECT_GE(fixed.corners, 0.9 * all.corners);
+}
+
+// An image with this share of its contrast about 40 grey levels, and a camera's noise.
+geometry::GrayImage dimmed(const geometry::GrayImage& bright, double contrast, double sigma) {
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0.0, sigma);
+  geometry::GrayImage image(bright.width, bright.height);
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) {
+    const double value = 40.0 + contrast * (bright.pixels[i] - 128.0) + noise(random);
+    image.pixels[i] = static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
+  }
+  return image;
+}
+
+// Share of the features that lie where the bright image has corners.
+double share_at_corners(const std::vector<Feature>& features, const geometry::GrayImage& bright) {
+  FeatureConfig config;
+  config.max_features = 5000;
+  const auto corners = FeatureExtractor(config).extract(bright);
+  const auto is_at_corner = [&](const Feature& feature) {
+    return std::any_of(corners.begin(), corners.end(),
+                       [&](const Feature& corner) { return (corner.pixel - feature.pixel).norm() < 3.0; });
+  };
+  return static_cast<double>(std::count_if(features.begin(), features.end(), is_at_corner)) /
+         static_cast<double>(features.size());
+}
+
+TEST(FeatureExtractor, FindsCornersOfLittleContrast) {
+  const auto bright = test::render_room(test::small_camera(), test::room_path(0), {}).gray;
+  std::vector<Feature> everywhere;
+  for (int y = 20; y < bright.height - 20; ++y) {
+    for (int x = 20; x < bright.width - 20; ++x) everywhere.emplace_back().pixel = Eigen::Vector2d(x, y);
+  }
+  const double chance = share_at_corners(everywhere, bright);
+  for (const double sigma : {0.0, 0.5}) {
+    const auto features = FeatureExtractor({}).extract(dimmed(bright, 0.06, sigma));
+    EXPECT_GT(features.size(), 200U) << sigma;
+    EXPECT_GT(share_at_corners(features, bright), 0.5 * (1.0 + chance)) << sigma;
+  }
+}
+
+TEST(FeatureExtractor, TakesNoNoiseForCorners) {
+  for (const double sigma : {0.2, 0.5, 1.0, 2.0}) {
+    const geometry::GrayImage flat = dimmed(geometry::GrayImage(640, 480, 128), 1.0, sigma);
+    EXPECT_LT(FeatureExtractor({}).extract(flat).size(), 30U) << sigma;
+  }
+}
+
+double noise_of(const geometry::GrayImage& image) {
+  return pixel_noise({image.pixels.data(), image.width, image.height, static_cast<std::size_t>(image.width)});
+}
+
+TEST(PixelNoise, IsThatOfTheCameraNotOfTheScene) {
+  constexpr double kRounding2 = 1.0 / 12.0;
+  const auto bright = test::render_room(test::small_camera(), test::room_path(0), {}).gray;
+  geometry::GrayImage ramp(320, 240);
+  for (int y = 0; y < ramp.height; ++y) {
+    for (int x = 0; x < ramp.width; ++x) ramp(x, y) = static_cast<std::uint8_t>(100 + x / 4 - y / 8);
+  }
+  for (const double sigma : {1.0, 2.0, 4.0}) {
+    const double expected = std::sqrt(sigma * sigma + kRounding2);
+    EXPECT_NEAR(noise_of(dimmed(ramp, 1.0, sigma)), expected, 0.15 * expected) << sigma;
+    EXPECT_NEAR(noise_of(dimmed(bright, 0.5, sigma)), expected, 0.3 * expected) << sigma;
+  }
+}
+
+TEST(PixelNoise, IsAtLeastThatOfRounding) {
+  const double rounding = std::sqrt(1.0 / 12.0);
+  for (const int value : {0, 128, 255}) {
+    EXPECT_DOUBLE_EQ(noise_of(geometry::GrayImage(64, 64, static_cast<std::uint8_t>(value))), rounding);
+  }
+  EXPECT_DOUBLE_EQ(noise_of(geometry::GrayImage(2, 2, 7)), rounding);
+}
+
+TEST(PixelNoise, IsNotCutOffInTheDark) {
+  // Most of the image is black, with the noise cut off; a grey stripe shows it.
+  geometry::GrayImage image = dimmed(geometry::GrayImage(320, 240, 0), 0.0, 2.0);
+  for (int y = 0; y < 160; ++y) std::fill_n(&image(0, y), image.width, std::uint8_t{0});
+  EXPECT_NEAR(noise_of(image), 2.0, 0.3);
 }
 
 }  // namespace

@@ -8,6 +8,8 @@
 #include <opencv2/features2d.hpp>
 #include <opencv2/imgproc.hpp>
 
+#include "slam/core/frame/pixel_noise.hpp"
+
 namespace lapis::slam {
 namespace {
 
@@ -83,18 +85,34 @@ bool is_fixed(const cv::Mat& image, int x, int y, double least_share) {
   return mean - apart >= least_share * (mean + apart);
 }
 
-std::vector<Corner> detect_corners(const cv::Mat& image, const FeatureConfig& config) {
-  if (image.cols <= 2 * kBorder || image.rows <= 2 * kBorder) return {};
+std::vector<Corner> detect_corners(const cv::Mat& image, int threshold, double least_share) {
   const cv::Rect inside(kBorder - 3, kBorder - 3, image.cols - 2 * kBorder + 6, image.rows - 2 * kBorder + 6);
   std::vector<cv::KeyPoint> found;
-  cv::FAST(image(inside), found, config.fast_threshold, true);
+  cv::FAST(image(inside), found, threshold, true);
   std::vector<Corner> corners;
   corners.reserve(found.size());
   for (const auto& point : found) {
     const int x = static_cast<int>(point.pt.x) + inside.x, y = static_cast<int>(point.pt.y) + inside.y;
-    if (is_fixed(image, x, y, config.min_corner_share)) corners.push_back({x, y, point.response});
+    if (is_fixed(image, x, y, least_share)) corners.push_back({x, y, point.response});
   }
   return corners;
+}
+
+// Contrast [grey levels] that noise alone hardly has: three standard deviations of the difference of two pixels.
+int least_contrast(const cv::Mat& image) {
+  const double noise = pixel_noise({image.data, image.cols, image.rows, image.step});
+  return static_cast<int>(std::ceil(3.0 * std::sqrt(2.0) * noise));
+}
+
+// Corners of a level, at least `wanted` if there are so many. In dark, flat and washed-out images corners have little
+// contrast: where there are too few, all that stand out from the noise are taken.
+std::vector<Corner> find_corners(const cv::Mat& image, const FeatureConfig& config, std::size_t wanted) {
+  if (image.cols <= 2 * kBorder || image.rows <= 2 * kBorder) return {};
+  std::vector<Corner> corners = detect_corners(image, config.fast_threshold, config.min_corner_share);
+  if (corners.size() >= wanted) return corners;
+  const int least = least_contrast(image);
+  if (least >= config.fast_threshold) return corners;
+  return detect_corners(image, least, config.min_corner_share);
 }
 
 }  // namespace
@@ -146,8 +164,8 @@ struct FeatureExtractor::Implementation {
   // Appends the features of a level.
   void extract(const Level& level, int octave, int count, std::vector<Feature>& features) const {
     std::vector<cv::KeyPoint> points;
-    for (const Corner& corner :
-         spread_corners(detect_corners(level.image, config), level.image.cols, level.image.rows, count)) {
+    const auto corners = find_corners(level.image, config, static_cast<std::size_t>(count));
+    for (const Corner& corner : spread_corners(corners, level.image.cols, level.image.rows, count)) {
       points.emplace_back(static_cast<float>(corner.x), static_cast<float>(corner.y), 2.0F * kPatchRadius + 1.0F,
                           corner_angle(level.image, corner.x, corner.y), corner.score);
     }

@@ -247,7 +247,7 @@ void SemanticMapperComponent::integrate(const Tracked& tracked, const Image& dep
   if (!is_first && (stamp - before).seconds() < config_.frame_interval_s) return;
   const auto seen_depth = depth_camera_.convert(depth, info);
   if (!seen_depth) return drop(seen_depth.reason);
-  auto frame = to_core({*seen_depth, info, labels, confidence}, config_.frame, rectifier_);
+  auto frame = to_core({*seen_depth, depth_camera_.corrected(info), labels, confidence}, config_.frame, rectifier_);
   if (!frame) return drop(frame.reason);
   const auto above_list = frame->labels_out_of_list();
   if (above_list > 0) context_.status().count("pixels unlabelled: label not in the list", above_list);

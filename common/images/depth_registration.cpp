@@ -27,6 +27,33 @@ bool is_near_image(float u, float v, const geometry::PinholeCamera& camera) {
 
 }  // namespace
 
+/// 1 / depth [1/m], which on a plane is linear in the pixel; 0: none.
+class DepthRegistration::InverseDepth {
+ public:
+  explicit InverseDepth(const geometry::DepthImage& depth) : image_(depth) {
+    for (float& z : image_.pixels) z = z > 0.0F ? 1.0F / z : 0.0F;
+  }
+  /// Slope of the surface by those neighbours of a pixel that belong to it [1/m per px]; 0 where none does.
+  float slope_right(int u, int v) const {
+    return slope(u > 0 ? image_(u - 1, v) : 0.0F, image_(u, v), u + 1 < image_.width ? image_(u + 1, v) : 0.0F);
+  }
+  float slope_down(int u, int v) const {
+    return slope(v > 0 ? image_(u, v - 1) : 0.0F, image_(u, v), v + 1 < image_.height ? image_(u, v + 1) : 0.0F);
+  }
+
+ private:
+  static float slope(float before, float here, float after) {
+    constexpr float kMostStep = 0.05F;  // of one surface
+    const float most = kMostStep * here, back = here - before, ahead = after - here;
+    const bool has_before = std::abs(back) < most, has_after = std::abs(ahead) < most;
+    if (has_before && has_after) return 0.5F * (back + ahead);
+    if (has_before) return back;
+    return has_after ? ahead : 0.0F;
+  }
+
+  geometry::DepthImage image_;
+};
+
 bool RgbdCalibration::is_registered() const {
   return color.pinhole == depth.pinhole && T_color_depth.matrix() == geometry::Pose::Identity().matrix();
 }
@@ -36,43 +63,55 @@ bool RgbdCalibration::operator==(const RgbdCalibration& other) const {
 }
 
 DepthRegistration::DepthRegistration(const RgbdCalibration& calibration)
-    : calibration_(calibration), rectifier_(calibration.depth) {
+    : calibration_(calibration), rectifier_(calibration.depth),
+      shift_(calibration.T_color_depth.translation().cast<float>()),
+      focal_px_(Eigen::Vector2d(calibration.color.pinhole.fx, calibration.color.pinhole.fy).cast<float>()),
+      centre_px_(Eigen::Vector2d(calibration.color.pinhole.cx, calibration.color.pinhole.cy).cast<float>()),
+      reach_px_(Eigen::Vector2f::Constant(kOverlap_px)) {
   const geometry::PinholeCamera &from = calibration.depth.pinhole, &to = calibration.color.pinhole;
   const Eigen::Matrix3d rotation = calibration.T_color_depth.linear();
   for (int u = 0; u < from.width; ++u) columns_.emplace_back(((u - from.cx) / from.fx * rotation.col(0)).cast<float>());
   for (int v = 0; v < from.height; ++v) {
     rows_.emplace_back(((v - from.cy) / from.fy * rotation.col(1) + rotation.col(2)).cast<float>());
   }
-  reach_px_ = 0.5F * Eigen::Vector2d(to.fx / from.fx, to.fy / from.fy).cast<float>();
-  reach_px_.array() += kOverlap_px;
+  pixels_per_px_ = Eigen::Vector2d(from.fx / to.fx, from.fy / to.fy).cast<float>();
+  reach_px_ += 0.5F * pixels_per_px_.cwiseInverse();
 }
 
 geometry::DepthImage DepthRegistration::operator()(geometry::DepthImage depth) const {
   rectifier_.rectify(depth);
   if (calibration_.is_registered()) return depth;
-  const geometry::PinholeCamera& camera = calibration_.color.pinhole;
-  const Eigen::Vector3f shift = calibration_.T_color_depth.translation().cast<float>();
-  const auto fx = static_cast<float>(camera.fx), fy = static_cast<float>(camera.fy);
-  const auto cx = static_cast<float>(camera.cx), cy = static_cast<float>(camera.cy);
-  constexpr float kNothing = std::numeric_limits<float>::infinity();
-  geometry::DepthImage result(camera.width, camera.height, kNothing);
-  const float* from = depth.pixels.data();
-  for (const Eigen::Vector3f& row : rows_) {
-    for (const Eigen::Vector3f& column : columns_) {
-      const float distance_m = *from++;
-      if (!(distance_m > 0.0F)) continue;
-      const Eigen::Vector3f p = distance_m * (column + row) + shift;
-      if (!(p.z() > kNearest_m)) continue;
-      const float u = fx * p.x() / p.z() + cx, v = fy * p.y() / p.z() + cy;
-      if (!is_near_image(u, v, camera)) continue;
-      const Span columns(u, reach_px_.x(), camera.width), rows(v, reach_px_.y(), camera.height);
-      for (int y = rows.first; y < rows.end; ++y) {
-        for (int x = columns.first; x < columns.end; ++x) result(x, y) = std::min(result(x, y), p.z());
-      }
+  constexpr float kLeast = std::numeric_limits<float>::min();  // that has a finite inverse
+  const InverseDepth inverse(depth);
+  geometry::DepthImage result(calibration_.color.pinhole.width, calibration_.color.pinhole.height);
+  for (int v = 0; v < depth.height; ++v) {
+    for (int u = 0; u < depth.width; ++u) {
+      if (depth(u, v) > 0.0F) draw(depth(u, v), inverse, u, v, result);
     }
   }
-  std::replace(result.pixels.begin(), result.pixels.end(), kNothing, 0.0F);
+  for (float& z : result.pixels) z = z > kLeast ? 1.0F / z : 0.0F;
   return result;
+}
+
+void DepthRegistration::draw(float depth_m, const InverseDepth& inverse, int column, int row,
+                             geometry::DepthImage& result) const {
+  const geometry::PinholeCamera& camera = calibration_.color.pinhole;
+  const Eigen::Vector3f p =
+      depth_m * (columns_[static_cast<std::size_t>(column)] + rows_[static_cast<std::size_t>(row)]) + shift_;
+  if (!(p.z() > kNearest_m)) return;
+  const float nearness = 1.0F / p.z();
+  const float u = focal_px_.x() * p.x() * nearness + centre_px_.x(),
+              v = focal_px_.y() * p.y() * nearness + centre_px_.y();
+  if (!is_near_image(u, v, camera)) return;
+  const float right = inverse.slope_right(column, row) * pixels_per_px_.x();
+  const float down = inverse.slope_down(column, row) * pixels_per_px_.y();
+  const Span columns(u, reach_px_.x(), camera.width), rows(v, reach_px_.y(), camera.height);
+  for (int y = rows.first; y < rows.end; ++y) {
+    for (int x = columns.first; x < columns.end; ++x) {
+      const float here = nearness + right * (static_cast<float>(x) - u) + down * (static_cast<float>(y) - v);
+      result(x, y) = std::max(result(x, y), here);
+    }
+  }
 }
 
 }  // namespace lapis::images

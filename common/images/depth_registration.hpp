@@ -21,8 +21,8 @@ struct RgbdCalibration {
 };
 
 /// Brings depth images to the view of the colour camera without its lens distortion: each pixel of the result has the
-/// depth of the nearest surface that the depth camera has seen there. What the colour camera sees, but the depth camera
-/// does not, is without depth.
+/// depth of the nearest surface that the depth camera has seen there, at the pixel's centre. What the colour camera
+/// sees, but the depth camera does not, is without depth.
 class DepthRegistration {
  public:
   explicit DepthRegistration(const RgbdCalibration& calibration);
@@ -33,11 +33,17 @@ class DepthRegistration {
   geometry::DepthImage operator()(geometry::DepthImage depth) const;
 
  private:
+  class InverseDepth;
+  /// Draws a depth pixel, as a part of its surface, where the colour camera sees it; `result` has 1 / depth.
+  void draw(float depth_m, const InverseDepth& inverse, int column, int row, geometry::DepthImage& result) const;
+
   RgbdCalibration calibration_;
   Rectifier rectifier_;                          // of the depth camera
   std::vector<Eigen::Vector3f> columns_, rows_;  // their sums are the rays of depth pixels in the colour camera
-  Eigen::Vector2f reach_px_ =
-      Eigen::Vector2f::Zero();  // from the centre of a depth pixel to its edge, in colour pixels
+  Eigen::Vector3f shift_;                        // of the depth camera [m]
+  Eigen::Vector2f focal_px_, centre_px_;         // of colour
+  Eigen::Vector2f reach_px_;                     // from the centre of a depth pixel to its edge, in colour pixels
+  Eigen::Vector2f pixels_per_px_;                // of depth, per pixel of colour
 };
 
 }  // namespace lapis::images

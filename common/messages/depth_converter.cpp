@@ -1,6 +1,7 @@
 #include "common/messages/depth_converter.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "common/messages/camera.hpp"
 #include "common/messages/time.hpp"
@@ -29,7 +30,8 @@ Converted<geometry::Pose> beside_color(const sensor_msgs::msg::CameraInfo& info)
   const Eigen::Vector3d t{-p[3] / p[0], -p[7] / p[5], -p[11]};
   constexpr double kRounding = 1e-3;
   const bool is_rotation = R.allFinite() && (R * R.transpose()).isIdentity(kRounding) && R.determinant() > 0.0;
-  if (!is_rotation || !t.allFinite()) return Result::refused("r and p are not of a pair of cameras");
+  const bool is_projection = p[0] > 0.0 && p[5] > 0.0 && std::isfinite(p[0]) && std::isfinite(p[5]);
+  if (!is_rotation || !is_projection || !t.allFinite()) return Result::refused("r and p are not of a pair of cameras");
   return geometry::make_pose(t, Eigen::Quaterniond(R));
 }
 
@@ -37,7 +39,7 @@ Converted<geometry::Pose> beside_color(const sensor_msgs::msg::CameraInfo& info)
 
 sensor_msgs::msg::CameraInfo to_depth_info(const std_msgs::msg::Header& header,
                                            const images::RgbdCalibration& cameras) {
-  const geometry::PinholeCamera& camera = cameras.depth.pinhole;
+  const geometry::PinholeCamera &color = cameras.color.pinhole, &depth = cameras.depth.pinhole;
   sensor_msgs::msg::CameraInfo info = to_camera_info(cameras.depth, header);
   const Eigen::Matrix3d R = cameras.T_color_depth.linear();
   const Eigen::Vector3d t = cameras.T_color_depth.translation();
@@ -45,8 +47,8 @@ sensor_msgs::msg::CameraInfo to_depth_info(const std_msgs::msg::Header& header,
   for (int row = 0; row < 3; ++row) {
     for (int column = 0; column < 3; ++column) info.r()[at++] = R(row, column);
   }
-  info.p({camera.fx, 0.0, camera.cx, -camera.fx * t.x(), 0.0, camera.fy, camera.cy, -camera.fy * t.y(), 0.0, 0.0, 1.0,
-          -t.z()});
+  info.p(
+      {color.fx, 0.0, depth.cx, -color.fx * t.x(), 0.0, color.fy, depth.cy, -color.fy * t.y(), 0.0, 0.0, 1.0, -t.z()});
   return info;
 }
 
@@ -58,7 +60,7 @@ std::string DepthConverter::set_estimate(const sensor_msgs::msg::CameraInfo& inf
   const time::Time since = from_message(info.header().stamp());
   std::erase_if(estimates_, [&](const Estimate& other) { return other.since >= since; });
   if (estimates_.size() >= kMostEstimates) estimates_.erase(estimates_.begin());
-  estimates_.push_back({since, *depth, *T_color_depth});
+  estimates_.push_back({since, info.p()[0], info.p()[5], *depth, *T_color_depth});
   return "";
 }
 
@@ -69,12 +71,24 @@ void DepthConverter::note_given(const Converted<images::RgbdCalibration>& given,
   has_converted_ = true;
 }
 
+const DepthConverter::Estimate& DepthConverter::newest_estimate(time::Time stamp) const {
+  const auto later = std::find_if(estimates_.begin(), estimates_.end(),
+                                  [&](const Estimate& estimate) { return estimate.since > stamp; });
+  return later == estimates_.begin() ? *later : *(later - 1);
+}
+
+sensor_msgs::msg::CameraInfo DepthConverter::corrected(sensor_msgs::msg::CameraInfo color_info) const {
+  if (estimates_.empty()) return color_info;
+  const Estimate& estimate = newest_estimate(from_message(color_info.header().stamp()));
+  color_info.k()[0] = estimate.color_fx;
+  color_info.k()[4] = estimate.color_fy;
+  return color_info;
+}
+
 const DepthConverter::Estimate* DepthConverter::estimate_at(time::Time stamp, const geometry::LensCamera& color,
                                                             int width, int height) const {
   if (estimates_.empty()) return nullptr;
-  const auto later = std::find_if(estimates_.begin(), estimates_.end(),
-                                  [&](const Estimate& estimate) { return estimate.since > stamp; });
-  const Estimate& found = later == estimates_.begin() ? *later : *(later - 1);
+  const Estimate& found = newest_estimate(stamp);
   const geometry::PinholeCamera& camera = found.depth.pinhole;
   const bool is_usable = camera.width == width && camera.height == height && fit({color, found.depth, {}});
   return is_usable ? &found : nullptr;
@@ -87,10 +101,10 @@ Converted<geometry::DepthImage> DepthConverter::convert(const sensor_msgs::msg::
   auto metres = to_depth(depth);
   if (!metres) return metres;
   if (has_estimate()) {
-    const auto color = lens_camera(color_info);
-    if (!color) return Result::refused(cameras.reason);
     const time::Time stamp = from_message(color_info.header().stamp());
     note_given(cameras, stamp);
+    const auto color = lens_camera(corrected(color_info));
+    if (!color) return Result::refused(color.reason);
     if (const Estimate* estimate = estimate_at(stamp, *color, metres->width, metres->height)) {
       cameras = images::RgbdCalibration{*color, estimate->depth, estimate->T_color_depth};
     } else {

@@ -14,7 +14,7 @@
 namespace lapis::messages {
 
 /// The depth camera beside that of colour, as for stereo cameras in ROS: `r` turns to the axes of colour, `p` projects
-/// from the frame of colour, which the header names.
+/// from the frame of colour, which the header names, with the focal lengths of colour.
 sensor_msgs::msg::CameraInfo to_depth_info(const std_msgs::msg::Header& header, const images::RgbdCalibration& cameras);
 
 /// Brings the depth images of an RGB-D sensor to the view of its colour camera, by the camera infos of both and the
@@ -27,10 +27,13 @@ class DepthConverter {
   /// The newest calibration of the depth camera.
   void set_info(sensor_msgs::msg::CameraInfo info) { info_ = std::move(info); }
   bool has_info() const { return info_.has_value(); }
-  /// What was found out about the depth camera (to_depth_info); from its stamp on, it counts instead of camera info and
-  /// transforms of depth, until these or the camera of colour change. Returns why it cannot be used, or an empty text.
+  /// What was found out about both cameras (to_depth_info); from its stamp on, it counts instead of camera info and
+  /// transforms of depth, and of the focal lengths of colour, until any of these change. Returns why it cannot be used,
+  /// or an empty text.
   std::string set_estimate(const sensor_msgs::msg::CameraInfo& info);
   bool has_estimate() const { return !estimates_.empty(); }
+  /// The camera info of colour with the focal lengths that were found out. For images whose depth has been converted.
+  sensor_msgs::msg::CameraInfo corrected(sensor_msgs::msg::CameraInfo color_info) const;
   /// By what the newest image was converted.
   const images::RgbdCalibration* used() const { return registration_ ? &registration_->calibration() : nullptr; }
   /// Depth [m] of the size of the colour camera, along the axis of that camera without its lens distortion; refused
@@ -41,6 +44,7 @@ class DepthConverter {
  private:
   struct Estimate {
     time::Time since;
+    double color_fx = 0.0, color_fy = 0.0;  // [px]
     geometry::LensCamera depth;
     geometry::Pose T_color_depth = geometry::Pose::Identity();
   };
@@ -51,6 +55,7 @@ class DepthConverter {
   void note_given(const Converted<images::RgbdCalibration>& given, time::Time stamp);
   /// Of an image; before the oldest estimate that one. Nothing when there is none of this size.
   const Estimate* estimate_at(time::Time stamp, const geometry::LensCamera& color, int width, int height) const;
+  const Estimate& newest_estimate(time::Time stamp) const;
 
   const StaticTransforms& transforms_;
   std::optional<sensor_msgs::msg::CameraInfo> info_;

@@ -33,6 +33,10 @@ class DepthCamera {
     return !converter_.has_info() && source_.matched() > 0;
   }
   messages::DepthConverter& converter() { return converter_; }
+  /// See DepthConverter::corrected.
+  sensor_msgs::msg::CameraInfo corrected(const sensor_msgs::msg::CameraInfo& color_info) const {
+    return converter_.corrected(color_info);
+  }
   /// See DepthConverter::convert.
   messages::Converted<geometry::DepthImage> convert(const sensor_msgs::msg::Image& depth,
                                                     const sensor_msgs::msg::CameraInfo& color_info) {

@@ -29,6 +29,8 @@ inline constexpr dds::Topic<lapis_msgs::msg::SlamStatus> kSlamStatus{"/slam/stat
                                                                      "1 Hz and on change", "state, reason, counts"};
 inline constexpr dds::Topic<sensor_msgs::msg::CameraInfo> kDepthEstimate{
     "/slam/depth_camera_info", dds::kLatched, "slam", "on change, with slam.depth_calibration: estimate",
-    "the depth camera as slam has found it: r and p say where it is beside colour, as of a stereo camera"};
+    "the depth camera as slam has found it: r and p say where it is beside colour, as of a stereo camera; p has the "
+    "focal "
+    "lengths of colour as slam has found them"};
 
 }  // namespace lapis::topics

@@ -281,10 +281,10 @@ void EvaluatorComponent::add_to_references(const geometry::Pose& T_map_camera, c
   const auto refuse = [this](const std::string& why) {
     context_.status().count("frames not in the reference: " + why);
   };
-  const auto camera = messages::lens_camera(info);
-  if (!camera) return refuse(camera.reason);
   const auto depth_m = depth_camera_.convert(depth, info);
   if (!depth_m) return refuse(depth_m.reason);
+  const auto camera = messages::lens_camera(depth_camera_.corrected(info));
+  if (!camera) return refuse(camera.reason);
   geometry::LabelImage ids;
   if (labels != nullptr) {
     auto converted = messages::to_labels(*labels);

@@ -101,7 +101,7 @@ bool FrameInput::is_too_soon(const Tracked& tracked) const {
 
 void FrameInput::add(const Tracked& tracked, const Partners& partners, time::Duration tolerance) {
   if (is_too_soon(tracked)) return;
-  const auto camera = messages::lens_camera(*partners.info);
+  const auto camera = messages::lens_camera(depth_camera_.corrected(*partners.info));
   if (!camera) return drop_(camera.reason);
   const auto depth = depth_camera_.convert(*partners.depth, *partners.info);
   if (!depth) return drop_(depth.reason);

@@ -66,7 +66,7 @@ std::optional<JoinedFrame> FrameInput::oldest(const runtime::Cycle& cycle) {
 messages::Converted<RgbdFrame> FrameInput::convert(const JoinedFrame& frame) {
   auto depth = depth_camera_.convert(*frame.depth, *frame.info);
   if (!depth) return messages::Converted<RgbdFrame>::refused(depth.reason);
-  return converter_.convert(*frame.color, std::move(*depth), *frame.info, frame.stamp);
+  return converter_.convert(*frame.color, std::move(*depth), depth_camera_.corrected(*frame.info), frame.stamp);
 }
 
 void FrameInput::pop(const JoinedFrame& frame) {

@@ -125,7 +125,7 @@ bool SlamComponent::prepare(const JoinedFrame& first) {
   disk_.begin(first.stamp, resumed_.has_value());
   name_map(first.stamp);
   slam_ = begin_map();
-  focal_length_.emplace(config_.method.noise, config_.method.features.scale_factor);
+  renew_watch();
   for (const auto& [stamp, T_odom_base] : early_odometry_) slam_->add_odometry(stamp, T_odom_base);
   early_odometry_.clear();
   graph_version_ = 0;
@@ -154,11 +154,10 @@ std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
   if (!resumed_) return std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, frame_.T_base_camera);
   saved_camera_ = resumed_->state.keyframes.back().camera;
   saved_version_ = resumed_->state.graph_version;
-  depth_camera_ = resumed_->depth_camera;
-  if (depth_camera_ && depth_estimate_ == nullptr) {
-    spdlog::warn("{}: its depth camera was estimated, which slam.depth_calibration: given leaves out",
-                 config_.resume_from);
-    depth_camera_.reset();
+  if (const auto& depth = resumed_->depth_camera; depth && depth_estimate_ == nullptr) {
+    spdlog::warn("{}: its cameras were estimated, which slam.depth_calibration: given leaves out", config_.resume_from);
+  } else if (depth) {
+    cameras_ = images::RgbdCalibration{{*saved_camera_, {}}, depth->camera, depth->T_color_depth};
   }
   keep_estimate();
   auto slam = std::make_unique<RgbdSlam>(config_.method, frame_.T_base_camera, std::move(resumed_->state));
@@ -168,8 +167,11 @@ std::unique_ptr<RgbdSlam> SlamComponent::begin_map() {
 
 /// Refuses the resumed map of another camera. Else its new names are saved before anything is published under them: if
 /// this process dies, too, the next one must not use them again.
-void SlamComponent::accept_saved_map(const geometry::PinholeCamera& camera) {
-  if (!is_same_camera(*saved_camera_, camera)) {
+void SlamComponent::accept_saved_map(const geometry::PinholeCamera& camera,
+                                     const sensor_msgs::msg::CameraInfo& stated) {
+  constexpr double kMostWrong = 1.2;  // focal length that a map was corrected to; by more, it is another camera's
+  const double ratio = stated.k()[0] / camera.fx;
+  if (!is_same_camera(*saved_camera_, camera) || ratio > kMostWrong || ratio < 1.0 / kMostWrong) {
     throw runtime::BadSetup(disk_.misfit("was made with another camera, of " + std::to_string(saved_camera_->width) +
                                          " x " + std::to_string(saved_camera_->height) + " px"));
   }
@@ -182,53 +184,136 @@ void SlamComponent::accept_saved_map(const geometry::PinholeCamera& camera) {
 void SlamComponent::track(const JoinedFrame& joined) {
   auto frame = input_.convert(joined);
   if (!frame) return drop(joined.stamp, frame.reason);
-  if (saved_camera_) accept_saved_map(frame->camera);
+  if (saved_camera_) accept_saved_map(frame->camera, *joined.info);
+  frame->stamp = clock_.advance(joined.stamp, time::Arrival::clock::now());
+  undo_delay(*frame);
   if (calibrate_depth(*frame, *joined.info)) {
+    const time::Time stamp = frame->stamp;
     frame = input_.convert(joined);
     if (!frame) return drop(joined.stamp, frame.reason);
+    frame->stamp = stamp;
+    undo_delay(*frame);
   }
   ++frames_total_;
   frame_.stamp = joined.stamp;
-  frame->stamp = clock_.advance(joined.stamp, time::Arrival::clock::now());
   const TrackingResult result = slam_->process(*frame);
   if (result.state == TrackingState::kTracking) ++frames_tracked_;
   publish(result);
   judge_clock(result);
-  if (result.is_keyframe) watch_focal_length();
+  const auto later = messages::to_message(messages::from_message(joined.info->header().stamp()) + time::Duration{1});
+  watch_delay(*frame, result, later);
+  if (!result.is_keyframe) return;
+  watch_scale();
+  watch_focal_length(*joined.info, later);
 }
 
-/// Reports once that the key-frames contradict the focal length in the camera info.
-void SlamComponent::watch_focal_length() {
+/// Reports once that depth and odometry disagree about distances.
+void SlamComponent::watch_scale() {
+  const auto wheels = slam_->wheels();
+  if (is_scale_doubted_ || !wheels || !doubts_scale(*wheels)) return;
+  is_scale_doubted_ = true;
+  const double off = wheels->distance_scale - 1.0;
+  const std::string text =
+      fmt::format("depth seems to be {:.1f} % (+- {:.1f}) too {} by odometry", 100.0 * std::abs(off),
+                  100.0 * std::sqrt(wheels->distance_variance), off > 0.0 ? "far" : "near");
+  context_.status().value("depth_scale", text);
+  spdlog::warn("{}: or the wheels are {} than configured; measure a known distance", text,
+               off > 0.0 ? "larger" : "smaller");
+}
+
+/// Reports once that depth is of another instant than colour.
+void SlamComponent::watch_delay(const RgbdFrame& frame, const TrackingResult& result,
+                                const builtin_interfaces::msg::Time& after) {
+  if (delay_.is_over()) return;
+  const auto found = delay_.add(
+      frame, has_pose(result) ? std::optional<geometry::Pose>(result.T_map_keyframe * result.T_keyframe_camera)
+                              : std::nullopt);
+  if (!found) return;
+  const std::string text = fmt::format("depth seems to be {:.0f} ms {} than colour of the same stamp",
+                                       1e3 * std::abs(found->delay_s), found->delay_s > 0.0 ? "later" : "earlier");
+  context_.status().value("depth_delay", text);
+  if (depth_estimate_ == nullptr) {
+    spdlog::warn("{}: correct the stamps, or set slam.depth_calibration: estimate", text);
+    calibrator_.reset();  // it takes the delay for a shift
+    return;
+  }
+  spdlog::info("{}: depth is corrected by the motion that slam predicts from now on", text);
+  depth_delay_ = time::Duration::from_seconds(found->delay_s);
+  const bool is_elsewhere = found->focal_ratio != 1.0 || !found->shift_m.isZero();
+  if (is_elsewhere) use_estimate(corrected(*input_.depth_converter().used(), *found), after);
+  renew_calibrator();
+}
+
+/// Brings late depth to the view that the camera had at the time of colour.
+void SlamComponent::undo_delay(RgbdFrame& frame) const {
+  if (depth_delay_ == time::Duration{}) return;
+  const auto T_color_depth = slam_->expected_motion(frame.stamp, frame.stamp + depth_delay_);
+  if (!T_color_depth) return;
+  const geometry::LensCamera camera{frame.camera, {}};
+  frame.depth = images::DepthRegistration({camera, camera, *T_color_depth})(std::move(frame.depth));
+}
+
+/// Reports that the key-frames contradict the focal length in the camera info: once, or each time that it is corrected.
+void SlamComponent::watch_focal_length(const sensor_msgs::msg::CameraInfo& info,
+                                       const builtin_interfaces::msg::Time& after) {
   if (!focal_length_) return;
   const Keyframe& newest = slam_->map().keyframes().back();
   focal_length_->add(slam_->map(), newest.id);
-  const auto found = focal_length_->contradiction();
+  const auto found = is_focal_length_estimated_ ? focal_length_->refinement() : focal_length_->contradiction();
   if (!found) return;
-  const double stated = newest.camera.fx;
-  const std::string text =
-      fmt::format("focal length seems to be {:.1f} px (+- {:.1f}), {} says {:.1f}", stated * found->ratio,
-                  stated * found->ratio * found->sigma, topics::kColorInfo.name, stated);
+  const double found_px = newest.camera.fx * found->ratio, stated_px = info.k()[0];
+  const std::string text = fmt::format("focal length seems to be {:.1f} px (+- {:.1f}), {} says {:.1f}", found_px,
+                                       found_px * found->sigma, topics::kColorInfo.name, stated_px);
   context_.status().value("focal_length", text);
-  spdlog::warn("{}: correct fx and fy there, by the same factor {:.3f}", text, found->ratio);
+  if (depth_estimate_ != nullptr) return change_focal_length(found->ratio, text, after);
+  spdlog::warn("{}: correct fx and fy there, by the same factor {:.3f}", text, found_px / stated_px);
   focal_length_.reset();
 }
+
+/// Corrects the map, and the camera of the frames from `since` on. In the images, depth stays where it is: the depth
+/// camera's focal length is longer by the same factor, and the distance between the cameras shorter.
+void SlamComponent::change_focal_length(double ratio, const std::string& why,
+                                        const builtin_interfaces::msg::Time& since) {
+  const bool is_map_corrected = slam_->change_focal_length(ratio);
+  if (!is_map_corrected && is_focal_length_estimated_) {  // a rest of the error, which costs less than the map
+    focal_length_.reset();
+    return;
+  }
+  spdlog::info("{}: used from now on", why);
+  images::RgbdCalibration cameras = *input_.depth_converter().used();
+  for (auto* camera : {&cameras.color.pinhole, &cameras.depth.pinhole}) {
+    camera->fx *= ratio;
+    camera->fy *= ratio;
+  }
+  cameras.T_color_depth.translation().head<2>() /= ratio;
+  use_estimate(cameras, since);
+  is_focal_length_estimated_ = true;
+  renew_watch();
+  if (is_map_corrected) return;
+  spdlog::warn("the map cannot be corrected any more: a new map begins");
+  end_map();
+}
+
+void SlamComponent::renew_watch() { focal_length_.emplace(config_.method.noise, config_.method.features.scale_factor); }
 
 void SlamComponent::renew_calibrator() { calibrator_.emplace(depth_estimate_ != nullptr ? 1 : kViewsToContradict); }
 
 /// Compares depth with colour; true when the frame has to be converted again, because the calibration has changed.
 bool SlamComponent::calibrate_depth(const RgbdFrame& frame, const sensor_msgs::msg::CameraInfo& info) {
-  if (depth_camera_ && !input_.depth_converter().has_estimate()) {
-    spdlog::warn("what is said of the cameras has changed: the depth camera is estimated anew");
-    depth_camera_.reset();
+  if (cameras_ && !input_.depth_converter().has_estimate()) {
+    spdlog::warn("what is said of the cameras has changed: they are estimated anew");
+    cameras_.reset();
+    is_focal_length_estimated_ = false;
     renew_calibrator();
   }
   if (!calibrator_ || !calibrator_->wants(frame.stamp)) return false;
+  if (delay_.is_moving() && !delay_.is_over()) return false;  // a delay would look like a shift
   const images::RgbdCalibration& used = *input_.depth_converter().used();
   const auto alignment = calibrator_->add(frame, used);
   if (calibrator_->is_over()) calibrator_.reset();  // its views take tens of megabytes
   if (!alignment) {
     // Those who map with the estimate wait for it, also where there is nothing to correct.
-    if (depth_estimate_ != nullptr && !depth_camera_) use_estimate(used, info.header().stamp());
+    if (depth_estimate_ != nullptr && !cameras_) use_estimate(used, info.header().stamp());
     return false;
   }
   const images::RgbdCalibration cameras = corrected(used, alignment->offset);
@@ -243,6 +328,7 @@ bool SlamComponent::calibrate_depth(const RgbdFrame& frame, const sensor_msgs::m
   }
   spdlog::info("{}: used from now on", found);
   use_estimate(cameras, info.header().stamp());
+  if (!delay_.is_over()) delay_ = {};  // its views are of the registration before
   return true;
 }
 
@@ -256,14 +342,13 @@ void SlamComponent::use_estimate(const images::RgbdCalibration& cameras, const b
     context_.status().count("estimates of the depth camera dropped: " + problem);
     return;
   }
-  depth_camera_ = SavedDepthCamera{cameras.depth, cameras.T_color_depth};
+  cameras_ = cameras;
   depth_estimate_->publish(info);
 }
 
 /// The newest estimate counts for all stamps: those to come may be earlier ones, of another run or another clock.
 void SlamComponent::keep_estimate() {
-  if (!depth_camera_) return;
-  use_estimate({depth_camera_->camera, depth_camera_->camera, depth_camera_->T_color_depth}, {});
+  if (cameras_) use_estimate(*cameras_, {});
 }
 
 void SlamComponent::add_mount(const tf2_msgs::msg::TFMessage& message) {
@@ -508,7 +593,11 @@ PoseGraphSnapshot SlamComponent::published_graph() const {
   return graph;
 }
 
-SlamFile SlamComponent::saved_map() const { return {session_, epoch_, keyframe_ids_, slam_->state(), depth_camera_}; }
+SlamFile SlamComponent::saved_map() const {
+  SlamFile file{session_, epoch_, keyframe_ids_, slam_->state()};
+  if (cameras_) file.depth_camera = SavedDepthCamera{cameras_->depth, cameras_->T_color_depth};
+  return file;
+}
 
 void SlamComponent::finish() {
   spdlog::info("{} of {} frames tracked, {} dropped", frames_tracked_, frames_total_, frames_dropped_);

@@ -8,6 +8,7 @@
 #include "common/messages/geometry.hpp"
 #include "common/runtime/saved_map.hpp"
 #include "slam/conversions.hpp"
+#include "slam/core/calibration/delay_watch.hpp"
 #include "slam/core/calibration/focal_length.hpp"
 #include "slam/core/files/slam_file.hpp"
 #include "slam/core/rgbd_slam.hpp"
@@ -37,10 +38,15 @@ class SlamComponent {
   bool prepare(const JoinedFrame& first);
   std::unique_ptr<RgbdSlam> begin_map();
   void name_map(time::Time first_stamp);
-  void accept_saved_map(const geometry::PinholeCamera& camera);
+  void accept_saved_map(const geometry::PinholeCamera& camera, const sensor_msgs::msg::CameraInfo& stated);
   void track(const JoinedFrame& joined);
   void renew_calibrator();
-  void watch_focal_length();
+  void renew_watch();
+  void watch_focal_length(const sensor_msgs::msg::CameraInfo& info, const builtin_interfaces::msg::Time& after);
+  void change_focal_length(double ratio, const std::string& why, const builtin_interfaces::msg::Time& since);
+  void watch_delay(const RgbdFrame& frame, const TrackingResult& result, const builtin_interfaces::msg::Time& after);
+  void undo_delay(RgbdFrame& frame) const;
+  void watch_scale();
   bool calibrate_depth(const RgbdFrame& frame, const sensor_msgs::msg::CameraInfo& info);
   void keep_estimate();
   void use_estimate(const images::RgbdCalibration& cameras, const builtin_interfaces::msg::Time& since);
@@ -86,9 +92,13 @@ class SlamComponent {
   std::unique_ptr<RgbdSlam> slam_;                       // exists once the camera's mount is known
   std::deque<std::pair<time::Time, geometry::Pose>> early_odometry_;  // T_odom_base from before that
   std::optional<DepthCalibrator> calibrator_;
-  std::optional<FocalLengthWatch> focal_length_;  // until it has contradicted the camera info
-  std::optional<SavedDepthCamera> depth_camera_;  // as estimated
-  FrameContext frame_;                            // of the newest frame
+  std::optional<FocalLengthWatch> focal_length_;    // until it has contradicted the camera info
+  std::optional<images::RgbdCalibration> cameras_;  // as estimated
+  bool is_focal_length_estimated_ = false;          // that of colour
+  DelayWatch delay_;
+  bool is_scale_doubted_ = false;  // and reported
+  time::Duration depth_delay_;     // of depth behind colour, as estimated and corrected
+  FrameContext frame_;             // of the newest frame
   SlamClock clock_;
   std::optional<int> doubtful_frames_;  // since the camera's clock was set, until the map is known to be still right
   std::int64_t session_ = -1;

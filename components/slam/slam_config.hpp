@@ -303,9 +303,9 @@ void describe(Field& field, SlamComponentConfig& c) {
         "largest difference between the stamps of colour, depth and camera info of a frame; 0: 0.6 of the camera's "
         "period, at most 0.12 s [s]");
   field("depth_calibration", c.depth_calibration, config::one_of({"given", "estimate"}),
-        "where the depth camera is beside that of colour; given: as camera infos and /tf_static say, and slam reports "
-        "when the first images contradict it; estimate: slam corrects it by the edges in these images, and publishes "
-        "that on /slam/depth_camera_info");
+        "calibration of the cameras; given: as camera infos and /tf_static say, and slam reports what contradicts it; "
+        "estimate: slam corrects where the depth camera is beside that of colour, the focal length of both, and the "
+        "delay of depth, and publishes what it has found of the cameras on /slam/depth_camera_info");
   field("graph_period_s", c.graph_period_s, config::in_range(0.0, 60.0),
         "shortest time between publications of the pose graph, by the frames' time stamps [s]");
   field("landmark_period_s", c.landmark_period_s, config::in_range(0, 60),

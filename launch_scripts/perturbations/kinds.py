@@ -186,24 +186,37 @@ def depth_camera_of_its_own(sequence, _):
 
 
 def seen_by_depth_camera(depth, camera):
-    """What a camera with DEPTH_FOCAL_RATIO times the focal length, DEPTH_OFFSET_M to the left, measures of these points: the
-    nearest one in each pixel, each point being as large as two pixels."""
+    """What a camera with DEPTH_FOCAL_RATIO times the focal length, DEPTH_OFFSET_M to the left, measures of these surfaces: at
+    the centre of each of its pixels the nearest one."""
     height, width = depth.shape
     v, u = np.nonzero(depth)
+    near = np.divide(1.0, depth, where=depth > 0, out=np.zeros(depth.shape))  # on a plane, linear in the pixel
+    down_by, right_by = (slope(near, axis)[v, u] / DEPTH_FOCAL_RATIO for axis in (0, 1))
     z = depth[v, u] / camera["depth_scale"]
     x = (u - camera["cx"]) * z / camera["fx"] + DEPTH_OFFSET_M
     y = (v - camera["cy"]) * z / camera["fy"]
     column = DEPTH_FOCAL_RATIO * camera["fx"] * x / z + camera["cx"]
     row = DEPTH_FOCAL_RATIO * camera["fy"] * y / z + camera["cy"]
-    farthest = np.iinfo(np.uint16).max
-    out = np.full((height, width), farthest, dtype=np.uint16)
+    reach = 0.5 * DEPTH_FOCAL_RATIO + 0.1  # slanted surfaces: neighbours are further apart
+    nearest = np.zeros((height, width))
     for down in (0, 1):
         for right in (0, 1):
             rows, columns = (np.floor(row) + down).astype(int), (np.floor(column) + right).astype(int)
             inside = (rows >= 0) & (rows < height) & (columns >= 0) & (columns < width)
-            np.minimum.at(out, (rows[inside], columns[inside]), depth[v, u][inside])
-    out[out == farthest] = 0
-    return out
+            inside &= (np.abs(rows - row) < reach) & (np.abs(columns - column) < reach)
+            here = near[v, u] + (rows - row) * down_by + (columns - column) * right_by
+            np.maximum.at(nearest, (rows[inside], columns[inside]), here[inside])
+    out = np.divide(1.0, nearest, where=nearest > 0, out=np.zeros((height, width)))
+    return np.round(out).astype(np.uint16)
+
+
+def slope(near, axis):
+    """Change of 1 / depth from pixel to pixel, by those neighbours that belong to the same surface."""
+    steps = np.diff(near, axis=axis)
+    before, after = (np.insert(steps, at, np.inf, axis=axis) for at in (0, steps.shape[axis]))
+    belongs = [np.abs(step) < 0.05 * near for step in (before, after)]
+    total = sum(np.where(is_same, step, 0.0) for is_same, step in zip(belongs, (before, after)))
+    return total / np.maximum(belongs[0].astype(int) + belongs[1], 1)
 
 
 def person(sequence, random):

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "slam/core/calibration/focal_correction.hpp"
 #include "slam/core/frame/noise_model.hpp"
 #include "slam/core/front_end/front_end.hpp"
 #include "slam/core/graph/due_result.hpp"
@@ -152,7 +153,23 @@ class RgbdSlam::Implementation {
     } while (optimization_.is_busy());
   }
 
+  bool change_focal_length(double ratio) {
+    settle();
+    if (!can_be_remade(map_, graph_)) return false;
+    remake_map(config_, ratio, map_);
+    graph_.remeasure(map_);
+    loops_.drop_pending();
+    front_end_.renew(map_);
+    ++version_;
+    return true;
+  }
+
   std::optional<Pose> odometry_at(time::Time stamp) const { return motion_.odometry_at(stamp); }
+  std::optional<Pose> expected_motion(time::Time from, time::Time to) const {
+    const auto T_map_from = motion_.predict(map_, from), T_map_to = motion_.predict(map_, to);
+    if (!T_map_from || !T_map_to) return std::nullopt;
+    return T_map_from->inverse() * *T_map_to;
+  }
   PoseGraphSnapshot pose_graph() const { return without_sub_maps(graph_.snapshot(map_, version_), map_); }
   SubMapSummary sub_maps() const { return sub_maps_; }
   LoopSummary loops() const {
@@ -292,6 +309,10 @@ TrackingResult RgbdSlam::skip(time::Time stamp, const std::string& reason) const
 void RgbdSlam::settle() { implementation_->settle(); }
 LoopSummary RgbdSlam::loops() const { return implementation_->loops(); }
 SubMapSummary RgbdSlam::sub_maps() const { return implementation_->sub_maps(); }
+bool RgbdSlam::change_focal_length(double ratio) { return implementation_->change_focal_length(ratio); }
+std::optional<Pose> RgbdSlam::expected_motion(time::Time from, time::Time to) const {
+  return implementation_->expected_motion(from, to);
+}
 PoseGraphSnapshot RgbdSlam::pose_graph() const { return implementation_->pose_graph(); }
 SlamState RgbdSlam::state() const { return implementation_->state(); }
 std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(); }

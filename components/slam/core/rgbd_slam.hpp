@@ -54,8 +54,15 @@ class RgbdSlam {
   /// reason.
   TrackingResult process(const RgbdFrame& frame);
 
+  /// Makes the map anew for `ratio` times the focal length that its key-frames have; ids and stamps stay, and the
+  /// frames to come have the other camera. For young maps: false, and nothing changes, with too many key-frames or with
+  /// loops, sub-maps, or key-frames that vision does not connect. Call it after a frame that became a key-frame.
+  bool change_focal_length(double ratio);
+
   /// T_odom_base at a stamp; nothing where there is no odometry.
   std::optional<geometry::Pose> odometry_at(time::Time stamp) const;
+  /// Motion of the camera between two stamps near the newest frame, as motion predicts it.
+  std::optional<geometry::Pose> expected_motion(time::Time from, time::Time to) const;
   /// Result for a frame that cannot be processed: it has a pose by dead reckoning, or none.
   TrackingResult skip(time::Time stamp, const std::string& reason) const;
   /// Waits for optimisations under way and applies them, so that the map is the final one.

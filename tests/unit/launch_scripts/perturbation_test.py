@@ -150,18 +150,27 @@ class KindsTest(InAFolder):
         steps = [np.diff(color.astype(float), axis=1).std() for color in (shot.color, self.color)]
         self.assertLess(steps[0], 0.8 * steps[1])
 
-    def test_depth_of_a_camera_of_its_own_against_each_point_by_itself(self):
-        depth = self.played("depth not registered")[1][0].depth
-        nearest = np.full(depth.shape, np.inf)
-        for v, u in zip(*np.nonzero(depth_of(0))):
-            z = depth_of(0)[v, u] / 1000
-            point = np.array([(u - 31.5) * z / FOCAL + 0.025, (v - 23.5) * z / FOCAL, z])
-            at = 1.11 * FOCAL * point[:2] / z + [31.5, 23.5]
-            for column in (math.floor(at[0]), math.floor(at[0]) + 1):
-                for row in (math.floor(at[1]), math.floor(at[1]) + 1):
-                    if 0 <= row < HEIGHT and 0 <= column < WIDTH:
-                        nearest[row, column] = min(nearest[row, column], depth_of(0)[v, u])
-        np.testing.assert_array_equal(depth, np.where(np.isfinite(nearest), nearest, 0))
+    def test_depth_of_a_camera_of_its_own_is_what_it_measures_of_planes(self):
+        camera = CAMERA | {"width": 160, "height": 120, "fx": 160.0, "fy": 160.0, "cx": 79.5, "cy": 59.5}
+
+        def rendered(focal_px, left_m):
+            """Of a floor, a wall that is not square to the view, and a box: mm, and what each pixel shows."""
+            v, u = np.mgrid[0:120, 0:160]
+            x, y = (u - 79.5) / focal_px, (v - 59.5) / focal_px
+            with np.errstate(divide="ignore"):
+                floor = np.where(y > 0, 1.0 / y, np.inf)
+                wall = (4.0 - 0.5 * left_m) / (1.0 + 0.5 * x)
+            is_box = (np.abs(1.5 * x + left_m) < 0.3) & (np.abs(1.5 * y) < 0.3)
+            each = np.stack((floor, wall, np.where(is_box, 1.5, np.inf)))
+            return 1000.0 * each.min(axis=0), each.argmin(axis=0)
+
+        measured = kinds.seen_by_depth_camera(np.round(rendered(160.0, 0.0)[0]).astype(np.uint16), camera)
+        truth, what = rendered(1.11 * 160.0, -0.025)
+        far = np.pad(what, 2, mode="edge")
+        is_inside = np.all([far[2 + i:122 + i, 2 + j:162 + j] == what for i in (-2, 0, 2) for j in (-2, 0, 2)], axis=0)
+        is_seen = is_inside & (measured > 0)
+        self.assertGreater(is_seen.sum(), 0.99 * is_inside[:, 8:-8].sum())
+        self.assertLess(np.abs(measured - truth)[is_seen].max(), 0.003 * truth.max())
 
     def test_a_depth_camera_of_its_own_is_stated_with_what_it_measures(self):
         camera, shots = self.played("own depth camera")

@@ -126,6 +126,20 @@ TEST(DepthConverter, AnEstimateCountsFromItsStampOn) {
   }
 }
 
+TEST(DepthConverter, AnEstimateHasTheFocalLengthOfColour) {
+  StaticTransforms none;
+  DepthConverter converter(none);
+  const auto color = calibration("color", 100.0);
+  images::RgbdCalibration cameras{{{64, 48, 97.0, 98.0, 31.5, 23.5}, {}}, {{64, 48, 80.0, 80.0, 31.5, 23.5}, {}}};
+  cameras.T_color_depth.translation() = Eigen::Vector3d(-0.03, 0.01, 0.0);
+  EXPECT_EQ(converter.corrected(color).k(), color.k());
+  EXPECT_EQ(converter.set_estimate(to_depth_info({}, cameras)), "");
+  ASSERT_TRUE(converter.convert(ramp_of_depth("color"), color));
+  EXPECT_EQ(converter.used()->color.pinhole, cameras.color.pinhole);
+  EXPECT_EQ(converter.corrected(color).k()[0], 97.0);
+  EXPECT_EQ(converter.corrected(color).k()[4], 98.0);
+}
+
 TEST(DepthConverter, AnEstimateEndsWhenWhatIsGivenChanges) {
   StaticTransforms none;
   DepthConverter converter(none);

@@ -2,9 +2,12 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <optional>
 #include <random>
 #include <vector>
 
+#include "slam/core/calibration/delay_watch.hpp"
 #include "slam/depth_calibrator.hpp"
 #include "tests/support/boards.hpp"
 
@@ -62,6 +65,48 @@ TEST(DepthAlignment, FindsEdgesBehindGapsWithoutDepth) {
 }
 
 TEST(DepthAlignment, ABareWallHasNoEdges) { EXPECT_TRUE(EdgeView(see({}, {})).edges().empty()); }
+
+/// Plays 3 s of a camera that moves to and fro before ever other boards. Depth is of `delay_s` later, and of a camera
+/// beside it.
+std::optional<DepthOffset> watch(double delay_s, double beside_m) {
+  const auto position_m = [](double t) {
+    return Eigen::Vector3d(0.6 * std::sin(3.0 * t), 0.2 * std::sin(2.0 * t), 0.0);
+  };
+  DelayWatch watch;
+  for (int i = 0; i < 90; ++i) {
+    const double t = i / 30.0;
+    const Eigen::Vector3d moved = position_m(t + delay_s) - position_m(t);
+    RgbdFrame frame =
+        see(lapis::test::make_boards(static_cast<std::uint32_t>(1 + i % 20)), {1.0, {moved.x() + beside_m, moved.y()}});
+    frame.stamp = time::Time::from_seconds(t);
+    if (const auto found = watch.add(frame, geometry::Pose(Eigen::Translation3d(position_m(t))))) return found;
+  }
+  EXPECT_TRUE(watch.is_over());
+  return std::nullopt;
+}
+
+TEST(DelayWatch, FindsHowLateDepthIs) {
+  for (const double delay_s : {0.033, -0.02, 0.05}) {
+    const auto found = watch(delay_s, 0.0);
+    ASSERT_TRUE(found) << delay_s;
+    EXPECT_NEAR(found->delay_s, delay_s, 0.003);
+  }
+}
+
+TEST(DelayWatch, DepthOfTheSameInstantHasNone) {
+  EXPECT_FALSE(watch(0.0, 0.0));
+  EXPECT_FALSE(watch(0.0, -0.025)) << "the depth camera is beside that of colour";
+}
+
+TEST(DelayWatch, WithoutPosesNothingIsConcluded) {
+  DelayWatch watch;
+  for (int i = 0; i < 60; ++i) {
+    RgbdFrame frame = see(lapis::test::make_boards(1), {});
+    frame.stamp = time::Time::from_seconds(i / 30.0);
+    EXPECT_FALSE(watch.add(frame, std::nullopt));
+  }
+  EXPECT_FALSE(watch.is_over());
+}
 
 TEST(DepthCalibrator, TheCorrectedCalibrationPutsDepthWhereColourSeesIt) {
   const DepthOffset truth{1.0 / 1.11, {-0.025, 0.0}};

@@ -133,5 +133,72 @@ TEST(FocalLengthWatch, ContradictsAWrongOneAndNoRightOne) {
   }
 }
 
+/// The map of a camera that goes through the room, whose camera info is `stated` times longer until that is noticed.
+struct CorrectedRun {
+  RgbdSlam slam;
+  double stated;
+  int corrections = 0;
+
+  explicit CorrectedRun(double stated_ratio) : slam(SlamConfig{}, test::room_path(0)), stated(stated_ratio) {
+    const SlamConfig config;
+    FocalLengthWatch watch(config.noise, config.features.scale_factor);
+    for (int i = 0; i < 160; ++i) {
+      RgbdFrame frame = test::render_room(test::small_camera(), test::room_path(i), stamp_of(i));
+      frame.camera = with_focal_length(frame.camera, stated);
+      if (!slam.process(frame).is_keyframe) continue;
+      watch.add(slam.map(), slam.map().keyframes().back().id);
+      const auto found = corrections > 0 ? watch.refinement() : watch.contradiction();
+      if (!found) continue;
+      ++corrections;
+      EXPECT_TRUE(slam.change_focal_length(found->ratio));
+      stated *= found->ratio;
+      watch = FocalLengthWatch(config.noise, config.features.scale_factor);
+    }
+  }
+  static time::Time stamp_of(int i) { return time::Time::from_seconds(1 + i / 30.0); }
+  /// Root mean square of the errors of the key-frames' positions [m].
+  double error_m() const {
+    double squares = 0.0;
+    for (const Keyframe& keyframe : slam.map().keyframes()) {
+      const int i = static_cast<int>(std::lround((keyframe.stamp.seconds() - 1.0) * 30.0));
+      squares += (keyframe.T_map_camera.translation() - test::room_path(i).translation()).squaredNorm();
+    }
+    return std::sqrt(squares / static_cast<double>(slam.keyframe_count()));
+  }
+};
+
+TEST(FocalLengthCorrection, MapIsThatOfTheRightCamera) {
+  const CorrectedRun right(1.0);
+  ASSERT_EQ(right.corrections, 0);
+  for (const double stated : {0.97, 1.03}) {
+    const CorrectedRun run(stated);
+    ASSERT_GT(run.corrections, 0);
+    EXPECT_NEAR(run.stated, 1.0, 0.005);
+    EXPECT_LT(run.error_m(), 2.0 * right.error_m()) << stated;
+    const PoseGraphSnapshot graph = run.slam.pose_graph();
+    for (const PoseGraphEdge& edge : graph.edges) {
+      const geometry::Pose T_from_to =
+          graph.nodes[edge.from].T_map_camera.inverse() * graph.nodes[edge.to].T_map_camera;
+      EXPECT_LT(geometry::se3_log(edge.T_from_to.inverse() * T_from_to).norm(), 0.02);
+    }
+  }
+}
+
+TEST(FocalLengthCorrection, SurfacesStayWhereTheyAreSeen) {
+  Map map;
+  Keyframe keyframe;
+  keyframe.camera = with_focal_length(kTrue, 1.03);
+  const Eigen::Vector3d normal = Eigen::Vector3d(0.3, -0.2, -1.0).normalized(), on_plane(0.4, 0.3, 2.0);
+  // Two points of a plane as a camera takes them to be whose focal length is too long.
+  const auto assumed = [&](const Eigen::Vector3d& p) -> Eigen::Vector3d { return {p.x() / 1.03, p.y() / 1.03, p.z()}; };
+  const Eigen::Vector3d assumed_normal(1.03 * normal.x(), 1.03 * normal.y(), normal.z());
+  keyframe.surface = std::vector<SurfaceSample>{{assumed(on_plane), assumed_normal.normalized()}};
+  map.add_keyframe(keyframe);
+  map.change_focal_length(1.0 / 1.03);
+  EXPECT_NEAR(map.keyframe(0).camera.fx, kTrue.fx, 1e-9);
+  EXPECT_LT((map.keyframe(0).surface[0].point - on_plane).norm(), 1e-12);
+  EXPECT_LT((map.keyframe(0).surface[0].normal - normal).norm(), 1e-12);
+}
+
 }  // namespace
 }  // namespace lapis::slam

@@ -88,6 +88,16 @@ TEST(WheelCalibrator, FindsWrongWheelsWithinItsOwnSigmas) {
   }
 }
 
+TEST(WheelCalibrator, DoubtsAScaleThatIsFarOffBeyondDoubt) {
+  for (const auto& [distance, is_doubted] : {std::pair(0.96, true), {1.04, true}, {1.01, false}, {1.0, false}}) {
+    WheelCalibrator wheels({});
+    Drive(distance, 1.0, 1.0).teach(wheels, 3);
+    EXPECT_FALSE(doubts_scale(wheels.belief())) << "not after three motions";
+    Drive(distance, 1.0, 1.0).teach(wheels, 200);
+    EXPECT_EQ(doubts_scale(wheels.belief()), is_doubted) << distance;
+  }
+}
+
 TEST(WheelCalibrator, LearnsTheNoise) {
   WheelCalibrator quiet({}), noisy({});
   Drive(1.0, 1.0, 1.0).teach(quiet, 400);

@@ -74,15 +74,27 @@ std::vector<EdgeView::Edge> edges_of(const geometry::DepthImage& depth) {
   return edges;
 }
 
-Eigen::Vector2d moved(const geometry::PinholeCamera& camera, const EdgeView::Edge& edge, const DepthOffset& offset) {
+/// Speed of the image of an edge [px/s] [Longuet-Higgins and Prazdny, "The interpretation of a moving retinal image",
+/// 1980].
+Eigen::Vector2d speed_of(const EdgeView& view, const EdgeView::Edge& edge) {
+  const geometry::PinholeCamera& camera = view.camera();
+  const double x = (edge.pixel.x() - camera.cx) / camera.fx, y = (edge.pixel.y() - camera.cy) / camera.fy;
+  const Eigen::Vector3d v = view.velocity().head<3>() / edge.depth_m, w = view.velocity().tail<3>();
+  return {camera.fx * (-v.x() + x * v.z() + x * y * w.x() - (1.0 + x * x) * w.y() + y * w.z()),
+          camera.fy * (-v.y() + y * v.z() + (1.0 + y * y) * w.x() - x * y * w.y() - x * w.z())};
+}
+
+Eigen::Vector2d moved(const EdgeView& view, const EdgeView::Edge& edge, const DepthOffset& offset) {
+  const geometry::PinholeCamera& camera = view.camera();
   const Eigen::Vector2d centre{camera.cx, camera.cy};
   return centre + offset.focal_ratio * (edge.pixel.cast<double>() - centre) +
-         Eigen::Vector2d(camera.fx, camera.fy).cwiseProduct(offset.shift_m) / edge.depth_m;
+         Eigen::Vector2d(camera.fx, camera.fy).cwiseProduct(offset.shift_m) / edge.depth_m -
+         offset.delay_s * speed_of(view, edge);
 }
 
 /// An edge that leaves the image is taken where it was, so that nothing is gained by that.
 double contrast_at(const EdgeView& view, const EdgeView::Edge& edge, const DepthOffset& offset, int level) {
-  const Eigen::Vector2d pixel = moved(view.camera(), edge, offset);
+  const Eigen::Vector2d pixel = moved(view, edge, offset);
   const bool is_inside = view.camera().contains(pixel, std::ldexp(1.0, level));
   return view.contrast(is_inside ? pixel : edge.pixel.cast<double>(), edge.is_upright, level);
 }
@@ -116,11 +128,13 @@ DepthOffset coarse_offset(std::span<const EdgeView> views) {
   return best;
 }
 
-/// Parameters in pixels: those at a quarter of the width beside the centre, and those of a shift at the median depth.
+/// Parameters in pixels: those at a quarter of the width beside the centre, those of a shift at the median depth, and
+/// those of a delay at the mean speed. A delay is sought where there is one to begin with.
 class Search : public cv::MinProblemSolver::Function {
  public:
   Search(std::span<const EdgeView> views, const DepthOffset& start, int level)
-      : views_(views), start_(start), level_(level), per_ratio_px_(0.25 * views.front().camera().width) {
+      : views_(views), start_(start), level_(level), per_ratio_px_(0.25 * views.front().camera().width),
+        per_delay_px_(moved_px(views, {.delay_s = 1.0})) {
     std::vector<float> depths;
     for (const EdgeView& view : views) {
       for (const auto& edge : view.edges()) depths.push_back(edge.depth_m);
@@ -129,17 +143,19 @@ class Search : public cv::MinProblemSolver::Function {
     std::nth_element(depths.begin(), middle, depths.end());
     per_shift_px_ = views.front().camera().fx / *middle;
   }
-  int getDims() const override { return 3; }
+  int getDims() const override { return start_.delay_s == 0.0 ? 3 : 4; }
   double calc(const double* x) const override { return -score(views_, offset(x), level_, 1); }
   DepthOffset offset(const double* x) const {
-    return {start_.focal_ratio + x[0] / per_ratio_px_, start_.shift_m + Eigen::Vector2d(x[1], x[2]) / per_shift_px_};
+    const double delay_s = start_.delay_s == 0.0 ? 0.0 : start_.delay_s + x[3] / per_delay_px_;
+    return {start_.focal_ratio + x[0] / per_ratio_px_, start_.shift_m + Eigen::Vector2d(x[1], x[2]) / per_shift_px_,
+            delay_s};
   }
 
  private:
   std::span<const EdgeView> views_;
   DepthOffset start_;
   int level_;
-  double per_ratio_px_, per_shift_px_ = 1.0;
+  double per_ratio_px_, per_delay_px_, per_shift_px_ = 1.0;
 };
 
 /// Nelder and Mead's method, from coarse levels to fine ones.
@@ -149,18 +165,18 @@ DepthOffset refined(std::span<const EdgeView> views, DepthOffset offset) {
     const auto search = cv::makePtr<Search>(views, offset, level);
     const double step_px = std::ldexp(1.0, level);
     const auto solver = cv::DownhillSolver::create(
-        search, cv::Mat(cv::Matx13d(step_px, step_px, step_px)),
+        search, cv::Mat(1, search->getDims(), CV_64F, cv::Scalar(step_px)),
         cv::TermCriteria(cv::TermCriteria::MAX_ITER + cv::TermCriteria::EPS, kMostSteps, 1e-5));
-    cv::Mat x = cv::Mat::zeros(1, 3, CV_64F);
+    cv::Mat x = cv::Mat::zeros(1, search->getDims(), CV_64F);
     solver->minimize(x);
     offset = search->offset(x.ptr<double>());
   }
   return offset;
 }
 
-/// Mean gain of contrast over its standard error. A tile of the image is one sample, for all views together: the edges
-/// in it belong to few things, and a camera that stands shows the same ones again.
-double gain_sigmas(std::span<const EdgeView> views, const DepthOffset& offset) {
+/// Mean gain of contrast over that of a reference, over its standard error. A tile of the image is one sample, for all
+/// views together: the edges in it belong to few things, and a camera that stands shows the same ones again.
+double gain_sigmas(std::span<const EdgeView> views, const DepthOffset& offset, const DepthOffset& reference) {
   constexpr int kFewest = 10;           // edges of a tile
   constexpr double kFewestTiles = 8.0;  // fewer agree by chance, or because they show one thing
   struct Sum {
@@ -172,7 +188,7 @@ double gain_sigmas(std::span<const EdgeView> views, const DepthOffset& offset) {
     const auto tile = [](float at, int size) { return static_cast<int>(at * kTiles) / size; };
     for (const auto& edge : view.edges()) {
       Sum& sum = tiles[{tile(edge.pixel.x(), view.camera().width), tile(edge.pixel.y(), view.camera().height)}];
-      sum.gain += contrast_at(view, edge, offset, 0) - contrast_at(view, edge, {}, 0);
+      sum.gain += contrast_at(view, edge, offset, 0) - contrast_at(view, edge, reference, 0);
       ++sum.edges;
     }
   }
@@ -188,16 +204,23 @@ double gain_sigmas(std::span<const EdgeView> views, const DepthOffset& offset) {
   return n >= kFewestTiles && squares > 0.0 ? mean / std::sqrt(squares / (n - 1.0) / n) : 0.0;
 }
 
-double moved_px(std::span<const EdgeView> views, const DepthOffset& offset) {
-  double squares = 0.0;
-  std::size_t count = 0;
-  for (const EdgeView& view : views) {
-    for (const auto& edge : view.edges()) {
-      squares += (moved(view.camera(), edge, offset) - edge.pixel.cast<double>()).squaredNorm();
-    }
-    count += view.edges().size();
+/// In steps by which edges move by about a pixel of a coarse level: 0 where less than that is off.
+double coarse_delay(std::span<const EdgeView> views, double most_s) {
+  constexpr int kLevel = 1;
+  const int sides = std::max(1, static_cast<int>(moved_px(views, {.delay_s = most_s}) / std::ldexp(1.0, kLevel)));
+  double best = 0.0;
+  double highest = -std::numeric_limits<double>::infinity();
+  for (int i = -sides; i <= sides; ++i) {
+    const double delay_s = most_s * i / sides, here = score(views, {.delay_s = delay_s}, kLevel, 5);
+    if (here <= highest) continue;
+    highest = here;
+    best = delay_s;
   }
-  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+  return best;
+}
+
+DepthAlignment alignment(std::span<const EdgeView> views, const DepthOffset& offset, const DepthOffset& reference) {
+  return {offset, moved_px(views, offset), gain_sigmas(views, offset, reference)};
 }
 
 }  // namespace
@@ -220,9 +243,26 @@ double EdgeView::contrast(const Eigen::Vector2d& pixel, bool is_upright, int lev
          down * ((1.0 - right) * image(u, v + 1) + right * image(u + 1, v + 1));
 }
 
+double moved_px(std::span<const EdgeView> views, const DepthOffset& offset) {
+  double squares = 0.0;
+  std::size_t count = 0;
+  for (const EdgeView& view : views) {
+    for (const auto& edge : view.edges()) {
+      squares += (moved(view, edge, offset) - edge.pixel.cast<double>()).squaredNorm();
+    }
+    count += view.edges().size();
+  }
+  return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : 0.0;
+}
+
 DepthAlignment align_depth(std::span<const EdgeView> views) {
-  const DepthOffset offset = refined(views, coarse_offset(views));
-  return {offset, moved_px(views, offset), gain_sigmas(views, offset)};
+  return alignment(views, refined(views, coarse_offset(views)), {});
+}
+
+DepthAlignment align_late_depth(std::span<const EdgeView> views, double most_s) {
+  const DepthOffset late{.delay_s = coarse_delay(views, most_s)};
+  if (late.delay_s == 0.0) return {};
+  return alignment(views, refined(views, late), refined(views, coarse_offset(views)));
 }
 
 }  // namespace lapis::slam

@@ -8,15 +8,18 @@
 
 #include "common/geometry/image.hpp"
 #include "common/geometry/pinhole_camera.hpp"
+#include "common/geometry/se3.hpp"
 #include "slam/core/frame/frame.hpp"
 
 namespace lapis::slam {
 
-/// How far the depth camera is from where it was taken to be. A pixel of depth `z` that is shown at `pixel` belongs at
-///   centre + focal_ratio * (pixel - centre) + focal lengths * shift_m / z.
+/// How far the depth camera is from where it was taken to be, in space and time. A pixel of depth `z` that is shown at
+/// `pixel` belongs at
+///   centre + focal_ratio * (pixel - centre) + focal lengths * shift_m / z - delay_s * (speed of the image there).
 struct DepthOffset {
   double focal_ratio = 1.0;                           ///< focal length that was assumed / true focal length
   Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();  ///< of the depth camera: x to the right, y down [m]
+  double delay_s = 0.0;                               ///< how much later than colour depth was measured
 };
 
 /// What one frame shows of the offset: where depth jumps, and how strong the contrast of grey values is everywhere.
@@ -37,6 +40,9 @@ class EdgeView {
   /// @param level of a pyramid: 0 is the image, each further one is blurred to half of the size.
   double contrast(const Eigen::Vector2d& pixel, bool is_upright, int level) const;
   const geometry::PinholeCamera& camera() const { return camera_; }
+  /// Of the camera, in its own frame (translation, rotation) [m/s, rad/s]; zero until it is set.
+  const geometry::Vector6d& velocity() const { return velocity_; }
+  void set_velocity(const geometry::Vector6d& velocity) { velocity_ = velocity; }
 
  private:
   using Levels = std::array<geometry::Image<float>, kLevels>;
@@ -44,6 +50,7 @@ class EdgeView {
   geometry::PinholeCamera camera_;
   std::vector<Edge> edges_;
   Levels across_columns_, across_rows_;
+  geometry::Vector6d velocity_ = geometry::Vector6d::Zero();
 };
 
 /// The offset that puts jumps of depth where grey values have contrast.
@@ -56,5 +63,11 @@ struct DepthAlignment {
 /// Searches focal ratios from 0.76 to 1.3 and shifts to 8 cm [cf. Levinson and Thrun, "Automatic online calibration of
 /// cameras and lasers", RSS 2013: depth discontinuities at image edges]. The views show edges.
 DepthAlignment align_depth(std::span<const EdgeView> views);
+
+/// The same with a delay of up to about `most_s`, either way, by views with edges and velocities. `gain_sigmas` says
+/// how much better that is than the best offset without a delay. A delay that moves edges by less than a pixel is none.
+DepthAlignment align_late_depth(std::span<const EdgeView> views, double most_s);
+/// By how much an offset moves the edges of the views (root mean square) [px].
+double moved_px(std::span<const EdgeView> views, const DepthOffset& offset);
 
 }  // namespace lapis::slam

@@ -1,6 +1,7 @@
 #include "slam/core/calibration/focal_length.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -11,6 +12,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr std::size_t kFewestPoints = 30;
+constexpr std::size_t kFewestKeyframes = 5;
 constexpr int kMostSteps = 20;
 constexpr double kSettled = 1e-6;
 constexpr double kLargestLogRatio = 0.5;
@@ -113,6 +115,11 @@ double information_of(const System& system) {
   return left / std::max(fit, 1.0);
 }
 
+bool differs(const FocalLengthWatch::Estimate& estimate, double least, double sigmas) {
+  const double size = std::abs(std::log(estimate.ratio));
+  return size > least && size > sigmas * estimate.sigma;
+}
+
 /// The points that two key-frames share, by the landmarks of the second.
 std::vector<SharedPoint> shared_points(const Map& map, KeyframeId first, KeyframeId second, const NoiseConfig& noise,
                                        double scale_factor) {
@@ -166,8 +173,7 @@ void FocalLengthWatch::add(const Map& map, KeyframeId id) {
 }
 
 std::optional<FocalLengthWatch::Estimate> FocalLengthWatch::estimate() const {
-  constexpr std::size_t kFewest = 10;
-  if (evidence_.size() < kFewest) return std::nullopt;
+  if (evidence_.size() < kFewestKeyframes) return std::nullopt;
   double weights = 0.0, sum = 0.0, scatter = 0.0;
   for (const auto& e : evidence_) {
     weights += e.information;
@@ -179,12 +185,20 @@ std::optional<FocalLengthWatch::Estimate> FocalLengthWatch::estimate() const {
 }
 
 std::optional<FocalLengthWatch::Estimate> FocalLengthWatch::contradiction() const {
-  constexpr double kSigmas = 5.0;
+  // Student's distribution of the scatter of 5, 6, ... key-frames: all are exceeded by chance as often as 5 by ten.
+  constexpr std::array<double, 6> kSigmas{9.3, 7.3, 6.3, 5.7, 5.3, 5.0};
   constexpr double kMatters = 0.01;
   const auto found = estimate();
   if (!found) return std::nullopt;
-  const double size = std::abs(std::log(found->ratio));
-  return size > kMatters && size > kSigmas * found->sigma ? found : std::nullopt;
+  const double sigmas = kSigmas[std::min(found->keyframes - kFewestKeyframes, kSigmas.size() - 1)];
+  return differs(*found, kMatters, sigmas) ? found : std::nullopt;
+}
+
+std::optional<FocalLengthWatch::Estimate> FocalLengthWatch::refinement() const {
+  constexpr double kSigmas = 2.8;  // 95 % of five key-frames
+  constexpr double kMatters = 0.002;
+  const auto found = estimate();
+  return found && differs(*found, kMatters, kSigmas) ? found : std::nullopt;
 }
 
 }  // namespace lapis::slam

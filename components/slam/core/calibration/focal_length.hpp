@@ -53,6 +53,9 @@ class FocalLengthWatch {
   std::optional<Estimate> estimate() const;
   /// The estimate when it differs from 1 beyond doubt, and by enough to matter.
   std::optional<Estimate> contradiction() const;
+  /// The same for a focal length that is known to be estimated: what is left of the error is less, and asks for less.
+  /// Matches that contradicted the wrong one were dropped, so the first estimate is too near to it.
+  std::optional<Estimate> refinement() const;
 
  private:
   NoiseConfig noise_;

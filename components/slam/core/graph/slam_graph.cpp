@@ -125,6 +125,24 @@ void SlamGraph::follow(const Map& map, const std::vector<KeyframeId>& moved) {
   }
 }
 
+void SlamGraph::remeasure(const Map& map) {
+  const auto measure = [&](auto& edge) {
+    edge.T_from_to = map.keyframe(edge.from).T_map_camera.inverse() * map.keyframe(edge.to).T_map_camera;
+  };
+  const auto is_of_odometry = [&](const KeyframeLink& link) {
+    return std::any_of(edges_.begin(), edges_.end(), [&](const PoseGraphEdge& edge) {
+      return edge.type == EdgeType::kWheelOdometry && edge.from == link.from && edge.to == link.to &&
+             edge.T_from_to.matrix() == link.T_from_to.matrix();
+    });
+  };
+  for (KeyframeLink& link : links_) {
+    if (!is_of_odometry(link)) measure(link);
+  }
+  for (PoseGraphEdge& edge : edges_) {
+    if (edge.type != EdgeType::kWheelOdometry) measure(edge);
+  }
+}
+
 Matrix6d SlamGraph::chain_covariance(const Map& map, KeyframeId from, KeyframeId to) const {
   const auto T_between = [&](KeyframeId a, KeyframeId b) {
     return Pose(map.keyframe(a).T_map_camera.inverse() * map.keyframe(b).T_map_camera);

@@ -47,6 +47,8 @@ class SlamGraph {
   /// Recomputes the edges of vision and surfaces at key-frames that bundle adjustment has moved, from the poses in the
   /// map.
   void follow(const Map& map, const std::vector<KeyframeId>& moved);
+  /// Recomputes all edges and links but those of odometry from the poses in the map: it was made anew.
+  void remeasure(const Map& map);
   /// Covariance of T_from_to by the edges to parents alone, as if no loop were closed: an upper bound.
   geometry::Matrix6d chain_covariance(const Map& map, KeyframeId from, KeyframeId to) const;
   /// Covariance of T_from_to: either by the edges to parents alone, or by all edges of the graph as of the last

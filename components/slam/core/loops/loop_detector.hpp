@@ -51,6 +51,8 @@ class LoopDetector {
   /// and remembers the new one. Returns the edges that close loops: none, or those of a pair of key-frames that agree.
   std::vector<PoseGraphEdge> add(const Map& map, const SlamGraph& graph, const Tracker& tracker, const Frame& frame,
                                  KeyframeId id);
+  /// Drops the loop that awaits its confirmation: the map was made anew.
+  void drop_pending() { pending_.reset(); }
   /// Places that were recognised and confirmed, in the order of time, whether or not they made an edge.
   const std::vector<Revisit>& revisits() const { return revisits_; }
 

@@ -58,6 +58,28 @@ void Map::move(const std::vector<geometry::Pose>& moves) {
   }
 }
 
+void Map::change_focal_length(double ratio) {
+  const Eigen::Vector3d beside(1.0 / ratio, 1.0 / ratio, 1.0);
+  for (Landmark& landmark : landmarks_) {
+    if (landmark.observations.empty()) continue;
+    const geometry::Pose& T_map_camera = keyframe(landmark.observations.front().keyframe).T_map_camera;
+    const Eigen::Vector3d before = T_map_camera.inverse() * landmark.p_map;
+    const Eigen::Vector3d after = before.cwiseProduct(beside);
+    landmark.p_map = T_map_camera * after;
+    landmark.finest_distance_m *= after.norm() / before.norm();
+  }
+  for (Keyframe& keyframe : keyframes_) {
+    keyframe.camera.fx *= ratio;
+    keyframe.camera.fy *= ratio;
+    std::vector<SurfaceSample> surface = keyframe.surface;
+    for (SurfaceSample& sample : surface) {
+      sample.point = sample.point.cwiseProduct(beside);
+      sample.normal = sample.normal.cwiseQuotient(beside).normalized();
+    }
+    keyframe.surface = std::move(surface);
+  }
+}
+
 void Map::join(KeyframeId sub_map, KeyframeId into, const geometry::Pose& T_into_sub_map) {
   std::vector<geometry::Pose> moves(keyframes_.size(), geometry::Pose::Identity());
   for (Keyframe& keyframe : keyframes_) {

@@ -68,6 +68,9 @@ class Map {
   /// landmark by that of the key-frame that saw it first.
   void move(const std::vector<geometry::Pose>& moves);
   void set_position(LandmarkId id, const Eigen::Vector3d& p_map) { landmarks_[id].p_map = p_map; }
+  /// Sees everything anew, as cameras with `ratio` times the focal length that was assumed show it: what is beside the
+  /// optical axis is nearer to it, by that ratio. Poses stay.
+  void change_focal_length(double ratio);
   /// Makes a sub-map one with another part: its key-frames and landmarks are moved into that one's frame.
   void join(KeyframeId sub_map, KeyframeId into, const geometry::Pose& T_into_sub_map);
   /// Takes what they have seen from the key-frames of a sub-map. They keep their ids and poses.

@@ -60,6 +60,12 @@ void WheelCalibrator::learn(double walked, double seen, double variance, double 
   scale_variance = std::max(squared(kLeastSigma), scale_variance * (1.0 - gain * walked));
 }
 
+bool doubts_scale(const WheelCalibration& wheels) {
+  constexpr double kMatters = 0.02, kSigmas = 5.0;
+  const double off = std::abs(wheels.distance_scale - 1.0);
+  return off >= kMatters && off > kSigmas * std::sqrt(wheels.distance_variance);
+}
+
 Pose corrected(const WheelCalibration& wheels, const Pose& motion) {
   Vector6d step = geometry::se3_log(motion);
   step.head<3>() *= wheels.distance_scale;

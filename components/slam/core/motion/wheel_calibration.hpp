@@ -53,6 +53,10 @@ class WheelCalibrator {
   WheelCalibration belief_;
 };
 
+/// Whether distances by vision differ from those of the wheels by 2 % or more, and beyond doubt: then the wheels, or
+/// the scale of depth, are not as configured. Which of them, nothing tells: a map of any scale fits all images.
+bool doubts_scale(const WheelCalibration& wheels);
+
 /// The motion with its distance and its turn multiplied by their scales.
 geometry::Pose corrected(const WheelCalibration& wheels, const geometry::Pose& motion);
 

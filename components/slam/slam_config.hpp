@@ -29,10 +29,10 @@ void describe(Field& field, FeatureConfig& c) {
   field("scale_factor", c.scale_factor, config::in_range(1.05, 2),
         "ratio of the image sizes of neighbouring pyramid levels; a map to resume must have been made with the same "
         "value");
-  field(
-      "fast_threshold", c.fast_threshold, config::in_range(1, 100),
-      "contrast of a FAST corner with the pixels around it; where a pyramid level has too few, all corners count that "
-      "stand out from the noise [grey levels]");
+  field("fast_threshold", c.fast_threshold, config::in_range(1, 100),
+        "contrast of a FAST corner with the pixels around it; where a pyramid level has less than a third of its "
+        "share, all count that "
+        "stand out from the noise [grey levels]");
   field("min_corner_share", c.min_corner_share, config::in_range(0, 1),
         "smallest ratio of the smaller to the larger eigenvalue of a corner's structure tensor; a corner with less "
         "lies on an edge and is dropped");

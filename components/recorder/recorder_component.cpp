@@ -186,7 +186,13 @@ void RecorderComponent::write(bags::Message message) {
   }
 }
 
+/// Takes what has arrived, but has not had its turn yet.
+void RecorderComponent::take_waiting() {
+  for (std::size_t i = 0; i < recorded_.size(); ++i) recorded_[i].source->dispatch(kDepth);
+}
+
 std_srvs::srv::Trigger_Response RecorderComponent::take_snapshot() {
+  take_waiting();
   std_srvs::srv::Trigger_Response response;
   const std::filesystem::path folder =
       std::filesystem::path(config_.output) / ("snapshot_" + std::to_string(snapshots_));
@@ -228,6 +234,7 @@ void RecorderComponent::report() {
 }
 
 void RecorderComponent::finish() {
+  take_waiting();
   if (!early_.empty()) {
     spdlog::warn("{} messages came, but no /clock: they get the time 0", early_.size());
     set_clock({0, 1, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0});

@@ -46,6 +46,7 @@ class RecorderComponent {
   void store(std::size_t index, const dds::RawType::Bytes& bytes, const dds::compat::fdds::SampleInfo& info);
   void set_clock(const dds::RawType::Bytes& bytes);
   void keep(bags::Message message);
+  void take_waiting();
   void write(bags::Message message);
   std_srvs::srv::Trigger_Response take_snapshot();
   void report();

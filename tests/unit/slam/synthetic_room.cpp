@@ -54,23 +54,6 @@ RgbdFrame render_room(const geometry::PinholeCamera& camera, const geometry::Pos
   return frame;
 }
 
-void put_board(const geometry::Pose& T_room_camera, double moved_m, RgbdFrame& frame) {
-  constexpr double kBoard_m = 1.2;
-  constexpr int kBoard = 6;  // beside the walls
-  const Eigen::Vector3d origin = T_room_camera.translation();
-  for (int y = 0; y < frame.camera.height; ++y) {
-    for (int x = frame.camera.width / 2; x < frame.camera.width; ++x) {
-      const Eigen::Vector3d ray = T_room_camera.linear() * frame.camera.unproject(x, y, 1.0);
-      const double depth_m = (kBoard_m - origin.z()) / ray.z();
-      if (depth_m <= 0.0 || depth_m > frame.depth(x, y)) continue;
-      const Eigen::Vector3d p = origin + depth_m * ray;
-      frame.gray(x, y) = static_cast<std::uint8_t>(30 + tile_grey(kBoard, p.x() - moved_m, p.y(), 0.21) +
-                                                   tile_grey(kBoard + 10, p.x() - moved_m, p.y(), 0.09));
-      frame.depth(x, y) = static_cast<float>(depth_m);
-    }
-  }
-}
-
 geometry::Pose room_path(int index) {
   const double s = 0.02 * index;
   geometry::Vector6d xi;

@@ -15,8 +15,4 @@ RgbdFrame render_room(const geometry::PinholeCamera& camera, const geometry::Pos
 /// Pose of frame `index` on a gentle curve through the room: about 3 cm and 1 degree a frame.
 geometry::Pose room_path(int index);
 
-/// Puts a board with tiles before the camera, 1.2 m from the middle of the room (plane z = 1.2 m), into the right half
-/// of the image. It has moved sideways, along x.
-void put_board(const geometry::Pose& T_room_camera, double moved_m, RgbdFrame& frame);
-
 }  // namespace lapis::slam::test

@@ -11,7 +11,6 @@ import re
 import signal
 import struct
 import subprocess
-import time
 
 import chain
 
@@ -207,8 +206,8 @@ class LongSegmentedExploreTest(SegmentedExploreCase):
         out = self.folder / "run"
         with explore(out, "--scene", self.write_flat(), "--duration", "20", "--freerun", "--segmenter", self.model()) as run:
             while run.is_alive():
-                self.pause_segmenter(run.run, 0.9)
-                time.sleep(0.1)
+                self.pause_segmenter(run, 0.9)
+                run.wait_for(lambda _: False, 0.1)  # or its end
             self.assertEqual(run.wait(), 0, run.output())
             self.assert_no_orphan(run)
         self.assert_labels(out)
@@ -218,11 +217,11 @@ class LongSegmentedExploreTest(SegmentedExploreCase):
         print(f"figure: {metrics['path_length_m']:.1f} m driven, {len(late)} stops because the map was old")
 
     def pause_segmenter(self, run, seconds):
-        for pid, program in chain.processes_of(run).items():
+        for pid, program in chain.processes_of(run.run).items():
             if program == "lapis_segmenter":
                 with contextlib.suppress(ProcessLookupError):
                     os.kill(pid, signal.SIGSTOP)
-                    time.sleep(seconds)
+                    run.wait_for(lambda _: False, seconds)
                     os.kill(pid, signal.SIGCONT)
 
 

@@ -23,18 +23,15 @@ mkdir -p "$work/bags"
 "$bin/lapis_test_camera" >"$work/bags/camera.log" 2>&1 &
 pids+=($!)
 
-# record NAME SIGNAL OPTION...: records until the log tells of 60 images, then ends the recorder by SIGNAL.
+# record NAME SIGNAL OPTION...: records until ten images are in the bag, then ends the recorder by SIGNAL.
 record() {
   local name=$1 signal=$2 status=0
   shift 2
+  mkdir "$work/bags/$name"
   "$bin/lapis_recorder" "$work/bags/$name" "$@" >"$work/bags/$name.log" 2>&1 &
   local recorder=$!
   pids+=("$recorder")
-  for _ in $(seq 300); do # until 2 MB are on the disk
-    [ "$(du -sk "$work/bags/$name" 2>/dev/null | cut -f 1)" -gt 2000 ] 2>/dev/null && break
-    kill -0 "$recorder" || { cat "$work/bags/$name.log"; exit 1; }
-    sleep 0.1
-  done
+  node "$source_dir/wait_for_bag.mjs" "$work/bags/$name" /camera/color/image_raw 10 || { cat "$work/bags/$name.log"; exit 1; }
   kill -"$signal" "$recorder"
   wait "$recorder" || status=$?
   [ "$signal" = KILL ] || [ $status -eq 0 ] || { cat "$work/bags/$name.log"; exit 1; }

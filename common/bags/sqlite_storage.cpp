@@ -62,6 +62,12 @@ void Database::run(const std::string& sql) const {
   check(sqlite3_exec(handle_.get(), sql.c_str(), nullptr, nullptr, nullptr), SQLITE_OK);
 }
 
+void Database::run(const std::string& sql, const std::vector<std::string>& texts) const {
+  Statement statement = prepare(sql);
+  for (std::size_t i = 0; i < texts.size(); ++i) statement.bind(static_cast<int>(i) + 1, texts[i]);
+  statement.step();
+}
+
 std::set<std::string> Database::columns(const std::string& table) const {
   std::set<std::string> names;
   Statement info = prepare("PRAGMA table_info(" + table + ")");
@@ -118,24 +124,15 @@ void SqliteWriter::begin() {
 
 std::size_t SqliteWriter::add_channel(const Channel& channel) {
   begin();
-  auto topic = database_.prepare(
+  database_.run(
       "INSERT INTO topics(name, type, serialization_format, offered_qos_profiles, type_description_hash) "
-      "VALUES (?, ?, ?, ?, ?)");
-  topic.bind(1, channel.topic);
-  topic.bind(2, channel.type);
-  topic.bind(3, channel.encoding);
-  topic.bind(4, channel.offered_qos);
-  topic.bind(5, channel.type_hash);
-  topic.step();
+      "VALUES (?, ?, ?, ?, ?)",
+      {channel.topic, channel.type, channel.encoding, channel.offered_qos, channel.type_hash});
   if (!channel.schema.empty() && defined_.insert(channel.type).second) {
-    auto definition = database_.prepare(
+    database_.run(
         "INSERT INTO message_definitions(topic_type, encoding, encoded_message_definition, type_description_hash) "
-        "VALUES (?, ?, ?, ?)");
-    definition.bind(1, channel.type);
-    definition.bind(2, channel.schema_encoding);
-    definition.bind(3, channel.schema);
-    definition.bind(4, channel.type_hash);
-    definition.step();
+        "VALUES (?, ?, ?, ?)",
+        {channel.type, channel.schema_encoding, channel.schema, channel.type_hash});
   }
   return channels_++;
 }

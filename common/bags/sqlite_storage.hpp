@@ -45,6 +45,8 @@ class Database {
   /// The database must not move while the statement is in use.
   Statement prepare(const std::string& sql) const;
   void run(const std::string& sql) const;
+  /// Runs a statement once with texts in the places of its question marks.
+  void run(const std::string& sql, const std::vector<std::string>& texts) const;
   std::set<std::string> columns(const std::string& table) const;
 
  private:

@@ -88,6 +88,16 @@ check_buildings() {
   launch_scripts/buildings.py "$build/Testing/buildings.csv" --first 101 --count 5
 }
 
+# Recordings as worse cameras would give them: calibrations as they are given, and as slam estimates them.
+perturb_recordings() {
+  local kinds="none, depth late, focal length +3 %, focal length -3 %, depth not registered" status=0
+  [[ -n "${LAPIS_TEST_DATA:-}" ]] || { echo "SKIPPED: perturbed recordings; set LAPIS_TEST_DATA"; return 0; }
+  launch_scripts/perturb.sh "$LAPIS_TEST_DATA"/rgbd/*/ | tee docs/results/perturbations.md || status=1
+  launch_scripts/perturb.sh "$LAPIS_TEST_DATA"/rgbd/*/ --kinds "$kinds" --set slam.depth_calibration=estimate |
+    tee docs/results/perturbations_estimated.md || status=1
+  return "$status"
+}
+
 # check_changed_files: those since the last run in which they passed.
 check_changed_files() { .ci/tidy ${tidied:+--since "$tidied"}; }
 
@@ -114,6 +124,7 @@ for tier in "${tiers[@]}"; do run_tier "$tier"; done
 if [[ "${tiers[*]}" == long ]]; then
   check "benchmarks build" cmake --build --preset release --target benchmarks
   check "generated buildings" check_buildings
+  check "perturbed recordings" perturb_recordings
   check "unit and contract tests with ASan and UBSan" test_sanitized
   tidied="$(sed -n 's/^clang-tidy has passed up to commit \([0-9a-f]*\)\.$/\1/p' docs/long_tests.md)"
   check "clang-tidy on files that have changed since ${tidied:-the last commit}" check_changed_files

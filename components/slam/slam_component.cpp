@@ -199,6 +199,7 @@ void SlamComponent::track(const JoinedFrame& joined) {
   const TrackingResult result = slam_->process(*frame);
   if (result.state == TrackingState::kTracking) ++frames_tracked_;
   publish(result);
+  if (slam_->is_given_up()) return give_map_up();
   judge_clock(result);
   const auto later = messages::to_message(messages::from_message(joined.info->header().stamp()) + time::Duration{1});
   watch_delay(*frame, result, later);
@@ -426,6 +427,12 @@ void SlamComponent::judge_clock(const TrackingResult& result) {
     spdlog::warn("the place is not in the map, so the camera has started anew: a new map begins");
     end_map();
   }
+}
+
+void SlamComponent::give_map_up() {
+  spdlog::warn("the camera was lost in a map of {} key-frames, too few to find its place again: a new map begins",
+               slam_->keyframe_count());
+  end_map();
 }
 
 void SlamComponent::end_map() {

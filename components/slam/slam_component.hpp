@@ -54,6 +54,7 @@ class SlamComponent {
   void add_odometry(const nav_msgs::msg::Odometry& message);
   std::string use_odometry(time::Time stamp, const geometry::Pose& T_odom_base);
   void drop(time::Time stamp, const std::string& reason);
+  void give_map_up();
   void end_map();
   void follow_clock(time::Duration step);
   void judge_clock(const TrackingResult& result);

@@ -25,7 +25,7 @@ namespace {
 using geometry::Matrix6d;
 using geometry::Pose;
 
-constexpr const char* kGivenUp = "a sub-map was given up, because the camera was soon lost again";
+constexpr const char* kGivenUp = "a part of the map was given up, because the camera was soon lost again";
 
 // Number of new key-frames after which the marginals of the graph are computed again.
 constexpr std::size_t kAnalysedTogether = 10;
@@ -67,6 +67,7 @@ class RgbdSlam::Implementation {
   Implementation(const SlamConfig& config, const Pose& T_base_camera, SlamState state)
       : Implementation(config, T_base_camera, T_base_camera) {
     map_ = restore_map(state);
+    is_resumed_ = true;
     graph_ = SlamGraph(std::move(state.edges), std::move(state.links), std::move(state.covariances));
     loops_.restore(map_);
     version_ = state.graph_version;
@@ -172,6 +173,7 @@ class RgbdSlam::Implementation {
   }
   PoseGraphSnapshot pose_graph() const { return without_sub_maps(graph_.snapshot(map_, version_), map_); }
   SubMapSummary sub_maps() const { return sub_maps_; }
+  bool is_given_up() const { return is_given_up_; }
   LoopSummary loops() const {
     return {graph_.count(EdgeType::kLoopClosure), last_loop_, loops_.revisits(), graph_.loops_removed()};
   }
@@ -202,14 +204,19 @@ class RgbdSlam::Implementation {
     request_optimization();
   }
 
-  // Leaves the part in which the camera was lost for a new sub-map. False when that part was a sub-map too small to be
-  // ever joined: it is given up, and the camera is lost in the map as before it.
+  // Leaves the part in which the camera was lost for a new sub-map. False when that part is too small to be ever joined
+  // and is given up: the camera is lost in the map as before it, or another map has to begin.
   bool leave_part() {
     motion_.forget();
     const KeyframeId part = front_end_.sub_map(map_);
-    if (part == kWholeMap || joiner_.is_large_enough(map_, part)) {
+    const bool is_kept = part == kWholeMap && (is_resumed_ || sub_maps_.begun > 0);
+    if (is_kept || joiner_.is_large_enough(map_, part)) {
       ++sub_maps_.begun;
       return true;
+    }
+    if (part == kWholeMap) {
+      is_given_up_ = true;
+      return false;
     }
     ++sub_maps_.given_up;
     map_.clear(part);
@@ -283,6 +290,8 @@ class RgbdSlam::Implementation {
   LoopDetector loops_;
   MapJoiner joiner_;
   SubMapSummary sub_maps_;
+  bool is_resumed_ = false;
+  bool is_given_up_ = false;
   DueResult<GraphCorrection> optimization_;
   DueResult<GraphMarginals> analysis_;
   std::optional<time::Time> last_loop_;
@@ -309,6 +318,7 @@ TrackingResult RgbdSlam::skip(time::Time stamp, const std::string& reason) const
 void RgbdSlam::settle() { implementation_->settle(); }
 LoopSummary RgbdSlam::loops() const { return implementation_->loops(); }
 SubMapSummary RgbdSlam::sub_maps() const { return implementation_->sub_maps(); }
+bool RgbdSlam::is_given_up() const { return implementation_->is_given_up(); }
 bool RgbdSlam::change_focal_length(double ratio) { return implementation_->change_focal_length(ratio); }
 std::optional<Pose> RgbdSlam::expected_motion(time::Time from, time::Time to) const {
   return implementation_->expected_motion(from, to);

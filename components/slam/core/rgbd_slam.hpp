@@ -72,6 +72,9 @@ class RgbdSlam {
   LoopSummary loops() const;
   /// Since the start of this process.
   SubMapSummary sub_maps() const;
+  /// Whether another map has to begin: without odometry, the camera was lost when this one was still too small for any
+  /// sub-map to be ever joined with it, and sees nothing of it any more. Never of a resumed map.
+  bool is_given_up() const;
   /// What has to be saved to continue later. The large parts are shared with the map, not copied.
   SlamState state() const;
   /// Grows with every new key-frame and every change of a key-frame's pose.

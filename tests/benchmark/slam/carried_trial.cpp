@@ -27,12 +27,14 @@ bool is_right(const WatchedFrame& frame) {
   return frame.source != PoseSource::kNone && frame.error.m <= kWithin_m && frame.error.rad <= kWithin_rad;
 }
 
-// First frame of a stretch of right poses, from `begin` on; it begins with one that the camera gives.
+// First frame of a stretch of right poses in the map of before, from `begin` on; it begins with one that the camera
+// gives.
 std::optional<std::size_t> find_found(const std::vector<WatchedFrame>& frames, std::size_t begin) {
   std::optional<std::size_t> first;
   for (std::size_t i = begin; i < frames.size(); ++i) {
-    if (!is_right(frames[i])) first.reset();
-    if (!first && is_right(frames[i]) && is_held(frames[i])) first = i;
+    const bool is_in_it = is_right(frames[i]) && frames[i].map == frames[begin - 1].map;
+    if (!is_in_it) first.reset();
+    if (!first && is_in_it && is_held(frames[i])) first = i;
     if (first && frames[i].t_s - frames[*first].t_s >= kFoundFor_s) return first;
   }
   return std::nullopt;

@@ -60,16 +60,24 @@ const char* word_for(const WatchedFrame& frame) {
 }
 
 WatchedSlam::WatchedSlam(const SlamConfig& config, const Pose& T_base_camera)
-    : slam_(config, T_base_camera, T_base_camera) {}
+    : config_(config), T_base_camera_(T_base_camera),
+      slam_(std::make_unique<RgbdSlam>(config, T_base_camera, T_base_camera)) {}
 
-void WatchedSlam::add_odometry(time::Time stamp, const Pose& T_odom_base) { slam_.add_odometry(stamp, T_odom_base); }
+void WatchedSlam::add_odometry(time::Time stamp, const Pose& T_odom_base) { slam_->add_odometry(stamp, T_odom_base); }
 
 const WatchedFrame& WatchedSlam::process(const RgbdFrame& frame, const Pose& T_start_camera) {
+  if (slam_->is_given_up()) {
+    slam_ = std::make_unique<RgbdSlam>(config_, T_base_camera_, T_base_camera_);
+    T_map_start_.reset();
+    truth_.clear();
+    ++map_;
+  }
   const double begin_ms = thread_ms();
-  const TrackingResult result = slam_.process(frame);
+  const TrackingResult result = slam_->process(frame);
   WatchedFrame& watched = frames_.emplace_back();
   watched.cpu_ms = thread_ms() - begin_ms;
   watched.t_s = frame.stamp.seconds();
+  watched.map = map_;
   watched.state = result.state;
   watched.source = has_pose(result) ? result.source : PoseSource::kNone;
   watched.is_keyframe = result.is_keyframe;
@@ -92,14 +100,14 @@ const WatchedFrame& WatchedSlam::process(const RgbdFrame& frame, const Pose& T_s
 
 WatchedMap WatchedSlam::finish() {
   constexpr double kFar_m = 1.0;
-  slam_.settle();
-  const PoseGraphSnapshot graph = slam_.pose_graph();
+  slam_->settle();
+  const PoseGraphSnapshot graph = slam_->pose_graph();
   WatchedMap map;
   map.keyframes = graph.nodes.size();
-  map.loops = slam_.loops().closures;
-  map.removed = slam_.loops().removed;
-  map.unconnected = slam_.keyframe_count() - graph.nodes.size();
-  map.parts = slam_.sub_maps();
+  map.loops = slam_->loops().closures;
+  map.removed = slam_->loops().removed;
+  map.unconnected = slam_->keyframe_count() - graph.nodes.size();
+  map.parts = slam_->sub_maps();
   std::vector<Eigen::Vector3d> actual, estimated;
   std::map<std::uint64_t, const PoseGraphNode*> nodes;
   for (const PoseGraphNode& node : graph.nodes) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct WatchedFrame {
   double sigma_m = 0.0, sigma_rad = 0.0;              ///< of the pose in the map, along the least known direction
   std::uint32_t matches = 0, inliers = 0;
   std::uint64_t reference = 0;
+  int map = 0;          ///< number of maps that slam had given up before
   double cpu_ms = 0.0;  ///< of the calling thread
   std::string reason;
 };
@@ -43,7 +45,8 @@ struct WatchedMap {
   std::vector<std::string> remarks;  ///< a line for each wrong loop
 };
 
-/// RGB-D SLAM beside the truth, which the first frame with a pose brings into the map.
+/// RGB-D SLAM beside the truth, which the first frame with a pose brings into the map. A map that slam gives up is
+/// followed by another one, as in the component.
 class WatchedSlam {
  public:
   WatchedSlam(const SlamConfig& config, const geometry::Pose& T_base_camera);
@@ -56,7 +59,10 @@ class WatchedSlam {
   WatchedMap finish();
 
  private:
-  RgbdSlam slam_;
+  SlamConfig config_;
+  geometry::Pose T_base_camera_;
+  std::unique_ptr<RgbdSlam> slam_;
+  int map_ = 0;
   std::optional<geometry::Pose> T_map_start_;
   std::map<std::int64_t, geometry::Pose> truth_;  // T_map_camera of frames with a pose, by stamp
   std::vector<WatchedFrame> frames_;

@@ -139,6 +139,32 @@ TEST_F(SubMap, OneRoomIsNotEnough) {
   EXPECT_EQ(slam.sub_maps().joined, 0U);
 }
 
+// A map of so few views could never be joined with what comes.
+TEST_F(SubMap, TheMapItselfIsGivenUpWhereItIsTooSmall) {
+  RgbdSlam slam(for_one_room(), look_around(0));
+  constexpr int kFew = 10;
+  for (int view = 0; view < kFew; ++view) ASSERT_EQ(look(slam, view).state, TrackingState::kTracking) << view;
+  cover(slam, kCovered);
+  for (int i = 0; i < kAfter; ++i) {
+    EXPECT_FALSE(slam.is_given_up()) << i;
+    EXPECT_EQ(look(slam, kElsewhere).state, TrackingState::kLost) << i;
+  }
+  EXPECT_TRUE(slam.is_given_up());
+  EXPECT_EQ(slam.sub_maps().begun, 0U);
+}
+
+TEST_F(SubMap, AResumedMapIsKeptHoweverSmallItIs) {
+  RgbdSlam before(for_one_room(), look_around(0));
+  for (int view = 0; view < 10; ++view) ASSERT_EQ(look(before, view).state, TrackingState::kTracking) << view;
+  SlamState state = before.state();
+  state.motion.reset();
+  RgbdSlam slam(for_one_room(), look_around(0), std::move(state));
+  TrackingResult result;
+  for (int i = 0; i < kAfter; ++i) result = look(slam, kElsewhere);
+  EXPECT_EQ(result.state, TrackingState::kUnconnected) << result.reason;
+  EXPECT_FALSE(slam.is_given_up());
+}
+
 TEST_F(SubMap, ItsLandmarksAreNotThoseOfTheMap) {
   RgbdSlam slam(for_one_room(), look_around(0));
   const int view = carry_elsewhere(slam);

@@ -67,6 +67,7 @@ void for_each(Visitor&& visit) {
   visit(kPlannerMarkers);
   visit(kPlannerStatus);
   visit(kCommand);
+  visit(kTeleop);
   visit(kLocalPath);
   visit(kControllerStatus);
   visit(kDiagnostics);

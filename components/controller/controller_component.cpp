@@ -86,6 +86,7 @@ ControllerComponent::ControllerComponent(const Config& config, runtime::Context&
   context.subscribe(topics::kPlannerStatus, [this](const auto&) { has_planner_spoken_ = true; });
   context.subscribe(topics::kOccupancyGrid, [this](OccupancyGrid& m) { plan_ = std::move(m); });
   context.subscribe(topics::kObstacles, [this](OccupancyGrid& m) { obstacles_ = std::move(m); });
+  context.subscribe(topics::kTeleop, [this](const auto& m) { steer_ = m; });
   context.every(1.0 / config_.rate_hz, [this] { is_due_ = true; });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
 }
@@ -137,6 +138,8 @@ void ControllerComponent::take_inputs(const runtime::Cycle& cycle, time::Time no
   has_planner_spoken_ = false;
   if (path_) take_path(*path_);
   path_.reset();
+  if (steer_) take_steering(*steer_, now);
+  steer_.reset();
 }
 
 /// Joins the oldest pose with its depth image and camera info. Returns false when there is no pose, or when these may
@@ -220,6 +223,12 @@ void ControllerComponent::take_path(const Path& message) {
   controller_.set_turn(*turn_rad);
 }
 
+void ControllerComponent::take_steering(const geometry_msgs::msg::Twist& message, time::Time now) {
+  const auto wanted = to_core(message);
+  if (!wanted) return drop("operator's velocity", wanted.reason);
+  controller_.steer(*wanted, now);
+}
+
 void ControllerComponent::refuse_path(const std::string& problem) {
   drop("path", problem);
   controller_.set_path({}, "path refused: " + problem);
@@ -245,10 +254,19 @@ void ControllerComponent::publish(Decision decision, time::Time now) {
     drop("command", "it is not finite");
     decision = {State::kStopped, "the command was not finite", {}, 0.0, {}};
   }
-  command_.publish(to_message(decision.command));
+  publish_command(decision);
   if (odometry_ != nullptr) publish_odometry(decision.command, now);
   local_path_.publish(to_message(decision.local_path, messages::header(camera_stamp_, map_frame_)));
   publish_status(decision, now);
+}
+
+/// Without anything to do, the controller is silent after a last zero, so that others can drive the robot. In lock-step
+/// each tick has a command.
+void ControllerComponent::publish_command(const Decision& decision) {
+  const bool is_idle = decision.state == State::kIdle;
+  if (is_idle && was_idle_ && context_.is_free()) return;
+  was_idle_ = is_idle;
+  command_.publish(to_message(decision.command));
 }
 
 /// Motion goes by the clock of `now`, stamps by that of the camera; both are the same in lock-step. A stamp that does

@@ -43,11 +43,13 @@ class ControllerComponent {
   void see(const Image& depth, const Info& info, time::Time now);
   void take_map(time::Time now);
   void take_path(const Path& message);
+  void take_steering(const geometry_msgs::msg::Twist& message, time::Time now);
   void refuse_path(const std::string& problem);
   void note_frame(const lapis_msgs::msg::TrackedFrame& frame);
   void add_mount(const tf2_msgs::msg::TFMessage& message);
   void drop(const std::string& what, const std::string& reason);
   void publish(Decision decision, time::Time now);
+  void publish_command(const Decision& decision);
   void note_camera(time::Time stamp);
   void publish_odometry(const Velocity& command, time::Time now);
   void publish_status(const Decision& decision, time::Time now);
@@ -74,6 +76,7 @@ class ControllerComponent {
   // Arrived since the last cycle.
   bool has_planner_spoken_ = false;
   std::optional<Path> path_;
+  std::optional<geometry_msgs::msg::Twist> steer_;
   std::optional<OccupancyGrid> plan_;
   std::optional<OccupancyGrid> obstacles_;
 
@@ -84,6 +87,7 @@ class ControllerComponent {
   std::optional<time::Duration> camera_ahead_;  // of the steady clock, by the least delayed images; none in lock-step
   time::Time seen_at_;          // time of the newest one that was noted, by the clock as it was set first
   time::Duration clock_steps_;  // sum of the steps by which the camera's clock was set
+  bool was_idle_ = false;       // with the last command
   bool is_due_ = false;         // a command is due by the wall clock
   std::optional<time::Time> reported_at_;
   Decision reported_;

@@ -94,6 +94,8 @@ void describe(Field& field, ControllerComponentConfig& c) {
         "rate of a turn on the spot that the planner asks for; slow, because fast turns blur images [rad/s]");
   field("weak_turn_rad_s", c.method.weak_turn_rad_s, config::in_range(0.05, 10.0),
         "largest rate of any turn while slam's pose does not come from features [rad/s]");
+  field("operator_timeout_s", c.method.operator_timeout_s, config::in_range(0.05, 5.0),
+        "time for which a velocity on /teleop/cmd_vel counts; then the planner's path does again [s]");
   field.moved("lost_turn_rate_rad_s", "controller.look_around_rad_s",
               "the planner has the robot look around for its pose (planner.lost_timeout_s)");
 }

@@ -75,6 +75,12 @@ bool is_finite(const Velocity& velocity) {
   return std::isfinite(velocity.forward_m_s) && std::isfinite(velocity.turn_rad_s);
 }
 
+messages::Converted<Velocity> to_core(const geometry_msgs::msg::Twist& message) {
+  const Velocity velocity{message.linear().x(), message.angular().z()};
+  if (!is_finite(velocity)) return messages::Converted<Velocity>::refused("it is not finite");
+  return velocity;
+}
+
 geometry_msgs::msg::Twist to_message(const Velocity& velocity) {
   geometry_msgs::msg::Twist message;
   message.linear().x(velocity.forward_m_s);

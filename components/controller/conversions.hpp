@@ -26,6 +26,8 @@ messages::Converted<Grid> to_core(const nav_msgs::msg::OccupancyGrid& message);
 messages::Converted<DepthView> to_core(const sensor_msgs::msg::Image& depth, const sensor_msgs::msg::CameraInfo& info,
                                        const geometry::Pose& T_base_camera, images::KeptRectifier& rectifier);
 
+/// The motion of a robot with two driven wheels: forwards, and about the vertical axis. Refused when it is not finite.
+messages::Converted<Velocity> to_core(const geometry_msgs::msg::Twist& message);
 bool is_finite(const Velocity& velocity);
 geometry_msgs::msg::Twist to_message(const Velocity& velocity);
 nav_msgs::msg::Path to_message(const std::vector<PlanarPose>& path, const std_msgs::msg::Header& header);

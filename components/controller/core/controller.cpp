@@ -80,7 +80,7 @@ void Controller::set_pose(const PlanarPose& T_map_base, time::Time stamp, time::
 
 void Controller::see(const DepthView& view, time::Time stamp, time::Time now) {
   watchdog_.note(Input::kView, now, stamp);
-  map_.add(view, T_map_base_, stamp, track_ || turn_rad_);
+  map_.add(view, T_map_base_, stamp, track_ || turn_rad_ || is_steered(now));
 }
 
 void Controller::set_obstacles(Grid grid, time::Time stamp, time::Time now) {
@@ -99,14 +99,50 @@ Decision Controller::step(time::Time now) {
 
 Decision Controller::decide(time::Time now, double elapsed_s) {
   const auto stale = watchdog_.stale(now);
-  if (track_ && !stale) return follow(now, elapsed_s);
+  const bool obeys_operator = is_steered(now);
+  if (track_ && !stale && !obeys_operator) return follow(now, elapsed_s);
   local_path_.reset();
   moved_at_.reset();
+  if (obeys_operator) return obey_operator(now, elapsed_s);
   if (track_) return stop_for(*stale);
   recovery_ = Recovery::kNone;
   tried_at_.reset();
   if (turn_rad_) return turn(now, elapsed_s);
   return {State::kIdle, idle_reason_, {}, 0.0, {}};
+}
+
+bool Controller::is_steered(time::Time now) const {
+  return steered_ && abs(now - steered_->at).seconds() <= config_.operator_timeout_s;
+}
+
+/// A turn on the spot needs only a camera that sees something, so that an operator can turn a robot that has no pose.
+Decision Controller::obey_operator(time::Time now, double elapsed_s) {
+  recovery_ = Recovery::kNone;
+  tried_at_.reset();
+  blindly_rad_ += last_.turn_rad_s * elapsed_s;
+  Velocity wanted = steered_->wanted;
+  const bool is_turn = wanted.forward_m_s == 0.0;
+  const auto stale = is_turn ? watchdog_.stale(now, {Input::kCamera})
+                             : watchdog_.stale(now, {Input::kCamera, Input::kPose, Input::kView, Input::kMap});
+  if (stale) return stop_for(*stale);
+  const double free_m_s = is_turn ? 0.0 : free_speed(wanted);
+  if (!is_turn && free_m_s <= 0.0) return {State::kBlocked, "an operator steers where it is not free", {}, 0.0, {}};
+  if (std::abs(wanted.forward_m_s) > free_m_s) {
+    wanted.turn_rad_s *= is_turn ? 1.0 : free_m_s / std::abs(wanted.forward_m_s);
+    wanted.forward_m_s = std::copysign(free_m_s, wanted.forward_m_s);
+  }
+  return {State::kFollowing, "an operator steers", ramped(last_, wanted, elapsed_s, limits_), 0.0, {}};
+}
+
+/// Largest speed along the operator's arc from which the robot can stop before an obstacle [m/s].
+double Controller::free_speed(const Velocity& wanted) const {
+  const Surroundings around = map_.near(T_map_base_, planner_.fan().reach_m());
+  if (wanted.forward_m_s < 0.0) {
+    const double back_m_s = std::min(config_.back_up_speed_m_s, stopping_speed(kRearRoom_m, limits_));
+    return may_back_up(around.obstacles) ? back_m_s : 0.0;
+  }
+  const double free_m = planner_.free_length_m(around.obstacles, wanted.turn_rad_s / wanted.forward_m_s);
+  return std::min(stopping_speed(free_m, limits_), speed_beside(around.obstacles));
 }
 
 Decision Controller::stop_for(Input stale) const { return {State::kStopped, watchdog_.describe(stale), {}, 0.0, {}}; }
@@ -196,10 +232,14 @@ double Controller::speed_limit(const LocalPath& local_path, const Obstacles& obs
     const double ahead_m = planner_.free_length_m(obstacles, last_.turn_rad_s / last_.forward_m_s);
     limit = std::min(limit, stopping_speed(ahead_m, limits_));
   }
+  return std::min(limit, speed_beside(obstacles));
+}
+
+/// Largest speed with this much room to what is ahead [m/s].
+double Controller::speed_beside(const Obstacles& obstacles) const {
   const double room_m = std::max(0.0, nearest_ahead(obstacles) - limits_.radius_m);
-  if (room_m >= config_.slow_within_m) return limit;
   const double share = config_.slowest_share + (1.0 - config_.slowest_share) * room_m / config_.slow_within_m;
-  return std::min(limit, share * limits_.max_speed_m_s);
+  return std::min(1.0, share) * limits_.max_speed_m_s;
 }
 
 double Controller::turn_limit() const {

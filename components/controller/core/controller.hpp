@@ -26,8 +26,9 @@ struct ControllerConfig {
   double back_up_speed_m_s = 0.15;
   double recovery_turn_rad = 1.6;
   double progress_timeout_s = 6.0;
-  double look_around_rad_s = 0.3;  ///< rate of a turn on the spot; slow, because images blur
-  double weak_turn_rad_s = 0.55;   ///< largest rate of any turn while views are weak
+  double look_around_rad_s = 0.3;   ///< rate of a turn on the spot; slow, because images blur
+  double weak_turn_rad_s = 0.55;    ///< largest rate of any turn while views are weak
+  double operator_timeout_s = 0.5;  ///< time for which a velocity of the operator counts
 };
 
 /// Points in base_link.
@@ -59,6 +60,9 @@ class Controller {
   /// full turn. It needs no pose, no map and no free space: the angle turned so far is integrated from the commands.
   /// With the same turn as before, the turn continues.
   void set_turn(double turn_rad);
+  /// A velocity that an operator wants, in place of the planner's path, for operator_timeout_s. The robot drives as
+  /// much of it as is free.
+  void steer(const Velocity& wanted, time::Time now) { steered_ = Steered{wanted, now}; }
   void note_planner(time::Time now) { watchdog_.note(Input::kPlanner, now); }
   void note_camera(time::Time stamp, time::Time now) { watchdog_.note(Input::kCamera, now, stamp); }
   void set_pose(const PlanarPose& T_map_base, time::Time stamp, time::Time now);
@@ -74,11 +78,18 @@ class Controller {
   Decision step(time::Time now);
 
  private:
+  struct Steered {
+    Velocity wanted;
+    time::Time at;
+  };
   /// The phases of recovery without a free path: wait, back up, look around; then the planner has to act.
   enum class Recovery { kNone, kWaiting, kBackingUp, kTurning, kNoPath, kStuck };
 
   Decision decide(time::Time now, double elapsed_s);
   Decision stop_for(Input stale) const;
+  bool is_steered(time::Time now) const;
+  Decision obey_operator(time::Time now, double elapsed_s);
+  double free_speed(const Velocity& wanted) const;
   Decision turn(time::Time now, double elapsed_s);
   Decision follow(time::Time now, double elapsed_s);
   Decision turn_first(double error_rad, double elapsed_s);
@@ -90,6 +101,7 @@ class Controller {
   void enter(Recovery phase, time::Time now);
   std::optional<LocalPath> find_local_path(const Surroundings& around) const;
   double speed_limit(const LocalPath& local_path, const Obstacles& obstacles) const;
+  double speed_beside(const Obstacles& obstacles) const;
   bool may_back_up(const Obstacles& obstacles) const;
   bool is_stuck(time::Time now);
   bool has_tried() const;
@@ -107,6 +119,7 @@ class Controller {
   std::optional<time::Time> pose_stamp_;
   bool are_views_weak_ = false;
 
+  std::optional<Steered> steered_;
   std::optional<PathTrack> track_;
   std::optional<double> turn_rad_;  // a turn on the spot that replaces the path
   double turned_rad_ = 0.0;         // angle turned so far, integrated from commands

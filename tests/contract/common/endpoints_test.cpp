@@ -123,7 +123,7 @@ const std::vector<Process> kProcesses = {
      {},
      {readers(topics::kSlamOdometry, topics::kTrackedFrame, topics::kDepth, topics::kDepthInfo,
               topics::kStaticTransforms, topics::kPlannerPath, topics::kPlannerStatus, topics::kOccupancyGrid,
-              topics::kObstacles),
+              topics::kObstacles, topics::kTeleop),
       writers(topics::kCommand, topics::kLocalPath, topics::kControllerStatus)}},
     {"replay_at_a_rate",
      "sensor_replay",

@@ -346,6 +346,31 @@ TEST_F(FreeController, CommandsComeAtTwentyHertz) {
   EXPECT_LT(took_s, 40 / 10.0);
 }
 
+TEST_F(FreeController, IsSilentWithoutAPathAndObeysAnOperator) {
+  auto& teleop = context.advertise(topics::kTeleop);
+  ASSERT_TRUE(wait_until([&] { return teleop.matched() > 0; })) << controller.log();
+  world.send_path({});
+  const auto is_idle = [&] { return statuses.back().state() == Constants::STATE_IDLE && is_zero(commands.back()); };
+  ASSERT_TRUE(frames_until(is_idle, {})) << controller.log();
+  const std::size_t before = commands.size();
+  for (int frame = 0; frame < kRate_hz; ++frame) {
+    world.publish({});
+    EXPECT_FALSE(wait_until([&] { return commands.size() > before; }, Seconds(kPeriod_s))) << "it is silent";
+  }
+  Command wanted;
+  wanted.linear().x(0.2);
+  const auto drives = [&] {
+    teleop.publish(wanted);
+    return commands.size() > before && commands.back().linear().x() > 0.19;
+  };
+  ASSERT_TRUE(frames_until(drives, {})) << statuses.back().reason() << controller.log();
+  EXPECT_LE(commands.back().linear().x(), 0.2);
+  ASSERT_TRUE(frames_until(is_idle, {})) << "the operator has fallen silent";
+  wanted.linear().x(kNaN);
+  teleop.publish(wanted);
+  EXPECT_TRUE(frames_until([&] { return count_of("operator's velocity dropped") > 0; }, {})) << controller.log();
+}
+
 class FreeControllerWithout : public FreeController, public ::testing::WithParamInterface<Speaking> {};
 
 TEST_P(FreeControllerWithout, StandsStillWithin300MillisecondsOfTheLastWord) {

@@ -170,6 +170,69 @@ TEST(Controller, KeepsOffFeetThatNoImageHasShown) {
   }
 }
 
+/// Steps with an operator who wants this all the time.
+void steer(KinematicWorld& world, const Velocity& wanted, double duration_s) {
+  for (int i = 0; i < duration_s * KinematicWorld::kRate_hz; ++i) {
+    world.controller.steer(wanted, world.now);
+    world.run_until([](const Decision&) { return true; }, 1.0);
+  }
+}
+
+TEST(Controller, AnOperatorDrivesWithoutAPlanner) {
+  KinematicWorld world(hall());
+  world.has_planner = false;
+  steer(world, {0.2, 0.1}, 5.0);
+  EXPECT_EQ(world.last.reason, "an operator steers");
+  EXPECT_NEAR(world.velocity.forward_m_s, 0.2, 0.01);
+  EXPECT_NEAR(yaw_of(world.T_map_base), 0.5, 0.1);
+  world.run_until([](const Decision&) { return false; }, 1.5);
+  EXPECT_EQ(world.last.state, State::kIdle) << "nobody steers any more";
+  EXPECT_EQ(world.velocity.forward_m_s < 0.01, true) << world.velocity.forward_m_s;
+}
+
+TEST(Controller, AnOperatorCannotDriveIntoWhatTheCameraSees) {
+  for (const double turn_rad_s : {0.0, 0.3, -0.3}) {
+    KinematicWorld world(with(hall(), {wall(1.5, -2.0, 1.7, 2.0)}));
+    steer(world, {0.6, turn_rad_s}, 12.0);
+    EXPECT_GT(world.least_room_m, 0.0) << turn_rad_s << ": touched";
+  }
+  KinematicWorld world(with(hall(), {wall(1.5, -2.0, 1.7, 2.0)}));
+  steer(world, {0.6, 0.0}, 12.0);
+  EXPECT_EQ(world.last.state, State::kBlocked);
+  EXPECT_GT(world.T_map_base.translation().x(), 1.0);
+  steer(world, {-0.3, 0.0}, 3.0);
+  EXPECT_EQ(world.last.state, State::kBlocked) << "what is behind is not known";
+  world.knows_floor = true;
+  const double before = world.T_map_base.translation().x();
+  steer(world, {-0.3, 0.0}, 3.0);
+  EXPECT_LT(world.T_map_base.translation().x(), before - 0.2);
+}
+
+TEST(Controller, AnOperatorGoesBeforeThePathAndThePathGoesOn) {
+  KinematicWorld world(hall());
+  const Path path = straight({0, 0}, {4, 0}, 0.0);
+  world.controller.set_path(path, "");
+  steer(world, {0.0, 0.5}, 2.0);
+  EXPECT_GT(yaw_of(world.T_map_base), 0.7);
+  EXPECT_LT(world.T_map_base.translation().norm(), 0.01);
+  ASSERT_LT(world.run_until(State::kIdle, 20.0), 20.0);
+  expect_reached(world, path.back());
+}
+
+TEST(Controller, WithoutAPoseAnOperatorCanOnlyTurnTheRobot) {
+  KinematicWorld world(hall());
+  world.has_pose = world.has_map = world.has_planner = false;
+  steer(world, {0.3, 0.0}, 1.0);
+  EXPECT_EQ(world.last.state, State::kStopped);
+  EXPECT_THAT(world.last.reason, HasSubstr("pose"));
+  steer(world, {0.0, -0.5}, 2.0);
+  EXPECT_LT(yaw_of(world.T_map_base), -0.7);
+  world.has_camera = false;
+  world.run_until([](const Decision&) { return false; }, 0.3);
+  steer(world, {0.0, -0.5}, 0.5);
+  EXPECT_EQ(world.last.state, State::kStopped);
+}
+
 TEST(Controller, AccelerationStaysWithinTheRobotsLimits) {
   KinematicWorld world(with(hall(), {{{2, -0.2, 0}, {2.4, 0.2, 0.8}, 9}}));
   world.controller.set_path(straight({0, 0}, {4, 0}, 3.0), "");

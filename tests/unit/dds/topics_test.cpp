@@ -32,7 +32,7 @@ TEST(TopicTable, RowsAreSound) {
                    kStaticTransforms, kSlamOdometry, kTrackedFrame, kKeyframePath, kPoseGraph, kLandmarks,
                    kLandmarkState, kSlamStatus, kMapDescription, kVoxelTiles, kMapState, kObstacles, kOctomap,
                    kMapPoints, kOccupancyGrid, kPlannerPath, kCandidates, kPlannerMarkers, kPlannerStatus, kCommand,
-                   kLocalPath, kControllerStatus, kDiagnostics);
+                   kTeleop, kLocalPath, kControllerStatus, kDiagnostics);
 }
 
 TEST(TopicTable, LockStepTopicsRepairLossQuickly) {

@@ -318,7 +318,8 @@ bool SlamComponent::calibrate_depth(const RgbdFrame& frame, const sensor_msgs::m
   }
   if (!calibrator_ || !calibrator_->wants(frame.stamp)) return false;
   const bool may_be_late = !delay_.is_over() && delay_.is_moving().value_or(true);
-  if (may_be_late && (delay_.is_moving() || delay_.is_waiting())) return false;  // a delay would look like a shift
+  const bool may_correct_in_vain = !doubtful_.empty() && delay_.is_waiting();
+  if (may_be_late && (delay_.is_moving() || may_correct_in_vain)) return false;  // a delay would look like a shift
   const images::RgbdCalibration used = *input_.depth_converter().used();
   const auto alignment = calibrator_->add(frame, used);
   if (calibrator_->views() > 1 && !may_be_late) name_depth_camera();

@@ -146,6 +146,16 @@ TEST(DelayWatch, DepthOfTheSameInstantHasNone) {
   EXPECT_FALSE(watch(0.0, -0.025)) << "the depth camera is beside that of colour";
 }
 
+TEST(DelayWatch, FramesFarApartShowNoMotion) {
+  DelayWatch watch;
+  for (int i = 0; i < 4; ++i) {
+    RgbdFrame frame = see(lapis::test::make_boards(1), {});
+    frame.stamp = time::Time::from_seconds(0.2 * i);
+    EXPECT_FALSE(watch.add(frame, geometry::Pose(Eigen::Translation3d(0.1 * i, 0.0, 0.0))));
+  }
+  EXPECT_EQ(watch.is_moving(), std::optional(false));
+}
+
 TEST(DelayWatch, WithoutPosesNothingIsConcluded) {
   DelayWatch watch;
   for (int i = 0; i < 60; ++i) {

@@ -50,6 +50,7 @@ bool DelayWatch::complete_pending(const Seen& now) {
   pending_.reset();
   is_over_ = ++seen_ >= kMostSeen;
   const double elapsed_s = (now.stamp - before_pending_->stamp).seconds();
+  is_moving_ = false;  // as far as anybody can tell
   if (!(elapsed_s > 0.0 && elapsed_s < kLongest_s)) return false;
   const geometry::Pose T_before_now = before_pending_->T_map_camera.inverse() * now.T_map_camera;
   view.set_velocity(geometry::se3_log(T_before_now) / elapsed_s);

@@ -20,7 +20,7 @@ class DelayWatch {
   /// been seen.
   std::optional<DepthOffset> add(const RgbdFrame& frame, const std::optional<geometry::Pose>& T_map_camera);
   bool is_over() const { return is_over_; }
-  /// Whether the newest frame with edges showed motion; nothing before one has told.
+  /// Whether the newest frame with edges showed motion, which frames far apart never do; nothing before the first one.
   std::optional<bool> is_moving() const { return is_moving_; }
   /// Whether a frame has come with a pose, whose motion the next ones will tell.
   bool is_waiting() const { return last_.has_value(); }

@@ -64,6 +64,11 @@ images::RgbdCalibration corrected(const images::RgbdCalibration& used, const Dep
   return cameras;
 }
 
+DepthOffset offset_to(const images::RgbdCalibration& used, const images::RgbdCalibration& other) {
+  const double ratio = used.depth.pinhole.fx / other.depth.pinhole.fx;
+  return {ratio, other.T_color_depth.translation().head<2>() - ratio * used.T_color_depth.translation().head<2>()};
+}
+
 std::string describe(const images::RgbdCalibration& cameras) {
   const Eigen::Vector3d t = 100.0 * cameras.T_color_depth.translation();
   return fmt::format("fx {:.1f}, fy {:.1f}, {:.1f} cm to the {} of colour and {:.1f} cm {} it",

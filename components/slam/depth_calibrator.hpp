@@ -19,6 +19,8 @@ class DepthCalibrator {
   /// Whether a frame of this time is wanted: views are some time apart, until enough has been seen.
   bool wants(time::Time stamp) const;
   bool is_over() const;
+  /// Views by which the calibration in use has been judged.
+  std::size_t views() const { return views_.size(); }
   /// Takes a frame, whose depth was registered by `used`, into account. An alignment that moves depth notably ends what
   /// the views have shown: later ones have to be of depth that is corrected by it.
   std::optional<DepthAlignment> add(const RgbdFrame& frame, const images::RgbdCalibration& used);
@@ -34,6 +36,8 @@ class DepthCalibrator {
 
 /// The calibration that puts depth where `offset` says, from the one that it was registered by.
 images::RgbdCalibration corrected(const images::RgbdCalibration& used, const DepthOffset& offset);
+/// The offset by which `used` is corrected to `other`, which differs from it by such an offset.
+DepthOffset offset_to(const images::RgbdCalibration& used, const images::RgbdCalibration& other);
 
 /// The depth camera in words: focal length, and where it is beside that of colour.
 std::string describe(const images::RgbdCalibration& cameras);

@@ -37,6 +37,17 @@ void set_wheels(const std::optional<WheelCalibration>& wheels, lapis_msgs::msg::
   message.wheel_noise(wheels->noise);
 }
 
+/// With `ratio` times the focal length of colour. In the images, depth stays where it is: the depth camera's focal
+/// length is longer by the same factor, and the distance between the cameras shorter.
+images::RgbdCalibration with_focal_length(images::RgbdCalibration cameras, double ratio) {
+  for (auto* camera : {&cameras.color.pinhole, &cameras.depth.pinhole}) {
+    camera->fx *= ratio;
+    camera->fy *= ratio;
+  }
+  cameras.T_color_depth.translation().head<2>() /= ratio;
+  return cameras;
+}
+
 }  // namespace
 
 SlamComponent::SlamComponent(const Config& config, runtime::Context& context)
@@ -125,6 +136,7 @@ bool SlamComponent::prepare(const JoinedFrame& first) {
   disk_.begin(first.stamp, resumed_.has_value());
   name_map(first.stamp);
   slam_ = begin_map();
+  slam_->keep_depth(depth_estimate_ != nullptr && !delay_.is_over());
   renew_watch();
   for (const auto& [stamp, T_odom_base] : early_odometry_) slam_->add_odometry(stamp, T_odom_base);
   early_odometry_.clear();
@@ -186,14 +198,13 @@ void SlamComponent::track(const JoinedFrame& joined) {
   if (!frame) return drop(joined.stamp, frame.reason);
   if (saved_camera_) accept_saved_map(frame->camera, *joined.info);
   frame->stamp = clock_.advance(joined.stamp, time::Arrival::clock::now());
-  undo_delay(*frame);
   if (calibrate_depth(*frame, *joined.info)) {
     const time::Time stamp = frame->stamp;
     frame = input_.convert(joined);
     if (!frame) return drop(joined.stamp, frame.reason);
     frame->stamp = stamp;
-    undo_delay(*frame);
   }
+  frame->depth_delay = depth_delay_;
   ++frames_total_;
   frame_.stamp = joined.stamp;
   const TrackingResult result = slam_->process(*frame);
@@ -229,6 +240,10 @@ void SlamComponent::watch_delay(const RgbdFrame& frame, const TrackingResult& re
   const auto found = delay_.add(
       frame, has_pose(result) ? std::optional<geometry::Pose>(result.T_map_keyframe * result.T_keyframe_camera)
                               : std::nullopt);
+  if (!found && delay_.is_over()) {
+    slam_->keep_depth(false);
+    name_depth_camera();
+  }
   if (!found) return;
   const std::string text = fmt::format("depth seems to be {:.0f} ms {} than colour of the same stamp",
                                        1e3 * std::abs(found->delay_s), found->delay_s > 0.0 ? "later" : "earlier");
@@ -238,20 +253,16 @@ void SlamComponent::watch_delay(const RgbdFrame& frame, const TrackingResult& re
     calibrator_.reset();  // it takes the delay for a shift
     return;
   }
-  spdlog::info("{}: depth is corrected by the motion that slam predicts from now on", text);
+  spdlog::info("{}: corrected by the motion between from now on", text);
   depth_delay_ = time::Duration::from_seconds(found->delay_s);
-  const bool is_elsewhere = found->focal_ratio != 1.0 || !found->shift_m.isZero();
-  if (is_elsewhere) use_estimate(corrected(*input_.depth_converter().used(), *found), after);
-  renew_calibrator();
-}
-
-/// Brings late depth to the view that the camera had at the time of colour.
-void SlamComponent::undo_delay(RgbdFrame& frame) const {
-  if (depth_delay_ == time::Duration{}) return;
-  const auto T_color_depth = slam_->expected_motion(frame.stamp, frame.stamp + depth_delay_);
-  if (!T_color_depth) return;
-  const geometry::LensCamera camera{frame.camera, {}};
-  frame.depth = images::DepthRegistration({camera, camera, *T_color_depth})(std::move(frame.depth));
+  doubtful_.clear();
+  const images::RgbdCalibration& used = *input_.depth_converter().used();
+  const images::RgbdCalibration stated = stated_.value_or(used);
+  const DepthOffset elsewhere{found->focal_ratio, found->shift_m};
+  const auto cameras = elsewhere == offset_to(used, stated) ? stated : corrected(used, elsewhere);
+  if (!(cameras == used)) use_estimate(cameras, after);
+  slam_->correct_depth(*found);
+  calibrator_.reset();  // where motion is predicted badly, depth of a single view lies beside colour
 }
 
 /// Reports that the key-frames contradict the focal length in the camera info: once, or each time that it is corrected.
@@ -271,8 +282,7 @@ void SlamComponent::watch_focal_length(const sensor_msgs::msg::CameraInfo& info,
   focal_length_.reset();
 }
 
-/// Corrects the map, and the camera of the frames from `since` on. In the images, depth stays where it is: the depth
-/// camera's focal length is longer by the same factor, and the distance between the cameras shorter.
+/// Corrects the map, and the camera of the frames from `since` on.
 void SlamComponent::change_focal_length(double ratio, const std::string& why,
                                         const builtin_interfaces::msg::Time& since) {
   const bool is_map_corrected = slam_->change_focal_length(ratio);
@@ -281,13 +291,9 @@ void SlamComponent::change_focal_length(double ratio, const std::string& why,
     return;
   }
   spdlog::info("{}: used from now on", why);
-  images::RgbdCalibration cameras = *input_.depth_converter().used();
-  for (auto* camera : {&cameras.color.pinhole, &cameras.depth.pinhole}) {
-    camera->fx *= ratio;
-    camera->fy *= ratio;
-  }
-  cameras.T_color_depth.translation().head<2>() /= ratio;
-  use_estimate(cameras, since);
+  use_estimate(with_focal_length(*input_.depth_converter().used(), ratio), since);
+  if (stated_) stated_ = with_focal_length(*stated_, ratio);
+  if (!delay_.is_over()) renew_delay_watch();
   is_focal_length_estimated_ = true;
   renew_watch();
   if (is_map_corrected) return;
@@ -305,12 +311,19 @@ bool SlamComponent::calibrate_depth(const RgbdFrame& frame, const sensor_msgs::m
     spdlog::warn("what is said of the cameras has changed: they are estimated anew");
     cameras_.reset();
     is_focal_length_estimated_ = false;
+    stated_.reset();
+    doubtful_.clear();
+    depth_delay_ = {};
+    renew_delay_watch();
     renew_calibrator();
   }
   if (!calibrator_ || !calibrator_->wants(frame.stamp)) return false;
-  if (delay_.is_moving() && !delay_.is_over()) return false;  // a delay would look like a shift
-  const images::RgbdCalibration& used = *input_.depth_converter().used();
+  const bool may_be_late = !delay_.is_over() && delay_.is_moving().value_or(true);
+  const bool may_correct_in_vain = !doubtful_.empty() && delay_.is_waiting();
+  if (may_be_late && (delay_.is_moving() || may_correct_in_vain)) return false;  // a delay would look like a shift
+  const images::RgbdCalibration used = *input_.depth_converter().used();
   const auto alignment = calibrator_->add(frame, used);
+  if (calibrator_->views() > 1 && !may_be_late) name_depth_camera();
   if (calibrator_->is_over()) calibrator_.reset();  // its views take tens of megabytes
   if (!alignment) {
     // Those who map with the estimate wait for it, also where there is nothing to correct.
@@ -320,17 +333,32 @@ bool SlamComponent::calibrate_depth(const RgbdFrame& frame, const sensor_msgs::m
   const images::RgbdCalibration cameras = corrected(used, alignment->offset);
   const std::string found = "depth seems to be of a camera with " + describe(cameras) + " (edges lie " +
                             fmt::format("{:.1f}", alignment->moved_px) + " px off)";
-  context_.status().value("depth_camera", found);
   if (depth_estimate_ == nullptr) {
+    context_.status().value("depth_camera", found);
     spdlog::warn("{}: correct /camera/depth/camera_info and /tf_static, or set slam.depth_calibration: estimate",
                  found);
     calibrator_.reset();
     return false;
   }
-  spdlog::info("{}: used from now on", found);
+  if (!stated_) stated_ = used;
+  doubtful_ = found;
+  if (!may_be_late) name_depth_camera();
   use_estimate(cameras, info.header().stamp());
-  if (!delay_.is_over()) delay_ = {};  // its views are of the registration before
+  if (!delay_.is_over()) renew_delay_watch();  // its views are of the registration before
+  slam_->keep_depth(!delay_.is_over());
   return true;
+}
+
+/// Reports the newest estimate of the depth camera: motion does not explain what it was found by.
+void SlamComponent::name_depth_camera() {
+  if (doubtful_.empty()) return;
+  context_.status().value("depth_camera", doubtful_);
+  spdlog::info("{}: used from now on", doubtful_);
+  doubtful_.clear();
+}
+
+void SlamComponent::renew_delay_watch() {
+  delay_ = DelayWatch(stated_ && cameras_ ? offset_to(*cameras_, *stated_) : DepthOffset{});
 }
 
 void SlamComponent::use_estimate(const images::RgbdCalibration& cameras, const builtin_interfaces::msg::Time& since) {

@@ -45,7 +45,8 @@ class SlamComponent {
   void watch_focal_length(const sensor_msgs::msg::CameraInfo& info, const builtin_interfaces::msg::Time& after);
   void change_focal_length(double ratio, const std::string& why, const builtin_interfaces::msg::Time& since);
   void watch_delay(const RgbdFrame& frame, const TrackingResult& result, const builtin_interfaces::msg::Time& after);
-  void undo_delay(RgbdFrame& frame) const;
+  void renew_delay_watch();
+  void name_depth_camera();
   void watch_scale();
   bool calibrate_depth(const RgbdFrame& frame, const sensor_msgs::msg::CameraInfo& info);
   void keep_estimate();
@@ -96,6 +97,8 @@ class SlamComponent {
   std::optional<FocalLengthWatch> focal_length_;    // until it has contradicted the camera info
   std::optional<images::RgbdCalibration> cameras_;  // as estimated
   bool is_focal_length_estimated_ = false;          // that of colour
+  std::optional<images::RgbdCalibration> stated_;   // the cameras before the first estimate of that of depth
+  std::string doubtful_;                            // estimate of the depth camera that may be a delay instead
   DelayWatch delay_;
   bool is_scale_doubted_ = false;  // and reported
   time::Duration depth_delay_;     // of depth behind colour, as estimated and corrected

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "slam/core/calibration/focal_correction.hpp"
+#include "slam/core/calibration/kept_depth.hpp"
 #include "slam/core/frame/noise_model.hpp"
 #include "slam/core/front_end/front_end.hpp"
 #include "slam/core/graph/due_result.hpp"
@@ -17,6 +18,7 @@
 #include "slam/core/loops/loop_detector.hpp"
 #include "slam/core/loops/map_joiner.hpp"
 #include "slam/core/mapping/map_builder.hpp"
+#include "slam/core/motion/late_depth.hpp"
 #include "slam/core/motion/motion_model.hpp"
 
 namespace lapis::slam {
@@ -115,7 +117,12 @@ class RgbdSlam::Implementation {
     ++frame_count_;
     take_results(frame_count_);
     if (const auto fault = find_fault(input, config_.noise)) return without_vision(input.stamp, *fault);
-    const Frame frame = make_frame(input, extractor_, config_.noise);
+    if (input.depth_delay != time::Duration{}) return process_late(input);
+    return process(make_frame(input, extractor_, config_.noise));
+  }
+
+  TrackingResult process(const Frame& frame) {
+    const RgbdFrame& input = *frame.input;
     FrameOutcome outcome = map_.empty() ? front_end_.begin(known(), frame) : front_end_.locate(known(), frame);
     TrackingResult& result = outcome.result;
     if (outcome.begins_part && !map_.empty() && !leave_part()) return without_vision(input.stamp, kGivenUp);
@@ -132,6 +139,12 @@ class RgbdSlam::Implementation {
     if (outcome.ends_drift) request_optimization();
     if (outcome.seen || result.is_keyframe) {
       motion_.update(map_, input.stamp, {result.keyframe_id, result.T_keyframe_camera, result.covariance});
+    }
+    if (kept_depth_) {
+      const auto T_map_camera =
+          has_pose(result) ? std::optional<Pose>(result.T_map_keyframe * result.T_keyframe_camera) : std::nullopt;
+      kept_depth_->add(map_, input, T_map_camera,
+                       result.is_keyframe ? std::optional(result.keyframe_id) : std::nullopt);
     }
     if (has_pose(result) && map_.keyframe(result.keyframe_id).sub_map != kWholeMap) {
       result.state = TrackingState::kUnconnected;
@@ -158,19 +171,26 @@ class RgbdSlam::Implementation {
     settle();
     if (!can_be_remade(map_, graph_)) return false;
     remake_map(config_, ratio, map_);
-    graph_.remeasure(map_);
-    loops_.drop_pending();
-    front_end_.renew(map_);
-    ++version_;
+    follow_new_map();
+    return true;
+  }
+
+  void keep_depth(bool keeps) {
+    kept_depth_.reset();
+    if (keeps) kept_depth_.emplace();
+  }
+
+  bool correct_depth(const DepthOffset& offset) {
+    settle();
+    const auto kept = std::exchange(kept_depth_, std::nullopt);
+    if (!kept || kept->keyframes() != map_.keyframes().size() || !can_be_remade(map_, graph_)) return false;
+    kept->correct(config_, offset, map_);
+    adjust_whole_map(config_, map_);
+    follow_new_map();
     return true;
   }
 
   std::optional<Pose> odometry_at(time::Time stamp) const { return motion_.odometry_at(stamp); }
-  std::optional<Pose> expected_motion(time::Time from, time::Time to) const {
-    const auto T_map_from = motion_.predict(map_, from), T_map_to = motion_.predict(map_, to);
-    if (!T_map_from || !T_map_to) return std::nullopt;
-    return T_map_from->inverse() * *T_map_to;
-  }
   PoseGraphSnapshot pose_graph() const { return without_sub_maps(graph_.snapshot(map_, version_), map_); }
   SubMapSummary sub_maps() const { return sub_maps_; }
   bool is_given_up() const { return is_given_up_; }
@@ -186,6 +206,32 @@ class RgbdSlam::Implementation {
   std::size_t places_doubted() const { return front_end_.places_doubted(); }
 
  private:
+  // Depth of another instant is brought to the view of colour by the motion between: that which is predicted, and then
+  // that which the frame shows with it.
+  TrackingResult process_late(const RgbdFrame& input) {
+    late_depth_.add(input);
+    const MeasuredDepth& depth = late_depth_.nearest();
+    const auto expected = expected_motion(input.stamp, depth.stamp);
+    if (!expected) return process(make_frame(input, extractor_, config_.noise));
+    RgbdFrame moved = input;
+    moved.depth = seen_from(*expected, depth);
+    Frame frame = make_frame(moved, extractor_, config_.noise);
+    const auto T_map_camera = front_end_.guess(known(), frame);
+    const auto shown =
+        T_map_camera ? motion_.motion_through(map_, input.stamp, *T_map_camera, depth.stamp) : std::nullopt;
+    if (shown) {
+      moved.depth = seen_from(*shown, depth);
+      renew_depths(config_.noise, frame);
+    }
+    return process(frame);
+  }
+
+  std::optional<Pose> expected_motion(time::Time from, time::Time to) const {
+    const auto T_map_from = motion_.predict(map_, from), T_map_to = motion_.predict(map_, to);
+    if (!T_map_from || !T_map_to) return std::nullopt;
+    return T_map_from->inverse() * *T_map_to;
+  }
+
   std::optional<SavedMotion> saved_motion() const {
     const auto stamp = motion_.last_stamp(), held_stamp = front_end_.held_stamp();
     const auto camera = motion_.last_camera();
@@ -233,6 +279,13 @@ class RgbdSlam::Implementation {
     ++sub_maps_.joined;
     last_loop_ = frame.input->stamp;
     request_optimization();
+  }
+
+  void follow_new_map() {
+    graph_.remeasure(map_);
+    loops_.drop_pending();
+    front_end_.renew(map_);
+    ++version_;
   }
 
   void request_optimization() {
@@ -284,6 +337,8 @@ class RgbdSlam::Implementation {
   FeatureExtractor extractor_;
   FrontEnd front_end_;
   MotionModel motion_;
+  LateDepth late_depth_;
+  std::optional<KeptDepth> kept_depth_;
   Map map_;
   SlamGraph graph_;
   MapBuilder builder_;
@@ -319,10 +374,9 @@ void RgbdSlam::settle() { implementation_->settle(); }
 LoopSummary RgbdSlam::loops() const { return implementation_->loops(); }
 SubMapSummary RgbdSlam::sub_maps() const { return implementation_->sub_maps(); }
 bool RgbdSlam::is_given_up() const { return implementation_->is_given_up(); }
+void RgbdSlam::keep_depth(bool keeps) { implementation_->keep_depth(keeps); }
+bool RgbdSlam::correct_depth(const DepthOffset& offset) { return implementation_->correct_depth(offset); }
 bool RgbdSlam::change_focal_length(double ratio) { return implementation_->change_focal_length(ratio); }
-std::optional<Pose> RgbdSlam::expected_motion(time::Time from, time::Time to) const {
-  return implementation_->expected_motion(from, to);
-}
 PoseGraphSnapshot RgbdSlam::pose_graph() const { return implementation_->pose_graph(); }
 SlamState RgbdSlam::state() const { return implementation_->state(); }
 std::uint64_t RgbdSlam::graph_version() const { return implementation_->version(); }

@@ -8,6 +8,7 @@
 
 #include "common/geometry/se3.hpp"
 #include "common/time/time.hpp"
+#include "slam/core/calibration/depth_alignment.hpp"
 #include "slam/core/config.hpp"
 #include "slam/core/files/slam_state.hpp"
 #include "slam/core/frame/frame.hpp"
@@ -51,7 +52,7 @@ class RgbdSlam {
   /// reading is of use for a frame only if it comes before it. False when the reading cannot be used.
   bool add_odometry(time::Time stamp, const geometry::Pose& T_odom_base);
   /// Tracks one frame; frames come in the order of their stamps. A frame that cannot be used gives a result with a
-  /// reason.
+  /// reason. Depth of another instant than colour is brought to the view of colour.
   TrackingResult process(const RgbdFrame& frame);
 
   /// Makes the map anew for `ratio` times the focal length that its key-frames have; ids and stamps stay, and the
@@ -59,10 +60,15 @@ class RgbdSlam {
   /// loops, sub-maps, or key-frames that vision does not connect. Call it after a frame that became a key-frame.
   bool change_focal_length(double ratio);
 
+  /// Keeps the depth images of the key-frames to come for correct_depth, or forgets those that are kept.
+  void keep_depth(bool keeps);
+  /// Makes the map anew for depth that was so far from where, and when, it was taken to be; ids, stamps and the camera
+  /// stay. False, and nothing changes, in the cases of change_focal_length, and when the depth of a key-frame has not
+  /// been kept. Afterwards none is kept.
+  bool correct_depth(const DepthOffset& offset);
+
   /// T_odom_base at a stamp; nothing where there is no odometry.
   std::optional<geometry::Pose> odometry_at(time::Time stamp) const;
-  /// Motion of the camera between two stamps near the newest frame, as motion predicts it.
-  std::optional<geometry::Pose> expected_motion(time::Time from, time::Time to) const;
   /// Result for a frame that cannot be processed: it has a pose by dead reckoning, or none.
   TrackingResult skip(time::Time stamp, const std::string& reason) const;
   /// Waits for optimisations under way and applies them, so that the map is the final one.

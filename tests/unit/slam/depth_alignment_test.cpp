@@ -82,26 +82,37 @@ std::vector<EdgeView> late_views(double delay_s, const Eigen::Vector2d& beside_m
 TEST(DepthAlignment, FindsHowLateDepthIsAndWhereItsCameraIs) {
   for (const double delay_s : {0.033, -0.02, 0.05}) {
     for (const Eigen::Vector2d& beside_m : {Eigen::Vector2d(0.0, 0.0), Eigen::Vector2d(-0.03, 0.0)}) {
-      const DepthAlignment found = align_late_depth(late_views(delay_s, beside_m), 0.1);
+      const auto [found, better_sigmas] = align_late_depth(late_views(delay_s, beside_m), 0.1);
       EXPECT_NEAR(found.offset.delay_s, delay_s, 0.003);
       EXPECT_LT((found.offset.shift_m - beside_m).norm(), 0.005);
       EXPECT_GT(found.gain_sigmas, 4.0);
+      EXPECT_GT(better_sigmas, 2.6);
     }
   }
 }
 
+TEST(DepthAlignment, FindsTheDelayBehindAShiftThatHidesIt) {
+  const Eigen::Vector2d beside_m(0.02, -0.01);  // depth seems to be there, and is not
+  const DepthOffset stated{1.0, beside_m};
+  const auto [found, better_sigmas] = align_late_depth(late_views(0.033, beside_m), 0.1, stated);
+  EXPECT_NEAR(found.offset.delay_s, 0.033, 0.003);
+  EXPECT_LT((found.offset.shift_m - beside_m).norm(), 0.005);
+  EXPECT_GT(found.gain_sigmas, 4.0);
+  EXPECT_GT(better_sigmas, 2.6);
+}
+
 TEST(DepthAlignment, FindsNoDelayWhereThereIsNone) {
-  EXPECT_LT(align_late_depth(late_views(0.0, {0.0, 0.0}), 0.1).gain_sigmas, 4.0);
-  EXPECT_LT(std::abs(align_late_depth(late_views(0.0, {-0.03, 0.0}), 0.1).offset.delay_s), 0.003);
+  EXPECT_LT(align_late_depth(late_views(0.0, {0.0, 0.0}), 0.1).alignment.gain_sigmas, 4.0);
+  EXPECT_LT(std::abs(align_late_depth(late_views(0.0, {-0.03, 0.0}), 0.1).alignment.offset.delay_s), 0.003);
 }
 
 /// Plays 3 s of a camera that moves to and fro before ever other boards. Depth is of `delay_s` later, and of a camera
 /// beside it.
-std::optional<DepthOffset> watch(double delay_s, double beside_m) {
+std::optional<DepthOffset> watch(double delay_s, double beside_m, const DepthOffset& stated = {}) {
   const auto position_m = [](double t) {
     return Eigen::Vector3d(0.3 * std::sin(6.0 * t), 0.3 * std::cos(6.0 * t), 0.0);  // a circle
   };
-  DelayWatch watch;
+  DelayWatch watch(stated);
   for (int i = 0; i < 90; ++i) {
     const double t = i / 30.0;
     const Eigen::Vector3d moved = position_m(t + delay_s) - position_m(t);
@@ -122,9 +133,27 @@ TEST(DelayWatch, FindsHowLateDepthIs) {
   }
 }
 
+TEST(DelayWatch, ReturnsTheStatedOffsetWhereADelayIsAll) {
+  const DepthOffset stated{1.0, {0.01, 0.0}};
+  const auto found = watch(0.015, 0.01, stated);  // short enough for the velocity to stay as it is
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->focal_ratio, stated.focal_ratio);
+  EXPECT_EQ(found->shift_m, stated.shift_m);
+}
+
 TEST(DelayWatch, DepthOfTheSameInstantHasNone) {
   EXPECT_FALSE(watch(0.0, 0.0));
   EXPECT_FALSE(watch(0.0, -0.025)) << "the depth camera is beside that of colour";
+}
+
+TEST(DelayWatch, FramesFarApartShowNoMotion) {
+  DelayWatch watch;
+  for (int i = 0; i < 4; ++i) {
+    RgbdFrame frame = see(lapis::test::make_boards(1), {});
+    frame.stamp = time::Time::from_seconds(0.2 * i);
+    EXPECT_FALSE(watch.add(frame, geometry::Pose(Eigen::Translation3d(0.1 * i, 0.0, 0.0))));
+  }
+  EXPECT_EQ(watch.is_moving(), std::optional(false));
 }
 
 TEST(DelayWatch, WithoutPosesNothingIsConcluded) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
+#include <optional>
 #include <utility>
 
 #include <opencv2/core.hpp>
@@ -205,22 +206,24 @@ double gain_sigmas(std::span<const EdgeView> views, const DepthOffset& offset, c
 }
 
 /// In steps by which edges move by about a pixel of a coarse level: 0 where less than that is off.
-double coarse_delay(std::span<const EdgeView> views, double most_s) {
+DepthOffset coarse_delay(std::span<const EdgeView> views, double most_s, DepthOffset offset) {
   constexpr int kLevel = 1;
   const int sides = std::max(1, static_cast<int>(moved_px(views, {.delay_s = most_s}) / std::ldexp(1.0, kLevel)));
   double best = 0.0;
   double highest = -std::numeric_limits<double>::infinity();
   for (int i = -sides; i <= sides; ++i) {
-    const double delay_s = most_s * i / sides, here = score(views, {.delay_s = delay_s}, kLevel, 5);
+    offset.delay_s = most_s * i / sides;
+    const double here = score(views, offset, kLevel, 5);
     if (here <= highest) continue;
     highest = here;
-    best = delay_s;
+    best = offset.delay_s;
   }
-  return best;
+  offset.delay_s = best;
+  return offset;
 }
 
-DepthAlignment alignment(std::span<const EdgeView> views, const DepthOffset& offset, const DepthOffset& reference) {
-  return {offset, moved_px(views, offset), gain_sigmas(views, offset, reference)};
+DepthAlignment alignment(std::span<const EdgeView> views, const DepthOffset& offset) {
+  return {offset, moved_px(views, offset), gain_sigmas(views, offset, {})};
 }
 
 }  // namespace
@@ -256,13 +259,21 @@ double moved_px(std::span<const EdgeView> views, const DepthOffset& offset) {
 }
 
 DepthAlignment align_depth(std::span<const EdgeView> views) {
-  return alignment(views, refined(views, coarse_offset(views)), {});
+  return alignment(views, refined(views, coarse_offset(views)));
 }
 
-DepthAlignment align_late_depth(std::span<const EdgeView> views, double most_s) {
-  const DepthOffset late{.delay_s = coarse_delay(views, most_s)};
-  if (late.delay_s == 0.0) return {};
-  return alignment(views, refined(views, late), refined(views, coarse_offset(views)));
+LateAlignment align_late_depth(std::span<const EdgeView> views, double most_s, const DepthOffset& stated) {
+  std::vector<DepthOffset> starts{coarse_delay(views, most_s, {})};
+  if (!(stated == DepthOffset{})) starts.push_back(coarse_delay(views, most_s, stated));
+  std::optional<DepthOffset> best;
+  for (const DepthOffset& start : starts) {
+    if (start.delay_s == 0.0) continue;
+    const DepthOffset found = refined(views, start);
+    if (!best || score(views, found, 0, 1) > score(views, *best, 0, 1)) best = found;
+  }
+  if (!best) return {};
+  const DepthAlignment late{*best, moved_px(views, *best), gain_sigmas(views, *best, stated)};
+  return {late, gain_sigmas(views, *best, refined(views, coarse_offset(views)))};
 }
 
 }  // namespace lapis::slam

@@ -20,6 +20,8 @@ struct DepthOffset {
   double focal_ratio = 1.0;                           ///< focal length that was assumed / true focal length
   Eigen::Vector2d shift_m = Eigen::Vector2d::Zero();  ///< of the depth camera: x to the right, y down [m]
   double delay_s = 0.0;                               ///< how much later than colour depth was measured
+
+  bool operator==(const DepthOffset& other) const = default;
 };
 
 /// What one frame shows of the offset: where depth jumps, and how strong the contrast of grey values is everywhere.
@@ -64,9 +66,17 @@ struct DepthAlignment {
 /// cameras and lasers", RSS 2013: depth discontinuities at image edges]. The views show edges.
 DepthAlignment align_depth(std::span<const EdgeView> views);
 
-/// The same with a delay of up to about `most_s`, either way, by views with edges and velocities. `gain_sigmas` says
-/// how much better that is than the best offset without a delay. A delay that moves edges by less than a pixel is none.
-DepthAlignment align_late_depth(std::span<const EdgeView> views, double most_s);
+/// An offset with a delay, whose gain is that over the stated offset, and by how much contrast at edges is larger than
+/// with the best offset without a delay.
+struct LateAlignment {
+  DepthAlignment alignment;
+  double better_sigmas = 0.0;
+};
+
+/// The same with a delay of up to about `most_s`, either way, by views with edges and velocities. A delay that moves
+/// edges by less than a pixel is none. It is sought with the depth camera where it is taken to be, and where it is
+/// stated to be (`stated`): a wrong shift may have hidden it.
+LateAlignment align_late_depth(std::span<const EdgeView> views, double most_s, const DepthOffset& stated = {});
 /// By how much an offset moves the edges of the views (root mean square) [px].
 double moved_px(std::span<const EdgeView> views, const DepthOffset& offset);
 

@@ -42,6 +42,10 @@ bool can_be_remade(const Map& map, const SlamGraph& graph) {
 
 void remake_map(const SlamConfig& config, double ratio, Map& map) {
   map.change_focal_length(ratio);
+  adjust_whole_map(config, map);
+}
+
+void adjust_whole_map(const SlamConfig& config, Map& map) {
   std::vector<LandmarkId> landmarks;
   BundleProblem problem = problem_of(config, map, landmarks);
   BundleConfig bundle = config.bundle;

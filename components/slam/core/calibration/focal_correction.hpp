@@ -10,8 +10,10 @@ namespace lapis::slam {
 /// it has no loops, of which the key-frames do not share landmarks, and no sub-maps.
 bool can_be_remade(const Map& map, const SlamGraph& graph);
 
-/// Makes a map anew for `ratio` times the focal length that its key-frames have: bundle adjustment of all of them and
-/// their landmarks. The first key-frame stays where it is.
+/// Bundle adjustment of all key-frames and their landmarks. The first key-frame stays where it is.
+void adjust_whole_map(const SlamConfig& config, Map& map);
+
+/// Makes a map anew for `ratio` times the focal length that its key-frames have, and adjusts it.
 void remake_map(const SlamConfig& config, double ratio, Map& map);
 
 }  // namespace lapis::slam

@@ -69,12 +69,17 @@ Frame make_frame(const RgbdFrame& input, const FeatureExtractor& extractor, cons
   Frame frame;
   frame.input = &input;
   frame.features = extractor.extract(input.gray);
-  for (Feature& feature : frame.features) {
-    feature.depth_m = interpolate_depth(config, input.depth, feature.pixel);
-    if (feature.depth_m > 0.0) ++frame.features_with_depth;
-  }
+  renew_depths(config, frame);
   frame.index = FeatureIndex(frame.features, input.camera.width, input.camera.height);
   return frame;
+}
+
+void renew_depths(const NoiseConfig& config, Frame& frame) {
+  frame.features_with_depth = 0;
+  for (Feature& feature : frame.features) {
+    feature.depth_m = interpolate_depth(config, frame.input->depth, feature.pixel);
+    if (feature.depth_m > 0.0) ++frame.features_with_depth;
+  }
 }
 
 }  // namespace lapis::slam

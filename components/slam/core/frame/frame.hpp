@@ -10,12 +10,13 @@
 
 namespace lapis::slam {
 
-/// Registered colour and depth of one instant, in the camera's optical frame.
+/// Registered colour and depth, in the camera's optical frame.
 struct RgbdFrame {
-  time::Time stamp;
+  time::Time stamp;  ///< of colour
   geometry::PinholeCamera camera;
-  geometry::GrayImage gray;    ///< camera.width x camera.height
-  geometry::DepthImage depth;  ///< same size; metres, 0 = none
+  geometry::GrayImage gray;      ///< camera.width x camera.height
+  geometry::DepthImage depth;    ///< same size; metres, 0 = none
+  time::Duration depth_delay{};  ///< how much later than colour depth was measured
 };
 
 /// Finds the features near a pixel.
@@ -53,5 +54,7 @@ struct Frame {
 double interpolate_depth(const NoiseConfig& config, const geometry::DepthImage& depth, const Eigen::Vector2d& pixel);
 
 Frame make_frame(const RgbdFrame& input, const FeatureExtractor& extractor, const NoiseConfig& config);
+/// Reads the features' depths again: the depth image of the frame's input has changed.
+void renew_depths(const NoiseConfig& config, Frame& frame);
 
 }  // namespace lapis::slam

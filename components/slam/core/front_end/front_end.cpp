@@ -94,6 +94,14 @@ FrameOutcome FrontEnd::locate(const Known& known, const Frame& frame) {
   return hold(known, frame, std::move(seen), PoseSource::kVision, wants_keyframe);
 }
 
+std::optional<Pose> FrontEnd::guess(const Known& known, const Frame& frame) const {
+  const auto predicted = known.motion.predict(known.map, frame.input->stamp);
+  const TrackOutcome found =
+      tracker_.track(known.map, frame, predicted, search_radius_px(), [](const TrackOutcome&) { return true; });
+  if (!found.is_tracked) return std::nullopt;
+  return Pose(known.map.keyframe(found.reference).T_map_camera * found.alignment.T_reference_camera);
+}
+
 TrackingResult FrontEnd::without_vision(const Known& known, time::Time stamp, const std::string& reason) const {
   TrackingResult result;
   result.state = known.map.empty() ? TrackingState::kInitializing : TrackingState::kLost;

@@ -46,6 +46,8 @@ class FrontEnd {
   FrameOutcome begin(const Known& known, const Frame& frame);
   /// @pre the map is not empty
   FrameOutcome locate(const Known& known, const Frame& frame);
+  /// T_map_camera of a frame near the pose that motion predicts, if it is found there: a first guess, nothing more.
+  std::optional<geometry::Pose> guess(const Known& known, const Frame& frame) const;
   /// Result for a frame that cannot be used: it has a pose by dead reckoning, or none.
   TrackingResult without_vision(const Known& known, time::Time stamp, const std::string& reason) const;
 

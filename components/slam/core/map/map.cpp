@@ -80,6 +80,21 @@ void Map::change_focal_length(double ratio) {
   }
 }
 
+void Map::renew_depth(KeyframeId id, std::vector<Feature> features, std::vector<SurfaceSample> surface) {
+  Keyframe& keyframe = keyframes_[static_cast<std::size_t>(id)];
+  for (std::size_t i = 0; i < features.size(); ++i) {
+    if (keyframe.landmarks[i] == kNoLandmark || features[i].depth_m <= 0.0) continue;
+    Landmark& landmark = landmarks_[keyframe.landmarks[i]];
+    if (landmark.observations.front().keyframe != id) continue;
+    const Eigen::Vector2d& pixel = features[i].pixel;
+    const Eigen::Vector3d p = keyframe.camera.unproject(pixel.x(), pixel.y(), features[i].depth_m);
+    landmark.finest_distance_m *= p.norm() / (keyframe.T_map_camera.inverse() * landmark.p_map).norm();
+    landmark.p_map = keyframe.T_map_camera * p;
+  }
+  keyframe.features = std::move(features);
+  keyframe.surface = std::move(surface);
+}
+
 void Map::join(KeyframeId sub_map, KeyframeId into, const geometry::Pose& T_into_sub_map) {
   std::vector<geometry::Pose> moves(keyframes_.size(), geometry::Pose::Identity());
   for (Keyframe& keyframe : keyframes_) {

@@ -71,6 +71,9 @@ class Map {
   /// Sees everything anew, as cameras with `ratio` times the focal length that was assumed show it: what is beside the
   /// optical axis is nearer to it, by that ratio. Poses stay.
   void change_focal_length(double ratio);
+  /// Gives a key-frame other depths of its features, and other surfaces. Landmarks that it saw first follow; its pose
+  /// stays.
+  void renew_depth(KeyframeId id, std::vector<Feature> features, std::vector<SurfaceSample> surface);
   /// Makes a sub-map one with another part: its key-frames and landmarks are moved into that one's frame.
   void join(KeyframeId sub_map, KeyframeId into, const geometry::Pose& T_into_sub_map);
   /// Takes what they have seen from the key-frames of a sub-map. They keep their ids and poses.

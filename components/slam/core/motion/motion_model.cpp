@@ -67,6 +67,15 @@ std::optional<Pose> MotionModel::predict(const Map& map, time::Time stamp) const
   return expected->T_map_camera;
 }
 
+std::optional<Pose> MotionModel::motion_through(const Map& map, time::Time stamp, const Pose& T_map_camera,
+                                                time::Time to) const {
+  const auto last = last_pose(map);
+  const double elapsed_s = last ? (stamp - last->first).seconds() : 0.0;
+  if (!(elapsed_s > 0.0 && elapsed_s <= max_gap_s_)) return std::nullopt;
+  const geometry::Vector6d moved = geometry::se3_log(last->second.inverse() * T_map_camera);
+  return geometry::se3_exp(moved * ((to - stamp).seconds() / elapsed_s));
+}
+
 std::optional<RelativeCamera> MotionModel::dead_reckon(time::Time stamp) const {
   if (!last_) return std::nullopt;
   const auto motion = odometry_between(last_->stamp, stamp);

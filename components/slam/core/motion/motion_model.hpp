@@ -49,6 +49,10 @@ class MotionModel {
   std::optional<Expected> expect(const Map& map, time::Time stamp) const;
   /// T_map_camera at a stamp; nothing before the first update and when neither odometry nor velocity reaches that far.
   std::optional<geometry::Pose> predict(const Map& map, time::Time stamp) const;
+  /// Motion of the camera from `stamp`, where it has the pose `T_map_camera`, to another stamp: by the velocity since
+  /// the pose that was found last. Nothing when that is too old, or none.
+  std::optional<geometry::Pose> motion_through(const Map& map, time::Time stamp, const geometry::Pose& T_map_camera,
+                                               time::Time to) const;
   /// Pose by odometry alone; its covariance grows with the path since the last update.
   std::optional<RelativeCamera> dead_reckon(time::Time stamp) const;
   /// Motion of the camera between two stamps by odometry, with the covariance in the tangent of the later pose.

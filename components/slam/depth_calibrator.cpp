@@ -43,8 +43,8 @@ std::optional<DepthAlignment> DepthCalibrator::add(const RgbdFrame& frame, const
   if (view.edges().size() < kFewestEdges) return std::nullopt;
   views_.push_back(std::move(view));
   const auto count = views_.size();
-  const int fewest = found_ > 0 ? std::max(2, fewest_views_) : fewest_views_;
-  if (count < static_cast<std::size_t>(fewest) || !is_power_of_two(count)) return std::nullopt;
+  const std::size_t fewest = found_ > 0 ? std::max<std::size_t>(2, fewest_views_) : fewest_views_;
+  if (count < fewest || !is_power_of_two(count)) return std::nullopt;
   const DepthAlignment alignment = align_depth(views_);
   const double notable_px = found_ == 0 ? kFirstNotable_px : kNotable_px;
   if (alignment.gain_sigmas < kLeastSigmas || !(alignment.moved_px >= notable_px)) return std::nullopt;

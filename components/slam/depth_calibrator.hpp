@@ -14,7 +14,7 @@ class DepthCalibrator {
  public:
   /// `fewest_views`: before anything is concluded [1, 16]. With 1, the first view may show a wrong calibration, and the
   /// next ones make the correction better.
-  explicit DepthCalibrator(int fewest_views) : fewest_views_(fewest_views) {}
+  explicit DepthCalibrator(std::size_t fewest_views) : fewest_views_(fewest_views) {}
 
   /// Whether a frame of this time is wanted: views are some time apart, until enough has been seen.
   bool wants(time::Time stamp) const;
@@ -26,7 +26,7 @@ class DepthCalibrator {
   std::optional<DepthAlignment> add(const RgbdFrame& frame, const images::RgbdCalibration& used);
 
  private:
-  int fewest_views_;
+  std::size_t fewest_views_;
   std::vector<EdgeView> views_;                  // with edges
   std::optional<images::RgbdCalibration> used_;  // for all of them
   std::optional<time::Time> newest_;

@@ -18,7 +18,7 @@ namespace lapis::slam {
 namespace {
 
 constexpr std::size_t kEarlyReadings = 1000;
-constexpr int kViewsToContradict = 8;
+constexpr std::size_t kViewsToContradict = 8;
 constexpr int kMostDoubtfulFrames = 15;  // about as many as a recognised place needs to be confirmed, several times
 constexpr double kFarewell_s = 1.0;
 constexpr double kLongestSave_s = 600.0;
@@ -251,6 +251,7 @@ void SlamComponent::watch_delay(const RgbdFrame& frame, const TrackingResult& re
   if (depth_estimate_ == nullptr) {
     spdlog::warn("{}: correct the stamps, or set slam.depth_calibration: estimate", text);
     calibrator_.reset();  // it takes the delay for a shift
+    focal_length_.reset();
     return;
   }
   spdlog::info("{}: corrected by the motion between from now on", text);
@@ -271,6 +272,8 @@ void SlamComponent::watch_focal_length(const sensor_msgs::msg::CameraInfo& info,
   if (!focal_length_) return;
   const Keyframe& newest = slam_->map().keyframes().back();
   focal_length_->add(slam_->map(), newest.id);
+  // Depth that is not registered looks like another focal length of colour.
+  if (depth_estimate_ == nullptr && calibrator_ && calibrator_->views() < kViewsToContradict) return;
   const auto found = is_focal_length_estimated_ ? focal_length_->refinement() : focal_length_->contradiction();
   if (!found) return;
   const double found_px = newest.camera.fx * found->ratio, stated_px = info.k()[0];
@@ -338,6 +341,7 @@ bool SlamComponent::calibrate_depth(const RgbdFrame& frame, const sensor_msgs::m
     spdlog::warn("{}: correct /camera/depth/camera_info and /tf_static, or set slam.depth_calibration: estimate",
                  found);
     calibrator_.reset();
+    focal_length_.reset();
     return false;
   }
   if (!stated_) stated_ = used;

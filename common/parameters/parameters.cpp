@@ -4,6 +4,7 @@
 #include <set>
 #include <utility>
 
+#include "common/config/yaml.hpp"
 #include "common/parameters/parameter_value.hpp"
 
 namespace lapis::parameters {
@@ -28,7 +29,8 @@ bool is_below(std::string_view name, std::string_view prefix, std::uint64_t dept
 }  // namespace
 
 Parameters::Parameters(std::string process, config::Schema schema, Changes changes)
-    : process_(std::move(process)), entries_(schema.entries()), changes_(std::move(changes)) {
+    : process_(std::move(process)), schema_(std::move(schema)), entries_(schema_.entries()),
+      changes_(std::move(changes)) {
   std::ranges::sort(entries_, {}, &config::Entry::path);
 }
 
@@ -83,8 +85,10 @@ std::string Parameters::refusal_of(const Parameter& parameter) {
 
 std::string Parameters::broken_rule() const {
   if (!changes_.rules) return "";
-  for (const config::Rule& rule : changes_.rules()) {
-    if (!rule.holds) return rule.text;
+  try {
+    config::check(schema_, changes_.rules());
+  } catch (const config::Error& error) {
+    return error.what();
   }
   return "";
 }

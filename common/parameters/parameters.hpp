@@ -40,6 +40,7 @@ class Parameters {
   std::string broken_rule() const;
 
   std::string process_;
+  config::Schema schema_;
   std::vector<config::Entry> entries_;  // by path
   Changes changes_;
 };

@@ -88,7 +88,7 @@ TEST_F(ParametersTest, AreReadAndDescribedAndUnknownOnesAreNotSet) {
   EXPECT_EQ(parameters_.value("slam.tracker.least").integer_value(), 10);
   EXPECT_EQ(parameters_.text("slam.mode"), "\"fast\"");
   EXPECT_EQ(parameters_.descriptor("slam.tracker.range_m").type(), types::PARAMETER_DOUBLE);
-  for (const char* name : {"slam.tracker", "slam.tracker.leas", "", "zzz"}) {
+  for (const char* name : {"slam.tracker", "slam.tracker.none", "", "zzz"}) {
     EXPECT_EQ(parameters_.value(name).type(), types::PARAMETER_NOT_SET);
     EXPECT_EQ(parameters_.text(name), "");
     EXPECT_EQ(parameters_.descriptor(name).type(), types::PARAMETER_NOT_SET);
@@ -109,7 +109,7 @@ TEST_F(ParametersTest, AreRefusedWithTheReasonAndNothingChanges) {
   EXPECT_EQ(refusal({integer("slam.tracker.range_m", 3)}),
             "slam.tracker.range_m is read at start: set it in the configuration and restart slam");
   EXPECT_EQ(refusal({integer("slam.tracker.least", 0)}), "slam.tracker.least: 0 is out of range, allowed is 1 to 100");
-  EXPECT_EQ(refusal({integer("slam.tracker.least", 20)}), "slam.tracker.least has to be less");
+  EXPECT_EQ(refusal({integer("slam.tracker.least", 20)}), "slam.tracker.least (20) has to be less");
   EXPECT_EQ(config_.tracker.least, 10);
   EXPECT_EQ(config_.tracker.range_m, 5.0);
   EXPECT_EQ(applied_, 0);

@@ -3,7 +3,7 @@
 Accepted: #include "x.idl", include guards, module, struct, const, @key, the primitive types below, string, string<N>,
 sequence<T>, sequence<T, N>, T name[N], comments. One file holds one package:
 
-    module <package> { module msg | srv { module <Struct>_Constants { const ...; }; struct <Struct> { ...; }; }; };
+    module <package> { module msg | srv | action { module <Struct>_Constants { const ...; }; struct <Struct> { ...; }; }; };
 
 Everything else is an IdlError that names file and line. The parser is stricter than fastddsgen on purpose: what it
 accepts has one meaning in DDS, in ROS 2 .msg files and in type hashes.
@@ -23,6 +23,15 @@ PRIMITIVES = {
 }
 # IDL has no empty struct; ROS 2 puts one byte of this name on the wire.
 EMPTY_MEMBER = "structure_needs_at_least_one_member"
+# Structs of an action: those that an .action file declares, and those that ROS 2 derives from them.
+ACTION_PARTS = {
+    "Goal": None, "Result": None, "Feedback": None,
+    "SendGoal_Request": "unique_identifier_msgs/msg/UUID goal_id, {}_Goal goal",
+    "SendGoal_Response": "bool accepted, builtin_interfaces/msg/Time stamp",
+    "GetResult_Request": "unique_identifier_msgs/msg/UUID goal_id",
+    "GetResult_Response": "int8 status, {}_Result result",
+    "FeedbackMessage": "unique_identifier_msgs/msg/UUID goal_id, {}_Feedback feedback",
+}
 
 _TOKEN = re.compile(r"""
     (?P<space>[ \t\r]+) | (?P<newline>\n)
@@ -86,7 +95,7 @@ class Field:
 @dataclasses.dataclass(frozen=True)
 class Struct:
     package: str
-    section: str                # "msg" or "srv"
+    section: str                # "msg", "srv" or "action"
     name: str
     fields: tuple[Field, ...]
     constants: tuple[Constant, ...]
@@ -260,8 +269,8 @@ class _Parser:
         while not self.at("}"):
             self.take("module")
             section = self.take_kind("name")
-            if section.text not in ("msg", "srv"):
-                self.fail(f"expected module msg or srv, found {section.text!r}", section.line)
+            if section.text not in ("msg", "srv", "action"):
+                self.fail(f"expected module msg, srv or action, found {section.text!r}", section.line)
             self.section = section.text
             self._section()
         self._close()
@@ -297,6 +306,8 @@ class _Parser:
         self._close()
         if self.section == "srv":
             self._check_services(line)
+        elif self.section == "action":
+            self._check_actions(line)
 
     def _check_services(self, line: int) -> None:
         names = {s.name for s in self.library.structs.values() if (s.package, s.section) == (self.package, "srv")}
@@ -305,6 +316,19 @@ class _Parser:
             other = f"{base}_{'Response' if part == 'Request' else 'Request'}"
             if other not in names:
                 self.fail(f"{name} has no {other}", line)
+
+    def _check_actions(self, line: int) -> None:
+        structs = {s.name: s for s in self.library.structs.values()
+                   if (s.package, s.section) == (self.package, "action")}
+        for action in sorted({name.partition("_")[0] for name in structs}):
+            for part, members in ACTION_PARTS.items():
+                struct = structs.get(f"{action}_{part}")
+                if struct is None:
+                    self.fail(f"action {action} has no {action}_{part}", line)
+                found = ", ".join(f"{f.type.name} {f.name}" for f in struct.fields)
+                wanted = (members or "").format(f"{self.package}/action/{action}")
+                if members and found != wanted:
+                    self.fail(f"{struct.name} has {found}; ROS 2 gives it {wanted}", struct.line)
 
     def _constants(self) -> tuple[Constant, ...]:
         constants: list[Constant] = []
@@ -346,6 +370,10 @@ class _Parser:
             base, _, part = name.text.rpartition("_")
             if part not in ("Request", "Response"):
                 self.fail(f"a struct of module srv ends in _Request or _Response, found {name.text!r}", name.line)
+        elif self.section == "action":
+            base, _, part = name.text.partition("_")
+            if part not in ACTION_PARTS:
+                self.fail(f"a struct of module action is none of _{', _'.join(ACTION_PARTS)}: {name.text!r}", name.line)
         if not _STRUCT_NAME.match(base):
             self.fail(f"struct {name.text!r} is not in CamelCase", name.line)
         ros_name = f"{self.package}/{self.section}/{name.text}"

@@ -16,6 +16,7 @@ import sys
 from idl_parser import Field, IdlError, Library, Struct, Type
 
 IDL_DIR = pathlib.Path(__file__).resolve().parent
+ACTION_FILE_PARTS = ("Goal", "Result", "Feedback")      # of these ROS 2 derives the other structs of an action
 SERVICE_EVENT_INFO = "service_msgs/msg/ServiceEventInfo"
 
 # type_description_interfaces/msg/FieldType of ROS 2
@@ -72,26 +73,49 @@ def service_event(library: Library, service: str) -> Struct:
     return dataclasses.replace(request, name=service.rpartition("/")[2] + "_Event", fields=fields, constants=())
 
 
-def service_hash(library: Library, service: str) -> str:
+def service_structs(library: Library, service: str) -> dict[str, Struct]:
+    """The service as a type of its own, as hashes have it, and its event message."""
     event = service_event(library, service)
     fields = (Field(Type(service + "_Request"), "request_message"),
               Field(Type(service + "_Response"), "response_message"),
               Field(Type(event.ros_name), "event_message"))
-    return type_hash({**library.structs, event.ros_name: event}, service, fields)
+    whole = dataclasses.replace(event, name=service.rpartition("/")[2], fields=fields)
+    return {service: whole, event.ros_name: event}
+
+
+def service_hash(library: Library, service: str) -> str:
+    structs = service_structs(library, service)
+    return type_hash({**library.structs, **structs}, service, structs[service].fields)
 
 
 def services(structs) -> list[str]:
     return [s.ros_name.removesuffix("_Request") for s in structs
-            if s.section == "srv" and s.name.endswith("_Request")]
+            if s.section in ("srv", "action") and s.name.endswith("_Request")]
+
+
+def action_hash(library: Library, action: str) -> str:
+    fields = [Field(Type(f"{action}_{part}"), name)
+              for part, name in (("Goal", "goal"), ("Result", "result"), ("Feedback", "feedback"),
+                                 ("SendGoal", "send_goal_service"), ("GetResult", "get_result_service"),
+                                 ("FeedbackMessage", "feedback_message"))]
+    structs = {**library.structs, **service_structs(library, action + "_SendGoal"),
+               **service_structs(library, action + "_GetResult")}
+    return type_hash(structs, action, fields)
+
+
+def actions(structs) -> list[str]:
+    return [s.ros_name.removesuffix("_Goal") for s in structs if s.section == "action" and s.name.endswith("_Goal")]
 
 
 def hashes(library: Library) -> dict[str, str]:
-    """Every struct, service and service event of the library with its hash, sorted by name."""
+    """Every struct, service, service event and action of the library with its hash, sorted by name."""
     result = {s.ros_name: struct_hash(library, s) for s in list(library.structs.values())}
     for service in services(list(library.structs.values())):
         event = service_event(library, service)
         result[service] = service_hash(library, service)
         result[event.ros_name] = struct_hash(library, event)
+    for action in actions(list(library.structs.values())):
+        result[action] = action_hash(library, action)
     return dict(sorted(result.items()))
 
 
@@ -149,8 +173,11 @@ def header_text(library: Library, structs: list[Struct], source: str, type_heade
              f'#include "{type_header}"', '#include "idl/type_support.hpp"', ""]
     names = services(structs)
     for service in names:
-        package, _, name = service.split("/")
-        lines.append(f"namespace {package}::srv {{ struct {name}; }}")
+        package, section, name = service.split("/")
+        lines.append(f"namespace {package}::{section} {{ struct {name}; }}")
+    for action in actions(structs):
+        package, section, name = action.split("/")
+        lines.append(f"namespace {package}::{section} {{ struct {name}; }}")
     lines += ["", "namespace lapis::idl {", ""]
     for struct in structs:
         cpp = f"::{struct.package}::{struct.section}::{struct.name}"
@@ -167,19 +194,39 @@ def header_text(library: Library, structs: list[Struct], source: str, type_heade
                   f"  using Request = {cpp}_Request;", f"  using Response = {cpp}_Response;",
                   f'  static constexpr const char* kRosName = "{service}";',
                   f'  static constexpr const char* kHash = "{service_hash(library, service)}";', "};", ""]
+    for action in actions(structs):
+        cpp = "::" + action.replace("/", "::")
+        lines += ["template <>", f"struct ActionSupport<{cpp}> {{",
+                  *(f"  using {part} = {cpp}_{part};" for part in
+                    ("Goal", "Result", "Feedback", "SendGoal", "GetResult", "FeedbackMessage")),
+                  f'  static constexpr const char* kRosName = "{action}";',
+                  f'  static constexpr const char* kHash = "{action_hash(library, action)}";', "};", ""]
     lines += ["}  // namespace lapis::idl", ""]
     return "\n".join(lines)
 
 
+def fields_name(struct: Struct) -> str:
+    return f"kFieldsOf_{struct.ros_name.replace('/', '_')}"
+
+
 def table_text(library: Library, structs: list[Struct]) -> str:
     lines = ["// Made by type_descriptions.py.", '#include "idl/type_table.hpp"', "", "#include <algorithm>", "",
-             "namespace lapis::idl {", "namespace {", "", "constexpr TypeEntry kTypes[] = {"]
-    for struct in sorted(structs, key=lambda s: s.ros_name):
+             "namespace lapis::idl {", "namespace {", ""]
+    structs = sorted(structs, key=lambda s: s.ros_name)
+    for struct in structs:
+        lines.append(f"constexpr FieldEntry {fields_name(struct)}[] = {{")
+        for description in map(field_description, struct.fields):
+            type_ = description["type"]
+            lines.append(f'    {{"{description["name"]}", {type_["type_id"]}, {type_["capacity"]}, '
+                         f'{type_["string_capacity"]}, "{type_["nested_type_name"]}"}},')
+        lines.append("};")
+    lines += ["", "constexpr TypeEntry kTypes[] = {"]
+    for struct in structs:
         lines.append(f'    {{"{struct.ros_name}", "{dds_name(struct)}",')
         lines.append(f'     "{struct_hash(library, struct)}",')
         schema_lines = schema(library, struct).splitlines(keepends=True) or [""]
         lines += [f"     {json.dumps(line)}" for line in schema_lines]
-        lines[-1] += "},"
+        lines[-1] += f", {fields_name(struct)}}},"
     lines += ["};", "", "}  // namespace", "",
               "std::span<const TypeEntry> type_table() { return kTypes; }", "",
               "const TypeEntry* find(std::string_view ros_name) {",
@@ -230,23 +277,35 @@ ament_package()
 """
 
 
+def action_text(package: str, action: str, structs: list[Struct]) -> str:
+    by_name = {s.ros_name: s for s in structs}
+    parts = ["\n".join(msg_lines(by_name[f"{action}_{part}"], with_comments=True)) + "\n" for part in ACTION_FILE_PARTS]
+    return f"# Made from idl/{package}/{package}.idl; do not edit.\n\n" + "---\n".join(parts)
+
+
 def ros2_package(structs: list[Struct]) -> dict[str, str]:
     """The files of a rosidl package with these types: relative path -> text."""
     package = structs[0].package
-    used = {f.type.name.split("/")[0] for s in structs for f in s.fields if f.type.is_struct}
+    declared = [s for s in structs if s.section != "action" or s.name.partition("_")[2] in ACTION_FILE_PARTS]
+    used = {f.type.name.split("/")[0] for s in declared for f in s.fields if f.type.is_struct}
+    if actions(structs):
+        used.add("action_msgs")
     dependencies = sorted(used - {package})
-    files = {}
+    files = {f"action/{action.rpartition('/')[2]}.action": action_text(package, action, structs)
+             for action in actions(structs)}
     for struct in structs:
-        if struct.section != "msg":
+        if struct.section == "srv":
             raise IdlError(struct.path, struct.line, "services are not written to ROS 2 packages yet")
+        if struct.section == "action":
+            continue
         lines = [f"# Made from idl/{package}/{package}.idl; do not edit."]
         if any(f.is_key for f in struct.fields):
             lines.append("# Keyed on DDS: it lives on a topic that ROS 2 cannot subscribe to. For reading recordings.")
         lines += ["", *msg_lines(struct, with_comments=True)]
         files[f"msg/{struct.name}.msg"] = "\n".join(lines) + "\n"
-    messages = sorted(files)
+    interfaces = sorted(files)
     files["package.xml"] = package_xml(package, dependencies)
-    files["CMakeLists.txt"] = package_cmake(package, messages, dependencies)
+    files["CMakeLists.txt"] = package_cmake(package, interfaces, dependencies)
     return files
 
 

@@ -21,4 +21,14 @@ struct TypeSupport;
 template <typename T>
 struct ServiceSupport;
 
+/// An action, by an empty tag type as a service (lapis_msgs::action::Explore); specialised in "idl/<package>.hpp":
+///
+///     using Goal = ...; using Result = ...; using Feedback = ...;
+///     using SendGoal = ...; using GetResult = ...;   tags of services
+///     using FeedbackMessage = ...;
+///     static constexpr const char* kRosName;  "lapis_msgs/action/Explore"
+///     static constexpr const char* kHash;     hash of the action; endpoints carry those of their messages
+template <typename T>
+struct ActionSupport;
+
 }  // namespace lapis::idl

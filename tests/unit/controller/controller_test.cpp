@@ -413,6 +413,30 @@ TEST(Controller, TurnsOnTheSpotSlowly) {
   EXPECT_DOUBLE_EQ(fastest, 0.2);
 }
 
+TEST(Controller, ObeysLowerLimitsOnItsWay) {
+  KinematicWorld world(hall());
+  const Path path = straight({0, 0}, {5, 0}, 3.0);
+  world.controller.set_path(path, "");
+  world.run_until([](const Decision& d) { return d.command.forward_m_s == 0.6; }, 5.0);
+  ControllerConfig config;
+  config.speed_limit_m_s = 0.2;
+  config.turn_limit_rad_s = 0.3;
+  world.controller.reconfigure(config);
+  double last_m_s = 0.6, fastest_turn = 0.0;
+  const double took_s = world.run_until(
+      [&](const Decision& d) {
+        EXPECT_LE(d.command.forward_m_s, last_m_s == 0.2 ? 0.2 : std::max(0.2, last_m_s - 0.05)) << "brakes as it may";
+        last_m_s = std::max(0.2, d.command.forward_m_s);
+        fastest_turn = std::max(fastest_turn, std::abs(d.command.turn_rad_s));
+        return d.state != State::kFollowing;
+      },
+      60.0);
+  EXPECT_LT(took_s, 60.0);
+  EXPECT_GT(took_s, 15.0) << "4 m at 0.2 m/s";
+  EXPECT_LE(fastest_turn, 0.3);
+  expect_reached(world, path.back());
+}
+
 TEST(Controller, TurnsSlowlyWhileViewsAreWeak) {
   for (const bool are_weak : {false, true}) {
     KinematicWorld world(hall());

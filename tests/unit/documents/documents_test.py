@@ -20,7 +20,7 @@ def output_of(*command):
     return subprocess.run([str(word) for word in command], capture_output=True, text=True, check=True).stdout
 
 
-SHARED = ("dds.", "robot.", "lockstep.")  # sections that whoever has them gets from one place
+SHARED = ("dds.", "log.", "robot.", "lockstep.")  # sections that whoever has them gets from one place
 
 
 def meanings_of(name):

@@ -58,6 +58,55 @@ class Hashes(unittest.TestCase):
         self.assertEqual(len({base, *map(hash_of, variants)}), len(variants) + 1)
 
 
+# An action and its hashes as rosidl has generated them (robot_control_interfaces/action/MoveRobot).
+PUBLISHED_ACTION = """
+#include "builtin_interfaces.idl"
+#include "unique_identifier_msgs.idl"
+module robot_control_interfaces { module action {
+  struct MoveRobot_Goal {
+    string command; int32 mode; int32 speed; float duration; int32 amplitude; int32 times;
+  };
+  struct MoveRobot_Result {
+    int32 error_code; string error_message; string execution_status; float progress; int32 count; int64 start_time;
+  };
+  struct MoveRobot_Feedback { float progress; string execution_status; int32 error_code; int32 count; };
+  struct MoveRobot_SendGoal_Request { unique_identifier_msgs::msg::UUID goal_id; MoveRobot_Goal goal; };
+  struct MoveRobot_SendGoal_Response { boolean accepted; builtin_interfaces::msg::Time stamp; };
+  struct MoveRobot_GetResult_Request { unique_identifier_msgs::msg::UUID goal_id; };
+  struct MoveRobot_GetResult_Response { int8 status; MoveRobot_Result result; };
+  struct MoveRobot_FeedbackMessage { unique_identifier_msgs::msg::UUID goal_id; MoveRobot_Feedback feedback; };
+}; };
+"""
+PUBLISHED_ACTION_HASHES = {
+    "": "e0c1d4c0611da78de6e6e3ccc0a2b0ab86a426ac4a422df9f8a3086d8ab6bdac",
+    "_Goal": "f35a2186b770882b4f0df8df04e866b55c7a052e46bb29588478e89c49345826",
+    "_SendGoal": "56c1351617fc4aa59dd454b8f896c823bb49fa8e7cba81c3045e41bf97f28645",
+    "_SendGoal_Request": "296890b4ead703ef8a3b193200777f6c6cb0d3c059f24ff7b05df2a772a3157b",
+    "_SendGoal_Response": "d7d05b178bcc8d8d45b46cb3172722409acf1618105893434b71bf0ccdbadf05",
+    "_GetResult": "abb4591be74a784947490bc56f81cb343de89a725ebe3197195361554e7e6275",
+    "_GetResult_Response": "fde7d58bf763f7eb2d9ce6888ea26599d0b6f6ea5c3f12103f7352f57434e532",
+    "_FeedbackMessage": "a9c93f8b56155e3f15e7140ffaf63aef9dc60739e5b8e475ff1da2e308523485",
+}
+
+
+class Actions(unittest.TestCase):
+    def test_have_the_hashes_of_rosidl(self):
+        with package("robot_control_interfaces", PUBLISHED_ACTION) as path:
+            library = Library([p.parent for p in type_descriptions.idl_files()])
+            library.read(path)
+            hashes = type_descriptions.hashes(library)
+        for part, value in PUBLISHED_ACTION_HASHES.items():
+            self.assertEqual(hashes[f"robot_control_interfaces/action/MoveRobot{part}"], f"RIHS01_{value}", part)
+
+    def test_have_types_for_their_server(self):
+        library = library_of_everything()
+        path = IDL_DIR / "lapis_msgs" / "lapis_msgs.idl"
+        text = type_descriptions.header_text(library, library.read(path), path.name, "x.h")
+        self.assertIn("struct ActionSupport<::lapis_msgs::action::Explore> {", text)
+        self.assertIn("struct ServiceSupport<::lapis_msgs::action::Explore_SendGoal> {", text)
+        self.assertIn('"lapis_msgs::action::dds_::Explore_FeedbackMessage_"', text)
+
+
 class Schemas(unittest.TestCase):
     def test_of_a_message_with_dependencies(self):
         status, text, _ = run("schema", "std_msgs/msg/Header")
@@ -141,7 +190,7 @@ class ParserErrors(unittest.TestCase):
         (in_struct("uint8 a; $"), 4, "unexpected '$'"),
         (in_struct(""), 3, "structure_needs_at_least_one_member"),
         ("module q { };\n", 1, "must live in q.idl"),
-        ("module p {\n module action { };\n};\n", 2, "expected module msg or srv"),
+        ("module p {\n module other { };\n};\n", 2, "expected module msg, srv or action"),
         ('\n#include "nowhere.idl"\nmodule p { };\n', 2, "no such file"),
         ('#include "p.idl"\nmodule p { };\n', 1, "circular"),
         ("#ifndef A\n#define B\nmodule p { };\n#endif\n", 1, "include guard"),
@@ -151,6 +200,11 @@ class ParserErrors(unittest.TestCase):
         ("module p { module msg { module A_Constants {\n const uint8 X = 010; }; }; };\n", 2, "not a value of type"),
         ("module p { module srv {\n struct A_Request { uint8 a; };\n }; };\n", 2, "has no A_Response"),
         ("module p { module srv {\n struct A { uint8 a; };\n }; };\n", 2, "_Request or _Response"),
+        ("module p { module action {\n struct A_Goal { uint8 a; };\n }; };\n", 2, "action A has no A_Result"),
+        ("module p { module action {\n struct A_Plan { uint8 a; };\n }; };\n", 2, "is none of _Goal, _Result, _Feedback"),
+        ("module p { module action {\n struct A_Goal { uint8 a; }; struct A_Result { uint8 a; };\n"
+         " struct A_Feedback { uint8 a; };\n struct A_SendGoal_Request { uint8 a; };\n }; };\n", 4,
+         "ROS 2 gives it unique_identifier_msgs/msg/UUID goal_id, p/action/A_Goal goal"),
     ]
 
     def test_name_file_and_line(self):

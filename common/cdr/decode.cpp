@@ -30,11 +30,14 @@ class Decoder {
     swaps_ = is_little != (std::endian::native == std::endian::little);
   }
 
-  Value structure(std::size_t index) {
+  Value structure(std::size_t index, std::string_view end = {}) {
     Value value = Value::object();
     const Structure& structure = layout_.structures[index];
     if (structure.fields.empty()) take(1);  // of a structure without fields
-    for (const Field& field : structure.fields) value[field.name] = member(field);
+    for (const Field& field : structure.fields) {
+      if (field.name == end) break;
+      value[field.name] = member(field);
+    }
     return value;
   }
 
@@ -104,6 +107,8 @@ class Decoder {
 
 }  // namespace
 
-Value decode(const Layout& layout, const Bytes& bytes) { return Decoder(layout, bytes).structure(0); }
+Value decode(const Layout& layout, const Bytes& bytes, std::string_view end) {
+  return Decoder(layout, bytes).structure(0, end);
+}
 
 }  // namespace lapis::cdr

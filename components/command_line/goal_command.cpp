@@ -1,0 +1,59 @@
+#include <CLI/CLI.hpp>
+
+#include <cmath>
+#include <iostream>
+#include <memory>
+
+#include "command_line/commands.hpp"
+#include "command_line/topic_reader.hpp"
+#include "common/cdr/encode.hpp"
+#include "common/topics/planner.hpp"
+
+namespace lapis::command_line {
+namespace {
+
+constexpr double kDegree_rad = 0.017453292519943295;
+
+struct Goal {
+  double x_m = 0.0, y_m = 0.0;
+  std::optional<double> yaw_deg;
+};
+
+cdr::Value to_pose(const Goal& goal, const std::string& frame) {
+  const double half_rad = 0.5 * kDegree_rad * goal.yaw_deg.value_or(0.0);
+  return {{"header", {{"frame_id", frame}}},
+          {"pose",
+           {{"position", {{"x", goal.x_m}, {"y", goal.y_m}}},
+            {"orientation", {{"z", std::sin(half_rad)}, {"w", goal.yaw_deg ? std::cos(half_rad) : 0.0}}}}}};
+}
+
+Status send_goal(const Settings& settings, const Goal& goal) {
+  Domain domain(settings);
+  const std::string frame = dds::in_namespace(domain.names().full("map", true), settings.name_space);
+  const cdr::Bytes pose = cdr::encode(layout_of("geometry_msgs/msg/PoseStamped"), to_pose(goal, frame));
+  using Support = idl::TypeSupport<geometry_msgs::msg::PoseStamped>;
+  const std::string topic = dds::dds_name(topics::kGoal, domain.names());
+  dds::RawPublisher publisher(domain.participant(), topic, Support::kDdsName, Support::kHash, topics::kGoal.qos);
+  domain.participant().announce_graph();
+  if (!domain.wait_until([&] { return publisher.matched() > 0; }, domain.patience())) {
+    throw Failure(kNotThere, "no planner reads " + dds::ros_topic_name(topic) + "; lapis topics lists what is there");
+  }
+  if (!publisher.publish(pose) || !publisher.wait_until_acknowledged(settings.wait_s)) {
+    throw Failure(kTooLate, "the planner has not received the goal");
+  }
+  if (!settings.is_json) std::cout << "the planner has the goal; lapis echo /planner/status says what it does\n";
+  return kDone;
+}
+
+}  // namespace
+
+void add_goal(CLI::App& app, const Settings& settings, Job& job) {
+  auto goal = std::make_shared<Goal>();
+  CLI::App* command = app.add_subcommand("goal", "drive to a place of the map instead of exploring");
+  command->add_option("x", goal->x_m, "in the map frame [m]")->required();
+  command->add_option("y", goal->y_m, "in the map frame [m]")->required();
+  command->add_option("yaw", goal->yaw_deg, "heading at the goal; none: any [deg]");
+  command->callback([&settings, &job, goal] { job = [&settings, goal] { return send_goal(settings, *goal); }; });
+}
+
+}  // namespace lapis::command_line

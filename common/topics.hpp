@@ -12,6 +12,7 @@
 #include "common/topics/lockstep.hpp"
 #include "common/topics/map.hpp"
 #include "common/topics/map_views.hpp"
+#include "common/topics/node.hpp"
 #include "common/topics/planner.hpp"
 #include "common/topics/planner_views.hpp"
 #include "common/topics/robot.hpp"
@@ -70,6 +71,8 @@ void for_each(Visitor&& visit) {
   visit(kLocalPath);
   visit(kControllerStatus);
   visit(kDiagnostics);
+  visit(kRosout);
+  visit(kParameterEvents);
   visit(kHeartbeat);
 }
 
@@ -86,6 +89,18 @@ void for_each_service(Visitor&& visit) {
   visit(kPauseExploring);
   visit(kReturnHome);
   visit(kSnapshot);
+}
+
+/// Calls `visit` with every service that each process has under its own name.
+template <class Visitor>
+void for_each_node_service(Visitor&& visit) {
+  visit(kListParameters);
+  visit(kGetParameters);
+  visit(kGetParameterTypes);
+  visit(kDescribeParameters);
+  visit(kSetParameters);
+  visit(kSetParametersAtomically);
+  visit(kGetTypeDescription);
 }
 
 }  // namespace lapis::topics

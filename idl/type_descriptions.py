@@ -171,15 +171,28 @@ def header_text(library: Library, structs: list[Struct], source: str, type_heade
     return "\n".join(lines)
 
 
+def fields_name(struct: Struct) -> str:
+    return f"kFieldsOf_{struct.ros_name.replace('/', '_')}"
+
+
 def table_text(library: Library, structs: list[Struct]) -> str:
     lines = ["// Made by type_descriptions.py.", '#include "idl/type_table.hpp"', "", "#include <algorithm>", "",
-             "namespace lapis::idl {", "namespace {", "", "constexpr TypeEntry kTypes[] = {"]
-    for struct in sorted(structs, key=lambda s: s.ros_name):
+             "namespace lapis::idl {", "namespace {", ""]
+    structs = sorted(structs, key=lambda s: s.ros_name)
+    for struct in structs:
+        lines.append(f"constexpr FieldEntry {fields_name(struct)}[] = {{")
+        for description in map(field_description, struct.fields):
+            type_ = description["type"]
+            lines.append(f'    {{"{description["name"]}", {type_["type_id"]}, {type_["capacity"]}, '
+                         f'{type_["string_capacity"]}, "{type_["nested_type_name"]}"}},')
+        lines.append("};")
+    lines += ["", "constexpr TypeEntry kTypes[] = {"]
+    for struct in structs:
         lines.append(f'    {{"{struct.ros_name}", "{dds_name(struct)}",')
         lines.append(f'     "{struct_hash(library, struct)}",')
         schema_lines = schema(library, struct).splitlines(keepends=True) or [""]
         lines += [f"     {json.dumps(line)}" for line in schema_lines]
-        lines[-1] += "},"
+        lines[-1] += f", {fields_name(struct)}}},"
     lines += ["};", "", "}  // namespace", "",
               "std::span<const TypeEntry> type_table() { return kTypes; }", "",
               "const TypeEntry* find(std::string_view ros_name) {",

@@ -1,9 +1,19 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <string_view>
 
 namespace lapis::idl {
+
+/// A member of a message type, as type_description_interfaces/msg/FieldType describes it.
+struct FieldEntry {
+  std::string_view name;
+  std::uint8_t type_id;
+  std::uint64_t capacity;
+  std::uint64_t string_capacity;
+  std::string_view nested_type;  ///< ROS name, or empty
+};
 
 /// A message type of this build, for code that looks up types by name (recording, probing).
 struct TypeEntry {
@@ -11,6 +21,7 @@ struct TypeEntry {
   std::string_view dds_name;      ///< "sensor_msgs::msg::dds_::Image_"
   std::string_view hash;          ///< "RIHS01_..."
   std::string_view ros2msg_text;  ///< schema with all dependencies, in the format of rosbag2 (encoding `ros2msg`)
+  std::span<const FieldEntry> fields;
 };
 
 /// All types, sorted by ROS name.

@@ -143,7 +143,7 @@ std::string to_markdown(const Schema& schema) {
   for (const auto& entry : schema.entries()) {
     std::string allowed = entry.bound.document();
     for (std::size_t at = 0; (at = allowed.find('|', at)) != std::string::npos; at += 2) allowed.insert(at, "\\");
-    out << "| `" << entry.path << "` | `" << to_text(entry) << "` | " << allowed << " | " << entry.meaning << " |\n";
+    out << "| `" << entry.path << "` | `" << to_text(entry) << "` | " << allowed << " | " << entry.remark() << " |\n";
   }
   return out.str();
 }

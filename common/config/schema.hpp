@@ -46,12 +46,20 @@ Bound at_least(double lowest);
 Bound one_of(Words words, std::string listed_in = "");
 Bound anything();
 
+/// When a value takes effect: almost all are read once, at start; others are obeyed when they change (a component with
+/// such keys has reconfigure(): common/runtime/run_component.hpp).
+enum class Change { kAtStart, kAtRunTime };
+
 /// One configuration value: its path, its storage, its allowed values and its meaning.
 struct Entry {
   std::string path;  ///< "slam.noise.max_depth_m"
   std::variant<bool*, int*, std::int64_t*, double*, std::string*, Words*, Numbers*> value;
   Bound bound;
   std::string meaning;
+  Change change = Change::kAtStart;
+
+  /// The meaning, and whether the value may change at run time, for documents.
+  std::string remark() const { return meaning + (change == Change::kAtRunTime ? "; may change at run time" : ""); }
 };
 
 /// A condition between several keys: whether it holds, and its text, which names the keys by their full paths.
@@ -78,8 +86,9 @@ struct FormerKey {
 class Schema {
  public:
   template <class Value>
-  void operator()(const std::string& name, Value& value, Bound bound, std::string meaning) {
-    entries_.push_back({prefix_ + name, &value, std::move(bound), std::move(meaning)});
+  void operator()(const std::string& name, Value& value, Bound bound, std::string meaning,
+                  Change change = Change::kAtStart) {
+    entries_.push_back({prefix_ + name, &value, std::move(bound), std::move(meaning), change});
   }
 
   /// A nested struct.

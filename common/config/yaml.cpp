@@ -211,7 +211,7 @@ std::string to_yaml(const Schema& schema) {
     open.assign(parts.begin(), parts.end() - 1);
     const std::string indent(2 * (parts.size() - 1), ' ');
     const std::string allowed = entry.bound.document();
-    out << indent << "# " << entry.meaning << (allowed.empty() ? "" : " [" + allowed + "]") << '\n';
+    out << indent << "# " << entry.remark() << (allowed.empty() ? "" : " [" + allowed + "]") << '\n';
     out << indent << parts.back() << ": " << to_text(entry) << '\n';
   }
   return out.str();

@@ -76,6 +76,7 @@ using FilterResult = fdds::ReturnCode_t;
 inline constexpr bool kHasFlowControllers = false;
 using Payload = rtps::SerializedPayload_t&;
 inline void announce_no_type_information(fdds::TypeSupport&) {}
+inline std::uint32_t& reserved_bytes(fdds::TypeSupport& type) { return type->max_serialized_type_size; }
 inline void announce_no_type_information(fdds::DomainParticipantQos& qos) {
   qos.properties().properties().emplace_back("fastdds.type_propagation", "disabled");
 }
@@ -116,6 +117,8 @@ inline void announce_no_type_information(fdds::TypeSupport& type) {
   type->auto_fill_type_object(false);
   type->auto_fill_type_information(false);
 }
+/// Bytes that each sample of a history has from the start; it gets more when it needs more.
+inline std::uint32_t& reserved_bytes(fdds::TypeSupport& type) { return type->m_typeSize; }
 inline void announce_no_type_information(fdds::DomainParticipantQos&) {}
 
 #endif

@@ -24,7 +24,8 @@ void apply_common(const Qos& wanted, const std::string& type_hash, const LinkSet
   qos.ownership().kind = SHARED_OWNERSHIP_QOS;
   qos.liveliness().kind = AUTOMATIC_LIVELINESS_QOS;
   qos.deadline().period = compat::infinite();
-  qos.lifespan().duration = compat::infinite();
+  qos.lifespan().duration =
+      wanted.lifespan_s > 0 ? compat::duration(wanted.lifespan_s * std::int64_t{1'000'000'000}) : compat::infinite();
   qos.data_sharing().off();
   qos.endpoint().history_memory_policy = compat::rtps::PREALLOCATED_WITH_REALLOC_MEMORY_MODE;
   const std::string user_data = "typehash=" + type_hash + ";";

@@ -25,6 +25,9 @@ constexpr std::int64_t kLeaseNs = 3'000'000'000;
 // its readers when they have dropped it. It takes for received what they then ask for anew (Fast DDS 2.9), so that a
 // map that was sent before the cut would stay incomplete.
 constexpr std::int64_t kLeaseByServerNs = 20'000'000'000;
+// Fast DDS reserves memory for a hundred samples of each topic, and takes sequences for 100 long, those in sequences,
+// too: 8 MB for a sample of /slam/get_type_descriptionReply.
+constexpr std::uint32_t kMostReservedBytes = 4096;
 constexpr std::uint32_t kSharedMemorySegmentBytes = 16u << 20;  // ten times the largest image
 
 Locator_t peer_locator(const std::string& address) {
@@ -206,6 +209,7 @@ compat::fdds::Topic& Participant::topic(const std::string& dds_name, const std::
     return *static_cast<compat::fdds::Topic*>(known);
   }
   compat::announce_no_type_information(type);
+  compat::reserved_bytes(type) = std::min(compat::reserved_bytes(type), kMostReservedBytes);
   type.register_type(participant_.get(), type_name);
   auto* topic = participant_->create_topic(dds_name, type_name, compat::fdds::TOPIC_QOS_DEFAULT);
   if (topic == nullptr) throw std::runtime_error("DDS topic " + dds_name + " could not be created");

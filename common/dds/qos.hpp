@@ -16,6 +16,7 @@ struct Qos {
   bool large = false;   ///< samples of many datagrams: what they need follows the link (link.hpp)
   bool sensor = false;  ///< drivers of others publish it, some of them BEST_EFFORT: readers follow (SensorQos)
   bool best_effort = false;
+  int lifespan_s = 0;  ///< age from which a late joiner no longer gets a sample; 0: any age
 
   bool operator==(const Qos&) const = default;
 };
@@ -31,7 +32,9 @@ inline constexpr Qos kLatchedByMany{.depth = 1, .latched = true, .reader_depth =
 inline constexpr Qos kCommand{.depth = 1};
 inline constexpr Qos kLockstep{.depth = 100, .urgent = true};
 inline constexpr Qos kKeyedTiles{.depth = 1, .latched = true, .keyed = true, .large = true};
-inline constexpr Qos kService{.depth = 100};  ///< requests wait while one is handled
+inline constexpr Qos kNodeEvent{.depth = 1000};                               ///< as rcl has it for /parameter_events
+inline constexpr Qos kLog{.depth = 1000, .latched = true, .lifespan_s = 10};  ///< as rcl has it for /rosout
+inline constexpr Qos kService{.depth = 100};                                  ///< requests wait while one is handled
 
 /// How sensor topics are read and written. A BEST_EFFORT reader hears every writer and a RELIABLE one only reliable
 /// writers, but only the latter gets what is lost on a network sent again.

@@ -9,6 +9,7 @@ namespace {
 
 std::string qos_text(const lapis::dds::Qos& qos) {
   std::string text = qos.latched ? "latched" : qos.sensor ? "reliable, sensor" : "reliable";
+  if (qos.lifespan_s > 0) text += " for " + std::to_string(qos.lifespan_s) + " s,";
   if (qos.keyed) return text + ", keyed, 1 per key";
   text += " " + std::to_string(qos.depth);
   return qos.reader_depth > 0 ? text + ", readers " + std::to_string(qos.reader_depth) : text;
@@ -40,6 +41,11 @@ int main() {
     std::cout << "| `" << service.name << "`" << (service.is_global ? " *" : "") << " | "
               << lapis::idl::ServiceSupport<Service>::kRosName << " | " << service.from << " | " << service.meaning
               << " |\n";
+  });
+  lapis::topics::for_each_node_service([](const auto& service) {
+    using Service = typename std::decay_t<decltype(service)>::Type;
+    std::cout << "| `/<process>" << service.name << "` | " << lapis::idl::ServiceSupport<Service>::kRosName << " | "
+              << service.from << " | " << service.meaning << " |\n";
   });
   std::cout
       << "\n`--remap from:=to` gives any of these, and the frames that processes name by themselves, another name. "

@@ -13,7 +13,10 @@
 #include "common/config/yaml.hpp"
 #include "common/dds/host_addresses.hpp"
 #include "common/dds/participant.hpp"
+#include "common/logging/line_queue.hpp"
 #include "common/runtime/known_names.hpp"
+#include "common/runtime/node_services.hpp"
+#include "common/runtime/rosout.hpp"
 #include "common/runtime/version.hpp"
 
 namespace lapis::runtime {
@@ -31,14 +34,13 @@ struct Arguments {
   std::optional<int> domain;
   std::string name_space;
   std::string transport = "udp";
-  std::string log_level = "info";
   bool use_sim_time = false;
   bool print_config = false;
   bool print_config_table = false;
   bool check_config = false;
 };
 
-void add_common_options(CLI::App& app, Arguments& arguments) {
+void add_common_options(CLI::App& app, Arguments& arguments, LogConfig& log) {
   app.add_option("--config", arguments.config_files,
                  "YAML configuration file; later files override earlier ones (repeatable)");
   app.add_option("--set", arguments.overrides, "set one configuration value: path=value; overrides files (repeatable)");
@@ -52,8 +54,7 @@ void add_common_options(CLI::App& app, Arguments& arguments) {
   app.add_option("--transport", arguments.transport,
                  "DDS transport: udp, or shm (shared memory) on hosts without ROS 2 processes")
       ->check(CLI::IsMember({"udp", "shm"}));
-  app.add_option("--log-level", arguments.log_level,
-                 "lowest level of messages that are logged: debug, info, warn or error")
+  app.add_option("--log-level", log.level, "log.level: debug, info, warn or error")
       ->check(CLI::IsMember({"debug", "info", "warn", "error"}));
   app.add_flag("--use-sim-time", arguments.use_sim_time, "take the time from /clock instead of the system's clock");
   app.add_flag("--print-config", arguments.print_config, "print the configuration in effect and exit");
@@ -170,20 +171,37 @@ int spin(const ComponentFactory& factory, Context& context, const std::function<
   }
 }
 
-int set_up_and_spin(const ComponentFactory& factory, const ContextOptions& options) {
+/// The keys as parameters of the node.
+parameters::Parameters parameters_of(const ComponentFactory& factory, const ComponentFactory::Running& component,
+                                     const LogConfig& log, bool& use_sim_time) {
+  config::Schema schema = factory.schema;
+  schema("use_sim_time", use_sim_time, config::anything(), "whether time is that of /clock: --use-sim-time");
+  return {factory.name, std::move(schema), {factory.rules, [&log, reconfigure = component.reconfigure] {
+                                              logging::set_level(log.level);
+                                              if (reconfigure) reconfigure();
+                                            }}};
+}
+
+int set_up_and_spin(const ComponentFactory& factory, const LogConfig& log, ContextOptions options) {
   SignalWaiter::prepare();        // before DDS starts its threads
   std::signal(SIGXFSZ, SIG_IGN);  // write() then reports a file size limit as an error, like a full disk
+  const auto lines = std::make_shared<logging::LineQueue>();
+  spdlog::default_logger()->sinks().push_back(lines);
   std::unique_ptr<Context> context;
-  std::function<void()> finish;
+  std::optional<Rosout> rosout;
+  ComponentFactory::Running component;
+  std::optional<NodeServices> services;
   try {
     log_setup(factory.schema, options);
     context = std::make_unique<Context>(options);
-    finish = factory.create(*context);
+    rosout.emplace(context->participant(), context->participant().names().full("/" + factory.name), lines);
+    component = factory.create(*context);
+    services.emplace(*context, parameters_of(factory, component, log, options.use_sim_time));
   } catch (const std::exception& error) {
     spdlog::error("{}", error.what());
     return kBadSetup;
   }
-  return spin(factory, *context, finish);
+  return spin(factory, *context, component.finish);
 }
 
 /// Does what the command line asks for instead of running the component, and returns the exit status; otherwise returns
@@ -207,8 +225,10 @@ int run(ComponentFactory factory, int argc, char** argv) {
   CLI::App app(factory.summary, "lapis_" + factory.name);
   Arguments arguments;
   DdsConfig dds;
+  LogConfig log;
   factory.schema("dds", dds);
-  add_common_options(app, arguments);
+  factory.schema("log", log);
+  add_common_options(app, arguments, log);
   if (factory.add_options) factory.add_options(app);
   try {
     app.parse(argc, argv);
@@ -217,13 +237,14 @@ int run(ComponentFactory factory, int argc, char** argv) {
   }
   ContextOptions options;
   try {
-    logging::set_up(factory.name, arguments.log_level);
+    logging::set_up(factory.name, log.level);
     dds::check_namespace(arguments.name_space);
     for (const auto& file : arguments.config_files) config::apply_file(factory.schema, file);
     for (const auto& assignment : arguments.overrides) config::apply_override(factory.schema, assignment);
     app.parse(argc, argv);  // again, because the component's own options override files
     dds.remap.insert(dds.remap.end(), arguments.remaps.begin(), arguments.remaps.end());
     config::check(factory.schema);
+    logging::set_level(log.level);
     if (factory.rules) config::check(factory.schema, factory.rules());
     options = context_options(factory.name, arguments, dds);
     if (const auto status = answer(factory, arguments)) return *status;
@@ -231,7 +252,7 @@ int run(ComponentFactory factory, int argc, char** argv) {
     std::cerr << "lapis_" << factory.name << ": " << error.what() << '\n';
     return kBadSetup;
   }
-  return set_up_and_spin(factory, options);
+  return set_up_and_spin(factory, log, options);
 }
 
 }  // namespace lapis::runtime

@@ -40,19 +40,34 @@ void describe(Field& field, DdsConfig& c) {
         "other names of topics, services and frames, as from:=to; --remap adds to the list");
 }
 
+/// The keys of every process under `log.`.
+struct LogConfig {
+  std::string level = "info";
+};
+
+template <class Field>
+void describe(Field& field, LogConfig& c) {
+  field("level", c.level, config::one_of({"debug", "info", "warn", "error"}),
+        "lowest level of messages that are logged, to standard error and /rosout", config::Change::kAtRunTime);
+}
+
 /// A component as run() sees it.
 struct ComponentFactory {
   std::string name;
   std::string summary;
-  config::Schema schema;  ///< without `dds.`
+  config::Schema schema;  ///< without `dds.` and `log.`
   /// Adds the component's own options and positional arguments.
   std::function<void(CLI::App&)> add_options;
   /// Conditions between its keys.
   std::function<config::Rules()> rules;
   /// Runs a job that needs no DDS (such as --list) and returns its exit status; nothing: the component runs.
   std::function<std::optional<int>()> run_tool;
-  /// Builds the component. The returned function owns it and is called at the end, once spinning has stopped.
-  std::function<std::function<void()>(Context&)> create;
+  /// A component that has been built.
+  struct Running {
+    std::function<void()> finish;       ///< owns it; called at the end, once spinning has stopped
+    std::function<void()> reconfigure;  ///< values of its keys have changed; empty: none may
+  };
+  std::function<Running(Context&)> create;
 };
 
 /// Runs a process: command line, configuration, DDS, signals, spinning. Returns the exit status (0 finished or asked to
@@ -61,8 +76,9 @@ int run(ComponentFactory factory, int argc, char** argv);
 
 /// `Component` has: `Config` (described for common/config), `kName`, `kSummary`, a constructor (const Config&,
 /// Context&), and, where needed, `static void add_options(CLI::App&, Config&)`, `static config::Rules rules(const
-/// Config&)`, `static std::optional<int> run_tool(const Config&)` and `void finish()`, called when spinning has
-/// stopped. The configuration that the constructor gets is within its bounds, and the rules hold.
+/// Config&)`, `static std::optional<int> run_tool(const Config&)`, `void finish()`, called when spinning has stopped,
+/// and `void reconfigure(const Config&)`, called between cycles when keys that may change at run time have changed. The
+/// configurations that it gets are within their bounds, and the rules hold.
 template <class Component>
 int run_component(int argc, char** argv) {
   using Config = typename Component::Config;
@@ -82,11 +98,16 @@ int run_component(int argc, char** argv) {
   if constexpr (requires { Component::run_tool(config); }) {
     factory.run_tool = [&config] { return Component::run_tool(config); };
   }
-  factory.create = [&config](Context& context) -> std::function<void()> {
+  factory.create = [&config](Context& context) {
     auto component = std::make_shared<Component>(config, context);
-    return [component] {
+    ComponentFactory::Running running;
+    running.finish = [component] {
       if constexpr (requires { component->finish(); }) component->finish();
     };
+    if constexpr (requires { component->reconfigure(config); }) {
+      running.reconfigure = [&config, component] { component->reconfigure(config); };
+    }
+    return running;
   };
   return run(std::move(factory), argc, argv);
 }

@@ -39,7 +39,8 @@ config::Rules ControllerComponent::rules(const Config& config) {
   const LocalMapConfig& map = config.method.local_map;
   const FanConfig& fan = config.method.fan;
   const robot::RobotDescription& robot = config.robot;
-  const double slowest_turn_rad_s = std::min(robot.max_turn_rate_rad_s, config.method.weak_turn_rad_s);
+  const double slowest_turn_rad_s =
+      std::min({robot.max_turn_rate_rad_s, config.method.weak_turn_rad_s, config.method.turn_limit_rad_s});
   return {
       {fan.groups % 2 == 1, "controller.fan.groups has to be odd"},
       {fan.branches % 2 == 1, "controller.fan.branches has to be odd"},
@@ -49,8 +50,8 @@ config::Rules ControllerComponent::rules(const Config& config) {
        "controller.local_map.range_m has to be at least controller.fan.length_m, robot.radius_m and "
        "controller.fan.margin_m together"},
       {config.method.progress_timeout_s > std::numbers::pi / slowest_turn_rad_s,
-       "controller.progress_timeout_s has to be longer than half a turn at robot.max_turn_rate_rad_s and at "
-       "controller.weak_turn_rad_s takes"},
+       "controller.progress_timeout_s has to be longer than half a turn at robot.max_turn_rate_rad_s, at "
+       "controller.turn_limit_rad_s and at controller.weak_turn_rad_s takes"},
       {!config.publish_odometry || robot.camera.rate_hz >= kLeastOdometry_hz,
        "controller.publish_odometry needs a robot.camera.rate_hz of at least 10: with less, slam takes each reading "
        "for the first of a new track"}};
@@ -88,6 +89,11 @@ ControllerComponent::ControllerComponent(const Config& config, runtime::Context&
   context.subscribe(topics::kObstacles, [this](OccupancyGrid& m) { obstacles_ = std::move(m); });
   context.every(1.0 / config_.rate_hz, [this] { is_due_ = true; });
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
+}
+
+void ControllerComponent::reconfigure(const Config& config) {
+  config_ = completed(config);
+  controller_.reconfigure(config_.method);
 }
 
 /// The obstacles that the camera has seen and the ages of all inputs stay what they are. The step is known to the

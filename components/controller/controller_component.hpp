@@ -25,6 +25,8 @@ class ControllerComponent {
   static config::Rules rules(const Config& config);
 
   ControllerComponent(const Config& config, runtime::Context& context);
+  /// From the next command on.
+  void reconfigure(const Config& config);
   void finish();
 
  private:
@@ -52,7 +54,7 @@ class ControllerComponent {
   void publish_odometry(const Velocity& command, time::Time now);
   void publish_status(const Decision& decision, time::Time now);
 
-  const Config config_;
+  Config config_;
   runtime::Context& context_;
   const std::string map_frame_;
   const std::string odom_frame_;

@@ -68,32 +68,47 @@ void describe(Field& field, ControllerComponentConfig& c) {
   field("local_map", c.method.local_map);
   field("watchdog", c.method.watchdog);
   field("look_ahead_m", c.method.look_ahead_m, config::in_range(0.2, 5.0),
-        "distance along the planner's path from the robot to the point that the robot heads for [m]");
+        "distance along the planner's path from the robot to the point that the robot heads for [m]",
+        config::Change::kAtRunTime);
   field("slow_within_m", c.method.slow_within_m, config::in_range(0.01, 5.0),
-        "distance from the robot's disc to an obstacle ahead below which the robot slows down [m]");
+        "distance from the robot's disc to an obstacle ahead below which the robot slows down [m]",
+        config::Change::kAtRunTime);
   field("slowest_share", c.method.slowest_share, config::in_range(0.05, 1.0),
         "share of robot.max_speed_m_s that is allowed right beside an obstacle ahead; it rises to 1 at "
-        "slow_within_m");
+        "slow_within_m",
+        config::Change::kAtRunTime);
   field("goal_tolerance_m", c.method.goal_tolerance_m, config::in_range(0.01, 2.0),
         "largest distance from the path's end at which the robot has arrived and only turns to the final heading "
-        "[m]");
+        "[m]",
+        config::Change::kAtRunTime);
   field("heading_tolerance_rad", c.method.heading_tolerance_rad, config::in_range(0.01, 3.2),
-        "largest error of the heading at the path's end with which the path is finished [rad]");
+        "largest error of the heading at the path's end with which the path is finished [rad]",
+        config::Change::kAtRunTime);
   field("patience_s", c.method.patience_s, config::in_range(0.0, 60.0),
-        "time without a free path after which the robot tries to recover: it backs up and looks around [s]");
+        "time without a free path after which the robot tries to recover: it backs up and looks around [s]",
+        config::Change::kAtRunTime);
   field("back_up_m", c.method.back_up_m, config::in_range(0.0, 2.0),
-        "distance by which the robot backs up to recover, where the space behind it is known to be free [m]");
+        "distance by which the robot backs up to recover, where the space behind it is known to be free [m]",
+        config::Change::kAtRunTime);
   field("back_up_speed_m_s", c.method.back_up_speed_m_s, config::in_range(0.01, 1.0),
-        "largest speed at which the robot backs up to recover [m/s]");
+        "largest speed at which the robot backs up to recover [m/s]", config::Change::kAtRunTime);
   field("recovery_turn_rad", c.method.recovery_turn_rad, config::in_range(0.0, 3.0),
-        "angle by which the robot turns to look around when there is no free path, after backing up [rad]");
+        "angle by which the robot turns to look around when there is no free path, after backing up [rad]",
+        config::Change::kAtRunTime);
   field("progress_timeout_s", c.method.progress_timeout_s, config::in_range(1.0, 600.0),
         "time without moving 0.3 m after which the robot backs up; if it cannot, or if that fails, it reports "
-        "that it is blocked [s]");
+        "that it is blocked [s]",
+        config::Change::kAtRunTime);
   field("look_around_rad_s", c.method.look_around_rad_s, config::in_range(0.05, 2.0),
-        "rate of a turn on the spot that the planner asks for; slow, because fast turns blur images [rad/s]");
+        "rate of a turn on the spot that the planner asks for; slow, because fast turns blur images [rad/s]",
+        config::Change::kAtRunTime);
   field("weak_turn_rad_s", c.method.weak_turn_rad_s, config::in_range(0.05, 10.0),
-        "largest rate of any turn while slam's pose does not come from features [rad/s]");
+        "largest rate of any turn while slam's pose does not come from features [rad/s]", config::Change::kAtRunTime);
+  field("speed_limit_m_s", c.method.speed_limit_m_s, config::in_range(0.01, 5.0),
+        "largest speed that is commanded, also where robot.max_speed_m_s is higher [m/s]", config::Change::kAtRunTime);
+  field("turn_limit_rad_s", c.method.turn_limit_rad_s, config::in_range(0.05, 10.0),
+        "largest rate of turns that is commanded, also where robot.max_turn_rate_rad_s is higher [rad/s]",
+        config::Change::kAtRunTime);
   field.moved("lost_turn_rate_rad_s", "controller.look_around_rad_s",
               "the planner has the robot look around for its pose (planner.lost_timeout_s)");
 }

@@ -103,6 +103,11 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
   if (config_.autostart) explorer_.start();
 }
 
+void PlannerComponent::reconfigure(const Config& config) {
+  config_ = completed(config);
+  explorer_.reconfigure(config_.explorer);
+}
+
 void PlannerComponent::serve() {
   const auto answer = [](bool is_done, const std::string& message) {
     std_srvs::srv::Trigger_Response response;

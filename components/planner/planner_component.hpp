@@ -37,6 +37,8 @@ class PlannerComponent {
   static std::optional<int> run_tool(const Config& config);
 
   PlannerComponent(const Config& config, runtime::Context& context);
+  /// From the next decision on.
+  void reconfigure(const Config& config);
   void finish();
 
  private:

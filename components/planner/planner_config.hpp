@@ -74,7 +74,8 @@ void describe(Field& field, PathConfig& c) {
   field("comfort_m", c.comfort_m, config::in_range(0.1, 5.0),
         "clearance from which on nearness to obstacles adds nothing to the cost of a path [m]");
   field("nearness_weight", c.nearness_weight, config::in_range(0.0, 100.0),
-        "cost of nearness to obstacles: a metre of path at the least clearance costs 1 + this, at comfort_m 1");
+        "cost of nearness to obstacles: a metre of path at the least clearance costs 1 + this, at comfort_m 1",
+        config::Change::kAtRunTime);
   field("escape_m", c.escape_m, config::in_range(0.0, 2.0),
         "distance within which a path may lead out of a place where the robot should not stand, such as beside a "
         "wall [m]");
@@ -170,7 +171,8 @@ template <class Field>
 void describe_views(Field& field, PlannerComponentConfig& c) {
   field("max_candidates", c.decision.max_candidates, config::in_range(1, 1000),
         "largest number of candidates that are judged: those with the shortest paths, but the nearest of every "
-        "frontier first");
+        "frontier first",
+        config::Change::kAtRunTime);
   field("view_spacing_m", c.decision.view_spacing_m, config::in_range(0.1, 10.0),
         "distance between the views along a path from which its information is computed [m]");
   field("view_votes", c.surroundings.ray.votes, config::in_range(1, 30),
@@ -193,15 +195,17 @@ void describe_judgement(Field& field, PlannerComponentConfig& c) {
   field("node_spacing_m", c.decision.node_spacing_m, config::in_range(0.2, 10.0),
         "distance between the hallucinated key-frames along a path [m]");
   field("turn_cost_m_per_rad", c.decision.turn_cost_m_per_rad, config::in_range(0.0, 10.0),
-        "cost of turning at the ends of a path, as metres of path per radian [m/rad]");
+        "cost of turning at the ends of a path, as metres of path per radian [m/rad]", config::Change::kAtRunTime);
   field("alternatives", c.decision.alternatives, config::in_range(0, 3),
-        "largest number of additional paths to the nearest goal of each frontier; 0: none");
+        "largest number of additional paths to the nearest goal of each frontier; 0: none", config::Change::kAtRunTime);
   field("revisit_sigma_m", c.decision.revisit_sigma_m, config::in_range(0.0, 100.0),
         "standard deviation of the newest key-frame's position above which old key-frames are goals, too; 0: "
-        "never (README) [m]");
+        "never (README) [m]",
+        config::Change::kAtRunTime);
   field("information_discount_sigma_m", c.decision.information_discount_sigma_m, config::in_range(0.0, 100.0),
         "standard deviation of the position at which the information of a view counts half; 0: all information "
-        "counts fully [m]");
+        "counts fully [m]",
+        config::Change::kAtRunTime);
   field("criterion", c.criterion, config::one_of({"d", "a", "t", "e"}),
         "optimality criterion of the pose graph and its edges: geometric (d), harmonic (a), arithmetic (t) mean "
         "or least (e) of eigenvalues (README)");
@@ -213,10 +217,12 @@ void describe_judgement(Field& field, PlannerComponentConfig& c) {
         "tree always stays");
   field("closer_look_length_m", c.decision.closer_look_length_m, config::in_range(0.1, 1000.0),
         "least length of frontiers that the robot approaches, when no other is left, although something seems to "
-        "hide them [m]");
+        "hide them [m]",
+        config::Change::kAtRunTime);
   field("keep_factor", c.decision.keep_factor, config::in_range(1.0, 10.0),
         "factor by which another goal has to be better than the current one; without effect with paper and "
-        "placed (README)");
+        "placed (README)",
+        config::Change::kAtRunTime);
 }
 
 /// Keys that say when a goal is reached and when it has failed.
@@ -224,14 +230,15 @@ template <class Field>
 void describe_goals(Field& field, PlannerComponentConfig& c) {
   field("replan_period_s", c.explorer.replan_period_s, config::in_range(0.0, 60.0),
         "time between decisions while the robot drives to a goal, at least 0.5; 0: no such decisions, as in the "
-        "paper [s]");
+        "paper [s]",
+        config::Change::kAtRunTime);
   field("goal_tolerance_m", c.explorer.goal_tolerance_m, config::in_range(0.05, 2.0),
         "largest distance of the robot from a goal at which the goal counts as reached [m]");
   field("goal_tolerance_rad", c.explorer.goal_tolerance_rad, config::in_range(0.05, 3.2),
         "largest heading error at which a goal counts as reached; at most 0.3 for turns on the spot and revisits "
         "[rad]");
   field("progress_timeout_s", c.explorer.progress_timeout_s, config::in_range(1.0, 600.0),
-        "time without a motion of 0.3 m or 0.3 rad after which a goal has failed [s]");
+        "time without a motion of 0.3 m or 0.3 rad after which a goal has failed [s]", config::Change::kAtRunTime);
   field("slowest_m_s", c.explorer.slowest_m_s, config::in_range(0.01, 5.0),
         "lowest mean speed on a path: a goal has failed when reaching it takes progress_timeout_s longer than at "
         "this speed [m/s]");
@@ -251,22 +258,27 @@ template <class Field>
 void describe_mission(Field& field, PlannerComponentConfig& c) {
   field("max_drift_m", c.explorer.max_drift_m, config::in_range(0.0, 100.0),
         "largest standard deviation of the position at a path's end in dead reckoning; beyond it the robot "
-        "drives to where slam tracked [m]");
+        "drives to where slam tracked [m]",
+        config::Change::kAtRunTime);
   field.moved("dead_reckoning_s", "planner.max_drift_m", "slam says how far a pose by odometry alone has drifted");
   field("lost_timeout_s", c.explorer.lost_timeout_s, config::in_range(1.0, 3600.0),
         "time without a pose after which exploration has failed; also the time allowed for driving back to where "
-        "slam tracked [s]");
+        "slam tracked [s]",
+        config::Change::kAtRunTime);
   field("path_spacing_m", c.explorer.path_spacing_m, config::in_range(0.02, 1.0),
         "largest distance between neighbouring poses on /planner/path [m]");
   field("confirmations", c.explorer.confirmations, config::in_range(2, 12),
         "number of looks around, together a full turn, that have to find nothing before exploration ends");
   field("patience_s", c.explorer.patience_s, config::in_range(0.0, 600.0),
-        "time to wait for obstacles that may go away, and for corrections of the map, before exploration ends [s]");
+        "time to wait for obstacles that may go away, and for corrections of the map, before exploration ends [s]",
+        config::Change::kAtRunTime);
   field("max_left_share", c.explorer.max_left_share, config::in_range(0.0, 1.0),
         "largest share (by length) of remaining frontiers, as wide as the robot but tried in vain, with which "
-        "exploration is DONE; above it GAVE_UP (README)");
+        "exploration is DONE; above it GAVE_UP (README)",
+        config::Change::kAtRunTime);
   field("returns_home", c.explorer.returns_home, config::anything(),
-        "whether the robot drives back to where it started when nothing is left to explore");
+        "whether the robot drives back to where it started when nothing is left to explore",
+        config::Change::kAtRunTime);
 }
 
 /// Keys of what is written beside the decision itself, and those that have moved.
@@ -304,10 +316,12 @@ void describe(Field& field, PlannerComponentConfig& c) {
   field("autostart", c.autostart, config::anything(),
         "whether exploration starts with the process; false: it waits for the service /planner/start");
   field("beta", c.methods.joint.beta, config::in_range(0.0, 100.0),
-        "weight of a nat about the trajectory relative to a nat about the map, for the methods joint and lapis");
+        "weight of a nat about the trajectory relative to a nat about the map, for the methods joint and lapis",
+        config::Change::kAtRunTime);
   field("sigma_limit_voxels", c.decision.sigma_limit_voxels, config::in_range(0.01, 10.0),
         "standard deviation of the position at a path's end down to which loop closures count, for the methods "
-        "joint and lapis [voxels]");
+        "joint and lapis [voxels]",
+        config::Change::kAtRunTime);
   describe_views(field, c);
   describe_judgement(field, c);
   field("grid", c.surroundings.grid);

@@ -443,6 +443,12 @@ std::optional<std::string> SemanticMapperComponent::write_files() {
   return files::replace_file(disk_.path(kPointsFile), ply);
 }
 
+void SemanticMapperComponent::reconfigure(const Config& config) {
+  config_.tile_period_s = config.tile_period_s;
+  config_.view_period_s = config.view_period_s;
+  config_.obstacle_period_s = config.obstacle_period_s;
+}
+
 void SemanticMapperComponent::finish() {
   take_frames(true);
   spdlog::info("{} frames integrated, {} dropped", progress_.frames_integrated, progress_.frames_dropped);

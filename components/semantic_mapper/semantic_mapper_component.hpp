@@ -24,6 +24,8 @@ class SemanticMapperComponent {
   static config::Rules rules(const Config& config);
 
   SemanticMapperComponent(const Config& config, runtime::Context& context);
+  /// From the next cycle on.
+  void reconfigure(const Config& config);
   void finish();
 
  private:

@@ -65,12 +65,15 @@ void describe(Field& field, FrameStoreConfig& c) {
 template <class Field>
 void describe_output(Field& field, SemanticMapperComponentConfig& c) {
   field("tile_period_s", c.tile_period_s, config::in_range(0.0, 60.0),
-        "shortest time between published versions of the map's tiles, by the frames' time stamps [s]");
+        "shortest time between published versions of the map's tiles, by the frames' time stamps [s]",
+        config::Change::kAtRunTime);
   field("view_period_s", c.view_period_s, config::in_range(0.0, 60.0),
         "shortest time between publications of octomap, points, occupancy grid (these only while they have a reader) "
-        "and /map/provisional [s]");
+        "and /map/provisional [s]",
+        config::Change::kAtRunTime);
   field("obstacle_period_s", c.obstacle_period_s, config::in_range(0.0, 60.0),
-        "shortest time between publications of the obstacle grid, by the frames' time stamps [s]");
+        "shortest time between publications of the obstacle grid, by the frames' time stamps [s]",
+        config::Change::kAtRunTime);
   field("resume_from", c.resume_from, config::anything(),
         "map.lapis of an earlier run, whose map the mapper resumes (set slam.resume_from, too), or frames.lapis of "
         "this session of slam, from which it rebuilds the map; empty: the mapper begins a new map");

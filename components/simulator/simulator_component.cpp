@@ -331,6 +331,10 @@ void SimulatorComponent::await_truth() {
   truth_.get();
 }
 
+void SimulatorComponent::reconfigure(const Config& config) {
+  config_.max_real_time_factor = config.max_real_time_factor;
+}
+
 void SimulatorComponent::finish() {
   for (const auto& [what, number] : context_.status().counters()) spdlog::warn("{}: {}", what, number);
   if (const auto refused = run_->commands_refused(); refused > 0) {

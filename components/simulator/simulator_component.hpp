@@ -33,6 +33,8 @@ class SimulatorComponent {
   static std::optional<int> run_tool(const Config& config);
 
   SimulatorComponent(const Config& config, runtime::Context& context);
+  /// From the next tick on.
+  void reconfigure(const Config& config);
   void finish();
 
  private:
@@ -58,7 +60,7 @@ class SimulatorComponent {
   void fail(const std::string& reason);
   void write_files();
 
-  const Config config_;
+  Config config_;
   runtime::Context& context_;
   const World world_;
   const StartPose start_;

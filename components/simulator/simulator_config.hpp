@@ -142,7 +142,8 @@ void describe(Field& field, SimulatorConfig& c) {
         "pace of the run; lockstep: all participants answer a frame before the next one; freerun: wall-clock time, "
         "frames may be lost");
   field("max_real_time_factor", c.max_real_time_factor, config::in_range(0.0, 100.0),
-        "upper limit of simulated time per wall-clock time in lock-step; 0: as fast as the machine allows");
+        "upper limit of simulated time per wall-clock time in lock-step; 0: as fast as the machine allows",
+        config::Change::kAtRunTime);
   field("duration_s", c.duration_s, config::in_range(0.0, 1e6),
         "simulated time after which the run ends; 0: no limit [s]");
   field("ends_when_explored", c.ends_when_explored, config::anything(),

@@ -186,7 +186,7 @@ Decision Controller::drive(const Obstacles& obstacles, double elapsed_s) const {
 /// Speed [m/s] from which the robot can stop before the end of the planner's path, of the free local path, and of the
 /// arc on which it drives until it has steered.
 double Controller::speed_limit(const LocalPath& local_path, const Obstacles& obstacles) const {
-  double limit = limits_.max_speed_m_s;
+  double limit = most_speed();
   const double most_rad_s = kTurnShare * turn_limit();
   if (std::abs(local_path.curvature_per_m) * limit > most_rad_s)
     limit = most_rad_s / std::abs(local_path.curvature_per_m);
@@ -199,11 +199,12 @@ double Controller::speed_limit(const LocalPath& local_path, const Obstacles& obs
   const double room_m = std::max(0.0, nearest_ahead(obstacles) - limits_.radius_m);
   if (room_m >= config_.slow_within_m) return limit;
   const double share = config_.slowest_share + (1.0 - config_.slowest_share) * room_m / config_.slow_within_m;
-  return std::min(limit, share * limits_.max_speed_m_s);
+  return std::min(limit, share * most_speed());
 }
 
 double Controller::turn_limit() const {
-  return are_views_weak_ ? std::min(config_.weak_turn_rad_s, limits_.max_turn_rate_rad_s) : limits_.max_turn_rate_rad_s;
+  const double most = std::min(config_.turn_limit_rad_s, limits_.max_turn_rate_rad_s);
+  return are_views_weak_ ? std::min(config_.weak_turn_rad_s, most) : most;
 }
 
 double Controller::turn_rate(double error_rad) const {
@@ -271,7 +272,8 @@ Velocity Controller::recovery_velocity() const {
   const double aside_rad = bearing(goal_ahead(config_.look_ahead_m));
   switch (recovery_) {
     case Recovery::kTurning: return {0.0, turns_left_ ? turn_limit() : -turn_limit()};
-    case Recovery::kBackingUp: return {-std::min(config_.back_up_speed_m_s, stopping_speed(kRearRoom_m, limits_)), 0.0};
+    case Recovery::kBackingUp:
+      return {-std::min({config_.back_up_speed_m_s, most_speed(), stopping_speed(kRearRoom_m, limits_)}), 0.0};
     case Recovery::kNoPath: return {0.0, std::abs(aside_rad) > kAside_rad ? turn_rate(aside_rad) : 0.0};
     default: return {};
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,6 +29,8 @@ struct ControllerConfig {
   double progress_timeout_s = 6.0;
   double look_around_rad_s = 0.3;  ///< rate of a turn on the spot; slow, because images blur
   double weak_turn_rad_s = 0.55;   ///< largest rate of any turn while views are weak
+  /// What the robot is asked for at most, if its own limits are not lower.
+  double speed_limit_m_s = 5.0, turn_limit_rad_s = 10.0;
 };
 
 /// Points in base_link.
@@ -51,6 +54,9 @@ class Controller {
  public:
   /// Throws std::runtime_error naming the value that is out of range.
   Controller(const ControllerConfig& config, const RobotLimits& limits);
+
+  /// Replaces the configuration, except for fan, local map and watchdog, which have to be the same.
+  void reconfigure(const ControllerConfig& config) { config_ = config; }
 
   /// Sets the path, in the map frame. An empty path makes the robot stand still, for the given reason. With the same
   /// path as before, it continues where it is; if it was blocked, it tries again.
@@ -89,6 +95,7 @@ class Controller {
   Recovery next_phase(const Obstacles& obstacles, time::Time now);
   void enter(Recovery phase, time::Time now);
   std::optional<LocalPath> find_local_path(const Surroundings& around) const;
+  double most_speed() const { return std::min(limits_.max_speed_m_s, config_.speed_limit_m_s); }
   double speed_limit(const LocalPath& local_path, const Obstacles& obstacles) const;
   bool may_back_up(const Obstacles& obstacles) const;
   bool is_stuck(time::Time now);

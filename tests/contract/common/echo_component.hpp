@@ -18,13 +18,15 @@ struct EchoConfig {
   int tiles = 30;
   std::string greeting = "hello";
   double answer_s = 0.0;
+  int lines = 0;
 };
 
 template <class Field>
 void describe(Field& field, EchoConfig& c) {
   field("tiles", c.tiles, config::in_range(0, 10000), "keyed samples published at the start");
-  field("greeting", c.greeting, config::anything(), "answer of the service");
+  field("greeting", c.greeting, config::anything(), "answer of the service", config::Change::kAtRunTime);
   field("answer_s", c.answer_s, config::in_range(0.0, 10.0), "time that an answer of the service takes [s]");
+  field("lines", c.lines, config::in_range(0, 1000), "lines of the log at the start");
 }
 
 /// Answers every colour image with an odometry of the same stamp; carries a topic of every kind.
@@ -35,20 +37,24 @@ class EchoComponent {
   static constexpr const char* kSummary = "Echoes images; for tests.";
 
   EchoComponent(const Config& config, runtime::Context& context)
-      : context_(context), odometry_(context.advertise(topics::kSlamOdometry)),
+      : context_(context), greeting_(config.greeting), odometry_(context.advertise(topics::kSlamOdometry)),
         path_(context.advertise(topics::kKeyframePath)), tiles_(context.advertise(topics::kVoxelTiles)) {
     context.subscribe(topics::kColor, [this](Image& m) { store(m); });
     context.serve(topics::kSaveMap, [this, config](const auto&) {
       std::this_thread::sleep_for(std::chrono::duration<double>(config.answer_s));  // work, as a save would be
       context_.status().value("answers", ++answers_);
+      spdlog::debug("asked {} times", answers_);
       std_srvs::srv::Trigger_Response response;
       response.success(true);
-      response.message(config.greeting);
+      response.message(greeting_);
       return response;
     });
     context.on_cycle([this](const runtime::Cycle&) { work(); });
     publish_latched(config.tiles);
+    for (int i = 0; i < config.lines; ++i) spdlog::debug("line {}", i);
   }
+
+  void reconfigure(const Config& config) { greeting_ = config.greeting; }
 
  private:
   using Image = sensor_msgs::msg::Image;
@@ -91,6 +97,7 @@ class EchoComponent {
   }
 
   runtime::Context& context_;
+  std::string greeting_;
   dds::Publisher<nav_msgs::msg::Odometry>& odometry_;
   dds::Publisher<nav_msgs::msg::Path>& path_;
   dds::Publisher<lapis_msgs::msg::VoxelTile>& tiles_;

@@ -45,10 +45,20 @@ Lines readers(const dds::Topic<Messages>&... topics) {
 }
 
 template <class Service>
-Lines server(const dds::ServiceTopic<Service>& service) {
+Lines server(const dds::ServiceTopic<Service>& service, const std::string& node = "") {
   using Support = idl::ServiceSupport<Service>;
-  return {line<typename Support::Request>(false, dds::request_dds_name(service.name), dds::kService),
-          line<typename Support::Response>(true, dds::reply_dds_name(service.name), dds::kService)};
+  return {line<typename Support::Request>(false, dds::request_dds_name(node + service.name), dds::kService),
+          line<typename Support::Response>(true, dds::reply_dds_name(node + service.name), dds::kService)};
+}
+
+/// What every process has as a node of ROS 2.
+Lines node_endpoints(const std::string& name) {
+  Lines lines = writers(topics::kRosout, topics::kParameterEvents);
+  topics::for_each_node_service([&](const auto& service) {
+    const Lines more = server(service, "/" + name);
+    lines.insert(lines.end(), more.begin(), more.end());
+  });
+  return lines;
 }
 
 struct Process {
@@ -166,8 +176,9 @@ class Endpoints : public ::testing::TestWithParam<Process> {
   }
   static Lines expected() {
     Lines lines = writers(topics::kDiagnostics, topics::kHeartbeat, topics::kAck, kRosGraph);
-    const Lines tick = readers(topics::kTick);
-    lines.insert(lines.end(), tick.begin(), tick.end());
+    for (const Lines& more : {readers(topics::kTick), node_endpoints(GetParam().component)}) {
+      lines.insert(lines.end(), more.begin(), more.end());
+    }
     for (const Lines& more : GetParam().endpoints) lines.insert(lines.end(), more.begin(), more.end());
     return lines;
   }

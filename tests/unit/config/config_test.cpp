@@ -34,7 +34,7 @@ struct Outer {
 template <class Field>
 void describe(Field& field, Inner& c) {
   field("max_depth_m", c.max_depth_m, in_range(0.1, 20.0), "measurements beyond this are ignored");
-  field("iterations", c.iterations, in_range(1, 100), "Gauss-Newton steps");
+  field("iterations", c.iterations, in_range(1, 100), "Gauss-Newton steps", Change::kAtRunTime);
 }
 template <class Field>
 void describe(Field& field, Outer& c) {
@@ -233,6 +233,7 @@ TEST_F(ConfigTest, MarkdownTableHasARowPerKey) {
   const std::string table = to_markdown(schema_);
   EXPECT_THAT(table,
               HasSubstr("| `slam.tracker.max_depth_m` | `5` | 0.1 to 20 | measurements beyond this are ignored |"));
+  EXPECT_THAT(table, HasSubstr("| Gauss-Newton steps; may change at run time |"));
   EXPECT_THAT(table, HasSubstr("fast \\| exact"));
 }
 

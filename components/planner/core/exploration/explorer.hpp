@@ -52,6 +52,8 @@ struct Report {
 class Explorer {
  public:
   explicit Explorer(const ExplorerConfig& config);
+  /// Replaces the configuration, except for memory and stall, which have to be the same.
+  void reconfigure(const ExplorerConfig& config) { config_ = config; }
 
   void start();
   void stop();

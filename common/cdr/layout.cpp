@@ -139,9 +139,13 @@ Layout parse_ros2msg(std::string_view ros_name, std::string_view text) {
       made.fields.back().structure = static_cast<std::size_t>(other - declared.begin());
     }
   }
+  require_an_end(layout);
+  return layout;
+}
+
+void require_an_end(const Layout& layout) {
   std::vector<bool> is_open(layout.structures.size());
   check_that_it_ends(layout, 0, is_open);
-  return layout;
 }
 
 }  // namespace lapis::cdr

@@ -51,4 +51,7 @@ struct Layout {
 /// Throws std::runtime_error, which names the line, where the text is no such declaration.
 Layout parse_ros2msg(std::string_view ros_name, std::string_view text);
 
+/// Throws std::runtime_error where a structure contains itself.
+void require_an_end(const Layout& layout);
+
 }  // namespace lapis::cdr

@@ -102,6 +102,10 @@ std::string names_in(const Value& value) {
   return names;
 }
 
+[[noreturn]] void fail_without(const std::string& field, const std::string& path, const Value& value) {
+  throw std::runtime_error("no field '" + field + "' of '" + path + "'; there is " + names_in(value));
+}
+
 /// "transforms[0].header" -> {"transforms", "0", "header"}
 std::vector<std::string> steps_of(std::string path) {
   std::ranges::replace(path, '[', '.');
@@ -146,7 +150,7 @@ const Value& field_of(const Value& message, const std::string& path) {
     } else if (value->is_array() && is_index && index < value->size()) {
       value = &(*value)[index];
     } else {
-      throw std::runtime_error("no field '" + step + "' of '" + path + "'; there is " + names_in(*value));
+      fail_without(step, path, *value);
     }
   }
   return *value;

@@ -82,13 +82,10 @@ std::vector<dds::Endpoint> Domain::endpoints() const {
 }
 
 std::vector<SeenEndpoint> Domain::seen() const {
-  std::map<dds::Gid, std::string> nodes;
-  for (const auto& [participant, endpoints] : nodes_) nodes.insert(endpoints.begin(), endpoints.end());
   std::vector<SeenEndpoint> found;
   for (const dds::Endpoint& endpoint : endpoints()) {
     const std::string& name = endpoint.topic;
     if (name.starts_with(kRequestPrefix) || name.starts_with(kReplyPrefix) || name == kGraphName) continue;
-    const auto node = nodes.find(endpoint.gid);
     found.push_back({.is_writer = endpoint.is_writer,
                      .topic = shown(dds::ros_topic_name(name), name),
                      .type = shown(dds::ros_type_name(endpoint.type), endpoint.type),
@@ -96,25 +93,29 @@ std::vector<SeenEndpoint> Domain::seen() const {
                      .is_latched = endpoint.is_latched,
                      .is_keyed = endpoint.is_keyed,
                      .type_hash = dds::type_hash_of(endpoint),
-                     .node = node == nodes.end() ? "" : node->second,
+                     .node = node_of(endpoint.gid),
                      .run = participant_.peers().run_of(endpoint.gid)});
   }
   return found;
 }
 
 std::vector<SeenService> Domain::services() const {
-  std::map<dds::Gid, std::string> nodes;
-  for (const auto& [participant, endpoints] : nodes_) nodes.insert(endpoints.begin(), endpoints.end());
   std::vector<SeenService> found;
   for (const dds::Endpoint& endpoint : endpoints()) {
     const std::string& name = endpoint.topic;
     if (endpoint.is_writer || !name.starts_with(kRequestPrefix) || !name.ends_with(kRequestSuffix)) continue;
-    const auto node = nodes.find(endpoint.gid);
     found.push_back({name.substr(2, name.size() - 2 - kRequestSuffix.size()), dds::ros_type_name(endpoint.type),
-                     node == nodes.end() ? "" : node->second});
+                     node_of(endpoint.gid)});
   }
   std::ranges::sort(found, {}, &SeenService::name);
   return found;
+}
+
+std::string Domain::node_of(const dds::Gid& endpoint) const {
+  const auto participant = nodes_.find(participant_of(endpoint));
+  if (participant == nodes_.end()) return "";
+  const auto node = participant->second.find(endpoint);
+  return node == participant->second.end() ? "" : node->second;
 }
 
 std::size_t Domain::participants() const {

@@ -40,6 +40,8 @@ class Domain {
   /// The same as ROS 2 shows them: topics, without services.
   std::vector<SeenEndpoint> seen() const;
   std::vector<SeenService> services() const;
+  /// Full name of the node to which an endpoint belongs; empty: unknown.
+  std::string node_of(const dds::Gid& endpoint) const;
   /// Number of other participants whose endpoints are there.
   std::size_t participants() const;
   /// Full names of the nodes, sorted.

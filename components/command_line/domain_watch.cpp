@@ -53,6 +53,29 @@ std::string name_of(const Domain& domain, const dds::Topic<Message>& topic) {
   return domain.names().full(topic.name, topic.is_global);
 }
 
+std::vector<KnownTopic> known_topics(const Domain& domain) {
+  std::vector<KnownTopic> known;
+  topics::for_each([&](const auto& topic) {
+    using Support = idl::TypeSupport<typename std::decay_t<decltype(topic)>::Type>;
+    known.push_back({name_of(domain, topic), Support::kRosName, topic.qos.latched, topic.has_many_writers});
+  });
+  return known;
+}
+
+std::map<std::string, std::string> known_hashes() {
+  std::map<std::string, std::string> known;
+  for (const idl::TypeEntry& entry : idl::type_table()) known[std::string(entry.ros_name)] = std::string(entry.hash);
+  return known;
+}
+
+/// The runs to which endpoints belong, sorted.
+std::vector<std::string> runs_of(const std::vector<SeenEndpoint>& endpoints) {
+  std::set<std::string> runs;
+  for (const SeenEndpoint& endpoint : endpoints) runs.insert(endpoint.run);
+  runs.erase("");
+  return {runs.begin(), runs.end()};
+}
+
 }  // namespace
 
 DomainWatch::DomainWatch(Domain& domain) : domain_(domain) {}
@@ -201,10 +224,7 @@ Snapshot DomainWatch::snapshot() const {
   seen.participants = domain_.participants();
   seen.nodes = domain_.nodes();
   seen.endpoints = domain_.seen();
-  std::set<std::string> runs;
-  for (const SeenEndpoint& endpoint : seen.endpoints) runs.insert(endpoint.run);
-  runs.erase("");
-  seen.runs.assign(runs.begin(), runs.end());
+  seen.runs = runs_of(seen.endpoints);
   seen.color = camera("colour");
   seen.depth = camera("depth");
   for (const std::string& topic : {name_of(domain_, topics::kLabels), name_of(domain_, topics::kWheelOdometry),
@@ -221,14 +241,8 @@ Snapshot DomainWatch::snapshot() const {
   seen.label_info_topic = name_of(domain_, topics::kLabelInfo);
   seen.clock_ns = clock_ns_;
   seen.system_ns = system_ns_;
-  topics::for_each([&](const auto& topic) {
-    using Support = idl::TypeSupport<typename std::decay_t<decltype(topic)>::Type>;
-    seen.known_topics.push_back(
-        {name_of(domain_, topic), Support::kRosName, topic.qos.latched, topic.has_many_writers});
-  });
-  for (const idl::TypeEntry& entry : idl::type_table()) {
-    seen.known_hashes[std::string(entry.ros_name)] = std::string(entry.hash);
-  }
+  seen.known_topics = known_topics(domain_);
+  seen.known_hashes = known_hashes();
   seen.wanted_socket_buffer_bytes = settings.socket_buffer_bytes;
   seen.socket_buffer_bytes = dds::effective_socket_buffer_bytes(settings.socket_buffer_bytes);
   seen.has_network_interface = dds::has_network_interface();

@@ -31,7 +31,7 @@ void print_message(const cdr::Value& message, const EchoOptions& options, bool i
 Status echo(const Settings& settings, const EchoOptions& options) {
   Domain domain(settings);
   const FoundTopic topic = find_topic(domain, options.topic);
-  const cdr::Layout layout = layout_of(topic.type);
+  const cdr::Layout layout = layout_of(domain, topic);
   std::size_t printed = 0, damaged = 0;
   read(domain, topic, [&](const dds::RawType::Bytes& bytes, const auto&) {
     if (options.is_once && printed > 0) return;

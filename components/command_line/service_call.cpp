@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <set>
 
-#include "command_line/topic_reader.hpp"
 #include "common/cdr/decode.hpp"
 #include "common/cdr/encode.hpp"
 #include "common/dds/raw.hpp"
@@ -35,11 +34,17 @@ std::string request_type_of(Domain& domain, const std::string& name) {
 
 }  // namespace
 
+cdr::Layout known_layout(const std::string& type) {
+  const idl::TypeEntry* entry = idl::find(type);
+  if (entry == nullptr) throw Failure(kWrongCall, "this build does not know the type " + type);
+  return cdr::parse_ros2msg(entry->ros_name, entry->ros2msg_text);
+}
+
 cdr::Value call(Domain& domain, const std::string& service, const cdr::Value& request) {
   const std::string request_type = request_type_of(domain, service);
   const std::string response_type =
       request_type.substr(0, request_type.size() - kRequest.size()) + std::string(kResponse);
-  const cdr::Layout request_layout = layout_of(request_type), response_layout = layout_of(response_type);
+  const cdr::Layout request_layout = known_layout(request_type), response_layout = known_layout(response_type);
   cdr::Bytes bytes;
   try {
     bytes = cdr::encode(request_layout, request);

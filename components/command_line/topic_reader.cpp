@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "command_line/service_call.hpp"
+#include "common/cdr/described_type.hpp"
 #include "idl/type_table.hpp"
 
 namespace lapis::command_line {
@@ -22,6 +24,21 @@ constexpr int kDepth = 1000;  // bursts wait here while the terminal is slow
   throw Failure(kNotThere, not_among("topic", name, published));
 }
 
+/// What the node of a writer says of its type (~/get_type_description).
+std::optional<cdr::Layout> layout_by_node(Domain& domain, const FoundTopic& topic) {
+  constexpr const char* kService = "/get_type_description";
+  std::string service;
+  const auto has_service = [&] {
+    service = domain.node_of(topic.writer) + kService;
+    const auto services = domain.services();
+    return std::ranges::find(services, service, &SeenService::name) != services.end();
+  };
+  if (!domain.wait_until(has_service, domain.patience())) return std::nullopt;
+  const cdr::Value answer = call(domain, service, {{"type_name", topic.type}, {"type_hash", topic.type_hash}});
+  if (!is_success(answer)) return std::nullopt;
+  return cdr::layout_of_description(answer["type_description"]);
+}
+
 }  // namespace
 
 FoundTopic find_topic(Domain& domain, const std::string& wanted) {
@@ -39,7 +56,8 @@ FoundTopic find_topic(Domain& domain, const std::string& wanted) {
   if (!is_found) fail_without(domain, name);
   const dds::Endpoint& first = writers.front();
   if (first.is_keyed) throw Failure(kWrongCall, name + " has keys, which neither ROS 2 nor this program reads");
-  FoundTopic topic{name, first.topic, first.type, dds::ros_type_name(first.type), dds::type_hash_of(first), {}};
+  FoundTopic topic{name,      first.topic, first.type, dds::ros_type_name(first.type), dds::type_hash_of(first),
+                   first.gid, {}};
   topic.qos.best_effort = !std::ranges::all_of(writers, &dds::Endpoint::is_reliable);
   topic.qos.latched = std::ranges::all_of(writers, &dds::Endpoint::is_latched);
   topic.qos.depth = topic.qos.reader_depth = kDepth;
@@ -53,13 +71,14 @@ dds::RawSubscription& read(Domain& domain, const FoundTopic& topic, dds::RawSubs
   return reader;
 }
 
-cdr::Layout layout_of(const std::string& type) {
-  const idl::TypeEntry* entry = idl::find(type);
-  if (entry == nullptr) {
-    throw Failure(kWrongCall, "this build does not know the type " + type + ", so its messages cannot be read or " +
-                                  "written; lapis hz and lapis record do without");
-  }
-  return cdr::parse_ros2msg(entry->ros_name, entry->ros2msg_text);
+cdr::Layout layout_of(Domain& domain, const FoundTopic& topic) {
+  const idl::TypeEntry* entry = idl::find(topic.type);
+  const bool is_ours = entry != nullptr && (topic.type_hash.empty() || topic.type_hash == entry->hash);
+  if (is_ours) return cdr::parse_ros2msg(entry->ros_name, entry->ros2msg_text);
+  if (const auto layout = layout_by_node(domain, topic)) return *layout;
+  throw Failure(kWrongCall, "this build does not know the type " + topic.type +
+                                (entry == nullptr ? "" : " as declared there") +
+                                ", and no node describes it; lapis hz and lapis record do without");
 }
 
 }  // namespace lapis::command_line

@@ -181,8 +181,16 @@ void check_images(const SeenCamera& camera, double seconds, Findings& findings) 
   }
 }
 
+/// By the stamps, because a simulator may be slower or faster than life. 0: it cannot be told.
+double stamp_rate_hz(const SeenStream& stream) {
+  if (stream.stamps_ns.size() < 2) return 0.0;
+  const auto [first, last] = std::ranges::minmax(stream.stamps_ns);
+  if (first == last) return 0.0;
+  return static_cast<double>(stream.stamps_ns.size() - 1) / (1e-9 * static_cast<double>(last - first));
+}
+
 void check_flow(const SeenStream& stream, Findings& findings) {
-  const double sent = static_cast<double>(stream.messages + stream.lost);
+  const auto sent = static_cast<double>(stream.messages + stream.lost);
   if (static_cast<double>(stream.lost) > kMostLost * sent) {
     findings.push_back({"losses", stream.topic,
                         std::to_string(stream.lost) + " of " + std::to_string(stream.messages + stream.lost) +
@@ -190,9 +198,9 @@ void check_flow(const SeenStream& stream, Findings& findings) {
                         "larger socket buffers (setup.sh --sysctl) on both machines, publish reliable, smaller or "
                         "compressed images, cable instead of Wi-Fi"});
   }
-  if (stream.rate_hz > 0.0 && stream.rate_hz < kLeastRate_hz) {
+  if (const double rate_hz = stamp_rate_hz(stream); rate_hz > 0.0 && rate_hz < kLeastRate_hz) {
     findings.push_back({"slow", stream.topic,
-                        "it comes at " + text_of(stream.rate_hz) + " Hz, too seldom to track motion",
+                        "its images are taken at " + text_of(rate_hz) + " Hz, too seldom to track motion",
                         "set the camera to " + text_of(kLeastRate_hz, "%.0f") + " Hz or more"});
   }
   const auto& stamps = stream.stamps_ns;

@@ -16,6 +16,6 @@ struct Finding {
 };
 
 /// All that is wrong with what was seen, the gravest first.
-std::vector<Finding> findings_in(const Snapshot& snapshot);
+std::vector<Finding> findings_in(const Snapshot& seen);
 
 }  // namespace lapis::command_line

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <nlohmann/json.hpp>
@@ -17,7 +18,7 @@
 #include "common/topics/robot.hpp"
 #include "common/topics/services.hpp"
 #include "common/topics/slam.hpp"
-#include "idl/rcl_interfaces.hpp"
+#include "idl/type_description_interfaces.hpp"
 #include "tests/support/child_process.hpp"
 #include "tests/support/temporary_folder.hpp"
 #include "tests/support/topic_probe.hpp"
@@ -130,9 +131,32 @@ TEST_F(Lapis, DoesWithoutTheTypeWhereItCan) {
   const dds::RawType::Bytes bytes{0, 1, 0, 0, 7, 0, 0, 0};
   probe_.executor().every(std::chrono::milliseconds(20), [&] { strange.publish(bytes); });
   EXPECT_EQ(lapis({"hz", "/strange", "--seconds", "1"}).status, 0);
-  const Answer echo = lapis({"echo", "/strange"});
+  const Answer echo = lapis({"echo", "/strange", "--wait", "1"});
   EXPECT_EQ(echo.status, 2);
   EXPECT_THAT(echo.log, HasSubstr("does not know the type other_msgs/msg/Strange"));
+}
+
+TEST_F(Lapis, AsksTheNodeForATypeThatItDoesNotKnow) {
+  using Service = type_description_interfaces::srv::GetTypeDescription;
+  constexpr dds::ServiceTopic<Service> kDescribe{"/tested/get_type_description", "test", "describes one type"};
+  dds::ServiceServer<Service> server(probe_.participant(), kDescribe, [](const auto& request) {
+    type_description_interfaces::srv::GetTypeDescription_Response response;
+    response.successful(request.type_name() == "other_msgs/msg/Strange" && request.type_hash() == "RIHS01_77");
+    response.type_description().type_description().type_name(request.type_name());
+    type_description_interfaces::msg::Field field;
+    field.name("numbers");
+    field.type().type_id(3 + 144);  // uint8[]
+    response.type_description().type_description().fields().push_back(field);
+    return response;
+  });
+  probe_.executor().add(server);
+  dds::RawPublisher strange(probe_.participant(), "rt/strange", "other_msgs::msg::dds_::Strange_", "RIHS01_77",
+                            {.depth = 10});
+  probe_.participant().announce_graph();
+  const dds::RawType::Bytes bytes{0, 1, 0, 0, 2, 0, 0, 0, 7, 8};
+  probe_.executor().every(std::chrono::milliseconds(20), [&] { strange.publish(bytes); });
+  const Answer echo = lapis({"echo", "/strange", "--once"});
+  EXPECT_EQ(echo.output, "numbers:\n- 7\n- 8\n---\n") << echo.log;
 }
 
 TEST_F(Lapis, MeasuresRateAndBandwidth) {
@@ -161,7 +185,7 @@ TEST_F(Lapis, ListsTopicsAndServices) {
     const json topic = json::parse(line);
     if (topic["topic"] != "/odom") continue;
     is_listed = true;
-    EXPECT_EQ(topic["types"], json({"nav_msgs/msg/Odometry"}));
+    EXPECT_EQ(topic["types"], json::array({"nav_msgs/msg/Odometry"}));
     EXPECT_EQ(topic["writers"], 1);
     EXPECT_EQ(topic["publishers"][0]["node"], "/tested");
     EXPECT_EQ(topic["publishers"][0]["reliability"], "reliable");
@@ -225,10 +249,45 @@ TEST_F(Lapis, SaysThatAServiceDoesNotAnswer) {
   EXPECT_THAT(answer.log, HasSubstr("/tested/deaf has not answered"));
 }
 
+TEST_F(Lapis, ReadsAndChangesParameters) {
+  ChildProcess planner("lapis_planner");
+  ASSERT_TRUE(wait_until_ready(planner)) << planner.log();
+  const std::string key = "planner.turn_cost_m_per_rad";
+  EXPECT_THAT(lines_of(lapis({"params", "list", "/planner"}).output), ::testing::Contains(key));
+  EXPECT_EQ(lapis({"params", "get", "planner", key}).output, "0.5\n");
+  const Answer both = lapis({"params", "get", "/planner", key, "planner.method", "--json"});
+  EXPECT_EQ(json::parse(both.output), (json{{key, 0.5}, {"planner.method", "lapis"}})) << both.log;
+  const json descriptor = json::parse(lapis({"params", "describe", "/planner", key, "--json"}).output);
+  EXPECT_EQ(descriptor["type"], "a number");
+  EXPECT_EQ(descriptor["floating_point_range"][0]["to_value"], 10.0);
+  const Answer changed = lapis({"params", "set", "/planner", key, "1"});
+  EXPECT_EQ(changed.status, 0) << changed.log;
+  EXPECT_EQ(changed.output, "successful: true\nreason: ''\n");
+  EXPECT_EQ(lapis({"params", "get", "/planner", key}).output, "1.0\n");
+  const json dump = json::parse(lapis({"params", "dump", "/planner", "--json"}).output);
+  EXPECT_EQ(dump["/planner"]["ros__parameters"]["planner"]["turn_cost_m_per_rad"], 1.0);
+  EXPECT_THAT(lapis({"params", "dump", "/planner"}).output, StartsWith("/planner:\n  ros__parameters:\n"));
+
+  for (const auto& [name, value] : {std::pair<std::string, std::string>{key, "-1"}, {"planner.output_dir", "/tmp"}}) {
+    const Answer refused = lapis({"params", "set", "/planner", name, value});
+    EXPECT_EQ(refused.status, 1) << refused.log;
+    EXPECT_THAT(refused.output, HasSubstr("successful: false"));
+  }
+  EXPECT_EQ(lapis({"params", "set", "/planner", key, "much"}).status, 2);
+  const Answer unknown = lapis({"params", "get", "/planner", "planner.nothing"});
+  EXPECT_EQ(unknown.status, 1);
+  EXPECT_THAT(unknown.log, HasSubstr("/planner has no parameter planner.nothing"));
+  const Answer nobody = lapis({"params", "list", "/slam", "--wait", "1"});
+  EXPECT_EQ(nobody.status, 3);
+  EXPECT_THAT(nobody.log, HasSubstr("no node with parameters /slam; there are /planner"));
+}
+
 TEST_F(Lapis, SendsAGoal) {
   const auto& goals = probe_.collect(topics::kGoal);
+  probe_.participant().announce_graph();
   const Answer sent = lapis({"goal", "-1.5", "2", "90"});
   EXPECT_EQ(sent.status, 0) << sent.log;
+  EXPECT_EQ(sent.output, "/tested has the goal\n");
   ASSERT_TRUE(probe_.wait_until([&] { return !goals.empty(); }));
   EXPECT_EQ(goals[0].header().frame_id(), "map");
   EXPECT_EQ(goals[0].pose().position().x(), -1.5);
@@ -284,6 +343,34 @@ TEST_F(Lapis, RefusesWrongCalls) {
   }
   EXPECT_EQ(lapis({"--help"}).status, 0);
   EXPECT_THAT(lapis({"--version"}).output, StartsWith("lapis "));
+}
+
+/// As long as it lives, new participants look for others as told.
+class InRange {
+ public:
+  explicit InRange(const char* range) { setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", range, 1); }
+  ~InRange() { setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1); }
+  InRange(const InRange&) = delete;
+  InRange& operator=(const InRange&) = delete;
+};
+
+TEST(LapisOnSubnet, MeetsOthersByMulticast) {
+  const InRange subnet("SUBNET");
+  TopicProbe probe("tested");
+  probe.advertise(topics::kKeyframePath).publish({});
+  ChildProcess echo("lapis", {"echo", "/slam/path", "--once"});
+  probe.wait_until([&] { return !echo.is_running(); });
+  EXPECT_EQ(echo.wait(), 0) << echo.log();
+}
+
+TEST(LapisOff, MeetsNobody) {
+  TopicProbe probe("tested");
+  probe.advertise(topics::kKeyframePath).publish({});
+  const InRange off("OFF");
+  ChildProcess doctor("lapis", {"doctor", "--wait", "1", "--seconds", "0.1"});
+  probe.wait_until([&] { return !doctor.is_running(); });
+  EXPECT_EQ(doctor.wait(), 1) << doctor.log();
+  EXPECT_THAT(doctor.output(), HasSubstr("ROS_AUTOMATIC_DISCOVERY_RANGE=OFF forbids to look"));
 }
 
 TEST(LapisAlone, SaysThatNobodyIsThere) {

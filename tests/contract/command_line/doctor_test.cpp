@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <memory>
@@ -41,6 +42,7 @@ struct Habits {
   std::chrono::seconds clock_ahead{0};
   std::chrono::milliseconds period = kPeriod;
   bool repeats_stamps = false;
+  int row_bytes = 0;  ///< more than pixels need makes images large
   dds::Qos image_qos = topics::kColor.qos, mount_qos = topics::kStaticTransforms.qos;
   std::string depth_encoding = "16UC1", mounted_frame = kOpticalFrame;
   std::function<void(CameraInfo&)> spoil_info = {}, spoil_depth_info = {};
@@ -89,8 +91,9 @@ class Camera {
     image.width(kWidth);
     image.height(kHeight);
     image.encoding(encoding);
-    image.step(static_cast<std::uint32_t>(kWidth * bytes_per_pixel));
-    image.data().resize(static_cast<std::size_t>(kWidth * kHeight * bytes_per_pixel));
+    const int row_bytes = std::max(kWidth * bytes_per_pixel, habits_.row_bytes);
+    image.step(static_cast<std::uint32_t>(row_bytes));
+    image.data().resize(static_cast<std::size_t>(row_bytes * kHeight));
     return image;
   }
 
@@ -309,6 +312,20 @@ TEST_F(Doctor, FindsLabelsWithoutNames) {
   auto& labels = probe_.advertise(topics::kLabels);
   probe_.executor().every(kPeriod, [&] { labels.publish({}); });
   expect_found("no_label_info");
+}
+
+// The writer keeps one image and sends a third of what it is given, so that newer images replace those that wait.
+TEST_F(Doctor, FindsImagesThatAreLostOnTheWay) {
+  if (!dds::compat::kHasFlowControllers) GTEST_SKIP() << "this Fast DDS has no flow controllers to lose images by";
+  dds::ParticipantOptions options = participant_options("slow_camera");
+  options.link = dds::LinkSettings{.large = {.bytes_per_period = 20'000, .pace_period_ms = 20, .depth = 1}};
+  TopicProbe slow(options);
+  dds::Qos newest = topics::kColor.qos;
+  newest.depth = 1;
+  const Camera camera(slow, {.row_bytes = 4096, .image_qos = newest});
+  probe_.executor().every(std::chrono::milliseconds(5), [&] { slow.executor().spin_once({}); });
+  const Answer answer = examine();
+  EXPECT_THAT(answer.faults, Contains("losses")) << answer.log;
 }
 
 TEST_F(Doctor, FindsSmallSocketBuffers) {

@@ -113,7 +113,12 @@ const Fault kFaults[] = {
     {"compressed_only", [](Snapshot& s) { s.color.images->topic = s.color.compressed_topic; }},
     {"encoding", [](Snapshot& s) { s.depth.images->encoding = "64FC1"; }},
     {"losses", [](Snapshot& s) { s.color.images->lost = 6; }},
-    {"slow", [](Snapshot& s) { s.depth.images->rate_hz = 4.0; }},
+    {"slow",
+     [](Snapshot& s) {
+       for (auto* images : {&*s.color.images, &*s.depth.images}) {
+         for (auto& stamp : images->stamps_ns) stamp = kNow_ns + 8 * (stamp - kNow_ns);
+       }
+     }},
     {"stamps_repeat", [](Snapshot& s) { s.color.images->stamps_ns[9] = s.color.images->stamps_ns[8]; }},
     {"stamps_apart", [](Snapshot& s) { s.depth.images->delay_s = 0.2; }},
     {"stamps_apart",

@@ -363,12 +363,9 @@ TEST(LapisOnSubnet, MeetsOthersByMulticast) {
   EXPECT_EQ(echo.wait(), 0) << echo.log();
 }
 
-TEST(LapisOff, MeetsNobody) {
-  TopicProbe probe("tested");
-  probe.advertise(topics::kKeyframePath).publish({});
+TEST(LapisOff, SaysThatItMayNotLook) {
   const InRange off("OFF");
-  ChildProcess doctor("lapis", {"doctor", "--wait", "1", "--seconds", "0.1"});
-  probe.wait_until([&] { return !doctor.is_running(); });
+  ChildProcess doctor("lapis", {"doctor", "--wait", "0.5", "--seconds", "0.1"});
   EXPECT_EQ(doctor.wait(), 1) << doctor.log();
   EXPECT_THAT(doctor.output(), HasSubstr("ROS_AUTOMATIC_DISCOVERY_RANGE=OFF forbids to look"));
 }

@@ -43,6 +43,7 @@ struct Habits {
   std::chrono::milliseconds period = kPeriod;
   bool repeats_stamps = false;
   int row_bytes = 0;  ///< more than pixels need makes images large
+  int burst = 1;      ///< images that are published at once
   dds::Qos image_qos = topics::kColor.qos, mount_qos = topics::kStaticTransforms.qos;
   std::string depth_encoding = "16UC1", mounted_frame = kOpticalFrame;
   std::function<void(CameraInfo&)> spoil_info = {}, spoil_depth_info = {};
@@ -115,8 +116,10 @@ class Camera {
     const time::Time depth_stamp = stamp + time::Duration{std::chrono::nanoseconds(habits_.depth_late).count()};
     if (color_info_ != nullptr) color_info_->publish(info(stamp, habits_.spoil_info));
     if (depth_info_ != nullptr) depth_info_->publish(info(depth_stamp, habits_.spoil_depth_info));
-    if (color_ != nullptr) color_->publish(image(stamp, "rgb8", 3));
-    if (depth_ != nullptr && habits_.sends_depth) depth_->publish(image(depth_stamp, habits_.depth_encoding, 2));
+    for (int i = 0; i < habits_.burst; ++i) {
+      if (color_ != nullptr) color_->publish(image(stamp, "rgb8", 3));
+      if (depth_ != nullptr && habits_.sends_depth) depth_->publish(image(depth_stamp, habits_.depth_encoding, 2));
+    }
   }
 
   Habits habits_;
@@ -314,15 +317,17 @@ TEST_F(Doctor, FindsLabelsWithoutNames) {
   expect_found("no_label_info");
 }
 
-// The writer keeps one image and sends a third of what it is given, so that newer images replace those that wait.
+// The writer keeps one image and sends slowly, so that the last of three images replaces those before it.
 TEST_F(Doctor, FindsImagesThatAreLostOnTheWay) {
   if (!dds::compat::kHasFlowControllers) GTEST_SKIP() << "this Fast DDS has no flow controllers to lose images by";
   dds::ParticipantOptions options = participant_options("slow_camera");
-  options.link = dds::LinkSettings{.large = {.bytes_per_period = 20'000, .pace_period_ms = 20, .depth = 1}};
+  options.link = dds::LinkSettings{.message_bytes = 8'000,
+                                   .large = {.bytes_per_period = 20'000, .pace_period_ms = 20, .depth = 1}};
   TopicProbe slow(options);
   dds::Qos newest = topics::kColor.qos;
   newest.depth = 1;
-  const Camera camera(slow, {.row_bytes = 4096, .image_qos = newest});
+  const Camera camera(slow,
+                      {.period = std::chrono::milliseconds(300), .row_bytes = 1200, .burst = 3, .image_qos = newest});
   probe_.executor().every(std::chrono::milliseconds(5), [&] { slow.executor().spin_once({}); });
   const Answer answer = examine();
   EXPECT_THAT(answer.faults, Contains("losses")) << answer.log;

@@ -64,6 +64,7 @@ void for_each(Visitor&& visit) {
   visit(kOccupancyGrid);
   visit(kProvisionalArea);
   visit(kPlannerPath);
+  visit(kGoal);
   visit(kCandidates);
   visit(kPlannerMarkers);
   visit(kPlannerStatus);

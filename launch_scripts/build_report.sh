@@ -32,7 +32,7 @@ while [[ $# -gt 0 ]]; do
   esac
 done
 if [[ ${#targets[@]} -eq 0 ]]; then
-  targets=(simulator sensor_replay recorder slam segmenter semantic_mapper planner controller evaluator supervisor topics)
+  targets=(command_line simulator sensor_replay recorder slam segmenter semantic_mapper planner controller evaluator supervisor topics)
 fi
 if [[ -e "$folder" && ! -e "$folder/cpu_seconds.tsv" && -n "$(ls -A "$folder" 2>/dev/null)" ]]; then
   echo "build_report.sh: $folder is there and no report of before: choose another --folder" >&2

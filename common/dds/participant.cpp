@@ -109,28 +109,37 @@ rmw_dds_common::msg::Gid to_message(const Gid& gid) {
 
 class Participant::Listener : public ParticipantListener {
  public:
-  Listener(Peers& peers, Endpoints* endpoints) : peers_(peers), endpoints_(endpoints) {}
+  Listener(Peers& peers, Endpoints* endpoints, Bell& changes)
+      : peers_(peers), endpoints_(endpoints), changes_(changes) {}
   void found(const FoundParticipant& participant) override { peers_.add(participant.gid, participant.user_data); }
   void lost(const Gid& participant) override {
-    if (endpoints_ != nullptr) endpoints_->remove_participant(participant);
+    change([&](Endpoints& endpoints) { endpoints.remove_participant(participant); });
   }
   void found(Endpoint endpoint) override {
-    if (endpoints_ != nullptr) endpoints_->add(std::move(endpoint));
+    change([&](Endpoints& endpoints) { endpoints.add(std::move(endpoint)); });
   }
   void lost_endpoint(const Gid& endpoint) override {
-    if (endpoints_ != nullptr) endpoints_->remove(endpoint);
+    change([&](Endpoints& endpoints) { endpoints.remove(endpoint); });
   }
 
  private:
+  template <class Action>
+  void change(const Action& action) {
+    if (endpoints_ == nullptr) return;
+    action(*endpoints_);
+    changes_.ring();
+  }
+
   Peers& peers_;
   Endpoints* endpoints_;  // null: nobody wants to know
+  Bell& changes_;
 };
 
 Participant::Participant(const ParticipantOptions& options)
     : options_(options), link_(options.link.value_or(link_of(options.discovery, options.transport))),
       pace_(compat::kHasFlowControllers ? link_.large : LargeSettings{}), peers_(options.discovery.run),
       guard_(std::make_shared<PacketGuard>(options.discovery)),
-      listener_(std::make_unique<Listener>(peers_, options.watches_endpoints ? &endpoints_ : nullptr)) {
+      listener_(std::make_unique<Listener>(peers_, options.watches_endpoints ? &endpoints_ : nullptr, changes_)) {
   compat::fdds::DomainParticipantQos qos;
   qos.name("/");  // the enclave, which is also the name that rmw_fastrtps gives its participants
   std::string user_data = "enclave=/;";

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "common/dds/bell.hpp"
 #include "common/dds/compat.hpp"
 #include "common/dds/discovery.hpp"
 #include "common/dds/endpoints.hpp"
@@ -52,8 +53,11 @@ class Participant {
   Gid gid() const;
   /// The other participants of the domain.
   Peers& peers() { return peers_; }
+  const Peers& peers() const { return peers_; }
   /// The readers and writers of the domain, its own ones included; empty unless the options ask for them.
   const Endpoints& endpoints() const { return endpoints_; }
+  /// Rings after discovery has found or lost an endpoint that is watched, and after one of its own has been matched.
+  Bell& changes() { return changes_; }
   /// What has been kept away from Fast DDS.
   const PacketGuard& guard() const { return *guard_; }
   /// A line for the log: another run has been found in the domain, what follows, and the remedy.
@@ -87,6 +91,7 @@ class Participant {
   Pace pace_;
   Peers peers_;
   Endpoints endpoints_;
+  Bell changes_;
   std::shared_ptr<PacketGuard> guard_;
   std::unique_ptr<Listener> listener_;
   std::unique_ptr<compat::fdds::DomainParticipant, Deleter> participant_;  // after what its threads use

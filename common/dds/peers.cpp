@@ -43,6 +43,12 @@ Kinship Peers::kinship(const Gid& endpoint) const {
   return it->second == run_ ? Kinship::kOwnRun : Kinship::kOtherRun;
 }
 
+std::string Peers::run_of(const Gid& endpoint) const {
+  const std::lock_guard lock(mutex_);
+  const auto it = runs_.find(prefix_of(endpoint));
+  return it == runs_.end() ? "" : it->second;
+}
+
 std::vector<std::string> Peers::take_other_runs() {
   const std::lock_guard lock(mutex_);
   return std::exchange(new_runs_, {});

@@ -29,6 +29,8 @@ class Peers {
   /// The kinship of the participant to which an endpoint belongs; kNoRun for an unknown one.
   Kinship kinship(const Gid& endpoint) const;
   const std::string& run() const { return run_; }
+  /// The run of the participant to which an endpoint belongs; empty: none, or it has not been found yet.
+  std::string run_of(const Gid& endpoint) const;
   /// Ids of the other runs that have been found since the last call.
   std::vector<std::string> take_other_runs();
 

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "common/dds/service.hpp"
 #include "common/dds/subscription.hpp"
 #include "common/dds/writer.hpp"
 
@@ -103,6 +104,21 @@ class RawPublisher : public Writer {
 
   /// False when DDS refuses the sample, which is counted.
   bool publish(const RawType::Bytes& bytes) { return write(&bytes); }
+};
+
+/// Calls a service by bytes.
+class RawClient : public RequestClient<RawType::Bytes, RawType::Bytes> {
+ public:
+  /// @param service name of the service as ROS 2 shows it
+  /// @param request,response DDS names of the types
+  RawClient(Participant& participant, const std::string& service, const std::string& request,
+            const std::string& request_hash, const std::string& response, const std::string& response_hash)
+      : RequestClient(participant, service, type_of(request, request_hash), type_of(response, response_hash)) {}
+
+ private:
+  static Type type_of(const std::string& name, const std::string& hash) {
+    return {name, hash, compat::fdds::TypeSupport(new RawType(name))};
+  }
 };
 
 }  // namespace lapis::dds

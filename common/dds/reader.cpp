@@ -143,12 +143,15 @@ bool Reader::is_participant_matched(const Gid& participant) const {
 void Reader::on_subscription_matched(compat::fdds::DataReader* /*reader*/,
                                      const compat::fdds::SubscriptionMatchedStatus& status) {
   const Gid writer = to_gid(compat::rtps::iHandle2GUID(status.last_publication_handle));
-  const std::lock_guard lock(mutex_);
-  if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is that of the match
-    writers_.match(writer);
-  } else {
-    writers_.unmatch(writer);
+  {
+    const std::lock_guard lock(mutex_);
+    if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is that of the match
+      writers_.match(writer);
+    } else {
+      writers_.unmatch(writer);
+    }
   }
+  participant_.changes().ring();
 }
 
 void Reader::on_requested_incompatible_qos(compat::fdds::DataReader* /*reader*/,

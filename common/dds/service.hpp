@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -130,20 +131,22 @@ class ServiceServer : public Source {
   std::vector<Pending> pending_;
 };
 
-/// Calls one service.
-template <class Service>
-class ServiceClient : public Source {
-  using Request = typename idl::ServiceSupport<Service>::Request;
-  using Response = typename idl::ServiceSupport<Service>::Response;
-
+/// Calls one service, with requests and responses of types that the two type supports serialise.
+template <class Request, class Response>
+class RequestClient : public Source {
  public:
-  ServiceClient(Participant& participant, const ServiceTopic<Service>& service)
-      : Source(participant, reply_dds_name(full_name(service, participant.names())),
-               idl::TypeSupport<Response>::kDdsName, make_type_support<Response>(), idl::TypeSupport<Response>::kHash,
-               kService, Writers::kMany),
-        request_(participant, request_dds_name(full_name(service, participant.names())),
-                 idl::TypeSupport<Request>::kDdsName, make_type_support<Request>(), idl::TypeSupport<Request>::kHash,
-                 kService) {}
+  /// The name of a type on the wire, with what serialises it.
+  struct Type {
+    std::string dds_name;
+    std::string hash;
+    compat::fdds::TypeSupport support;
+  };
+
+  /// @param service name of the service as ROS 2 shows it
+  RequestClient(Participant& participant, const std::string& service, const Type& request, const Type& response)
+      : Source(participant, reply_dds_name(service), response.dds_name, response.support, response.hash, kService,
+               Writers::kMany),
+        request_(participant, request_dds_name(service), request.dds_name, request.support, request.hash, kService) {}
 
   /// True when a server's reader and writer are matched.
   bool is_ready() const { return matched() > 0 && request_.matched() > 0; }
@@ -187,6 +190,26 @@ class ServiceClient : public Source {
   Writer request_;
   Response response_;
   std::map<std::uint64_t, Response> replies_;
+};
+
+/// Calls one service of the table.
+template <class Service>
+class ServiceClient : public RequestClient<typename idl::ServiceSupport<Service>::Request,
+                                           typename idl::ServiceSupport<Service>::Response> {
+  using Request = typename idl::ServiceSupport<Service>::Request;
+  using Response = typename idl::ServiceSupport<Service>::Response;
+  using Base = RequestClient<Request, Response>;
+
+ public:
+  ServiceClient(Participant& participant, const ServiceTopic<Service>& service)
+      : Base(participant, full_name(service, participant.names()), type_of<Request>(), type_of<Response>()) {}
+
+ private:
+  template <class Message>
+  static typename Base::Type type_of() {
+    using Support = idl::TypeSupport<Message>;
+    return {Support::kDdsName, Support::kHash, make_type_support<Message>()};
+  }
 };
 
 }  // namespace lapis::dds

@@ -85,13 +85,16 @@ bool Writer::is_matched(const Gid& reader) const {
 void Writer::on_publication_matched(compat::fdds::DataWriter* /*writer*/,
                                     const compat::fdds::PublicationMatchedStatus& status) {
   const Gid reader = to_gid(compat::rtps::iHandle2GUID(status.last_subscription_handle));
-  const std::lock_guard lock(mutex_);
-  if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is that of the match
-    readers_.insert(reader);
-    if (participant_.peers().kinship(reader) != Kinship::kOtherRun) ++total_matches_;
-  } else {
-    readers_.erase(reader);
+  {
+    const std::lock_guard lock(mutex_);
+    if (status.current_count_change >= 0) {  // 0: a match and a loss at once; the handle is that of the match
+      readers_.insert(reader);
+      if (participant_.peers().kinship(reader) != Kinship::kOtherRun) ++total_matches_;
+    } else {
+      readers_.erase(reader);
+    }
   }
+  participant_.changes().ring();
 }
 
 void Writer::on_offered_incompatible_qos(compat::fdds::DataWriter* /*writer*/,

@@ -131,6 +131,18 @@ messages::Converted<Pose2> to_core(const geometry_msgs::msg::Pose& message) {
   return Pose2{T->translation().head<2>(), std::atan2(forward.y(), forward.x())};
 }
 
+messages::Converted<Destination> to_destination(geometry_msgs::msg::Pose message, const Pose2& robot) {
+  auto& q = message.orientation();
+  const bool has_heading = q.x() != 0.0 || q.y() != 0.0 || q.z() != 0.0 || q.w() != 0.0;
+  if (!has_heading) q.w(1.0);
+  const auto pose = to_core(message);
+  if (!pose) return messages::Converted<Destination>::refused(pose.reason);
+  Destination place{*pose, has_heading};
+  const Eigen::Vector2d way_map = pose->p_map - robot.p_map;
+  if (!has_heading) place.pose.yaw_rad = std::atan2(way_map.y(), way_map.x());
+  return place;
+}
+
 double position_variance_m2(const std::array<double, 36>& covariance) {
   const double mean = (covariance[0] + covariance[7] + covariance[14]) / 3.0;
   return std::isfinite(mean) ? std::max(mean, 0.0) : 0.0;

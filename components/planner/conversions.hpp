@@ -23,6 +23,8 @@ struct GraphMessage {
 
 /// The pose projected to the floor. Refused when it is not valid or more than 10 km from the origin.
 messages::Converted<Pose2> to_core(const geometry_msgs::msg::Pose& message);
+/// A place to drive to; an orientation of zeros stands for any heading, that of the straight way there.
+messages::Converted<Destination> to_destination(geometry_msgs::msg::Pose message, const Pose2& robot);
 /// Mean variance of x, y and z [m^2] from a row-major 6x6 covariance; 0 when it is not published or not valid.
 double position_variance_m2(const std::array<double, 36>& covariance);
 /// Refused when the number of cells is not width x height, when the origin of the grid is not valid or more than 10 km

@@ -98,6 +98,7 @@ PlannerComponent::PlannerComponent(const Config& config, runtime::Context& conte
   context.subscribe(topics::kSlamStatus, [this](const auto& m) { note_slam(m); });
   context.subscribe(topics::kSlamOdometry, [this](const auto& m) { set_pose(m); });
   context.subscribe(topics::kControllerStatus, [this](const auto& m) { note_controller(m); });
+  context.subscribe(topics::kGoal, [this](const auto& m) { set_goal(m); });
   serve();
   context.on_cycle([this](const runtime::Cycle& cycle) { work(cycle); });
   if (config_.autostart) explorer_.start();
@@ -230,6 +231,14 @@ void PlannerComponent::set_pose(const nav_msgs::msg::Odometry& message) {
   robot_stamp_ = messages::from_message(message.header().stamp());
   last_robot_ = *robot_;
   position_variance_m2_ = position_variance_m2(message.pose().covariance());
+}
+
+void PlannerComponent::set_goal(const geometry_msgs::msg::PoseStamped& message) {
+  if (message.header().frame_id() != map_frame_) return drop("goal", "it is not in " + map_frame_);
+  const auto place = to_destination(message.pose(), last_robot_);
+  if (!place) return drop("goal", place.reason);
+  spdlog::info("drives to ({:.2f}, {:.2f})", place->pose.p_map.x(), place->pose.p_map.y());
+  explorer_.go_to(*place);
 }
 
 void PlannerComponent::note_controller(const lapis_msgs::msg::ControllerStatus& message) {

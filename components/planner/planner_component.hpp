@@ -59,6 +59,7 @@ class PlannerComponent {
   void note_stamp(time::Time stamp);
   void note_slam(const lapis_msgs::msg::SlamStatus& message);
   void set_pose(const nav_msgs::msg::Odometry& message);
+  void set_goal(const geometry_msgs::msg::PoseStamped& message);
   void note_controller(const lapis_msgs::msg::ControllerStatus& message);
 
   void work(const runtime::Cycle& cycle);

@@ -231,6 +231,26 @@ TEST_F(PlannerServices, ReturnsHomeAndIsDone) {
   EXPECT_TRUE(stands());
 }
 
+TEST_F(PlannerServices, DrivesToAGoalAndPausesThere) {
+  auto& goals = context.advertise(topics::kGoal);
+  peers.drives = true;
+  get_going();
+  geometry_msgs::msg::PoseStamped there;
+  there.header().frame_id("elsewhere");
+  there.pose().position().x(3.0);
+  there.pose().position().y(2.5);
+  ASSERT_TRUE(wait_until([&] { return goals.matched() > 0; }));
+  goals.publish(there);
+  ASSERT_TRUE(planner->wait_for_line("goal dropped: it is not in map")) << planner->log();
+  there.header().frame_id("map");
+  goals.publish(there);
+  ASSERT_TRUE(ticks_until([this] { return state() == STATE_RETURNING && has_path(); })) << reason();
+  EXPECT_LT((goal() - Eigen::Vector2d(3.0, 2.5)).norm(), 0.3);
+  ASSERT_TRUE(ticks_until([this] { return state() == STATE_PAUSED; }, 20.0)) << reason() << planner->log();
+  EXPECT_EQ(reason(), "is at the place that was asked for");
+  EXPECT_TRUE(stands());
+}
+
 // Files and ends -----------------------------------------------------------------------------------------------------
 
 TEST_F(PlannerContract, LastWordAfterSigtermIsAnEmptyPath) {

@@ -22,6 +22,9 @@ TEST(Peers, KinshipIsThatOfTheParticipant) {
   EXPECT_EQ(peers.kinship(gid(2, 7)), Kinship::kOtherRun);
   EXPECT_EQ(peers.kinship(gid(3, 7)), Kinship::kNoRun);
   EXPECT_EQ(peers.kinship(gid(4, 7)), Kinship::kNoRun) << "not found yet";
+  EXPECT_EQ(peers.run_of(gid(2, 9)), "b");
+  EXPECT_EQ(peers.run_of(gid(3, 9)), "");
+  EXPECT_EQ(peers.run_of(gid(4, 9)), "");
 }
 
 TEST(Peers, ProcessWithoutARunKnowsNoOtherRun) {

@@ -31,8 +31,8 @@ TEST(TopicTable, RowsAreSound) {
                    kLabelConfidence, kLabelInfo, kWheelOdometry, kImu, kGroundTruth, kCollision, kTransforms,
                    kStaticTransforms, kSlamOdometry, kTrackedFrame, kKeyframePath, kPoseGraph, kLandmarks,
                    kLandmarkState, kSlamStatus, kMapDescription, kVoxelTiles, kMapState, kObstacles, kOctomap,
-                   kMapPoints, kOccupancyGrid, kPlannerPath, kCandidates, kPlannerMarkers, kPlannerStatus, kCommand,
-                   kTeleop, kLocalPath, kControllerStatus, kDiagnostics);
+                   kMapPoints, kOccupancyGrid, kPlannerPath, kGoal, kCandidates, kPlannerMarkers, kPlannerStatus,
+                   kCommand, kTeleop, kLocalPath, kControllerStatus, kDiagnostics);
 }
 
 TEST(TopicTable, LockStepTopicsRepairLossQuickly) {

@@ -88,6 +88,11 @@ void Explorer::return_home() {
   enter(returning, "asked to return");
 }
 
+void Explorer::go_to(const Destination& place) {
+  drop_goal();
+  enter(Returning{.place = place}, "asked to drive to a place");
+}
+
 void Explorer::forget_map() {
   drop_goal();
   setbacks_.forget_map();
@@ -101,7 +106,8 @@ void Explorer::forget_map() {
   if (std::holds_alternative<Recovering>(mission_)) resume("slam has begun another map");
   if (auto* exploring = std::get_if<Exploring>(&mission_)) *exploring = {};
   if (std::holds_alternative<Consolidating>(mission_)) enter(Exploring{}, "slam has begun another map");
-  if (std::holds_alternative<Returning>(mission_)) fail("the map in which it started is gone");
+  if (const auto* returning = std::get_if<Returning>(&mission_))
+    fail(returning->place ? "the map of the place is gone" : "the map in which it started is gone");
 }
 
 /// Enters a state; the next decision is due at once.
@@ -158,7 +164,7 @@ bool Explorer::step(const Report& report, Surroundings* surroundings) {
   if (auto* exploring = std::get_if<Exploring>(&mission_)) return explore(*exploring, report, *surroundings);
   if (auto* consolidating = std::get_if<Consolidating>(&mission_))
     return consolidate(*consolidating, report, *surroundings);
-  go_home(std::get<Returning>(mission_), report, *surroundings);
+  return_or_go(std::get<Returning>(mission_), report, *surroundings);
   return false;
 }
 
@@ -508,30 +514,43 @@ bool Explorer::may_yet_return(const Report& report, Surroundings& surroundings) 
   return surroundings.grid().has_passing_obstacles() && (report.now - goal_->moved_at).seconds() < config_.patience_s;
 }
 
-void Explorer::go_home(const Returning& returning, const Report& report, Surroundings& surroundings) {
-  if (!goal_) goal_ = Goal{.pose = *home_, .moved_from = *report.robot, .moved_at = report.now};
+bool Explorer::is_at_end(const Returning& returning, const Pose2& robot) const {
+  if (path_.empty() || distance(robot, path_.back()) > config_.goal_tolerance_m) return false;
+  const bool is_heading_loose = !returning.place || !returning.place->has_heading;
+  return is_heading_loose || turn_between(robot.yaw_rad, returning.place->pose.yaw_rad) <=
+                                 std::min(config_.goal_tolerance_rad, kTurnTolerance_rad);
+}
+
+void Explorer::arrive(const Returning& returning) {
+  drop_goal();
+  if (returning.place) return enter(Paused{}, "is at the place that was asked for");
+  const Ended& ended = returning.then;
+  enter(ended, "is back where it started" + (ended.why.empty() ? "" : "; " + ended.why));
+}
+
+void Explorer::return_or_go(Returning returning, const Report& report, Surroundings& surroundings) {
+  const bool is_home = !returning.place;
+  const Pose2 to = is_home ? *home_ : returning.place->pose;
+  if (!goal_) goal_ = Goal{.pose = to, .moved_from = *report.robot, .moved_at = report.now};
+  if (is_at_end(returning, *report.robot)) return arrive(returning);
   const bool has_path = !path_.empty();
-  if (has_path && distance(*report.robot, path_.back()) <= config_.goal_tolerance_m) {
-    drop_goal();
-    const Ended ended = returning.then;  // a copy, because enter() destroys `returning`
-    return enter(ended, "is back where it started" + (ended.why.empty() ? "" : "; " + ended.why));
-  }
   if (report.is_blocked) note_blocked(report, surroundings);
   const bool is_wanted = !has_path || !is_path_free(path_, *report.robot, surroundings.grid());
   const double period_s = config_.replan_period_s > 0.0 ? config_.replan_period_s : kHomePeriod_s;
-  if (report.is_blocked || (is_wanted && is_due(report.now, period_s))) drive_to(*home_, report, surroundings);
-  if (!path_.empty()) reason_ = "drives back to where it started";
+  if (report.is_blocked || (is_wanted && is_due(report.now, period_s))) drive_to(to, report, surroundings);
+  const std::string no_path = is_home ? "no path back is known" : "no path to the place is known";
+  reason_ = path_.empty() ? no_path : is_home ? "drives back to where it started" : "drives to a place";
   if (!has_path && !path_.empty()) goal_->moved_at = report.now;  // a path has become free
   if (!stands_still(report) || may_yet_return(report, surroundings)) return;
-  const std::string trouble = path_.empty() ? "no path back is known" : "it does not get on to where it started";
+  const std::string trouble =
+      path_.empty() ? no_path : "it does not get on to " + std::string(is_home ? "where it started" : "the place");
   drop_goal();
-  fail(trouble);
+  is_home ? fail(trouble) : enter(Paused{}, trouble);
 }
 
 void Explorer::drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings) {
   decided_at_ = report.now;
   std::vector<Pose2> path = pose_path_to(to, *report.robot, surroundings.grid(), config_.path, config_.path_spacing_m);
-  if (path.empty()) reason_ = "no path back is known";
   if (!path.empty() || !path_.empty()) set_path(std::move(path));
 }
 

@@ -60,6 +60,8 @@ class Explorer {
   /// Returns false when there is nothing to pause.
   bool pause();
   void return_home();
+  /// Drives to a place instead of exploring, and pauses there, or where no path leads on.
+  void go_to(const Destination& place);
   /// slam has begun another map: forgets all places of the old map, including the place where the mission started.
   void forget_map();
 
@@ -126,7 +128,9 @@ class Explorer {
   bool is_beyond_budget() const { return is_adrift_ && !(drift_m_ <= config_.max_drift_m); }
   bool is_of_other_tier(const Goal& goal) const;
   void note_loss(time::Time now);
-  void go_home(const Returning& returning, const Report& report, Surroundings& surroundings);
+  void return_or_go(Returning returning, const Report& report, Surroundings& surroundings);
+  bool is_at_end(const Returning& returning, const Pose2& robot) const;
+  void arrive(const Returning& returning);
   void drive_to(const Pose2& to, const Report& report, const Surroundings& surroundings);
   void note_arrival(time::Time now);
   void note_vanished(const Decision& decision, time::Time now);

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "common/time/time.hpp"
+#include "planner/core/space/cell.hpp"
 
 namespace lapis::planner {
 
@@ -16,7 +17,7 @@ enum class State {
   kExploring,      ///< drives to frontiers
   kPaused,         ///< stands still until the mission is started again
   kRecovering,     ///< slam has no pose: the robot looks around
-  kReturning,      ///< drives back to where the mission started
+  kReturning,      ///< drives back to where the mission started, or to a place that was asked for
   kDone,           ///< nothing is left that can be reached, or the robot has returned
   kGaveUp,         ///< as kDone, but frontiers are left that geometry does not excuse; the reason names them
   kFailed,         ///< the robot needs help; the reason says why
@@ -41,8 +42,15 @@ struct Ended {
   std::string why;           ///< of an exploration that came to its end; otherwise empty
 };
 
+/// Where an operator wants the robot.
+struct Destination {
+  Pose2 pose;
+  bool has_heading = true;  ///< false: any heading is right there
+};
+
 struct Returning {
-  Ended then;  ///< the state after arrival
+  Ended then = {};                                  ///< the state after arrival where the mission started
+  std::optional<Destination> place = std::nullopt;  ///< where it goes instead, and then pauses
 };
 
 struct Consolidating {

@@ -619,6 +619,50 @@ TEST(Explorer, StartingOnThePathHomeStopsThePathHome) {
   EXPECT_EQ(world.explorer.state(), State::kExploring);
 }
 
+TEST(Explorer, DrivesToAPlaceAndPausesThere) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  while (world.robot.p_map.x() < 4.0 && world.explorer.state() == State::kExploring) world.run(0.2);
+  const Pose2 place{world.robot.p_map, 1.5};
+  world.run(20.0);
+  world.explorer.go_to({place});
+  world.run(0.5);
+  EXPECT_EQ(world.explorer.state(), State::kReturning);
+  EXPECT_EQ(world.explorer.reason(), "drives to a place");
+  world.run(60.0);
+  EXPECT_EQ(world.explorer.state(), State::kPaused) << world.explorer.reason();
+  EXPECT_EQ(world.explorer.reason(), "is at the place that was asked for");
+  EXPECT_LT((world.robot.p_map - place.p_map).norm(), 0.35);
+  EXPECT_LT(turn_between(world.robot.yaw_rad, place.yaw_rad), 0.35);
+  EXPECT_TRUE(world.explorer.path().empty());
+  world.explorer.start();
+  world.run(300.0);
+  EXPECT_EQ(world.explorer.state(), State::kDone) << world.explorer.reason();
+}
+
+TEST(Explorer, PausesWhereNoPathLeadsToAPlace) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.run(5.0);
+  world.explorer.go_to({.pose = {{500.0, 500.0}, 0.0}, .has_heading = false});
+  world.run(100.0);
+  EXPECT_EQ(world.explorer.state(), State::kPaused);
+  EXPECT_EQ(world.explorer.reason(), "no path to the place is known");
+}
+
+TEST(Explorer, KeepsToAPlaceWhileSlamIsLost) {
+  WalkWorld world(closed(kThreeRooms));
+  world.explorer.start();
+  world.run(10.0);
+  world.explorer.go_to({.pose = world.robot, .has_heading = false});
+  world.tracking = Tracking::kLost;
+  world.tick();
+  EXPECT_EQ(world.explorer.state(), State::kRecovering);
+  world.tracking = Tracking::kTracking;
+  world.run(10.0);
+  EXPECT_EQ(world.explorer.reason(), "is at the place that was asked for");
+}
+
 TEST(Explorer, ReturnsAlsoWhenItPlansSeldom) {
   WalkWorld world(closed(kThreeRooms), {.replan_period_s = 20.0});
   world.explorer.start();

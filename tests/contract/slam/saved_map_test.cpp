@@ -159,23 +159,23 @@ TEST_F(SavedMap, IsResumedInANewSessionOfTheSameFrame) {
 
 // Tracked, covered, and elsewhere until mapping goes on there.
 TEST_F(SavedMap, WithASubMapIsTheSameInTwoRuns) {
-  constexpr int kCovered = 10, kElsewhere = 30;
+  constexpr int kMapped = 90, kCovered = 10, kElsewhere = 30;
   constexpr auto kUnconnected = lapis_msgs::msg::TrackedFrame_Constants::STATE_UNCONNECTED;
   const auto turned = geometry::make_pose(
       Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitY())));
   std::vector<std::vector<std::uint8_t>> saved;
   for (int i = 0; i < 2; ++i) {
     const TemporaryFolder folder;
-    Slam run(folder.path(), {"slam.autosave_period_s=0", "slam.sub_map.after_frames=8"});
+    Slam run(folder.path(), {"slam.autosave_period_s=0", "slam.sub_map.after_frames=8", "slam.sub_map.evidence_m=0.5"});
     ASSERT_TRUE(run.is_ready()) << run.log();
-    ASSERT_TRUE(run.are_tracked(0, kSavedFrames)) << run.log();
-    int index = kSavedFrames;
-    for (; index < kSavedFrames + kCovered; ++index) {
+    ASSERT_TRUE(run.are_tracked(0, kMapped)) << run.log();
+    int index = kMapped;
+    for (; index < kMapped + kCovered; ++index) {
       auto covered = run.frame(index);
       std::fill(covered.color->data().begin(), covered.color->data().end(), std::uint8_t{0});
       ASSERT_TRUE(run.answers(covered, index)) << run.log();
     }
-    for (; index < kSavedFrames + kCovered + kElsewhere; ++index) {
+    for (; index < kMapped + kCovered + kElsewhere; ++index) {
       ASSERT_TRUE(run.answers(run.frame(index, slow_motion(index) * turned), index)) << run.log();
     }
     EXPECT_EQ(run.frames.back().state(), kUnconnected) << run.frames.back().reason();

@@ -26,6 +26,8 @@ using ::testing::HasSubstr;
 
 class SlamFaults : public SlamContract {
  protected:
+  using SlamContract::SlamContract;
+
   void SetUp() override {
     SlamContract::SetUp();
     for (int i = 0; i < kFirstFrames && !HasFatalFailure(); ++i) {
@@ -415,25 +417,40 @@ TEST_F(SlamFaults, CoveredCameraIsLostAtOnceAndFindsItsMapAgain) {
   }
 }
 
-// Carried elsewhere while covered, without odometry: mapping goes on, and nobody is told a pose that is not known.
-TEST_F(SlamFaults, CarriedWhileCoveredItGoesOnInASubMap) {
+/// A camera without odometry that is carried elsewhere while it is covered.
+class CarriedSlam : public SlamFaults {
+ protected:
+  CarriedSlam() : SlamFaults({"--set", "slam.sub_map.evidence_m=0.5"}) {}
+
+  /// Covers the camera, and shows another view until slam is not lost any more; the index of the next frame.
+  int carry(int index) {
+    for (const int end = index + 10; index < end; ++index) {
+      auto covered = feed.frame(index);
+      std::fill(covered.color->data().begin(), covered.color->data().end(), std::uint8_t{0});
+      EXPECT_TRUE(answers(covered, index)) << slam.log();
+      EXPECT_EQ(frames.back().state(), kLost);
+    }
+    for (const int last = index + 60; index < last && frames.back().state() == kLost; ++index) {
+      EXPECT_TRUE(answers(elsewhere(index), index)) << slam.log();
+    }
+    return index;
+  }
+  CameraFrame elsewhere(int index) const {
+    const auto turned = geometry::make_pose(
+        Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitY())));
+    return feed.frame(CameraFeed::stamp(index), slow_motion(index) * turned);
+  }
+};
+
+// Mapping goes on, and nobody is told a pose that is not known.
+TEST_F(CarriedSlam, GoesOnInASubMap) {
   const auto& graphs = probe.collect(topics::kPoseGraph);
   const auto& status = probe.collect(topics::kSlamStatus);
-  const auto turned = geometry::make_pose(
-      Eigen::Vector3d::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(3.14159265358979, Eigen::Vector3d::UnitY())));
-  ASSERT_NE(odometry_at(CameraFeed::stamp(kFirstFrames - 1)), nullptr);
-  const auto poses = odometry.size();
   int index = kFirstFrames;
-  for (; index < kFirstFrames + 10; ++index) {
-    auto covered = feed.frame(index);
-    std::fill(covered.color->data().begin(), covered.color->data().end(), std::uint8_t{0});
-    ASSERT_TRUE(answers(covered, index)) << slam.log();
-    EXPECT_EQ(frames.back().state(), kLost);
-  }
-  const int last = index + 60;
-  for (; index < last && frames.back().state() == kLost; ++index) {
-    ASSERT_TRUE(answers(feed.frame(CameraFeed::stamp(index), slow_motion(index) * turned), index)) << slam.log();
-  }
+  for (; index < 90; ++index) ASSERT_TRUE(track(index)) << slam.log();
+  ASSERT_NE(odometry_at(CameraFeed::stamp(index - 1)), nullptr);
+  const auto poses = odometry.size();
+  index = carry(index);
   const auto& begun = frames.back();
   ASSERT_EQ(begun.state(), lapis_msgs::msg::TrackedFrame_Constants::STATE_UNCONNECTED) << slam.log();
   EXPECT_EQ(begun.source(), lapis_msgs::msg::TrackedFrame_Constants::SOURCE_NONE);
@@ -443,13 +460,20 @@ TEST_F(SlamFaults, CarriedWhileCoveredItGoesOnInASubMap) {
   EXPECT_TRUE(messages::from_message(begun.pose_in_keyframe()));
   const auto first_of_it = begun.keyframe_id();
   const auto version = begun.graph_version();
-  for (const int end = index + 20; index < end; ++index) {
-    ASSERT_TRUE(answers(feed.frame(CameraFeed::stamp(index), slow_motion(index) * turned), index)) << slam.log();
-  }
+  for (const int end = index + 20; index < end; ++index) ASSERT_TRUE(answers(elsewhere(index), index)) << slam.log();
   ASSERT_TRUE(probe.wait_until([&] { return !graphs.empty() && graphs.back().version() >= version; })) << slam.log();
   for (const auto& node : graphs.back().nodes()) EXPECT_LT(node.id(), first_of_it);
   EXPECT_EQ(status.back().state(), lapis_msgs::msg::TrackedFrame_Constants::STATE_UNCONNECTED);
   EXPECT_EQ(odometry.size(), poses) << "no pose is made up";
+}
+
+// Five frames are no map to which anything could be joined.
+TEST_F(CarriedSlam, BeginsAnotherMapWhereTheFirstWasTooSmall) {
+  const int index = carry(kFirstFrames);
+  EXPECT_EQ(frames.back().state(), kTracking) << slam.log();
+  EXPECT_NE(frames.back().session(), frames.front().session());
+  EXPECT_THAT(slam.log(), HasSubstr("too few to find its place again: a new map begins"));
+  EXPECT_NE(odometry_at(CameraFeed::stamp(index - 1)), nullptr);
 }
 
 // 180 degrees per second at 30 Hz, once around. What is published is right; where nothing is known nothing is

@@ -363,7 +363,7 @@ void check_labels(const Snapshot& seen, Findings& findings) {
   };
   if (!is_published(seen.labels_topic) || is_published(seen.label_info_topic)) return;
   findings.push_back({"no_label_info", seen.label_info_topic, "labels come without the names of their classes",
-                      "let the segmentation publish vision_msgs/LabelInfo, transient local"});
+                      "let the segmentation publish it (type LabelInfo of vision_msgs), transient local"});
 }
 
 }  // namespace

@@ -129,7 +129,7 @@ Decision Controller::obey_operator(time::Time now, double elapsed_s) {
   const double free_m_s = is_turn ? 0.0 : free_speed(wanted);
   if (!is_turn && free_m_s <= 0.0) return {State::kBlocked, "an operator steers where it is not free", {}, 0.0, {}};
   if (std::abs(wanted.forward_m_s) > free_m_s) {
-    wanted.turn_rad_s *= is_turn ? 1.0 : free_m_s / std::abs(wanted.forward_m_s);
+    wanted.turn_rad_s *= free_m_s / std::abs(wanted.forward_m_s);
     wanted.forward_m_s = std::copysign(free_m_s, wanted.forward_m_s);
   }
   return {State::kFollowing, "an operator steers", ramped(last_, wanted, elapsed_s, limits_), 0.0, {}};
